@@ -158,6 +158,7 @@ bench: $(VENV)/.developing
 	$(BIN)/python benchmarks/bench_variational.py --page docs/benchmarks/variational.md
 	$(BIN)/python benchmarks/bench_hyperbolic.py $(if $(FILES),--files $(FILES)) --page docs/benchmarks/marching.md
 	$(BIN)/python benchmarks/bench_tfi.py
+	$(if $(FILES),$(BIN)/python benchmarks/bench_wings.py --airfoils $(FILES) --page docs/benchmarks/wings.md)
 
 docs: $(VENV)/.developing
 	$(BIN)/python docs/make_pages.py

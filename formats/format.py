@@ -18,8 +18,6 @@ from meshonet.geometry.shapes.shape import Shape
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
 
-Heights: TypeAlias = tuple[float, ...]
-"""z of each plane of a grid that is repeated in z, increasing from 0; none for a flat one."""
 Space: TypeAlias = Literal["volumes", "surfaces"]
 """What grids whose nodes have three coordinates are made of: blocks of volume, or patches of a surface."""
 Options: TypeAlias = frozenset[str]
@@ -37,7 +35,6 @@ class Format:
         outer edges then serve) or cannot be read.
     read_grids, write_grids, write_boundaries, write_layouts : None when the format cannot.
     sniff : says from the first `HEAD_BYTES` bytes whether a file looks like this.
-    extrudes : whether `write_grids` takes `Heights` third and writes layers of cells between these planes.
     names_patches : whether names of patches and the topology survive in it.
     blocks : how a grid of several planar blocks is written: the blocks ``kept``, or ``merged`` to one mesh;
         not at all if empty.
@@ -61,7 +58,6 @@ class Format:
     write_boundaries: Callable[[Path, Iterable[Boundary]], None] | None = None
     write_layouts: Callable[[Path, Iterable[Layout]], None] | None = None
     sniff: Callable[[bytes], bool] | None = None
-    extrudes: bool = False
     names_patches: bool = False
     blocks: Literal["", "kept", "merged"] = ""
     space: tuple[Space, ...] = ()

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Literal, TypeVar
 
-from meshonet.formats.format import Format
+from meshonet.formats.format import Format, later
 from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.source import Source, open_source, printable
 from meshonet.formats.table import TABLE
@@ -23,7 +23,11 @@ _OLD_NAMES = {
     "gmsh41-ascii": "gmsh:4.1,ascii",
     **{name: f"meshio:{name}" for name in ("stl", "ply", "obj", "off", "abaqus", "medit")},
 }
-_DESIGNATION = "naca:"
+_DESIGNATIONS = {
+    "naca:": "meshonet.geometry.shapes.airfoil.naca:naca",
+    "circle:": "meshonet.geometry.shapes.circle:circle",
+}
+"""Words that begin the designation of a shape, and the function of what is behind them."""
 
 
 def format_named(name: str) -> Format:
@@ -108,9 +112,8 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
     if is_designation(text):
         if fmt:
             format_named(fmt)
-        from meshonet.geometry.shapes.airfoil.naca import naca
-
-        return iter([naca(text[len(_DESIGNATION) :])])
+        word, _, rest = text.partition(":")
+        return iter([later(_DESIGNATIONS[f"{word.lower()}:"])(rest)])
     source = open_source(text)
     record = _selectable(source, format_of(source, fmt))
     if record.read_shapes is not None:
@@ -128,7 +131,7 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     """
     if is_designation(text):
         remedy = f"make a grid of it first: meshonet infer {text} -o grid.vts"
-        raise InputError("is an airfoil, not a grid", remedy, source=text)
+        raise InputError("is a shape, not a grid", remedy, source=text)
     source = open_source(text)
     record = _selectable(source, format_of(source, fmt))
     if record.read_grids is not None:
@@ -140,8 +143,8 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
 
 
 def is_designation(text: str) -> bool:
-    """Return whether `text` names an airfoil by its designation, ``naca:2412``, and no file."""
-    return text.lower().startswith(_DESIGNATION) and not Path(text).exists()
+    """Return whether `text` is the designation of a shape, ``naca:2412`` or ``circle:0.5``, and no file."""
+    return text.lower().startswith(tuple(_DESIGNATIONS)) and not Path(text).exists()
 
 
 class _Records(Iterator[T]):

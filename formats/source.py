@@ -56,12 +56,12 @@ class Source:
         """Return everything."""
         return self.data if self.data is not None else self._file().read_bytes()
 
-    def view(self) -> memoryview:
+    def buffer(self) -> bytes | mmap.mmap:
         """Return everything; of a large file its pages, which the system reads when they are looked at."""
         if self.data is not None or self.size < _MAPPED:
-            return memoryview(self.read_bytes())
+            return self.read_bytes()
         with self.open() as stream:
-            return memoryview(mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ))
+            return mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
 
     def open(self) -> BinaryIO:
         """Return a seekable binary stream; the caller closes it."""

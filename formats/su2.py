@@ -13,6 +13,7 @@ from typing import BinaryIO
 import numpy as np
 
 from meshonet.formats.format import only_one
+from meshonet.formats.mesh.collapsed import refuse_collapsed
 from meshonet.formats.mesh.names import words
 from meshonet.formats.mesh.surface import Surface, shapes_of
 from meshonet.formats.mesh.unstructured import Indices, Unstructured, unstructured
@@ -36,7 +37,9 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
     Of a volume, hexahedra and quadrilaterals.
     """
-    mesh = unstructured(only_one(grids, "a .su2 file"))
+    grid = only_one(grids, "a .su2 file")
+    refuse_collapsed(grid, "a .su2 file")
+    mesh = unstructured(grid)
     points, markers, cells = mesh.points, mesh.faces, mesh.cells
     word = words(markers)
     with path.open("wb") as stream:

@@ -11,7 +11,7 @@ from meshonet.formats.plot3d import CHOICES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
-_DRAW = "meshonet.formats.figure.figure:write_grids"
+_DRAW = "meshonet.formats.figure.files:write_grids"
 _BOTH: Any = ("volumes", "surfaces")
 _VOLUMES: Any = ("volumes",)
 _HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -99,18 +99,18 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "vts", ".vts", "VTK XML structured grid", "vtk.vts_read:read_grids vtk.vts:write_grids",
-        sniff=partial(holds, (b"<VTKFile", b"StructuredGrid")), extrudes=True, names_patches=True,
+        sniff=partial(holds, (b"<VTKFile", b"StructuredGrid")), names_patches=True,
         space=_BOTH,
     ),
     _format(
         "vtm", ".vtm", "VTK multi-block file: an index and a folder of .vts, one a block",
         "vtk.vtm:read_grids vtk.vtm:write_grids",
         sniff=partial(holds, (b"<VTKFile", b"vtkMultiBlockDataSet")),
-        extrudes=True, names_patches=True, blocks="kept", many=True, beside=True, space=_BOTH,
+        names_patches=True, blocks="kept", many=True, beside=True, space=_BOTH,
     ),
     _format(
         "vtk", ".vtk", "legacy VTK structured grid", "vtk.legacy:read_grids vtk.legacy:write_grids",
-        sniff=is_legacy_vtk, extrudes=True, names_patches=True, choices=(("binary", "ascii"),), space=_BOTH,
+        sniff=is_legacy_vtk, names_patches=True, choices=(("binary", "ascii"),), space=_BOTH,
     ),
     _format(
         "vtu", ".vtu", "VTK XML unstructured grid, seams merged, patches by number",
@@ -137,7 +137,7 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "nmf", ".nmf", "NASA neutral map file: boundary conditions and interfaces of Plot3D blocks",
-        "plot3d.nmf:write_grids", extrudes=True, names_patches=True, blocks="kept", space=_BOTH,
+        "plot3d.nmf:write_grids", names_patches=True, blocks="kept", space=_BOTH,
     ),
     _format(
         "su2", ".su2", "SU2 mesh, text, patches as markers; read as a boundary",
@@ -148,7 +148,7 @@ _FORMATS: tuple[Format, ...] = (
         "plot3d", ".p3d .xyz .fmt .x .dat .bin .ufmt .unf",
         "Plot3D: text, C binary (.bin) or Fortran records (.ufmt), with the .nmf beside it",
         "plot3d.read:read_grids plot3d.write:write_grids plot3d.read:sniff",
-        extrudes=True, blocks="kept", many=True, choices=CHOICES, reads_options=True, space=_BOTH,
+        blocks="kept", many=True, choices=CHOICES, reads_options=True, space=_BOTH,
         suffix_options={".bin": "binary", ".ufmt": "fortran", ".unf": "fortran"},
     ),
     _format(

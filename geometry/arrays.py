@@ -30,6 +30,13 @@ def distinct(values: AnyArray) -> AnyArray:
     return ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]
 
 
+def norms(vectors: Floats) -> Floats:
+    """Return the lengths (...) of vectors (..., 2 or 3)."""
+    if vectors.shape[-1] == 2:
+        return np.hypot(vectors[..., 0], vectors[..., 1])
+    return np.sqrt((vectors**2).sum(axis=-1))
+
+
 def middle(values: Floats) -> float:
     """Return the median of a one-dimensional array without NaN. np.median loads numpy.ma: 25 ms."""
     ordered, half = np.sort(values), len(values) // 2

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from meshonet.api.models import models as models
     from meshonet.api.plot import plot as plot
     from meshonet.api.quality import quality as quality
+    from meshonet.api.stack import stack as stack
+    from meshonet.api.sweep import sweep as sweep
     from meshonet.api.train import train as train
     from meshonet.geometry.blocks.boundary import Boundary as Boundary
     from meshonet.geometry.blocks.grid import Grid as Grid
@@ -37,6 +39,8 @@ if TYPE_CHECKING:
     from meshonet.geometry.errors import NoValidGridError as NoValidGridError
     from meshonet.geometry.errors import SolverError as SolverError
     from meshonet.geometry.layout.layout import Layout as Layout
+    from meshonet.geometry.sections.section import Section as Section
+    from meshonet.geometry.sections.stack import Stack as Stack
     from meshonet.geometry.spacing.sampling import Sampling as Sampling
     from meshonet.solvers.method import METHODS as METHODS
     from meshonet.solvers.pipeline.make_grid import Result as Result
@@ -44,6 +48,8 @@ if TYPE_CHECKING:
     from meshonet.solvers.pipeline.make_grid import make_grids as make_grids
     from meshonet.solvers.pipeline.parameters import grid_request as grid_request
     from meshonet.solvers.pipeline.request import GridRequest as GridRequest
+    from meshonet.solvers.stacking.request import StackRequest as StackRequest
+    from meshonet.solvers.sweeping.sweep import Sweep as Sweep
 
 __version__ = "0.1.0"
 
@@ -55,17 +61,23 @@ _MODULES = {
     "meshonet.api.models": ("models",),
     "meshonet.api.plot": ("plot",),
     "meshonet.api.quality": ("quality",),
+    "meshonet.api.stack": ("stack",),
+    "meshonet.api.sweep": ("sweep",),
     "meshonet.api.train": ("train",),
     "meshonet.geometry.blocks.boundary": ("Boundary",),
     "meshonet.geometry.blocks.grid": ("Grid",),
     "meshonet.geometry.domain.domain": ("Domain",),
     "meshonet.geometry.errors": ("InputError", "MeshonetError", "NoValidGridError", "SolverError"),
     "meshonet.geometry.layout.layout": ("Layout",),
+    "meshonet.geometry.sections.section": ("Section",),
+    "meshonet.geometry.sections.stack": ("Stack",),
     "meshonet.geometry.spacing.sampling": ("Sampling",),
     "meshonet.solvers.method": ("METHODS",),
     "meshonet.solvers.pipeline.make_grid": ("Result", "make_grid", "make_grids"),
     "meshonet.solvers.pipeline.parameters": ("grid_request",),
     "meshonet.solvers.pipeline.request": ("GridRequest",),
+    "meshonet.solvers.stacking.request": ("StackRequest",),
+    "meshonet.solvers.sweeping.sweep": ("Sweep",),
 }
 _HOMES = {name: module for module, names in _MODULES.items() for name in names}
 __all__ = ["__version__", *_HOMES]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -109,18 +109,13 @@ def write_grids(
     destination = Destination(output, files.to_format, "grids")
     prepare(sources[:1] if assemble else sources, destination, session)
     check_file(history)
-    gates = parse_gates(checks.fail_on)
     members = shape_items(sources, files.from_format, session, request.sampling if assemble else None)
     cycles: list[tuple[str, Iterable[Row]]] = []
+    judge = judging(session, checks.fail_on)
 
     def written(report: Report, path: str) -> None:
-        report.finished(path)
-        label, folded = report.item.label, report.quality.folded
-        cycles.append((label, report.history))
-        if folded:
-            session.warn(f"{label}: {folded} folded cells are in {path}")
-        session.report(report)
-        session.gate(label, [text for gate in gates if (text := gate.broken(report.quality))])
+        cycles.append((report.item.label, report.history))
+        judge(report, path)
 
     with listening(Live(session.status)) if session.live else contextlib.nullcontext():
         deliver(
@@ -131,6 +126,24 @@ def write_grids(
         with whole_file(history) as file:
             write(file, cycles)
     return session.finish()
+
+
+def judging(session: Session, fail_on: Sequence[str] | None) -> Callable[[Report, str], None]:
+    """Return what reports a grid written to a file, warns of folded cells and looks at the gates.
+
+    Raises InputError: a gate that is none.
+    """
+    gates = parse_gates(fail_on)
+
+    def written(report: Report, path: str) -> None:
+        report.finished(path)
+        label, folded = report.item.label, report.quality.folded
+        if folded:
+            session.warn(f"{label}: {folded} folded cells are in {path}")
+        session.report(report)
+        session.gate(label, [text for gate in gates if (text := gate.broken(report.quality))])
+
+    return written
 
 
 def _together(request: GridRequest) -> int:

@@ -27,9 +27,10 @@ def span(seconds: float) -> str:
 
 
 def named(at: tuple[int, ...]) -> str:
-    """Return the place (i, j) or (block, i, j) of a node or cell in words.
+    """Return the place (i, j), (block, i, j) or (block, i, j, k) of a node or cell in words.
 
-    >>> named((3, 0, 7))
-    'block=3, i=0, j=7'
+    >>> named((3, 0, 7)), named((0, 1, 2, 3))
+    ('block=3, i=0, j=7', 'block=0, i=1, j=2, k=3')
     """
-    return ", ".join(f"{name}={k}" for name, k in zip(("block", "i", "j")[-len(at) :], at, strict=True))
+    names = ("i", "j") if len(at) == 2 else ("block", "i", "j", "k")
+    return ", ".join(f"{name}={k}" for name, k in zip(names, at, strict=False))

@@ -66,8 +66,8 @@ def test_convert_writes_what_can_be_read_again(grid_vts: Path, tmp_path: Path) -
     assert (grid.ni, grid.nj) == (4, 5)
     convert(grid_vts, tmp_path / "c.p3d", extrude=0.5)
     assert len((tmp_path / "c.p3d").read_text().split()) > 2 * 3 * 20
-    with pytest.raises(InputError, match="hdf5 holds flat grids only"):
-        convert(grid_vts, tmp_path / "d.h5", extrude=0.5)
+    with pytest.raises(InputError, match="geo holds flat grids only"):
+        convert(grid_vts, tmp_path / "d.geo", extrude=0.5)
 
 
 def test_models_say_what_they_are() -> None:

@@ -120,6 +120,11 @@ def all_inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.copy(ROOT / "examples" / "grid-convergence" / "ellipse.csv", tmp_path)
     for name, loop in domains(tmp_path).items():
         (tmp_path / name).write_text("\n".join(f"{x:.8f} {y:.8f}" for x, y in loop) + "\n")
+    for page in GUIDES:
+        for text in blocks(page, "toml"):
+            name = re.match(r"# (\w+\.toml)\n", text)
+            if name:
+                (tmp_path / name[1]).write_text(text)
     for name in ("grid.vts", "predicted.h5", "solved.h5"):
         run(f"meshonet tfi ellipse.csv --res 41x21 -o {name}", tmp_path)
     return tmp_path

@@ -46,6 +46,11 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     outer, hole = [[0, 0], [3, 0], [3, 2], [0, 2], [0, 0]], [[1, 1], [1, 1.4], [1.4, 1.4], [1.4, 1], [1, 1]]
     plate = {"type": "Polygon", "coordinates": [outer, hole]}
     (made / "plate.geojson").write_text(json.dumps(plate))
+    section = '[[sections]]\nairfoil = "airfoil.dat"\nchord = {}\nz = {}\n'
+    (made / "wing.toml").write_text(section.format(1, 0) + section.format(0.5, 2) + "sweep = 20\n")
+    bend = "[[pieces]]\nline = 2\n[[pieces]]\narc = 90\nradius = 2\ntowards = [0, 1, 0]\n"
+    (made / "bend.toml").write_text(bend)
+    (made / "path.csv").write_text("0,0,0\n9,0,0\n18,5,1\n")
     (made / "duct.csv").write_text("0,0\n1,0.2\n2,0\n2,1\n0,1\n")
     assert shell("meshonet layout plate.geojson -o plate.json", made).returncode == 0
     for name in ("grid.vts", "other.vts"):

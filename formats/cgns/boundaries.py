@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.cgns.nodes import Node, array, children, text
-from meshonet.formats.mesh.windows import Face, Pair, Triple, Window
+from meshonet.formats.mesh.windows import Face, Triple, Window
 from meshonet.formats.source import printable
 from meshonet.geometry.blocks.outer_patches import JOINED, UNNAMED, rectangles
 from meshonet.geometry.blocks.patches import Kind, kind_of

@@ -28,7 +28,7 @@ def donor_range(each: Connection, counts: tuple[int, ...]) -> Integers:
 
 
 def transform_of(each: Connection) -> Integers:
-    """Return the donor's index that each index of the zone runs along, counted from 1, negative if opposed."""
+    """Return the donor's index along each index of the zone, counted from 1, negative where opposed."""
     (axis, end), (other, donor_end) = PLACES[each.side], PLACES[each.donor_side]
     dimension = len(each.orientation) + 1
     donor_axes = [index for index in range(dimension) if index != other]

@@ -33,7 +33,7 @@ _MOST_NODES = 1 << 40
 
 
 class _Zone(NamedTuple):
-    """A structured zone: its base, itself, its name, what this package wrote of it, x, y[, z] (ni, nj, nk)."""
+    """A structured zone: base, node, name, what this package wrote of it, and x, y[, z] (ni, nj, nk) each."""
 
     base: Node
     node: Node

@@ -1,7 +1,7 @@
 """CGNS structured zones in HDF5, ``.cgns``: boundary conditions, families, connected sides joined one to one.
 
-Written so that libraries from 3.4 on read it: a zone for every block, of two or three directions. Grids in the
-plane, on surfaces and of volumes stand in bases of their own. Topology, name, parts and provenance
+Written so that libraries from 3.4 on read it: a zone for every block, of two or three directions. Grids in
+the plane, on surfaces and of volumes stand in bases of their own. Topology, name, parts and provenance
 are Descriptor_t nodes of the zone, which others pass over.
 https://cgns.org/standard/SIDS/SIDS.html
 """
@@ -52,7 +52,9 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
             names = _zone_names(grid, {"DataClass", *zones, *families})
             zones |= set(names)
             told = plane_of_extruded(grid) or grid
-            nodes = [_write_zone(base, names[k], grid, k, facts_of(told, k, number)) for k in range(len(names))]
+            nodes = [
+                _write_zone(base, names[k], grid, k, facts_of(told, k, number)) for k in range(len(names))
+            ]
             write_connections(nodes, names, grid)
             for family, kind in _write_conditions(nodes, grid, zones).items():
                 families.setdefault(family, kind)

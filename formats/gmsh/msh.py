@@ -12,6 +12,7 @@ from typing import BinaryIO, NamedTuple, TypeAlias
 import numpy as np
 
 from meshonet.formats.format import Options, only_one
+from meshonet.formats.mesh.collapsed import refuse_collapsed
 from meshonet.formats.mesh.unstructured import CELLS, Indices, in_space, unstructured
 from meshonet.formats.source import printable
 from meshonet.formats.text.number_table import write_rows
@@ -38,14 +39,14 @@ Block: TypeAlias = "tuple[str, Indices]"
 """Name of a group of cells and their nodes (m, k) counted from 0."""
 
 
-def write_grids(
-    path: Path, grids: Iterable[Grid], *, options: Options = frozenset()
-) -> None:
+def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the one grid of `grids`: quads, and lines in groups named as its patches.
 
     Of a volume, hexahedra and quads.
     """
-    mesh = unstructured(only_one(grids, "a .msh file"))
+    grid = only_one(grids, "a .msh file")
+    refuse_collapsed(grid, "a .msh file")
+    mesh = unstructured(grid)
     tags = {name: tag for tag, name in enumerate(mesh.faces, start=1)}
     links = [
         Link(tags[pair.partner], tags[pair.name], _affine(pair.motion), pair.nodes[:, ::-1])

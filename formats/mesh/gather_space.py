@@ -1,4 +1,4 @@
-"""Blocks in space of a file of others as grids: volumes that touch are one grid, all patches of surface another.
+"""Blocks in space of a file of others as grids: volumes that touch are one, all patches of surface one.
 
 A file may say where blocks are joined and what is a boundary. What it does not say is found by position.
 """
@@ -15,15 +15,13 @@ from meshonet.geometry.blocks.connection import Connection, Motion, check_connec
 from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections, order
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
 
 
-def grids_in_space(
-    pieces: Sequence[Piece], joined: Sequence[Connection], name: str
-) -> Iterator[Grid]:
+def grids_in_space(pieces: Sequence[Piece], joined: Sequence[Connection], name: str) -> Iterator[Grid]:
     """Yield the grids that the pieces of a file called `name` make, in the order of their first blocks.
 
-    Nodes of pieces are (ni, nj, nk, 3), right-handed, or (ni, nj, 3), and not checked here. `joined` are the connections that the file states, without transforms. Several grids are called by their
+    Nodes of pieces are (ni, nj, nk, 3), right-handed, or (ni, nj, 3), and not checked here.
+    `joined` are the connections that the file states, without transforms. Several grids are called by their
     piece where that has a name, else by `name` and a number.
 
     Raises InputError: stated connections that connect nothing.

@@ -63,7 +63,7 @@ class PeriodicPair(NamedTuple):
 def periodic_pairs(
     grid: Grid, numbers: Sequence[Indices], cells: Sequence[Indices], taken: Iterable[str]
 ) -> list[PeriodicPair]:
-    """Return the pairs of periodic sides of blocks whose nodes and `cells` have these numbers, block by block.
+    """Return the pairs of periodic sides of blocks whose nodes and `cells` have these numbers.
 
     Connections of one motion and one pair of names make one pair; without names they are called periodic1 and
     periodic2, and so on, and never as those `taken` by other faces.
@@ -101,10 +101,8 @@ def _known(motion: Motion, motions: list[Motion]) -> tuple[int, bool]:
     return len(motions) - 1, False
 
 
-def _parts(
-    connection: Connection, numbers: Sequence[Indices], cells: Sequence[Indices]
-) -> tuple[Part, Part]:
-    """Return the faces of both sides of a connection, those of the donor the other way round, and the cells."""
+def _parts(connection: Connection, numbers: Sequence[Indices], cells: Sequence[Indices]) -> tuple[Part, Part]:
+    """Return the faces of both sides of a connection, the donor's the other way round, and the cells."""
     faces = [faces_of(nodes, connection.side) for nodes in both_sides(connection, numbers)]
     behind = [rows.ravel(order="F") for rows in both_sides(cellwise(connection), cells)]
     return Part(faces[0], behind[0]), Part(faces[1][:, _OPPOSITE[faces[1].shape[1]]], behind[1])

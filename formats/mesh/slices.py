@@ -160,9 +160,7 @@ def _flat(plane: list[Floats], axis: int) -> _Slice | None:
     return None
 
 
-def _copies(
-    first: list[Floats], next_plane: list[Floats], axis: int, before: _Slice | None
-) -> _Slice | None:
+def _copies(first: list[Floats], next_plane: list[Floats], axis: int, before: _Slice | None) -> _Slice | None:
     """Return the slice that planes of nodes are: all flat across one coordinate, the others the same."""
     size = max(float(np.ptp(values)) for values in first)
     for flat in (2, 1, 0):

@@ -19,7 +19,7 @@ from meshonet.geometry.errors import in_place
 
 @dataclass(frozen=True)
 class FileBlock:
-    """A block of a file: x, y[, z], each (n1, n2, n3), of any number type; its name, and what messages call it.
+    """A block of a file: x, y[, z], each (n1, n2, n3), of any number type, its name, its place in messages.
 
     `iblank` says how many nodes have which mark, where there are marks.
     """

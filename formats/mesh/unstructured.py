@@ -71,7 +71,7 @@ def in_space(points: Floats) -> Floats:
 
 
 def node_numbers(grid: Grid) -> list[Indices]:
-    """Return the number (ni, nj) or (ni, nj, nk) of every node of every block, the same for nodes that are one.
+    """Return the number of every node (ni, nj) or (ni, nj, nk) of each block; nodes that are one share it.
 
     Numbers ascend from 0 without gaps in the order of blocks, i fastest.
     """

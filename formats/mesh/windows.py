@@ -51,7 +51,7 @@ class Pair(NamedTuple):
 
 
 class Part(NamedTuple):
-    """A part of a side: for each of its directions also the index of the file, and 1 or -1 for the way it ran."""
+    """A part of a side; for each of its directions the index of the file, and 1 or -1 as that one ran."""
 
     side: Side
     range: Range

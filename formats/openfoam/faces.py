@@ -5,7 +5,7 @@ order. Outer faces follow, patch by patch. https://doc.openfoam.com/2312/tools/p
 """
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ from meshonet.kernels._native import inner_faces
 
 Labels = NDArray[np.int32]
 Indices = NDArray[np.int64]
+_LEAST = 3
+"""Nodes of a face."""
 MOST_LABELS = 2**31 - 1
 """Labels are of 32 bits, and so is the count of the nodes of all faces."""
 
@@ -28,7 +30,7 @@ class Faces(NamedTuple):
 
     Parameters
     ----------
-    nodes : (f, 4) point numbers; the normal points out of the owner.
+    nodes : (f, 4) point numbers; the normal points out of the owner. Two that follow each other may be one.
     owner : (f,) cell behind each face; the lower of two.
     neighbour : (g,) cell before each of the g inner faces, which come first.
     """
@@ -65,6 +67,20 @@ def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, Part])
         nodes[at : at + len(part.cells)], owner[at : at + len(part.cells)] = part
         at += len(part.cells)
     return Faces(nodes[:at], owner[:at], neighbour[:inner])
+
+
+def whole(nodes: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
+    """Say which faces (f, 4) have an area: at least three nodes, and none that lie across on each other."""
+    several = (nodes != np.roll(nodes, -1, axis=1)).sum(axis=1) >= _LEAST
+    return np.asarray(several & (nodes[:, 0] != nodes[:, 2]) & (nodes[:, 1] != nodes[:, 3]))
+
+
+def without_collapsed(faces: Faces, parts: Mapping[str, Part]) -> tuple[Faces, dict[str, Part]]:
+    """Return faces and parts without those that are no more than a line, and without parts that lose all."""
+    keep, inner = whole(faces.nodes), len(faces.neighbour)
+    kept = {name: (part, whole(part.faces)) for name, part in parts.items()}
+    left = Faces(faces.nodes[keep], faces.owner[keep], faces.neighbour[keep[:inner]])
+    return left, {name: Part(p.faces[at], p.cells[at]) for name, (p, at) in kept.items() if at.any()}
 
 
 def _beyond(grid: Grid, cells: Sequence[Indices]) -> list[list[Labels]]:

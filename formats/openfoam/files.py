@@ -1,9 +1,10 @@
-"""The files of a ``polyMesh``: lists of points, faces and labels, as text or binary, under OpenFOAM's headers.
+"""The files of a ``polyMesh``: lists of points, faces and labels under OpenFOAM's headers, text or binary.
 
 Binary ones are those of a little-endian machine with labels of 32 bits and scalars of 64, which every build
 reads by what the header says. https://doc.openfoam.com/2312/fundamentals/input-types/dictionaries/
 """
 
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -17,7 +18,9 @@ from meshonet.geometry.arrays import Floats
 _ARCH = '    arch        "LSB;label=32;scalar=64";\n'
 
 
-def head(kind: str, name: str, note: str = "", place: str = "constant/polyMesh", *, binary: bool = False) -> str:
+def head(
+    kind: str, name: str, note: str = "", place: str = "constant/polyMesh", *, binary: bool = False
+) -> str:
     """Return the header of a file of the class `kind`."""
     remark = f'    note        "{note}";\n' if note else ""
     form = f"binary;\n{_ARCH}" if binary else "ascii;\n"
@@ -49,15 +52,24 @@ def _write_points(path: Path, points: Floats, *, binary: bool) -> None:
 
 
 def _write_faces(path: Path, nodes: NDArray[np.int32], *, binary: bool) -> None:
-    """Write faces of four nodes; binary ones as where each begins, and then all nodes."""
+    """Write faces of four nodes, or three where two are one; binary as where each begins, then all nodes."""
     kind = "faceCompactList" if binary else "faceList"
+    own = nodes != np.roll(nodes, -1, axis=1)
+    sizes = own.sum(axis=1)
     with path.open("wb") as stream:
         stream.write(head(kind, path.name, binary=binary).encode("ascii"))
         if binary:
-            _put(stream, np.arange(0, nodes.size + 1, 4, dtype=np.int32), len(nodes) + 1)
-            _put(stream, nodes, nodes.size)
-        else:
-            _rows(stream, "4(%d %d %d %d)", nodes)
+            flat = nodes if (sizes == 4).all() else nodes[own]
+            _put(stream, np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32), len(nodes) + 1)
+            _put(stream, flat, flat.size)
+            return
+        stream.write(f"{len(nodes)}\n(\n".encode("ascii"))
+        ends = [0, *(np.flatnonzero(np.diff(sizes)) + 1).tolist(), len(nodes)]
+        for first, last in pairwise(ends):
+            size = int(sizes[first])
+            form = f"{size}({' '.join(['%d'] * size)})"
+            write_rows(stream, form, nodes[first:last][own[first:last]].reshape(-1, size))
+        stream.write(b")\n")
 
 
 def _write_labels(path: Path, labels: NDArray[np.int32], note: str, *, binary: bool) -> None:

@@ -9,9 +9,10 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from meshonet.formats.format import Options, only_one
+from meshonet.formats.mesh.collapsed import with_collapsed
 from meshonet.formats.mesh.outer_parts import outer_parts
 from meshonet.formats.mesh.unstructured import node_numbers, points_of
-from meshonet.formats.openfoam.faces import all_faces
+from meshonet.formats.openfoam.faces import all_faces, without_collapsed
 from meshonet.formats.openfoam.files import head, write_mesh
 from meshonet.formats.openfoam.patches import patches_of, with_empty_planes, write_boundary
 from meshonet.formats.output import whole_file, whole_folder
@@ -32,18 +33,22 @@ _SMALL = 1 << 16
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the one grid of `grids` around `path`, which is left empty.
 
-    A plane one, or one that is one cell thick between symmetry planes, has these as a patch ``empty``. The
-    mesh that is there is replaced when the new one is whole.
+    A plane one, or one that is one cell thick between symmetry planes, has these as a patch ``empty``. Cells
+    at sides that are a line or a point are prisms and pyramids. The mesh that is there is replaced when the
+    new one is whole.
     """
     grid = only_one(grids, "a case")
     if not in_space(grid):
         grid = extruded(grid, (0.0, 1.0))
-    numbers = node_numbers(grid)
+    apart = node_numbers(grid)
+    numbers = with_collapsed(grid, apart)
     points = points_of(grid, numbers)
     parts, pairs = outer_parts(grid, numbers)
     parts = with_empty_planes(grid, parts)
-    patches = patches_of(grid, parts, pairs, points)
     faces = all_faces(grid, numbers, parts)
+    if numbers is not apart:
+        faces, parts = without_collapsed(faces, parts)
+    patches = patches_of(grid, parts, pairs, points)
     binary = "binary" in options or (len(points) > _SMALL and "ascii" not in options)
     for name in ("constant", "system"):
         (path.parent / name).mkdir(exist_ok=True)

@@ -19,7 +19,7 @@ from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import PLACES, Range
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Kind, Patch
+from meshonet.geometry.blocks.patches import Kind
 
 PART = "# part: "
 """Begins the comment that names the patch of the next row; before two names, that of its donor."""
@@ -37,7 +37,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
-    """Write the map of all blocks of `grids`, whose third direction, if any, is the index `span` of the file."""
+    """Write the map of all blocks of `grids`; their third direction, if any, is the index `span`."""
     dims: list[list[int]] = []
     rows: list[str] = []
     for grid in grids:
@@ -78,11 +78,12 @@ class _Rows:
     def _joined(self, each: Connection) -> list[str]:
         along = list(each.donor_range)
         for way in each.orientation:
-            along[abs(way) - 1] = along[abs(way) - 1][:: 1 if way > 0 else -1]
-        own, first = self._window(each.block, each.side, each.range)
+            first, last = along[abs(way) - 1]
+            along[abs(way) - 1] = (first, last) if way > 0 else (last, first)
+        own, own_first = self._window(each.block, each.side, each.range)
         donor, donor_first = self._window(each.donor, each.donor_side, tuple(along))
         # the third direction of blocks with two lies along that of others
-        partner = [*(abs(way) - 1 for way in each.orientation), 1][first]
+        partner = [*(abs(way) - 1 for way in each.orientation), 1][own_first]
         swap = str(partner != donor_first).upper()
         if each.transform is None:
             return [f"ONE_TO_ONE {own} {donor} {swap}"]
@@ -90,7 +91,7 @@ class _Rows:
         return [*(f"{PART}{name}" for name in names if all(names)), f"PERIODIC {own} {donor} {swap}"]
 
     def _window(self, block: int, side: Side, part: Range) -> tuple[str, int]:
-        """Return block, face and ranges of a part of a side, and which of its directions is the first of these.
+        """Return block, face and ranges of a part of a side, and which direction the first range is of.
 
         The ranges of a face run along the two indices that follow its own in cyclic order.
         """

@@ -1,4 +1,4 @@
-"""Reading neutral map files (`meshonet.formats.plot3d.nmf`): what faces of blocks are, and what joins them."""
+"""Reading neutral map files (`meshonet.formats.plot3d.nmf`): what faces are, and what joins them."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def _row(known: Map, line: str, names: list[str], dims: Sequence[tuple[int, int,
         return
     if len(windows) == 1:
         name = names[0] if names and names[0] else printable(title).lower() or "part"
-        kind = next((kind for sign, kind in _KINDS if title.lower().startswith(sign)), "other")
+        kind: Kind = next((kind for sign, kind in _KINDS if title.lower().startswith(sign)), "other")
         by_name = kind_of(name)
         known.faces.append(Face(windows[0], name, kind if by_name == "other" else by_name))
         return

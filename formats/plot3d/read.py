@@ -35,7 +35,7 @@ def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Gr
     if is_text(source.head()):
         every = text.candidates(source.read_bytes(), wanted)
     else:
-        every = binary.candidates(source.view(), wanted)
+        every = binary.candidates(memoryview(source.buffer()), wanted)
     reading = best([candidate for candidate in every if wanted <= candidate.traits] or _misfit(every, wanted))
     blocks = []
     for k in reading.blocks:

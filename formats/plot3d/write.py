@@ -132,7 +132,9 @@ def _put_bytes(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> N
         size = block.nodes * (block.axes * _real(options).itemsize + 4 * int(block.iblank))
         if framed and size >= 1 << 31:
             dims = "x".join(map(str, block.dims))
-            problem = f"block {number} of {dims} nodes takes {size} bytes and a Fortran record less than 2 GiB"
+            problem = (
+                f"block {number} of {dims} nodes takes {size} bytes and a Fortran record less than 2 GiB"
+            )
             raise InputError(problem, "write the stream form, plot3d:binary")
         stream.write(frame(size))
         for values in block.arrays():

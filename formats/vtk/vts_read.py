@@ -17,6 +17,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
+    from mmap import mmap
     from xml.etree.ElementTree import Element
 
 Extent = tuple[int, int, int, int, int, int]
@@ -33,8 +34,8 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
 
 def read_block(source: Source) -> tuple[list[Floats], Facts]:
-    """Return x, y, z (ni, nj, nk) each of a ``.vts`` file and what it says of them; raises as `read_grids`."""
-    raw = source.view()
+    """Return x, y, z (ni, nj, nk) each and what the file says of them; raises as `read_grids`."""
+    raw = source.buffer()
     root, start, end = _parsed(raw)
     dataset = _child(root, "StructuredGrid")
     pieces = dataset.findall("Piece")
@@ -50,13 +51,12 @@ def read_block(source: Source) -> tuple[list[Floats], Facts]:
     return [points[..., k].T for k in range(3)], facts
 
 
-def _parsed(raw: bytes) -> tuple[Element, int, int]:
+def _parsed(raw: bytes | mmap) -> tuple[Element, int, int]:
     """Return the XML and where the appended bytes, which are not XML, start and end."""
     from xml.etree.ElementTree import ParseError, fromstring
 
     tag = raw.find(b"<AppendedData")
     start = end = len(raw)
-    head = raw
     if tag >= 0:
         mark = raw.find(b"_", raw.find(b">", tag))
         if mark < 0 or raw.find(b">", tag) < 0:
@@ -64,7 +64,7 @@ def _parsed(raw: bytes) -> tuple[Element, int, int]:
         start, end = mark + 1, raw.rfind(b"</AppendedData")
         if end < start:
             raise InputError("its appended data has no end", CUT)
-        head = raw[:start] + raw[end:]
+    head = raw[:start] + raw[end:]
     if b"<!" in head.replace(b"<!--", b"") or b"\0" in head:
         # a document type can define entities that expand without bound; no VTK file has one
         raise InputError("its XML has a document type or zero bytes", "write the file again")
@@ -78,7 +78,7 @@ def _parsed(raw: bytes) -> tuple[Element, int, int]:
     return root, start, end
 
 
-def _encoding(root: Element, dataset: Element, raw: bytes, start: int, end: int) -> Encoding:
+def _encoding(root: Element, dataset: Element, raw: bytes | mmap, start: int, end: int) -> Encoding:
     header = root.get("header_type", "UInt32")
     if header not in ("UInt32", "UInt64"):
         raise InputError(f"header_type {header[:40]!r} is not known", "write UInt32 or UInt64")

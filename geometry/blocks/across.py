@@ -9,23 +9,25 @@
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.blocks.block import PLACES, Range
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 
 def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floats]:
-    """Return rows (depth, n, 2 or 3) of nodes on both sides of a connection, the shared row first.
+    """Return rows of nodes on both sides of a connection, the shared row first, in the order of the first.
 
-    Blocks have two directions. The first nodes are carried to the second by the motion of a periodic connection; there
-    are fewer rows where a block has no more.
+    They are (depth, n, d), of volumes (depth, n, m, 3). The first nodes are carried to the second by the
+    motion of a periodic connection; there are fewer rows where a block has no more.
     """
-    own = rows_beside(grid, connection.block, connection.side, connection.range[0], depth)
-    donor = rows_beside(grid, connection.donor, connection.donor_side, connection.donor_range[0], depth)
+    own = rows_beside(grid, connection.block, connection.side, connection.range, depth)
+    donor = rows_beside(grid, connection.donor, connection.donor_side, connection.donor_range, depth)
     if connection.transform:
         own = connection.transform(own)
-    return own, donor[:, :: connection.orientation[0]]
+    axes = (0, *(abs(way) for way in connection.orientation), donor.ndim - 1)
+    ways = (slice(None), *(slice(None, None, 1 if way > 0 else -1) for way in connection.orientation))
+    return own, donor.transpose(axes)[ways]
 
 
 def planar(grid: Grid) -> None:
@@ -37,8 +39,8 @@ def planar(grid: Grid) -> None:
             raise InputError(problem, "give blocks of two directions with x and y")
 
 
-def rows_beside(grid: Grid, block: int, side: Side, span: tuple[int, int], depth: int) -> Floats:
-    """Return rows (depth, n, 2) of nodes from a side inwards, of its nodes `span`, both included."""
+def rows_beside(grid: Grid, block: int, side: Side, span: Range, depth: int) -> Floats:
+    """Return rows (depth, n, d) or (depth, n, m, 3) of nodes from a side inwards, of its nodes `span`."""
     axis, end = PLACES[side]
     nodes = np.moveaxis(grid.blocks[block].nodes, axis, 0)
-    return (nodes[::-1] if end else nodes)[:depth, span[0] : span[1] + 1]
+    return (nodes[::-1] if end else nodes)[(slice(depth), *(slice(first, last + 1) for first, last in span))]

@@ -13,8 +13,9 @@
        south (j = 0)
 """
 
+from collections.abc import Sequence
 from dataclasses import InitVar, dataclass
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -28,6 +29,8 @@ PLACES: dict[Side, tuple[int, int]] = {
     "west": (0, 0), "east": (0, -1), "south": (1, 0), "north": (1, -1), "bottom": (2, 0), "top": (2, -1),
 }  # fmt: skip
 """Direction that a side is an end of (0 is xi, 1 eta, 2 zeta), and which end: 0 the first, -1 the last."""
+
+Form: TypeAlias = Literal["plane", "surface", "volume"]
 
 _KINDS = {(2, 2), (2, 3), (3, 3)}
 
@@ -91,3 +94,20 @@ def _check_finite(nodes: Floats) -> None:
         if not finite.all():
             place = ", ".join(f"{name}={k}" for name, k in zip("ijk", np.argwhere(~finite)[0], strict=False))
             raise InputError(f"node {place} is not finite", "check the file for NaN or infinity")
+
+
+def form_of(nodes: Floats) -> Form:
+    """Return what the nodes of a block make: (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3)."""
+    if nodes.ndim == 4:
+        return "volume"
+    return "plane" if nodes.shape[-1] == 2 else "surface"
+
+
+def check_alike(blocks: Sequence[Block]) -> None:
+    """Raise InputError unless all blocks are in the plane, or patches of surface, or volumes."""
+    first = form_of(blocks[0].nodes)
+    for number, block in enumerate(blocks):
+        if form_of(block.nodes) != first:
+            names = {"plane": "in the plane", "surface": "a surface patch", "volume": "a volume"}
+            mixed = f"block 0 is {names[first]} and block {number} is {names[form_of(block.nodes)]}"
+            raise InputError(mixed, "keep them in grids of their own")

@@ -10,6 +10,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import Block, face_of
 from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.polygon.corners import Indices
 
 _PASSES = 9
@@ -64,16 +65,8 @@ def _equal(
     nodes: Floats, pairs: Sequence[tuple[Indices, Indices]], connections: Sequence[Connection]
 ) -> Floats:
     """Return `nodes` (n, d), each as the first of those that it is joined to, directly or through others."""
-    label = np.arange(len(nodes))
-    changed = True
-    while changed:  # as often as blocks meet in one node
-        before = label.copy()
-        for (own, donor), each in zip(pairs, connections, strict=True):
-            if each.transform is None:
-                least = np.minimum(label[own], label[donor])
-                np.minimum.at(label, own, least)
-                np.minimum.at(label, donor, least)
-        changed = not np.array_equal(label, before)
+    fixed = [pair for pair, each in zip(pairs, connections, strict=True) if each.transform is None]
+    label = joined_labels(len(nodes), fixed)
     nodes = nodes[label]
     for _ in range(_PASSES):
         old = nodes.copy()

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import count
+from typing import TypeAlias
 
 import numpy as np
 
@@ -23,9 +24,11 @@ from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch, kind_of
+from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
 from meshonet.geometry.errors import InputError
 
+End: TypeAlias = tuple[str, Kind]
+"""Name and kind of the patch that a plane becomes."""
 BACK, FRONT = "back", "front"
 """Names of the planes at the first and at the last height, symmetry planes."""
 
@@ -43,14 +46,32 @@ def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
     z = np.asarray(heights, dtype=np.float64)
     if len(z) < 2 or not (np.diff(z) > 0).all():
         raise InputError(f"heights {z.tolist()} do not increase", "give two or more that do")
-    blocks = tuple(Block(_repeated(block.nodes, z), finite=True) for block in grid.blocks)
-    connections = tuple(_thick(each, len(z)) for each in grid.connections)
-    patches = _renamed(_with_walls(grid))
+    nodes = [_repeated(block.nodes, z) for block in grid.blocks]
+    return thickened(grid, nodes, ((BACK, "symmetry"), (FRONT, "symmetry")))
+
+
+def thickened(grid: Grid, nodes: Sequence[Floats], ends: tuple[End, End] | None) -> Grid:
+    """Return a planar grid as blocks of volume, given the nodes (ni, nj, nk, 3) of each.
+
+    Patches and connections run over all planes. `ends` are name and kind of the patches at the first and at
+    the last plane; None connects the last plane of each block with its first. The nodes are finite.
+
+    Raises InputError: blocks that are not planar; nodes that part where blocks are connected.
+    """
+    planar(grid)
+    planes = nodes[0].shape[2]
+    connections = [_thick(each, planes) for each in grid.connections]
+    patches = _renamed(_with_walls(grid), [name for name, _ in ends or ()])
     for number, block in enumerate(grid.blocks):
         i, j = (n - 1 for n in block.counts)
-        patches.append(Patch(BACK, "bottom", 0, i, (0, j), number, "symmetry"))
-        patches.append(Patch(FRONT, "top", 0, i, (0, j), number, "symmetry"))
-    return replace(grid, blocks=blocks, patches=tuple(patches), connections=connections)
+        if ends is None:
+            whole = ((0, i), (0, j))
+            connections.append(Connection(number, "bottom", whole, number, "top", whole, (1, 2)))
+            continue
+        for side, (name, kind) in zip(("bottom", "top"), ends, strict=True):
+            patches.append(Patch(name, side, 0, i, (0, j), number, kind))  # type: ignore[arg-type]
+    blocks = tuple(Block(each, finite=True) for each in nodes)
+    return replace(grid, blocks=blocks, patches=tuple(patches), connections=tuple(connections))
 
 
 def plane_of_extruded(grid: Grid) -> Grid | None:
@@ -106,12 +127,10 @@ def _by_name(patch: Patch) -> Patch:
     return replace(patch, kind=kind_of(patch.name))
 
 
-def _renamed(patches: Sequence[Patch]) -> list[Patch]:
-    """Return `patches`, none of them called as the planes are."""
-    taken = {BACK, FRONT, *(patch.name for patch in patches)}
-    new = {
-        name: next(word for k in count(2) if (word := f"{name}-{k}") not in taken) for name in (BACK, FRONT)
-    }
+def _renamed(patches: Sequence[Patch], ends: Sequence[str]) -> list[Patch]:
+    """Return `patches`, none of them called as the planes at the `ends` are."""
+    taken = {*ends, *(patch.name for patch in patches)}
+    new = {name: next(word for k in count(2) if (word := f"{name}-{k}") not in taken) for name in ends}
     return [replace(patch, name=new.get(patch.name, patch.name)) for patch in patches]
 
 

@@ -28,12 +28,15 @@ class Member:
 
 
 def families(grid: Grid) -> list[list[Member]]:
-    """Return the families of the lines of a grid of planar blocks, each (block, direction) in one of them."""
+    """Return the families of the lines of a grid, each (block, direction) in one of them.
+
+    In volumes, where lines have two numbers, `flipped` says nothing.
+    """
     beyond: dict[tuple[int, int], list[tuple[tuple[int, int], bool, bool]]] = {}
     for each in grid.connections:
         own, donor = (each.block, PLACES[each.side][0]), (each.donor, PLACES[each.donor_side][0])
         whole = all(
-            span[0] == (0, face_counts(grid.blocks[block].counts, side)[0] - 1)
+            span == tuple((0, count - 1) for count in face_counts(grid.blocks[block].counts, side))
             for block, side, span in (
                 (each.block, each.side, each.range),
                 (each.donor, each.donor_side, each.donor_range),
@@ -44,7 +47,9 @@ def families(grid: Grid) -> list[list[Member]]:
         beyond.setdefault(donor, []).append((own, flip, whole))
     found: list[list[Member]] = []
     seen: set[tuple[int, int]] = set()
-    for start in ((block, axis) for block in range(len(grid.blocks)) for axis in (0, 1)):
+    for start in (
+        (block, axis) for block in range(len(grid.blocks)) for axis in range(len(grid.blocks[block].counts))
+    ):
         if start in seen:
             continue
         seen.add(start)

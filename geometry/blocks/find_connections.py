@@ -1,4 +1,4 @@
-"""Where planar blocks touch each other or themselves, found by the places of their nodes.
+"""Where blocks touch each other or themselves, found by the places of their nodes; here those in the plane.
 
 ::
 
@@ -8,6 +8,8 @@
     |  |  |            other, copies for instance, run the same way and are not joined. A part of a side may
     +--+--+            be joined, and a side to itself, as the wake of a C grid is.
     block 1
+
+Blocks in space: `meshonet.geometry.blocks.meeting_sides`.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import PLACES, Block
+from meshonet.geometry.blocks.block import PLACES, Block, Range
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.rounding import rounding
 from meshonet.geometry.errors import InputError
@@ -37,12 +39,14 @@ _MOST = 0.25
 """Nodes farther apart than this part of an edge are different, however coarsely they were rounded."""
 Stretch: TypeAlias = tuple[int, Side, int, int]
 """Block, side, first and last node of a part of its boundary."""
+Part: TypeAlias = tuple[int, Side, Range]
+"""Block, side, and first and last node along each of its directions, of a part of the boundary."""
 
 
 def find_connections(
-    blocks: Sequence[Block], tolerance: float = TOLERANCE, *, without: Iterable[Stretch] = ()
+    blocks: Sequence[Block], tolerance: float = TOLERANCE, *, without: Iterable[Stretch | Part] = ()
 ) -> tuple[Connection, ...]:
-    """Return the connections of right-handed planar `blocks`, sorted by block and side.
+    """Return the connections of right-handed `blocks`, sorted by block and side.
 
     Nodes are the same when they are no farther apart than `tolerance` edges, or than the digits tell that
     their coordinates were rounded to (`meshonet.geometry.blocks.rounding`). Nodes of a connection need not be
@@ -50,9 +54,14 @@ def find_connections(
     that are known to be no interface. Where more than two sides lie on each other, a block is joined to
     itself first, then one to the next.
 
-    Raises InputError: a block that is not planar.
+    Raises InputError: blocks in the plane and in space mixed.
     """
-    edges = _edges(blocks, without)
+    if blocks and blocks[0].nodes.shape[-1] == 3:
+        from meshonet.geometry.blocks.meeting_sides import meeting_sides
+
+        parts = [each if len(each) == 3 else (*each[:2], (each[2:],)) for each in without]
+        return tuple(sorted(meeting_sides(blocks, tolerance, parts), key=order))
+    edges = _edges(blocks, [each for each in without if len(each) == 4])
     free = np.ones(len(edges.start), dtype=bool)
     starts = np.searchsorted(edges.block, np.arange(len(blocks) + 1))
     found = []
@@ -67,9 +76,9 @@ def find_connections(
     return tuple(sorted(found, key=order))
 
 
-def order(connection: Connection) -> tuple[int, int, int]:
-    """Return what connections are sorted by: block, side and first node."""
-    return connection.block, list(PLACES).index(connection.side), connection.range[0][0]
+def order(connection: Connection) -> tuple[int, int, Range]:
+    """Return what connections are sorted by: block, side and nodes."""
+    return connection.block, list(PLACES).index(connection.side), connection.range
 
 
 @dataclass(frozen=True)

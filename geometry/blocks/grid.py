@@ -17,12 +17,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side, Topology
-from meshonet.geometry.blocks.block import Block, Range
+from meshonet.geometry.blocks.block import Block, Form, Range, check_alike, form_of
 from meshonet.geometry.blocks.connection import (
     Connected,
     Connection,
@@ -32,7 +32,7 @@ from meshonet.geometry.blocks.connection import (
     wake_cells,
 )
 from meshonet.geometry.blocks.outer_patches import outer_patches
-from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches, sides_of
+from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
@@ -46,8 +46,6 @@ class Origin:
     parameters: tuple[tuple[str, float], ...] = ()
     split: str = ""
 
-
-Form: TypeAlias = Literal["plane", "surface", "volume"]
 
 UNKNOWN = Origin()
 """Of a sample that no dataset holds."""
@@ -73,8 +71,8 @@ class Grid(Connected):
     def __post_init__(self) -> None:
         if not self.blocks:
             raise InputError("a grid without blocks", "give at least one")
+        check_alike(self.blocks)
         counts = [block.counts for block in self.blocks]
-        _check_alike(self.blocks)
         check_patches(self.patches, counts)
         check_connections(self.connections, counts)
         for connection in self.connections:
@@ -100,7 +98,7 @@ class Grid(Connected):
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]
         if form_of(block.nodes) == "volume":
-            named = tuple(patches) or sides_of(block.counts)
+            named = tuple(patches) or tuple(outer_patches((), block.counts, ()))
             return cls((block,), named, (), name, provenance or {}, origin)
         if topology == "o" and not np.array_equal(block.nodes[0], block.nodes[-1]):
             j = int(np.argmax((block.nodes[0] != block.nodes[-1]).any(axis=-1)))
@@ -119,7 +117,7 @@ class Grid(Connected):
 
     @property
     def form(self) -> Form:
-        """``plane`` for blocks (ni, nj, 2), ``surface`` for patches (ni, nj, 3), ``volume`` for (ni, nj, nk, 3)."""
+        """``plane`` of blocks (ni, nj, 2), ``surface`` of (ni, nj, 3), ``volume`` of (ni, nj, nk, 3)."""
         return form_of(self.blocks[0].nodes)
 
     @cached_property
@@ -209,30 +207,24 @@ class Grid(Connected):
         import_module("meshonet").write(self, path, to_format=to_format)
 
     def to_pyvista(self) -> Any:
-        """Return the grid as a `pyvista.StructuredGrid` in the plane z = 0.
+        """Return the grid as a `pyvista.StructuredGrid`, many blocks as a `pyvista.MultiBlock` of these.
 
-        Raises InputError: pyvista is not installed.
+        What is in the plane has z = 0. Raises InputError: pyvista is not installed.
         """
         try:
-            from pyvista import StructuredGrid
+            from pyvista import MultiBlock, StructuredGrid
         except ImportError:
             remedy = "install it: pip install 'meshonet[pyvista]'"
             raise InputError("to_pyvista needs pyvista, which is not installed", remedy) from None
-        planes = (np.ascontiguousarray(plane)[..., None] for plane in (self.x, self.y, np.zeros_like(self.x)))
-        return StructuredGrid(*planes)
+        grids = [StructuredGrid(*_coordinates(block.nodes)) for block in self.blocks]
+        if len(grids) == 1:
+            return grids[0]
+        return MultiBlock({f"block-{number}": grid for number, grid in enumerate(grids)})
 
 
-def form_of(nodes: Floats) -> Form:
-    """Return what the nodes of a block make: (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3)."""
-    if nodes.ndim == 4:
-        return "volume"
-    return "plane" if nodes.shape[-1] == 2 else "surface"
-
-
-def _check_alike(blocks: tuple[Block, ...]) -> None:
-    first = form_of(blocks[0].nodes)
-    for number, block in enumerate(blocks):
-        if form_of(block.nodes) != first:
-            names = {"plane": "a plane block", "surface": "a surface patch", "volume": "a volume"}
-            mixed = f"block 0 is {names[first]} and block {number} {names[form_of(block.nodes)]}"
-            raise InputError(mixed, "keep them in grids of their own")
+def _coordinates(nodes: Floats) -> list[Floats]:
+    """Return x, y, z, each (ni, nj, nk), of nodes; nk is 1 but in volumes, z 0 in the plane."""
+    planes = [np.ascontiguousarray(nodes[..., axis]) for axis in range(nodes.shape[-1])]
+    if form_of(nodes) == "plane":
+        planes.append(np.zeros_like(planes[0]))
+    return planes if form_of(nodes) == "volume" else [plane[..., None] for plane in planes]

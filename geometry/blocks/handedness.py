@@ -8,10 +8,10 @@ from meshonet.geometry.arrays import Floats
 
 
 def signed_volume(coordinates: Sequence[Floats]) -> float:
-    """Return the volume of a block of x, y, z, each (ni, nj, nk); it is negative where i, j, k are left-handed.
+    """Return the volume of a block of x, y, z, each (ni, nj, nk): negative where i, j, k are left-handed.
 
     By the divergence theorem, V = 1/3 ∮ r·n dA, each quadrilateral of the six faces as its centre and half
-    the cross product of its diagonals: exact but for the curvature of the faces' cells. Unit L³ of nodes in L.
+    the cross product of its diagonals: exact but for the curvature of these. Unit L³ of nodes in L.
     """
     centre = [float(values[0, 0, 0]) for values in coordinates]
     total = 0.0

@@ -85,12 +85,6 @@ def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tupl
     )
 
 
-def sides_of(counts: tuple[int, ...], block: int = 0) -> tuple[Patch, ...]:
-    """Return the sides of a block with `counts` nodes along its directions as patches of their names."""
-    sides = tuple(PLACES)[: 2 * len(counts)]
-    return tuple(Patch(side, side, 0, face_counts(counts, side)[0] - 1, block=block) for side in sides)
-
-
 def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -> None:
     """Raise InputError for a patch without a name, of an unknown block or side, or that leaves its side.
 

@@ -14,7 +14,7 @@ _NEARLY_HALF = 3.1
 
 
 class Screw(NamedTuple):
-    """A turn by `angle`, in radians, about `axis` (3,) of length 1 through `centre` (3,), then a `shift` (3,).
+    """A turn by `angle`, in radians, about `axis` (3,), of length 1, through `centre` (3,), then `shift` (3,).
 
     Without a turn the angle is 0, the axis z and the centre the origin; with one, the shift is along the axis
     and the centre is the point of the axis nearest to the origin. `angles` (3,) are those of the turn about
@@ -29,7 +29,9 @@ class Screw(NamedTuple):
 
 
 def screw_of(motion: Motion) -> Screw:
-    """Return a motion, of the plane z = 0 or of space, as a screw; its angle is not negative in space.
+    """Return a motion, of the plane z = 0 or of space, as a screw.
+
+    Its axis points to the positive side of its largest coordinate, and its angle may be negative.
 
     Chasles' theorem; the axis is the part of the rotation that is not symmetric, or at half a turn the
     longest column of R + 1.
@@ -55,7 +57,8 @@ def screw_of(motion: Motion) -> Screw:
         columns = turn + np.eye(3)
         axis = columns[:, np.argmax((columns**2).sum(axis=0))]
         axis = -axis if axis @ twice < 0 else axis
-    axis = axis / np.sqrt(axis @ axis)
+    largest = axis[np.argmax(np.abs(axis))]
+    axis, angle = axis / np.copysign(np.sqrt(axis @ axis), largest), float(np.copysign(angle, largest))
     along = (shift @ axis) * axis
     centre = np.linalg.solve(np.eye(3) - turn + np.outer(axis, axis), shift - along)
     return Screw(angle, axis, centre, along, angles)

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.arrays import Side
-from meshonet.geometry.blocks.block import face_of
+from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.polygon.corners import Indices
 
@@ -54,3 +54,41 @@ def shared_nodes(
         kept[number.ravel()] = True
     rank = np.cumsum(kept) - 1
     return tuple(rank[number] for number in numbers)
+
+
+def node_count(counts: Sequence[tuple[int, ...]], connections: Sequence[Connection]) -> int:
+    """Return how many nodes blocks with `counts` nodes have, joined ones, also periodic ones, once.
+
+    Only the nodes of connected sides are looked at, of large volumes a small part.
+    """
+    ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
+
+    def face(block: int, side: Side) -> Indices:
+        axis, end = PLACES[side]
+        at = [np.arange(count) for count in counts[block]]
+        at[axis] = at[axis][end:][:1]
+        return np.ravel_multi_index(np.ix_(*at), counts[block]).squeeze(axis)[..., None] + ends[block]
+
+    pairs = [replace(each, transform=None).nodes(face) for each in connections]
+    if not pairs:
+        return int(ends[-1])
+    used, where = np.unique(
+        np.concatenate([nodes.ravel() for pair in pairs for nodes in pair]), return_inverse=True
+    )
+    parts = np.split(where.ravel(), np.cumsum([nodes.size for pair in pairs for nodes in pair])[:-1])
+    label = joined_labels(len(used), list(zip(parts[0::2], parts[1::2], strict=True)))
+    return int(ends[-1]) - len(used) + len(np.unique(label))
+
+
+def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indices:
+    """Return for each of `count` nodes the first that it is joined to, directly or through others."""
+    label = np.arange(count)
+    changed = True
+    while changed:  # as often as blocks meet in one node
+        before = label.copy()
+        for own, donor in pairs:
+            least = np.minimum(label[own], label[donor])
+            np.minimum.at(label, own, least)
+            np.minimum.at(label, donor, least)
+        changed = not np.array_equal(label, before)
+    return label

@@ -17,9 +17,9 @@ from itertools import combinations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import PLACES, Block, face_of
+from meshonet.geometry.blocks.block import PLACES, Block, face_counts, face_of
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch, sides_of
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.errors import InputError
 
@@ -112,7 +112,7 @@ class SixFaces:
     def grid(self, nodes: Floats, provenance: dict[str, object] | None = None) -> Grid:
         """Return the grid of nodes (ni, nj, nk, 3) inside, with the patches of the faces."""
         block = Block(nodes, finite=True)
-        patches = self.patches or sides_of(block.counts)
+        patches = self.patches or _sides(block.counts)
         return Grid((block,), patches, (), self.name, provenance or {})
 
     def resampled(self, counts: tuple[int, int, int]) -> SixFaces:
@@ -150,7 +150,7 @@ class SixFaces:
         whole = len({patch.side for patch in self.patches}) == len(self.patches)
         if not whole:
             return ()
-        sides = {patch.side: patch for patch in sides_of(counts)}
+        sides = {patch.side: patch for patch in _sides(counts)}
         return tuple(
             replace(patch, start=0, stop=sides[patch.side].stop, across=None) for patch in self.patches
         )
@@ -203,3 +203,8 @@ def six_faces(grid: Grid) -> SixFaces:
     from meshonet.geometry.blocks.six_patches import matched_patches
 
     return matched_patches(grid)
+
+
+def _sides(counts: tuple[int, ...]) -> tuple[Patch, ...]:
+    """Return the sides of a block with `counts` nodes along its directions as patches of their names."""
+    return tuple(Patch(side, side, 0, face_counts(counts, side)[0] - 1) for side in PLACES)

@@ -11,21 +11,18 @@
 """
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats, Side
-from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_place
 
 _SIDES: dict[Side, Side] = {"east": "south", "west": "north", "south": "west", "north": "east"}
 _COUNTED_BACK = ("south", "north")
@@ -33,16 +30,17 @@ _COUNTED_BACK = ("south", "north")
 
 
 def coarser_grid(grid: Grid, k: int) -> Grid:
-    """Return the grid of every `k`-th node along both directions, its patches along.
+    """Return the grid of every `k`-th node along all directions, its patches along.
 
-    Of many planar blocks every one is made coarser, and connections join what is left of their nodes.
+    Of many blocks, in the plane or in space, every one is made coarser, and connections join what is left of
+    their nodes.
 
     Raises InputError: `k` does not divide the cells along a direction, or a patch or connection would lose
     an end.
     """
     if grid.topology == "blocks":
         return _coarser_blocks(grid, k)
-    _check(grid.ni, grid.nj, k)
+    _check((grid.ni, grid.nj), k)
     facts = {**grid.provenance, "coarsened": k * int(grid.provenance.get("coarsened", 1))}
     patches = _coarser_patches(grid.patches, k)
     nodes = grid.nodes[::k, ::k]
@@ -50,70 +48,69 @@ def coarser_grid(grid: Grid, k: int) -> Grid:
 
 
 def _coarser_blocks(grid: Grid, k: int) -> Grid:
-    planar(grid)
     for number, block in enumerate(grid.blocks):
-        with _in_block(number):
-            _check(block.counts[0], block.counts[1], k)
+        with in_place(f"block {number}"):
+            _check(block.counts, k)
     connections = []
     for each in grid.connections:
-        ends = (*each.range[0], *each.donor_range[0])
-        if any(end % k for end in ends):
-            problem = f"{each} runs from node {ends[0]} to {ends[1]}, which every {k}-th leaves out"
-            raise InputError(problem, f"make the grid with ends at multiples of {k}, or coarsen less")
+        for first, last in (*each.range, *each.donor_range):
+            if first % k or last % k:
+                problem = f"{each} runs from node {first} to {last}, which every {k}-th leaves out"
+                raise InputError(problem, f"make the grid with ends at multiples of {k}, or coarsen less")
         spans = [tuple((a // k, b // k) for a, b in span) for span in (each.range, each.donor_range)]
         connections.append(replace(each, range=spans[0], donor_range=spans[1]))
     facts = {**grid.provenance, "coarsened": k * int(grid.provenance.get("coarsened", 1))}
-    blocks = tuple(Block(block.nodes[::k, ::k], finite=True) for block in grid.blocks)
+    every = slice(None, None, k)
+    blocks = tuple(Block(block.nodes[(every,) * len(block.counts)], finite=True) for block in grid.blocks)
     patches = _coarser_patches(grid.patches, k)
     return replace(grid, blocks=blocks, patches=patches, connections=tuple(connections), provenance=facts)
 
 
-@contextmanager
-def _in_block(number: int) -> Iterator[None]:
-    """Say in input errors which block they are of."""
-    try:
-        yield
-    except InputError as error:
-        error.place = error.place or f"block {number}"
-        raise
-
-
 def coarser_boundary(boundary: Boundary, k: int) -> Boundary:
     """Return the boundary of every `k`-th node, as `coarser_grid` does of a grid."""
-    _check(boundary.ni, boundary.nj, k)
+    _check((boundary.ni, boundary.nj), k)
     edges = {side: getattr(boundary, side)[::k] for side in SIDES}
     return replace(boundary, **edges, patches=_coarser_patches(boundary.patches, k), sensors=None)
 
 
-def _check(ni: int, nj: int, k: int) -> None:
-    common = math.gcd(ni - 1, nj - 1)
+def _check(counts: tuple[int, ...], k: int) -> None:
+    common = math.gcd(*(n - 1 for n in counts))
     if k >= 1 and common % k == 0:
         return
     whole = max(k, 1)
-    near = [whole * max(1, (n - 1) // whole) + 1 for n in (ni, nj)]
-    remedy = f"make the grid with {near[0]}x{near[1]} nodes, say"
+    near = [whole * max(1, (n - 1) // whole) + 1 for n in counts]
+    remedy = f"make the grid with {'x'.join(map(str, near))} nodes, say"
     if common > 1:
         remedy = f"use a number that divides {common}, or {remedy}"
-    cells = f"{ni}x{nj} nodes are {ni - 1}x{nj - 1} cells, which {k} does not divide"
+    nodes, across = ("x".join(map(str, sizes)) for sizes in (counts, [n - 1 for n in counts]))
+    cells = f"{nodes} nodes are {across} cells, which {k} does not divide"
     raise InputError(cells, remedy)
 
 
 def _coarser_patches(patches: tuple[Patch, ...], k: int) -> tuple[Patch, ...]:
     for patch in patches:
-        for node in (patch.start, patch.stop):
+        for node in (patch.start, patch.stop, *(patch.across or ())):
             if node % k:
                 end = f"patch {patch.name!r} ends at node {node} of {patch.side}"
                 ends = f"make the grid with ends at multiples of {k} ({{wake_nodes}} for a wake)"
                 raise InputError(f"{end}, which every {k}-th leaves out", f"{ends}, or coarsen less")
-    return tuple(replace(patch, start=patch.start // k, stop=patch.stop // k) for patch in patches)
+    return tuple(
+        replace(
+            patch,
+            start=patch.start // k,
+            stop=patch.stop // k,
+            across=patch.across and (patch.across[0] // k, patch.across[1] // k),
+        )
+        for patch in patches
+    )
 
 
 def normalised(grid: Grid) -> Grid:
     """Return `grid` moved, scaled and, around a body, turned to unit size.
 
     Of an O or C grid the trailing edge, where xi begins on the body, comes to (1, 0), and the farthest node
-    of the body from it to (0, 0). Of a four-sided grid, or of many blocks, the lower left corner of its box
-    comes to (0, 0) and the longer side of the box becomes 1.
+    of the body from it to (0, 0). Of a four-sided grid, of many blocks, or in space, the lower left corner of
+    its box comes to the origin and the longest side of the box becomes 1.
 
     Raises InputError: the body has no length.
     """
@@ -136,9 +133,9 @@ def normalised(grid: Grid) -> Grid:
 
 
 def _normalised_blocks(grid: Grid) -> Grid:
-    planar(grid)
-    low = np.min([block.nodes.min(axis=(0, 1)) for block in grid.blocks], axis=0)
-    high = np.max([block.nodes.max(axis=(0, 1)) for block in grid.blocks], axis=0)
+    axes = tuple(range(len(grid.blocks[0].counts)))
+    low = np.min([block.nodes.min(axis=axes) for block in grid.blocks], axis=0)
+    high = np.max([block.nodes.max(axis=axes) for block in grid.blocks], axis=0)
     size = float((high - low).max())
     blocks = [Block((block.nodes - low) / size) for block in grid.blocks]
     motions = [_scaled(each.transform, low, size) for each in grid.connections]
@@ -163,7 +160,8 @@ def turned(grid: Grid) -> Grid:
     """
     if grid.around_body:
         raise InputError(f"topology {grid.topology} has xi around the body", "swap four-sided grids only")
-    planar(grid)
+    if grid.form == "volume":
+        raise InputError("a volume has three directions to swap", "swap grids of two directions only")
     last = [block.counts[0] - 1 for block in grid.blocks]
     patches = tuple(turned_patch(patch, last[patch.block]) for patch in grid.patches)
     connections = tuple(_turned_connection(each, last) for each in grid.connections)

@@ -30,38 +30,46 @@ def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Fl
     closed curve does not repeat its first point.
     """
     if closed and corners.size == 0:
-        slope = _periodic(points)
+        slope = periodic_slopes(*_chords(points, closed=True))
         start, stop = slope, np.roll(slope, -1, axis=0)
     elif closed:
         shift = int(corners[0])
         ring = np.roll(points, -shift, axis=0)
-        start, stop = _pieces(np.concatenate([ring, ring[:1]]), np.append(corners - shift, len(points)))
+        chords = _chords(ring, closed=True)
+        start, stop = open_slopes(*chords, np.append(corners - shift, len(points)))
         start, stop = np.roll(start, shift, axis=0), np.roll(stop, shift, axis=0)
     else:
-        start, stop = _pieces(points, distinct(np.concatenate([[0], corners, [len(points) - 1]])))
+        stops = distinct(np.concatenate([[0], corners, [len(points) - 1]]))
+        start, stop = open_slopes(*_chords(points, closed=False), stops)
     return limited(points, start, stop, closed=closed, corners=corners)
 
 
-def _pieces(points: Floats, stops: Indices) -> tuple[Floats, Floats]:
+def _chords(points: Floats, *, closed: bool) -> tuple[Floats, Floats]:
+    """Return the chords (intervals, 2) between points, and their lengths."""
+    chord = np.diff(points, axis=0, append=points[:1]) if closed else np.diff(points, axis=0)
+    return chord, np.hypot(chord[:, 0], chord[:, 1])
+
+
+def open_slopes(chord: Floats, h: Floats, stops: Indices) -> tuple[Floats, Floats]:
     """Return slopes at both ends of each interval of an open curve, a spline of its own between two `stops`.
 
-    One tridiagonal system for all: a stop has two unknowns, one for each side, whose rows do not touch
-    each other. End condition: a parabola over the last interval, m_0 + m_1 = 2 delta_0.
+    `chord` (intervals, d) goes from point to point, `h` is how long each is. One tridiagonal system for all:
+    a stop, the index of a point, the first and the last among them, has two unknowns, one for each side,
+    whose rows do not touch each other. End condition: a parabola over the last interval,
+    m_0 + m_1 = 2 delta_0.
     """
-    chord = np.diff(points, axis=0)
-    h = np.hypot(chord[:, 0], chord[:, 1])
     delta = chord / h[:, None]
-    doubled = np.zeros(len(points), dtype=np.intp)
+    doubled = np.zeros(len(h) + 1, dtype=np.intp)
     doubled[stops[1:-1]] = 1
     first = np.arange(len(h)) + np.cumsum(doubled)[:-1]  # row of the slope at the start of each interval
-    n = len(points) + len(stops) - 2
-    lower, diagonal, upper, right = np.zeros(n), np.ones(n), np.zeros(n), np.empty((n, 2))
+    n = len(h) + len(stops) - 1
+    lower, diagonal, upper, right = np.zeros(n), np.ones(n), np.zeros(n), np.empty((n, chord.shape[1]))
     begin, end = first[stops[:-1]], first[stops[1:] - 1] + 1
     alone = np.diff(stops) == 1  # a single interval between corners is a straight line
     upper[begin], lower[end] = np.where(alone, 0.0, 1.0), np.where(alone, 0.0, 1.0)
     right[begin] = np.where(alone, 1.0, 2.0)[:, None] * delta[stops[:-1]]
     right[end] = np.where(alone, 1.0, 2.0)[:, None] * delta[stops[1:] - 1]
-    smooth = np.ones(len(points), dtype=bool)
+    smooth = np.ones(len(h) + 1, dtype=bool)
     smooth[stops] = False
     k = np.flatnonzero(smooth)
     row = first[k]
@@ -71,23 +79,24 @@ def _pieces(points: Floats, stops: Indices) -> tuple[Floats, Floats]:
     return right[first], right[first + 1]
 
 
-def _periodic(points: Floats) -> Floats:
-    """Return slopes (n, 2) of the periodic spline, by Sherman and Morrison's formula."""
-    chord = np.diff(points, axis=0, append=points[:1])
-    h = np.hypot(chord[:, 0], chord[:, 1])
+def periodic_slopes(chord: Floats, h: Floats) -> Floats:
+    """Return slopes (n, d) of the periodic spline over chords (n, d) of lengths `h`, at the start of each.
+
+    By Sherman and Morrison's formula.
+    """
     delta = chord / h[:, None]
     before = np.roll(h, 1)
     lower, diagonal, upper = h.copy(), 2 * (before + h), before.copy()
     low, up, pivot = upper[-1], lower[0], -diagonal[0]
     diagonal[0] -= pivot
     diagonal[-1] -= low * up / pivot
-    right = np.zeros((len(h), 3))
-    right[:, :2] = 3 * (h[:, None] * np.roll(delta, 1, axis=0) + before[:, None] * delta)
-    right[0, 2], right[-1, 2] = pivot, low
+    right = np.zeros((len(h), chord.shape[1] + 1))
+    right[:, :-1] = 3 * (h[:, None] * np.roll(delta, 1, axis=0) + before[:, None] * delta)
+    right[0, -1], right[-1, -1] = pivot, low
     solve_tridiagonal(lower, diagonal, upper, right)
     v = up / pivot
-    factor = (right[0, :2] + v * right[-1, :2]) / (1 + right[0, 2] + v * right[-1, 2])
-    return np.asarray(right[:, :2] - right[:, 2:] * factor)
+    factor = (right[0, :-1] + v * right[-1, :-1]) / (1 + right[0, -1] + v * right[-1, -1])
+    return np.asarray(right[:, :-1] - right[:, -1:] * factor)
 
 
 def limited(

@@ -3,12 +3,14 @@
 from dataclasses import dataclass
 from typing import Any
 
-from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.shared_nodes import node_count
 from meshonet.geometry.blocks.vertices import vertices
-from meshonet.geometry.quality.deviation import Deviation, deviation
+from meshonet.geometry.quality.deviation import Deviation, deviation, solid_deviation
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.lines import Lines, lines
+from meshonet.geometry.quality.solid_lines import solid_lines
+from meshonet.geometry.quality.summary import Quality
 
 BLOCK_FIGURES = ("irregular", "deviation_mean", "deviation_p99", "growth", "growth_across", "bend_across")
 """Figures that gates may name."""
@@ -19,13 +21,13 @@ class BlockFigures:
     """Counts, angles and lines of a grid of blocks.
 
     `sizes` are the nodes of each block, `nodes` those of all without doubles, `irregular` the inner vertices
-    (block, i, j) where other than four cells meet, each with the cells that meet there.
+    (block, i, j) where other than four cells meet, each with the cells that meet there; None in volumes.
     """
 
     sizes: tuple[tuple[int, ...], ...]
     nodes: int
     interfaces: int
-    irregular: tuple[tuple[tuple[int, int, int], int], ...]
+    irregular: tuple[tuple[tuple[int, int, int], int], ...] | None
     deviation: Deviation
     lines: Lines
 
@@ -34,31 +36,49 @@ class BlockFigures:
         run = self.lines
         inside, across, bend = run.growth_inside, run.growth_across, run.bend_across
         most = max((each.max for each in (inside, across) if each), default=1.0)
-        angles = self.deviation.mean, self.deviation.p99
-        ends = across.max if across else 1.0, bend.max if bend else 0.0
-        return dict(zip(BLOCK_FIGURES, (len(self.irregular), *angles, most, *ends), strict=True))
+        figures = {
+            "deviation_mean": self.deviation.mean,
+            "growth": most,
+            "growth_across": across.max if across else 1.0,
+            "bend_across": bend.max if bend else 0.0,
+        }
+        if self.deviation.p99 is not None:
+            figures["deviation_p99"] = self.deviation.p99
+        return figures if self.irregular is None else figures | {"irregular": len(self.irregular)}
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as what JSON can hold."""
         return {
             "blocks": len(self.sizes),
             "interfaces": self.interfaces,
-            "irregular": len(self.irregular),
             "nodes": self.nodes,
             "sizes": [list(size) for size in self.sizes],
-            "irregular_vertices": [{"at": list(at), "cells": cells} for at, cells in self.irregular],
+            **self._irregular_dict(),
             "deviation": vars(self.deviation) | {"at": list(self.deviation.at)},
             "lines": {name: extreme_dict(getattr(self.lines, name)) for name in LINES},
         }
+
+    def _irregular_dict(self) -> dict[str, Any]:
+        if self.irregular is None:
+            return {}
+        places = [{"at": list(at), "cells": cells} for at, cells in self.irregular]
+        return {"irregular": len(self.irregular), "irregular_vertices": places}
 
 
 LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")
 """Fields of `Lines` that are reported."""
 
 
-def block_figures(grid: Grid) -> BlockFigures:
-    """Return the figures of planar blocks; raise InputError for a block that is not in the plane."""
-    planar(grid)
+def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
+    """Return the figures of a grid of blocks; of volumes, their `quality` is measured unless it is known."""
+    if grid.form == "volume":
+        from meshonet.geometry.quality.volumes import measure_volumes
+
+        angles = solid_deviation(quality or measure_volumes(grid, percentiles=True))
+        sizes = tuple(block.counts for block in grid.blocks)
+        return BlockFigures(
+            sizes, node_count(sizes, grid.connections), len(grid.connections), None, angles, solid_lines(grid)
+        )
     nodes = vertices(grid)
     irregular = [(nodes.place(int(node)), int(nodes.valence[node])) for node in nodes.irregular]
     sizes = tuple(block.counts for block in grid.blocks)

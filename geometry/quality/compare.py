@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.across import planar
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
@@ -21,7 +20,7 @@ class Difference:
     max: float
     mean: float
     at: tuple[int, ...]
-    """Node (i, j) of the greatest; (block, i, j) of many blocks."""
+    """Node (i, j) of the greatest; (block, i, j) or (block, i, j, k) of many blocks."""
     relative_l2: float
     """Root of the mean squared distance over that of the reference's nodes from their mean."""
     near_wall: float
@@ -42,7 +41,7 @@ def compare(grid: Grid, reference: Grid) -> Difference:
         raise InputError(counts, "compare grids of one size")
     away = np.hypot(grid.x - reference.x, grid.y - reference.y)
     i, j = np.unravel_index(int(away.argmax()), away.shape)
-    extent = _spread(reference.x, reference.y)
+    extent = _spread(reference.nodes.reshape(-1, 2))
     rows = max(1, round(NEAR * grid.nj))
     sides = [away[:, 0], away[:, -1]]
     if not grid.periodic:  # the cut of an O grid is no boundary
@@ -66,20 +65,19 @@ def _compare_blocks(grid: Grid, reference: Grid) -> Difference:
             own, other = ("x".join(map(str, size[k][:-1])) for size in (sizes, others))
             counts = f"block {k} of {own} nodes is not comparable with one of {other}"
         raise InputError(counts, "compare grids of the same blocks")
-    planar(grid)
     pairs = zip(grid.blocks, reference.blocks, strict=True)
-    away = [np.hypot(*np.moveaxis(own.nodes - other.nodes, -1, 0)) for own, other in pairs]
+    away = [norms(own.nodes - other.nodes) for own, other in pairs]
     worst = int(np.argmax([distances.max() for distances in away]))
-    i, j = np.unravel_index(int(away[worst].argmax()), away[worst].shape)
-    every = np.concatenate([block.nodes.reshape(-1, 2) for block in reference.blocks])
-    extent = _spread(*every.T)
+    at = np.unravel_index(int(away[worst].argmax()), away[worst].shape)
+    every = np.concatenate([block.nodes.reshape(-1, block.nodes.shape[-1]) for block in reference.blocks])
+    extent = _spread(every)
     near = [_beside(away[wall.block], wall, NEAR) for wall in grid.walls()] or [a.ravel() for a in away]
     outer = [_beside(away[patch.block], patch, 0.0).max() for patch in grid.outer_patches()]
     all_away = np.concatenate([distances.ravel() for distances in away])
     return Difference(
         max=float(all_away.max()),
         mean=float(all_away.mean()),
-        at=(worst, int(i), int(j)),
+        at=(worst, *map(int, at)),
         relative_l2=_root_mean_square(all_away) / extent,
         near_wall=_root_mean_square(np.concatenate(near)) / extent,
         boundary=float(max(outer, default=0.0)),
@@ -90,11 +88,13 @@ def _beside(values: Floats, patch: Patch, part: float) -> Floats:
     """Return the values (n,) of nodes at a patch and in that part of all rows beside it, one at least."""
     axis, end = patch.place
     rows = np.moveaxis(values, axis, 0)[:: -1 if end else 1]
-    return rows[: max(1, round(part * len(rows))), patch.start : patch.stop + 1].ravel()
+    spans = patch.range(rows.shape[1:])
+    inside = tuple(slice(first, last + 1) for first, last in spans)
+    return rows[(slice(max(1, round(part * len(rows)))), *inside)].ravel()
 
 
-def _spread(x: Floats, y: Floats) -> float:
-    spread = _root_mean_square(np.hypot(x - x.mean(), y - y.mean()))
+def _spread(nodes: Floats) -> float:
+    spread = _root_mean_square(norms(nodes - nodes.mean(axis=0)))
     return max(spread, float(np.finfo(float).tiny))  # all nodes in one place
 
 

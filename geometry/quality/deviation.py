@@ -4,26 +4,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.polygon.corners import angle_between
+from meshonet.geometry.quality.summary import Quality
 
 
 @dataclass(frozen=True)
 class Deviation:
     """Degrees: the mean over all corners, and the 99th percentile over the worst corner of each cell.
 
-    `max` is that of cell `at`, (block, i, j).
+    `max` is that of cell `at`, (block, i, j) or (block, i, j, k). A corner of a volume has three angles, of
+    which the worst counts. `p99` is None where percentiles were not computed.
     """
 
     mean: float
-    p99: float
+    p99: float | None
     max: float
-    at: tuple[int, int, int]
+    at: tuple[int, ...]
 
 
 def deviation(grid: Grid) -> Deviation:
-    """Return the deviation of the corners of all planar blocks; those of folded cells count up to 270."""
+    """Return the deviation of the corners of all blocks of two directions; in the plane it is up to 270."""
     every = [corner_deviations(block.nodes) for block in grid.blocks]
     worst = [corners.max(axis=0) for corners in every]
     block = int(np.argmax([cells.max() for cells in worst]))
@@ -37,9 +39,20 @@ def deviation(grid: Grid) -> Deviation:
     )
 
 
+def solid_deviation(quality: Quality) -> Deviation:
+    """Return the deviation of the corners of volumes out of their metrics."""
+    worst = quality["skewness"]  # of 90 degrees
+    p99 = None if worst.p99 is None else 90.0 * worst.p99
+    return Deviation(quality["deviation"].mean, p99, 90.0 * worst.max, worst.worst)
+
+
 def corner_deviations(nodes: Floats) -> Floats:
-    """Return the deviations (4, ni-1, nj-1) of the corners of the cells of `nodes` (ni, nj, 2)."""
+    """Return the deviations (4, ni-1, nj-1) of the corners of the cells of `nodes` (ni, nj, 2 or 3)."""
     ring = np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]])
     ahead = np.roll(ring, -1, axis=0) - ring
+    if nodes.shape[-1] == 3:
+        back = -np.roll(ahead, 1, axis=0)
+        angle = np.arctan2(norms(np.cross(ahead, back)), (ahead * back).sum(axis=-1))
+        return np.asarray(np.abs(np.degrees(angle) - 90.0))
     angle = angle_between(ahead.reshape(-1, 2), -np.roll(ahead, 1, axis=0).reshape(-1, 2))
     return np.asarray(np.abs(np.degrees(angle) % 360.0 - 90.0).reshape(ring.shape[:-1]))

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.metrics import NAMES
+from meshonet.geometry.quality.metrics import ALL_NAMES
 from meshonet.geometry.quality.summary import Quality
 
 COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
 NO_MORE: Mapping[str, float] = MappingProxyType({})
+COUNTS = ("folded", "bezier_folded")
+"""Counts of cells that gates may name: by corners, and by the Bezier test of volumes."""
 _STATISTICS = ("min", "mean", "max", "p01", "p99")
 _GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASCII)
 
@@ -22,7 +24,7 @@ class Gate:
 
     text: str
     metric: str
-    """Of `meshonet.geometry.quality.metrics`, ``folded`` for folded cells, or a figure beside them."""
+    """Of `meshonet.geometry.quality.metrics`, one of `COUNTS`, or a figure beside them."""
     statistic: str
     """Of the metric over all cells: min, mean, max, p01 or p99."""
     compare: str
@@ -30,12 +32,20 @@ class Gate:
     """In the metric's unit."""
 
     def broken(self, quality: Quality, more: Mapping[str, float] = NO_MORE) -> str | None:
-        """Return a line for the user if `quality`, or a figure of `more`, is beyond the limit, else None."""
-        has_statistics = self.metric in NAMES
-        if has_statistics:
+        """Return a line for the user if `quality`, or a figure of `more`, is beyond the limit, else None.
+
+        Raises InputError: a metric or count that these cells do not have.
+        """
+        has_statistics = self.metric in ALL_NAMES
+        counts = {"folded": quality.folded, "bezier_folded": quality.bezier_folded}
+        if has_statistics and self.metric in quality.metrics:
             value = getattr(quality[self.metric], self.statistic)
         else:
-            value = quality.folded if self.metric == "folded" else more[self.metric]
+            value = {**counts, **more}.get(self.metric)
+        if value is None:
+            known = ", ".join(name for name, figure in counts.items() if figure is not None)
+            remedy = f"use {known}, " + ", ".join((*quality.metrics, *more))
+            raise InputError(f"this grid has no {self.metric}", remedy, parameter="fail_on")
         if not COMPARE[self.compare](value, self.limit):
             return None
         what = f"{self.metric}.{self.statistic}" if has_statistics else self.metric
@@ -64,11 +74,11 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
             parameter="fail_on",
         )
     metric, statistic, compare = match[1], match[2], match[3]
-    if metric not in (*NAMES, "folded", *more):
-        known = "use one of " + ", ".join(("folded", *NAMES, *more))
+    if metric not in (*ALL_NAMES, *COUNTS, *more):
+        known = "use one of " + ", ".join((*COUNTS, *ALL_NAMES, *more))
         raise InputError(f"metric {metric!r} is not known", known, parameter="fail_on")
-    if statistic and (statistic not in _STATISTICS or metric not in NAMES):
-        known = "one of " + ", ".join(_STATISTICS) if metric in NAMES else f"no statistic with {metric}"
+    if statistic and (statistic not in _STATISTICS or metric not in ALL_NAMES):
+        known = "one of " + ", ".join(_STATISTICS) if metric in ALL_NAMES else f"no statistic with {metric}"
         raise InputError(f"statistic {statistic!r} is not known", f"use {known}", parameter="fail_on")
     return Gate(text, metric, statistic or ("max" if compare in (">", ">=") else "min"), compare, limit)
 

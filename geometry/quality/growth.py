@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.grid import Grid
 
 ROWS = 128
@@ -23,7 +23,8 @@ LARGE = 1e30
 class Extreme:
     """Greatest and mean value of something over a grid, and the node or cell (i, j) of the greatest.
 
-    In a grid of many blocks the place is (block, i, j), and there is the 99th percentile too.
+    In a grid of many blocks the place is (block, i, j), in a volume (block, i, j, k); there is the 99th
+    percentile too, but of volumes.
     """
 
     max: float
@@ -34,10 +35,15 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Growth:
-    """Growth along both families of grid lines; None where a line has one step only."""
+    """Growth along the families of grid lines; None where a line has one step only, zeta in volumes alone."""
 
     xi: Extreme | None
     eta: Extreme | None
+    zeta: Extreme | None = None
+
+    def families(self) -> dict[str, Extreme]:
+        """Return what there is by the names of the directions."""
+        return {name: extreme for name, extreme in vars(self).items() if extreme}
 
 
 class Tally:
@@ -50,16 +56,30 @@ class Tally:
 
     def add(self, i: int, j: int, values: Floats, block: int | None = None) -> None:
         """Add values (m, n) of the nodes or cells from (i, j) on."""
+        self.add_from((i, j) if block is None else (block, i, j), values)
+
+    def add_from(self, place: tuple[int, ...], values: Floats) -> None:
+        """Add values (m, n) or (m, n, l) of the nodes or cells from `place` on, (block, i, j) say."""
         if values.size == 0:
             return
-        here = divmod(int(values.argmax()), values.shape[1])
-        if values[here] > self._max:
-            place = (i + here[0], j + here[1])
-            self._max, self._at = float(values[here]), place if block is None else (block, *place)
-        self._total += float(values.sum())
-        self._count += values.size
+        here = np.unravel_index(int(values.argmax()), values.shape)
+        number = len(place) - values.ndim
+        at = (*place[:number], *(first + int(k) for first, k in zip(place[number:], here, strict=True)))
+        self.add_summed(float(values[here]), float(values.sum()), values.size, at)
         if self._values is not None:
             self._values.append(values.ravel())
+
+    def add_summed(self, high: float, total: float, count: int, at: tuple[int, ...]) -> None:
+        """Add `count` values, the greatest of them and their sum, the greatest at node or cell `at`."""
+        if high > self._max:
+            self._max, self._at = high, at
+        self._total += total
+        self._count += count
+
+    def add_all(self, other: "Tally") -> None:
+        """Add what another one holds; its values are not kept."""
+        if other._count:
+            self.add_summed(other._max, other._total, other._count, other._at)
 
     @property
     def extreme(self) -> Extreme | None:
@@ -100,9 +120,8 @@ def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
 
 
 def ratios(nodes: Floats) -> Floats:
-    """Return the growth (m-2, n) along the first axis of `nodes` (m, n, 2)."""
-    step = np.diff(nodes, axis=0)
-    length = np.hypot(step[..., 0], step[..., 1])
+    """Return the growth (m-2, ...) along the first axis of `nodes` (m, ..., d)."""
+    length = norms(np.diff(nodes, axis=0))
     before, after = length[:-1], length[1:]
     small = np.minimum(before, after)
     ratio = np.divide(np.maximum(before, after), small, out=np.full_like(small, LARGE), where=small > 0)

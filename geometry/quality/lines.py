@@ -1,16 +1,16 @@
-"""How grid lines run through a grid of many blocks: how they grow and bend, inside blocks and across sides.
+"""How grid lines run through blocks of two directions: how they grow and bend, inside and across sides.
 
 The growth at a node is that of `meshonet.geometry.quality.growth`; the bend is the angle in degrees by which
 a line turns there, 0 where it is straight. Across a side both are taken at its nodes, but for irregular ones,
 through which no line runs.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.blocks.families import families
@@ -25,7 +25,8 @@ class Lines:
     """Growth and bend at the nodes of the lines, the greatest at (block, i, j); None without any.
 
     `growth` is that along both directions of blocks, those across a side with the direction that ends there;
-    `leaving` is the growth along the lines that leave walls, through all blocks that they run through.
+    `leaving` is the growth along the lines that leave walls, through all blocks that they run through;
+    `by_wall` that of each wall, by name.
     """
 
     growth: Growth
@@ -34,6 +35,7 @@ class Lines:
     growth_across: Extreme | None
     bend_inside: Extreme | None
     bend_across: Extreme | None
+    by_wall: Mapping[str, Extreme]
 
 
 @dataclass(frozen=True)
@@ -50,20 +52,25 @@ class _Part:
 
 
 def lines(grid: Grid, nodes: Vertices) -> Lines:
-    """Return growth and bend of the lines of planar blocks, whose vertices are `nodes`."""
+    """Return growth and bend of the lines of planar blocks or surface patches with vertices `nodes`."""
     parts = [*_inside(grid), *_across(grid, nodes)]
     family = {(m.block, m.axis): k for k, members in enumerate(families(grid)) for m in members}
-    walls = {family[patch.block, patch.place[0]] for patch in grid.walls()}
+    walls = [(patch.name, family[patch.block, patch.place[0]]) for patch in grid.walls()]
     xi, eta = ([part for part in parts if part.axis == axis] for axis in (0, 1))
-    leaving = [part for part in parts if family[part.block, part.axis] in walls]
+
+    def leaving(names: set[str]) -> Extreme | None:
+        own = {number for name, number in walls if name in names}
+        return _of([part for part in parts if family[part.block, part.axis] in own], "growth")
+
     within, beyond = ([part for part in parts if part.inside == inside] for inside in (True, False))
     return Lines(
         Growth(_of(xi, "growth"), _of(eta, "growth")),
-        _of(leaving, "growth"),
+        leaving({name for name, _ in walls}),
         _of(within, "growth"),
         _of(beyond, "growth"),
         _of(within, "bend"),
         _of(beyond, "bend"),
+        {name: growth for name, _ in walls if (growth := leaving({name}))},
     )
 
 
@@ -105,7 +112,11 @@ def _runs(true: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Iterator[tuple[in
 
 
 def bends(nodes: Floats) -> Floats:
-    """Return the angles (m-2, n) in degrees by which lines along the first axis of `nodes` (m, n, 2) turn."""
+    """Return the angles (m-2, ...) in degrees by which lines along the first axis (m, ..., d) turn."""
     step = np.diff(nodes, axis=0)
-    before, after = step[:-1].reshape(-1, 2), step[1:].reshape(-1, 2)
-    return np.degrees(np.abs(angle_between(before, after))).reshape(len(nodes) - 2, -1)
+    before, after = step[:-1], step[1:]
+    if nodes.shape[-1] == 2:
+        angle = np.abs(angle_between(before.reshape(-1, 2), after.reshape(-1, 2))).reshape(before.shape[:-1])
+    else:
+        angle = np.arctan2(norms(np.cross(before, after)), (before * after).sum(axis=-1))
+    return np.degrees(angle)

@@ -1,8 +1,8 @@
 """How good a grid is: folded cells, and the metrics of `meshonet.geometry.quality.metrics` summarised.
 
 A cell is folded when any of its four corner Jacobians is not positive; a grid is valid when none is. Cells of
-volumes have eight (`meshonet.geometry.quality.volumes`); those of surface patches are measured against their own
-normals (`meshonet.geometry.quality.surfaces`).
+volumes have eight (`meshonet.geometry.quality.volumes`); those of surface patches are measured against their
+own normals (`meshonet.geometry.quality.surfaces`).
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, as_planar
-from meshonet.geometry.blocks.grid import Grid, form_of
+from meshonet.geometry.blocks.block import form_of
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric, metric_of
 from meshonet.geometry.quality.percentiles import FEW, PERCENTS, no_run, prepared

@@ -1,4 +1,7 @@
-"""The metrics of a grid of many blocks, or patches in space: all cells as one grid's, neighbours across connections included."""
+"""The metrics of a grid of many blocks, or of surface patches: all cells as one grid's.
+
+Neighbours across connections are neighbours.
+"""
 
 from collections.abc import Sequence
 

@@ -22,31 +22,33 @@ area_ratio          greatest ratio, larger over smaller, of the areas of a cell 
 
 A cell of a surface patch is measured as such a quadrilateral in space, against its own normal at its centre.
 
-A cell of a volume has three edges u, v, w at each of its 8 corners, in the direction of their indices, and the
-corner Jacobian u . (v x w). A corner at which an edge has no length, at a pole for instance, is left out.
+A cell of a volume has three edges u, v, w at each of its 8 corners, in the direction of their indices, and
+the corner Jacobian u . (v x w). A corner at which an edge has no length, at a pole for instance, is left out.
 
 ==================  ========================================================================================
 max_angle           greatest of the 24 angles between two edges at a corner, degrees
 min_angle           least of them
 skewness            max((max_angle - 90)/90, (90 - min_angle)/90) (Verdict: equiangle skew, faces without a
                     reflex angle)
-deviation           greatest deviation of the three angles at a corner from 90 degrees, its mean over the corners
+deviation           greatest deviation of the three angles at a corner from 90 degrees, its mean over the
+                    corners
 scaled_jacobian     least over the corners, and the centre with the principal axes, of the Jacobian over the
                     lengths of its three vectors (Verdict: scaled Jacobian)
 jacobian_ratio      least corner Jacobian over the greatest magnitude of them (Verdict: nodal Jacobian ratio;
                     the quality that pyHyp prints)
-bezier_ratio        least of the 27 Bezier coefficients of the Jacobian over the greatest magnitude of a corner
-                    Jacobian: where it is positive so is the Jacobian everywhere in the cell
+bezier_ratio        least of the 27 Bezier coefficients of the Jacobian over the greatest magnitude of a
+                    corner Jacobian: where it is positive so is the Jacobian everywhere in the cell
 aspect_ratio        longest over shortest principal axis (Verdict: maximum edge ratio)
 orthogonality       least angle between the three families of grid lines at the centre of the cell, 0 to 90
                     degrees (Verdict: the arc cosine of skew)
-volume_ratio        greatest ratio, larger over smaller, of the volumes of a cell and of one beside it in i, j or
-                    k, across connections too; the volume is that of the trilinear cell (Verdict: volume)
+volume_ratio        greatest ratio, larger over smaller, of the volumes of a cell and of one beside it in i,
+                    j or k, across connections too; the volume is that of the trilinear cell (Verdict:
+                    volume)
 ==================  ========================================================================================
 
 Sources: C. J. Stimpson et al., The Verdict Geometric Quality Library, SAND2007-1751 (2007); its code in
-VTK, ThirdParty/verdict/vtkverdict/V_QuadMetric.cpp and V_HexMetric.cpp; A. Johnen, J.-F. Remacle, C. Geuzaine,
-Geometrical validity of curvilinear finite elements, J. Comput. Phys. 233 (2013) 359-372.
+VTK, ThirdParty/verdict/vtkverdict/V_QuadMetric.cpp and V_HexMetric.cpp; A. Johnen, J.-F. Remacle, C.
+Geuzaine, Geometrical validity of curvilinear finite elements, J. Comput. Phys. 233 (2013) 359-372.
 """
 
 from collections.abc import Callable

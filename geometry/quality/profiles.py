@@ -22,7 +22,7 @@ from typing import Literal
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
@@ -30,7 +30,6 @@ from meshonet.geometry.quality.blocks import BlockFigures, block_figures
 from meshonet.geometry.quality.checkmesh import Faces, faces
 from meshonet.geometry.quality.gates import COMPARE
 from meshonet.geometry.quality.growth import Extreme, Growth, growth
-from meshonet.geometry.quality.metrics import NAMES
 from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.quality.walls import WallRow, wall_rows
 
@@ -143,12 +142,13 @@ class Figures:
     @cached_property
     def blocks(self) -> BlockFigures:
         """Its blocks, their vertices and how lines run through them."""
-        return block_figures(self.grid)
+        return block_figures(self.grid, self.quality)
 
     @cached_property
     def wall_rows(self) -> tuple[WallRow, ...]:
         """The cells at its walls."""
-        return wall_rows(self.grid, self.walls)
+        by_wall = self.blocks.lines.by_wall if self.walls and self.grid.topology == "blocks" else {}
+        return wall_rows(self.grid, self.walls, by_wall)
 
     def value(self, name: str, *, low: bool) -> tuple[float, tuple[int, ...] | None] | None:
         """Return figure `name` and its place: the least of a metric when `low`, otherwise the greatest.
@@ -158,7 +158,7 @@ class Figures:
         """
         if name == "folded":
             return float(self.quality.folded), None
-        if name in NAMES:
+        if name in self.quality.metrics:
             summary = self.quality[name]
             return (summary.min if low else summary.max), summary.worst
         if name == "equal_wall_cells":
@@ -184,13 +184,15 @@ class Figures:
         wall = np.concatenate([_nodes(grid, patch) for patch in self.walls])
         beyond = grid.nodes[:, -1] if grid.around_body else np.concatenate(far)
         middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))
-        start = wall[np.argmax(np.hypot(*(wall - middle).T))]
-        chord = float(np.hypot(*(wall - start).T).max())
-        return float(np.hypot(*(beyond - middle).T).min()) / chord, None
+        start = wall[np.argmax(norms(wall - middle))]
+        chord = float(norms(wall - start).max())
+        return float(norms(beyond - middle).min()) / chord, None
 
 
 def _nodes(grid: Grid, patch: Patch) -> Floats:
-    return grid.face(patch.block, patch.side)[patch.start : patch.stop + 1]
+    face = grid.face(patch.block, patch.side)
+    spans = patch.range(face.shape[:-1])
+    return face[tuple(slice(first, last + 1) for first, last in spans)].reshape(-1, face.shape[-1])
 
 
 def profile_report(figures: Figures, profile: str) -> ProfileReport:

@@ -67,13 +67,15 @@ class QualityReport:
             **({"cells": self.quality.cells} if many else {"ni": grid.ni, "nj": grid.nj}),
             "topology": grid.topology,
             **(self.figures.blocks.as_dict() if many else {}),
-            "folded": self.quality.folded,
+            "form": grid.form,
+            **_folded(self.quality),
             "worst_cells": [_cell(cell) for cell in self.worst],
             "quality": quality_dict(self.quality),
             "walls": [_wall(row) for row in self.figures.wall_rows],
         }
         if self.profile and growth:
-            facts["growth"] = {"xi": extreme_dict(growth.xi), "eta": extreme_dict(growth.eta)}
+            along = {"xi": growth.xi, "eta": growth.eta} | growth.families()
+            facts["growth"] = {name: extreme_dict(extreme) for name, extreme in along.items()}
             checks = [_check(result) for result in self.profile.results]
             facts["profile"] = {"name": self.profile.name, "passed": self.profile.passed, "checks": checks}
         if self.comparison:
@@ -101,13 +103,19 @@ def quality_report(grid: Grid, profile: str | None = None, reference: Grid | Non
 
 def quality_dict(quality: Quality) -> dict[str, Any]:
     """Return the metrics as what JSON can hold; percentiles are left out when they were not computed."""
-    facts: dict[str, Any] = {"cells": quality.cells, "folded": quality.folded}
+    facts: dict[str, Any] = {"cells": quality.cells, **_folded(quality)}
     for name, summary in quality.metrics.items():
         row: dict[str, Any] = {"min": summary.min, "mean": summary.mean, "max": summary.max}
         if summary.p01 is not None:
             row |= {"p01": summary.p01, "p99": summary.p99}
         facts[name] = row | {"worst": list(summary.worst)}
     return facts
+
+
+def _folded(quality: Quality) -> dict[str, int]:
+    """Return how many cells are folded, of volumes by both tests."""
+    more = {} if quality.bezier_folded is None else {"bezier_folded": quality.bezier_folded}
+    return {"folded": quality.folded, **more}
 
 
 def _comparison(grid: Grid, quality: Quality, reference: Grid) -> Comparison:
@@ -127,7 +135,8 @@ def _spread(spread: Spread) -> dict[str, float]:
 
 def _wall(row: WallRow) -> dict[str, Any]:
     sizes = {"first_cell": _spread(row.height), "off_square": _spread(row.off_square)}
-    return {"name": row.name, "side": row.side, **sizes, "equal_cells": row.equal_cells}
+    growth = {} if row.growth is None else {"growth": extreme_dict(row.growth)}
+    return {"name": row.name, "side": row.side, **sizes, "equal_cells": row.equal_cells, **growth}
 
 
 def _check(result: CheckResult) -> dict[str, Any]:

@@ -12,7 +12,7 @@ class Summary:
     mean: float
     max: float
     worst: tuple[int, ...]
-    """The cell (i, j) with the worst value, the first of them; (block, i, j) or (block, i, j, k) in blocks."""
+    """The first cell (i, j) with the worst value; (block, i, j) or (block, i, j, k) in a grid of blocks."""
     p01: float | None = None
     p99: float | None = None
 

@@ -56,7 +56,7 @@ def quad_metrics(nodes: Floats) -> Floats:
 
 
 def folded_quads(nodes: Floats) -> NDArray[np.int64]:
-    """Return (n, 2) indices of the cells of `nodes` (ni, nj, 3) of which a corner turns against the others."""
+    """Return (n, 2) indices of the cells of `nodes` (ni, nj, 3) with a corner turned against the cell."""
     return np.argwhere(~(_scaled_jacobians(_ring(nodes)).min(axis=0) > 0)).astype(np.int64)
 
 
@@ -74,7 +74,7 @@ def worst_quads(nodes: Floats, limit: int = 10) -> list[BadCell]:
 
 
 def areas(rows: Floats) -> Floats:
-    """Return the areas (m-1, n-1) of the cells between nodes (m, n, d) of a patch, in the plane or in space."""
+    """Return the areas (m-1, n-1) of the cells of a patch in the plane or in space, nodes (m, n, 2 or 3)."""
     first, second = rows[1:, 1:] - rows[:-1, :-1], rows[1:, :-1] - rows[:-1, 1:]
     if rows.shape[-1] == 2:
         return np.asarray(0.5 * np.abs(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]))

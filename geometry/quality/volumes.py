@@ -1,13 +1,13 @@
 """Folded cells and metrics of volumes: blocks of nodes (ni, nj, nk, 3).
 
-A cell is folded when any of its eight corner Jacobians is not positive. Where all 27 Bezier coefficients of its
-Jacobian are positive, that is positive everywhere in the cell (`meshonet.geometry.quality.metrics`); corners at
-which an edge has no length are left out of both tests. Kernels work with
+A cell is folded when any of its eight corner Jacobians is not positive. Where all 27 Bezier coefficients of
+its Jacobian are positive, that is positive everywhere in the cell (`meshonet.geometry.quality.metrics`);
+corners at which an edge has no length are left out of both tests. Kernels work with
 `meshonet.geometry.threads.thread_count` threads, results are the same to the bit for any number.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, Side, as_planar
 from meshonet.geometry.blocks.block import PLACES
-from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.connection import cells_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.metrics import SOLID_METRICS, SOLID_NAMES
@@ -56,9 +56,12 @@ def _folded_rows(nodes: Floats, test: int) -> NDArray[np.int64]:
     return rows
 
 
-def worst_solids(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return the folded cells of `nodes` (ni, nj, nk, 3), `limit` at the most, least scaled Jacobian first."""
-    i, j, k = folded_solids(nodes)[:_MOST].T
+def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[BadCell]:
+    """Return cells of `nodes` (ni, nj, nk, 3) that do not pass a test, least scaled Jacobian first.
+
+    `limit` of them at most, with their centres.
+    """
+    i, j, k = folded_solids(nodes, test)[:_MOST].T
     points = {(a, b, c): nodes[i + a, j + b, k + c] for a in (0, 1) for b in (0, 1) for c in (0, 1)}
     least = np.ones(len(i))
     for a, b, c in points:
@@ -145,15 +148,6 @@ def padded_volumes(grid: Grid) -> list[Floats]:
     return padded
 
 
-def cells_at(connection: Connection, face: Callable[[int, Side], NDArray[Any]]) -> Sequence[NDArray[Any]]:
-    """Return views of the values of the cells at both sides of a connection, in one order.
-
-    `face` gives the values (n, m, d) of the cells at a side of a block.
-    """
-    spans = [tuple((a, b - 1) for a, b in span) for span in (connection.range, connection.donor_range)]
-    return replace(connection, range=spans[0], donor_range=spans[1], transform=None).nodes(face)
-
-
 @dataclass(frozen=True)
 class _Part:
     """What one run over a block leaves, for each metric: ends, sum, place of the ends (2, 3), kept values."""
@@ -166,7 +160,7 @@ class _Part:
 
 
 class _Cells:
-    """Runs over the cells of blocks, which count and keep values between brackets (metrics, percentiles, 2)."""
+    """Runs over the cells of blocks; they keep values between brackets (metrics, percentiles, 2)."""
 
     def __init__(self, grid: Grid, volumes: Sequence[Floats], brackets: Floats | None) -> None:
         self._grid, self._volumes = grid, volumes

@@ -1,16 +1,22 @@
 """The cells at a wall: how high the first ones are, and at what angle the grid lines leave it."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.blocks.across import rows_beside
+from meshonet.geometry.blocks.block import face_counts
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.quality.growth import Extreme
 
 DEPTH = 33
 """Nodes along a line that are looked at."""
+
+NO_GROWTH: Mapping[str, Extreme] = MappingProxyType({})
 
 SAME = 0.01
 """Relative difference up to which two heights count as equal."""
@@ -37,9 +43,15 @@ class WallRow:
     height: Spread
     """Distance from each wall node to the next node of the line that leaves it, in the grid's unit."""
     off_square: Spread
-    """Deviation from 90 degrees of the two angles of every cell at the wall."""
+    """Deviation from 90 degrees of the two angles of every cell at the wall.
+
+    In volumes the angle between the edge that leaves a wall's cell at each corner and the cell's normal
+    there.
+    """
     equal_cells: int
     """Cells from the wall on as high as the first, within 1 %, where they are fewest; 32 at the most."""
+    growth: Extreme | None = None
+    """Growth along the lines that leave it, through all blocks that they run through, of many blocks."""
 
 
 def wall_row(grid: Grid, patch: Patch) -> WallRow:
@@ -47,8 +59,13 @@ def wall_row(grid: Grid, patch: Patch) -> WallRow:
     return _row(patch.name, patch.side, [_at(grid, patch)])
 
 
-def wall_rows(grid: Grid, walls: Sequence[Patch]) -> tuple[WallRow, ...]:
-    """Return the figures of the cells at `walls` of the boundary of `grid`, in many blocks by name."""
+def wall_rows(
+    grid: Grid, walls: Sequence[Patch], growth: Mapping[str, Extreme] = NO_GROWTH
+) -> tuple[WallRow, ...]:
+    """Return the figures of the cells at `walls` of the boundary of `grid`, in many blocks by name.
+
+    `growth` is that along the lines that leave them.
+    """
     if grid.topology != "blocks":
         return tuple(wall_row(grid, wall) for wall in walls)
     names = dict.fromkeys(wall.name for wall in walls)
@@ -57,7 +74,8 @@ def wall_rows(grid: Grid, walls: Sequence[Patch]) -> tuple[WallRow, ...]:
         parts = [wall for wall in walls if wall.name == name]
         sides = {wall.side for wall in parts}
         side = sides.pop() if len(sides) == 1 else None
-        rows.append(_row(name, side, [_at(grid, wall) for wall in parts], percentile=True))
+        row = _row(name, side, [_at(grid, wall) for wall in parts], percentile=True)
+        rows.append(replace(row, growth=growth.get(name)))
     return tuple(rows)
 
 
@@ -71,14 +89,34 @@ class _At:
 
 
 def _at(grid: Grid, patch: Patch) -> _At:
+    if grid.form == "volume":
+        return _at_solid(grid, patch)
     lines = leaving(grid, patch)
     steps = np.diff(lines, axis=1)
-    heights = np.hypot(steps[..., 0], steps[..., 1])
+    heights = norms(steps)
     equal = np.abs(heights - heights[:, :1]) <= SAME * heights[:, :1]
     alike = np.where(equal.all(axis=1), equal.shape[1], np.argmin(equal, axis=1))
     along = np.diff(lines[:, 0], axis=0)
     off = [_off_square(along, steps[:-1, 0]), _off_square(along, steps[1:, 0])]
     return _At(heights[:, 0], np.stack(off), int(alike.min()))
+
+
+def _at_solid(grid: Grid, patch: Patch) -> _At:
+    counts = face_counts(grid.blocks[patch.block].counts, patch.side)
+    layers = rows_beside(grid, patch.block, patch.side, patch.range(counts), DEPTH)
+    steps = np.diff(layers, axis=0)
+    heights = norms(steps)
+    equal = np.abs(heights - heights[0]) <= SAME * heights[0]
+    alike = np.where(equal.all(axis=0), len(equal), np.argmin(equal, axis=0))
+    along, across = np.diff(layers[0], axis=0), np.diff(layers[0], axis=1)
+    off = []
+    for a in (0, 1):
+        for b in (0, 1):
+            u, v = (along[:, 1:], along[:, :-1])[1 - b], (across[1:], across[:-1])[1 - a]
+            w = steps[0, a : len(across) - 1 + a, b : along.shape[1] - 1 + b]
+            normal = np.cross(u, v)
+            off.append(np.degrees(np.arctan2(norms(np.cross(normal, w)), np.abs((normal * w).sum(axis=-1)))))
+    return _At(heights[0].ravel(), np.stack(off), int(alike.min()))
 
 
 def _row(name: str, side: str | None, parts: Sequence[_At], *, percentile: bool = False) -> WallRow:
@@ -88,7 +126,7 @@ def _row(name: str, side: str | None, parts: Sequence[_At], *, percentile: bool 
 
 
 def leaving(grid: Grid, patch: Patch) -> Floats:
-    """Return the lines (n, depth, 2) that leave the nodes of `patch`, the wall first."""
+    """Return the lines (n, depth, d) that leave the nodes of `patch` of a block of two directions."""
     nodes = grid.blocks[patch.block].nodes
     nodes = nodes if patch.side in ("south", "north") else nodes.swapaxes(0, 1)
     nodes = nodes[patch.start : patch.stop + 1]
@@ -96,8 +134,11 @@ def leaving(grid: Grid, patch: Patch) -> Floats:
 
 
 def _off_square(along: Floats, away: Floats) -> Floats:
-    """Return how far the angles between two families of vectors (n, 2) are from 90 degrees."""
-    sine = np.abs(along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0])
+    """Return how far the angles between two families of vectors (n, d) are from 90 degrees."""
+    if along.shape[1] == 3:
+        sine = norms(np.cross(along, away))
+    else:
+        sine = np.abs(along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0])
     return np.degrees(np.arctan2(np.abs((along * away).sum(axis=1)), sine))
 
 

@@ -171,7 +171,7 @@ class Outline:
 
     def _body(self, sampling: Sampling) -> Boundary:
         ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
-        curve = self._clockwise()
+        curve = self.clockwise()
         arcs, notes = self._around(curve, ni, sampling)
         wall = curve.at(arcs)
         wall[-1] = wall[0]
@@ -180,7 +180,7 @@ class Outline:
         radius = sampling.radius * extent
         return o_boundary(wall, nj, box.mean(axis=0), radius, curve, self.name, extent, notes=notes)
 
-    def _clockwise(self) -> Curve:
+    def clockwise(self) -> Curve:
         """Return the curve clockwise from the rightmost place, the middle of a straight right side."""
         order = np.arange(len(self.curve.points))[:: -1 if self._left else 1]
         p, corner = self.curve.points[order], np.isin(order, self.curve.corner_index)

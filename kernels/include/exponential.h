@@ -1,4 +1,4 @@
-/* Polynomials, and exp in a form that loops are vectorised with. */
+/* Polynomials, and exp and log in a form that loops are vectorised with. */
 #pragma once
 #include "clones.h"
 #include <math.h>
@@ -24,4 +24,17 @@ MESHONET_INLINE double exp_double(double x)
     union { double d; long long i; } scale;
     scale.i = (long long)((int)n + 1023) << 52;
     return polynomial(c, 14, r) * scale.d;
+}
+
+/* ln(x) for normal x > 0: x = 2^n m, 1/sqrt(2) <= m < sqrt(2), and the series of atanh((m - 1)/(m + 1)): 2 ulp */
+MESHONET_INLINE double log_double(double x)
+{
+    static const double c[11] = {1.0, 1.0 / 3.0, 1.0 / 5.0, 1.0 / 7.0, 1.0 / 9.0, 1.0 / 11.0, 1.0 / 13.0, 1.0 / 15.0,
+                                 1.0 / 17.0, 1.0 / 19.0, 1.0 / 21.0};
+    union { double d; unsigned long long i; } bits = {x}, part;
+    const unsigned long long above = bits.i + (0x3ff0000000000000ULL - 0x3fe6a09e667f3bcdULL);
+    const int n = (int)(above >> 52) - 1023;
+    part.i = (above & 0x000fffffffffffffULL) + 0x3fe6a09e667f3bcdULL;
+    const double s = (part.d - 1.0) / (part.d + 1.0);
+    return 2.0 * s * polynomial(c, 11, s * s) + (double)n * 0.69314718055994530942;
 }

@@ -22,6 +22,7 @@ cdef extern from "solids/solids.h":
     int c_solids_run "solids_run"(const SolidRun *run, int threads) nogil
     int c_solids_rows "solids_rows"(const SolidNodes *nodes, const double *volumes, const int64_t *rows, ptrdiff_t n,
                                     double *values) nogil
+    int c_solids_lines "solids_lines"(const SolidNodes *nodes, int threads, double *summary, int64_t *where) nogil
 
 
 cdef SolidNodes solid_nodes(nodes) except *:
@@ -104,5 +105,17 @@ def solids_rows(nodes, volumes, rows, values):
     cdef int done
     with nogil:
         done = c_solids_rows(&block, sizes, at, n, to)
+    if not done:
+        raise MemoryError
+
+
+def solids_lines(nodes, int threads, summary, where):
+    """Fill summary (ni, 3, 2, 2) and where (ni, 3, 2, 3) with growth and bend along the axes; ``solids/solids.h``."""
+    cdef SolidNodes block = solid_nodes(nodes)
+    cdef Written to = fills(summary, (block.ni, 3, 2, 2))
+    cdef int64_t *places = fills_long(where, (block.ni, 3, 2, 3))
+    cdef int done
+    with nogil:
+        done = c_solids_lines(&block, threads, to, places)
     if not done:
         raise MemoryError

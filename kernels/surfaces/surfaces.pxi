@@ -1,1 +1,78 @@
 # Surfaces of many patches, and volumes marched from them.
+
+cdef extern from "surfaces/graph.h":
+    ctypedef struct Graph:
+        ptrdiff_t nodes, red, ghosts, odd, fixed
+        const ptrdiff_t *near
+        const ptrdiff_t *odd_nodes
+        const ptrdiff_t *odd_start
+        const ptrdiff_t *odd_near
+        const ptrdiff_t *owner
+        const ptrdiff_t *base
+        const double *own
+        const double *sign
+        const double *shift
+        const ptrdiff_t *fixed_nodes
+        const double *moves
+
+cdef extern from "surfaces/march.h":
+    ctypedef struct SurfaceMarch:
+        double explicit_smoothing, implicit_smoothing, theta, sharp, size, longest, weight, blend
+        ptrdiff_t sweeps, ramp
+        double tolerance
+        ptrdiff_t most
+    ctypedef struct SurfaceMarched:
+        ptrdiff_t levels, steps, iterations
+    int c_surface_march "surface_march"(double *levels, const double *heights, ptrdiff_t count, const Graph *graph,
+                                        const SurfaceMarch *settings, int threads, SurfaceMarched *made) nogil
+
+cdef extern from "surfaces/lines.h":
+    ctypedef struct Lines:
+        ptrdiff_t nodes, levels
+        const double *marched
+        const double *steps
+        const double *fade
+        const ptrdiff_t *order
+        ptrdiff_t sweeps
+        double *lines
+    int c_respace_lines "respace_lines"(const Lines *lines, int threads) nogil
+
+
+def surface_march(levels, heights, graph, settings, int threads):
+    """Fill `levels` (count + 1, 3, n) from level 0; return how many were made, the steps and the iterations.
+
+    `heights` (count) are the distances of the others from the wall. `graph` has the arrays of ``graph.h``, `settings`
+    the numbers of ``march.h`` in their order.
+    """
+    cdef ptrdiff_t n = levels.shape[2], count = len(heights), ghosts = len(graph.owner), odd = len(graph.odd_nodes)
+    cdef ptrdiff_t fixed = len(graph.fixed_nodes)
+    cdef Graph g = Graph(
+        n, graph.red, ghosts, odd, fixed, reads_indices(graph.near, (4, n)), reads_indices(graph.odd_nodes, (odd,)),
+        reads_indices(graph.odd_start, (odd + 1,)), reads_indices(graph.odd_near, graph.odd_near.shape),
+        reads_indices(graph.owner, (ghosts,)), reads_indices(graph.base, (ghosts,)), reads(graph.own, (ghosts,)),
+        reads(graph.sign, (3, ghosts)), reads(graph.shift, (3, ghosts)), reads_indices(graph.fixed_nodes, (fixed,)),
+        reads(graph.moves, (3, fixed)))
+    cdef SurfaceMarch s
+    cdef SurfaceMarched made
+    cdef int failed
+    (s.explicit_smoothing, s.implicit_smoothing, s.theta, s.sharp, s.size, s.longest, s.weight, s.blend, s.sweeps, s.ramp,
+     s.tolerance, s.most) = settings
+    cdef Written px = fills(levels, (count + 1, 3, n))
+    cdef Read apart = reads(heights, (count,))
+    with nogil:
+        failed = c_surface_march(px, apart, count, &g, &s, threads, &made)
+    if failed:
+        raise MemoryError
+    return made.levels, made.steps, made.iterations
+
+
+def respace_lines(marched, steps, fade, order, ptrdiff_t sweeps, lines, int threads):
+    """Fill `lines` (3, n, levels) with the nodes of `marched` (levels, 3, n) moved along their lines (``lines.h``)."""
+    cdef ptrdiff_t levels = len(marched), n = marched.shape[2]
+    cdef Lines l = Lines(n, levels, reads(marched, (levels, 3, n)), reads(steps, (levels - 1,)),
+                         reads(fade, (levels - 1,)), reads_indices(order, (n,)), sweeps, fills(lines, (3, n, levels)))
+    cdef int failed
+    with nogil:
+        failed = c_respace_lines(&l, threads)
+    if failed:
+        raise MemoryError

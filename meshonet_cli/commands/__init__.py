@@ -44,6 +44,8 @@ COMMANDS: tuple[Command, ...] = (
     Command("train", "Fit a neural operator to datasets (needs the extra `train`)."),
     Command("infer", "Make the grid that measures best: conformal, marched or variational."),
     Command("layout", "Split domains into blocks and write these."),
+    Command("stack", "Make volumes around wings and blades from sections placed in space."),
+    Command("sweep", "Make volumes of pipes and ducts: cross-sections along curves."),
     Command("quality", "Measure grids: folded cells, angles, skewness."),
     Command("convert", "Turn files from one format into another."),
     Command("plot", "Draw grids, coloured by a quality metric."),

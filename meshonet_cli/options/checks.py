@@ -12,6 +12,9 @@ FailOn = Annotated[list[str] | None, _option(
     "--fail-on", metavar="GATE",
     help="Exit with 1 when this holds, e.g. 'max_angle>170', 'skewness.p99>0.8', 'folded>0'; repeatable.",
 )]
+AllowInvalid = Annotated[bool, _option(
+    "--allow-invalid", help="Write the grid even when cells are folded.",
+)]
 
 
 @dataclass(frozen=True)
@@ -23,8 +26,6 @@ class CheckOptions:
         help="Unfold folded cells, or refuse grids that have any. [default: solve-pde and infer unfold, tfi "
         "refuses]",
     )] = None
-    allow_invalid: Annotated[bool, _option(
-        "--allow-invalid", help="Write the grid even when cells are folded.",
-    )] = False
+    allow_invalid: AllowInvalid = False
     fail_on: FailOn = None
 # fmt: on

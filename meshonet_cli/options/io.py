@@ -30,6 +30,10 @@ Output = Annotated[str, _option(
 From = Annotated[str | None, _option(
     "--from", metavar="FORMAT", help="Format of the input, when neither its ending nor its content says.",
 )]
+To = Annotated[str | None, _option(
+    "--to", metavar="FORMAT",
+    help="Format of the output, when its ending does not say. [default on standard output: hdf5]",
+)]
 SkipExisting = Annotated[bool, _option(
     "--skip-existing", help="Skip inputs whose output file exists already.",
 )]
@@ -45,10 +49,7 @@ class FileOptions:
     """Formats of a command that turns files into files."""
 
     from_format: From = None
-    to_format: Annotated[str | None, _option(
-        "--to", metavar="FORMAT",
-        help="Format of the output, when its ending does not say. [default on standard output: hdf5]",
-    )] = None
+    to_format: To = None
     skip_existing: SkipExisting = False
 
 

@@ -13,20 +13,21 @@ Threads = Annotated[int | None, option_of(IO)(
     help="Threads that work on one large grid; the grid is the same for any number. [default: all cores, "
     "divided among --jobs]",
 )]
+Layers = Annotated[int | None, _option(
+    "--layers", metavar="N", min=3,
+    help="Nodes along the lines of a volume marched from a surface, the wall's included. [default: what "
+    "a growth of 1.2 needs]",
+)]
 
 
 @dataclass(frozen=True)
 class VolumeOptions:
     """How a volume is marched from a surface."""
 
-    layers: Annotated[int | None, _option(
-        "--layers", metavar="N", min=3,
-        help="Nodes along the lines of a volume marched from a surface, the wall's included. [default: what "
-        "a growth of 1.2 needs]",
-    )] = None
-    symmetry: Annotated[Literal["x", "y", "z"] | None, _option(
-        "--symmetry", metavar="x|y|z",
+    layers: Layers = None
+    symmetry: Annotated[Literal["x", "y", "z", "none"] | None, _option(
+        "--symmetry", metavar="x|y|z|none",
         help="Open edges of the surface lie in a plane of symmetry across this axis. [default: edges in one "
-        "plane across an axis are in a plane of symmetry, others are free]",
+        "plane across an axis are in a plane of symmetry, others, and all with none, are free]",
     )] = None
 # fmt: on

@@ -75,10 +75,15 @@ class Report(Timed):
 
     def _size(self, *, short: bool = False) -> str:
         """Return how large the grid is."""
+        if self.ni is None and self.blocks is None:
+            return f"{self.quality.cells} cells"
         if self.blocks is None:
             return f"{self.ni} x {self.nj} {self.topology if short else 'nodes'}"
-        count, irregular = len(self.blocks.sizes), len(self.blocks.irregular)
+        count = len(self.blocks.sizes)
         size = f"{count} block{'' if count == 1 else 's'}, {self.quality.cells} cells"
+        if self.blocks.irregular is None:
+            return size
+        irregular = len(self.blocks.irregular)
         return f"{size}, {irregular or 'no'} irregular {'vertex' if irregular == 1 else 'vertices'}"
 
 

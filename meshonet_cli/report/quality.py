@@ -6,7 +6,7 @@ from typing import Any
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.blocks import LINES, BlockFigures
 from meshonet.geometry.quality.growth import Extreme
-from meshonet.geometry.quality.metrics import METRICS
+from meshonet.geometry.quality.metrics import METRICS, SOLID_METRICS
 from meshonet.geometry.quality.profiles import CheckResult, Figures, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
 from meshonet.geometry.quality.summary import Quality
@@ -14,6 +14,8 @@ from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet_cli.batch.timed import Timed
 from meshonet_cli.text import aligned, figure, named
 
+_PLACES = {2: "i, j", 3: "block, i, j", 4: "block, i, j, k"}
+"""Places of nodes and cells by how many numbers they have."""
 _VERDICTS = {"fail": "FAIL", "warn": "warning", "none": "no figure"}
 
 
@@ -32,7 +34,7 @@ class Measured(Timed):
         """Return the tables for people."""
         report = self.report
         grid, quality = report.grid, report.quality
-        folded = f"{quality.folded} folded" if quality.folded else "none folded"
+        folded = folded_words(quality)
         many = grid.topology == "blocks"
         size = (
             f"{grid.ni} x {grid.nj} nodes, {grid.topology} grid"
@@ -61,12 +63,12 @@ class Measured(Timed):
 
 def quality_table(quality: Quality) -> str:
     """Return the metrics as a table; it needs the percentiles."""
-    many = any(len(summary.worst) == 3 for summary in quality.metrics.values())
-    rows = [["metric", "min", "p01", "mean", "p99", "max", f"worst at {'block, ' * many}i, j"]]
-    for metric in METRICS:
+    places = max(len(summary.worst) for summary in quality.metrics.values())
+    rows = [["metric", "min", "p01", "mean", "p99", "max", f"worst at {_PLACES[places]}"]]
+    for metric in SOLID_METRICS if "volume_ratio" in quality.metrics else METRICS:
         row = quality[metric.name]
         name = f"{metric.name} ({metric.unit})" if metric.unit else metric.name
-        values = ["-" if v is None else figure(v) for v in (row.min, row.p01, row.mean, row.p99, row.max)]
+        values = [_figure(value) for value in (row.min, row.p01, row.mean, row.p99, row.max)]
         rows.append([name, *values, _place(row.worst)])
     return aligned(rows)
 
@@ -75,6 +77,8 @@ def blocks_line(blocks: BlockFigures) -> str:
     """Return how many blocks, nodes, interfaces and irregular vertices there are."""
     parts = (len(blocks.sizes), "block"), (blocks.nodes, "node"), (blocks.interfaces, "interface")
     counts = [f"{count} {word}{'' if count == 1 else 's'}" for count, word in parts]
+    if blocks.irregular is None:
+        return ", ".join(counts)
     irregular = len(blocks.irregular)
     vertices = f"{irregular or 'no'} irregular {'vertex' if irregular == 1 else 'vertices'}"
     return ", ".join([*counts, vertices])
@@ -83,24 +87,35 @@ def blocks_line(blocks: BlockFigures) -> str:
 def lines_table(blocks: BlockFigures) -> str:
     """Return angles, growth and bends of many blocks as a table."""
     angles = blocks.deviation
-    rows = [["angles and lines", "mean", "p99", "max", "at block, i, j"]]
-    angle = "off 90 at corners (deg)"
-    rows.append([angle, figure(angles.mean), figure(angles.p99), figure(angles.max), _place(angles.at)])
+    rows = [["angles and lines", "mean", "p99", "max", f"at {_PLACES[len(angles.at)]}"]]
+    values = (angles.mean, angles.p99, angles.max)
+    rows.append(["off 90 at corners (deg)", *map(_figure, values), _place(angles.at)])
     for name in LINES:
         extreme: Extreme | None = getattr(blocks.lines, name)
         what, where = name.split("_")
         label = f"{what} {'inside blocks' if where == 'inside' else 'across sides'}"
         if extreme:
-            values = (extreme.mean, extreme.p99 or 0.0, extreme.max)
             unit = " (deg)" if what == "bend" else ""
-            rows.append([label + unit, *map(figure, values), _place(extreme.at)])
+            values = (extreme.mean, extreme.p99, extreme.max)
+            rows.append([label + unit, *map(_figure, values), _place(extreme.at)])
     return aligned(rows)
 
 
 def cell_text(cell: BadCell) -> str:
     """Return the place of a folded cell for people."""
-    block = "" if cell.block is None else f"block={cell.block}, "
-    return f"{block}i={cell.i}, j={cell.j}: x={cell.x:.6g}, y={cell.y:.6g}"
+    return f"{cell.indices}: {cell.centre}"
+
+
+def folded_words(quality: Quality) -> str:
+    """Return how many cells are folded in words, of volumes by both tests."""
+    words = f"{quality.folded} folded" if quality.folded else "none folded"
+    if quality.bezier_folded is None:
+        return words
+    return f"{words} at corners, {quality.bezier_folded or 'none'} by the Bezier test"
+
+
+def _figure(value: float | None) -> str:
+    return "-" if value is None else figure(value)
 
 
 def _place(at: tuple[int, ...]) -> str:
@@ -126,16 +141,19 @@ def walls_table(rows: tuple[WallRow, ...]) -> str:
     for row in rows:
         table.append([f"{row.name}: first cell", *_spread(row.height), str(row.equal_cells)])
         table.append([f"{row.name}: off 90 (deg)", *_spread(row.off_square), ""])
+        if row.growth:
+            growth = ["", figure(row.growth.mean), figure(row.growth.max), ""]
+            table.append([f"{row.name}: growth of lines", *growth])
     return aligned(table)
 
 
 def profile_table(figures: Figures, profile: ProfileReport) -> str:
     """Return the checks of a profile, and the growth of cells, as tables."""
-    at = "at block, i, j" if figures.grid.topology == "blocks" else "at i, j"
+    grid = figures.grid
+    at = f"at {_PLACES[1 + len(grid.blocks[0].counts) if grid.topology == 'blocks' else 2]}"
     rows = [["growth", "mean", "max", at]]
-    for name, extreme in (("along xi", figures.growth.xi), ("along eta", figures.growth.eta)):
-        if extreme:
-            rows.append([name, figure(extreme.mean), figure(extreme.max), _place(extreme.at)])
+    for name, extreme in figures.growth.families().items():
+        rows.append([f"along {name}", figure(extreme.mean), figure(extreme.max), _place(extreme.at)])
     checks = [[f"profile {profile.name}", "figure", at, "limits", "verdict"]]
     checks += [_check_row(result) for result in profile.results]
     return f"{aligned(rows)}\n{aligned(checks)}"

@@ -232,11 +232,24 @@ def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, flo
     begun = time.perf_counter()
     solution = make_volume(shape, request)
     _add_times(seconds, solution, time.perf_counter() - begun)
+    return judged(
+        solution, seconds, percentiles=request.percentiles, allow_invalid=request.allow_invalid,
+        remedy=_OTHER_METHODS,
+    )  # fmt: skip
+
+
+def judged(
+    solution: Solution, seconds: dict[str, float], *, percentiles: bool, allow_invalid: bool, remedy: str
+) -> Result:
+    """Return a solution with its quality, whose time is added to `seconds` by stage.
+
+    Raises NoValidGridError: cells are folded, which is not allowed; `remedy` says what to try.
+    """
     begun = time.perf_counter()
-    quality = measure(solution.grid, percentiles=request.percentiles)
+    quality = measure(solution.grid, percentiles=percentiles)
     seconds["quality"] = time.perf_counter() - begun
-    if quality.folded and not request.allow_invalid:
-        problem = f"{quality.folded} of {quality.cells} cells are folded; {_OTHER_METHODS}"
+    if quality.folded and not allow_invalid:
+        problem = f"{quality.folded} of {quality.cells} cells are folded; {remedy}"
         raise NoValidGridError(problem, worst_cells_of(solution.grid))
     return Result(solution, quality, seconds, solution.notes)
 

@@ -70,7 +70,7 @@ class GridRequest:
     cells, cell_size, walls, pitch, inlet, outlet, layout : of a grid of many blocks, which these ask for
         (`meshonet.solvers.blocking.request.BlockRequest`).
     layers, symmetry : of a volume marched from a surface: nodes along its lines, the wall's included, and the
-        axis that its open edges lie across.
+        axis that its open edges lie across, or ``none``.
     threads : that kernels work with; None: all there are.
 
     Raises InputError: a value out of its range; parameters that need or exclude each other.
@@ -108,7 +108,7 @@ class GridRequest:
     outlet: float | None = None
     layout: Layout | None = None
     layers: int | None = None
-    symmetry: Literal["x", "y", "z"] | None = None
+    symmetry: Literal["x", "y", "z", "none"] | None = None
     threads: int | None = None
 
     def __post_init__(self) -> None:

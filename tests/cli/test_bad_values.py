@@ -17,6 +17,8 @@ INPUTS = {
     "plot": ("grid.vts", "-o", "made.png"),
     "models": (),
     "layout": ("step.wkt", "-o", "made.json"),
+    "stack": ("wing.toml", "--around", "49", "--span", "9", "--layers", "18", "-o", "made.h5"),
+    "sweep": ("circle:0.5", "path.csv", "--cells", "40", "-o", "made.h5"),
 }
 """What each command does well with; train loads a library of its own first, and has tests of its own."""
 
@@ -42,6 +44,9 @@ def test_no_command_is_left_out() -> None:
 def test_nonsense_gets_a_line(meshonet: Meshonet, tmp_path: Path, command: str, option: str) -> None:
     meshonet("tfi", dataset(tmp_path / "duct.h5", "quad", duct()), "-o", "grid.vts", "-q")
     Path("step.wkt").write_text("POLYGON ((0 0, 1 0, 1 1, 3 1, 3 2, 0 2, 0 0))")
+    section = '[[sections]]\nairfoil = "naca:0012"\nchord = 1\nz = {}\n'
+    Path("wing.toml").write_text(section.format(0) + section.format(1))
+    Path("path.csv").write_text("0 0 0\n9 0 0\n18 3 0\n")
     refused = 0
     for value in NONSENSE:
         before = {path.name for path in tmp_path.iterdir()}

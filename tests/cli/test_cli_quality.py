@@ -102,9 +102,7 @@ def test_a_boundary_is_no_grid(meshonet: Meshonet, duct_h5: Path) -> None:
 
 
 def test_an_airfoil_is_no_grid(meshonet: Meshonet) -> None:
-    told = (
-        "naca:0012: is an airfoil, not a grid; make a grid of it first: meshonet infer naca:0012 -o grid.vts"
-    )
+    told = "naca:0012: is a shape, not a grid; make a grid of it first: meshonet infer naca:0012 -o grid.vts"
     for words in (
         ("quality", "naca:0012"),
         ("convert", "naca:0012", "g.vts"),

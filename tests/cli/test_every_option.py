@@ -25,6 +25,7 @@ from command_line import Meshonet, dataset, duct, wave
 
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet_cli.app import application
 
 TORCH = importlib.util.find_spec("torch") is not None
@@ -90,6 +91,7 @@ BLOCKS = DOMAINS | {
 }
 TRAINING = "arches.h5 --epochs 4 --points 60 --batch 4 -o new.safetensors"
 
+WING, PIPE = "short.toml --around 49 --span 9 --layers 18", "circle:.5 path.csv --cells 40"
 EFFECTS: dict[str, dict[str, Effect]] = {
     "sample-boundary": SHAPES | {
         "--family": (f"--res 9 {MADE}", "OPTION arch", "code"),
@@ -162,6 +164,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--metric": ("grid.h5 -o made.png -q", "OPTION skewness", "bytes"),
         "--zoom": ("grid.h5 -o made.png -q", "OPTION .5,1.5,0,.5", "bytes"),
         "--every": ("grid.h5 -o made.png -q", "OPTION 5", "bytes"),
+        "--slice": ("cube.vts -o made.png -q", "OPTION z=1.5", "bytes"),
+        "--seen-from": ("cube.vts -o made.png -q", "OPTION 30,60", "bytes"),
     },
     "layout": PRINTING | DOMAINS | {
         "--json": ("step.wkt -o made.json", "OPTION", "prints"),
@@ -182,6 +186,55 @@ EFFECTS: dict[str, dict[str, Effect]] = {
             for name, (base, more, differs) in DOMAINS.items()
             if name != "--assemble"
         },
+    },
+    "stack": {
+        "--json": (f"{WING} -o made.h5", "OPTION", "prints"),
+        "--quiet": (f"{WING} -o made.h5", "OPTION", "says"),
+        "--debug": ("missing.toml -o made.h5 -q", "OPTION", "error"),
+        "--output": (f"{WING} {MADE}", "OPTION other.h5", "files"),
+        "--to": (f"{WING} -o made.name", "OPTION hdf5", "code"),
+        "--skip-existing": (f"{WING} -o there.h5 -q", "OPTION", "layout"),
+        "--jobs": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION 2", "workers"),
+        "--threads": (f"{WING} {MADE} --threads 2", "OPTION 0", "code"),
+        "--around": (f"{WING} {MADE}", "OPTION 61", "nodes"),
+        "--span": (f"{WING} {MADE}", "OPTION 11", "nodes"),
+        "--base": (f"{WING} {MADE}", "OPTION .01", "nodes"),
+        "--far-field": (f"{WING} {MADE}", "OPTION 7", "nodes"),
+        "--tip": (f"{WING} --surface {MADE}", "OPTION flat", "nodes"),
+        "--surface": (f"{WING} {MADE}", "OPTION", "nodes"),
+        "--layers": (f"{WING} {MADE}", "OPTION 20", "nodes"),
+        "--first-cell": (f"{WING} {MADE}", "OPTION .002", "nodes"),
+        "--y-plus": (f"{WING} --y-plus 90 --reynolds 1e5 {MADE}", "OPTION 80", "nodes"),
+        "--reynolds": (f"{WING} --y-plus 90 --reynolds 1e5 {MADE}", "OPTION 2e5", "nodes"),
+        "--growth": (f"wing.toml --around 49 --span 9 {MADE}", "OPTION 1.3", "nodes"),
+        "--fail-on": (f"{WING} {MADE}", "OPTION max_angle>90.5", "code"),
+        "--allow-invalid": (f"moon.toml --around 49 --span 9 {MADE}", "OPTION", "code"),
+    },
+    "sweep": {
+        "--json": (f"{PIPE} -o made.h5", "OPTION", "prints"),
+        "--quiet": (f"{PIPE} -o made.h5", "OPTION", "says"),
+        "--debug": ("circle:1 missing.csv -o made.h5 -q", "OPTION", "error"),
+        "--output": (f"{PIPE} {MADE}", "OPTION other.h5", "files"),
+        "--from": (f"odd.name path.csv {MADE}", "OPTION vts", "code"),
+        "--to": (f"{PIPE} -o made.name", "OPTION hdf5", "code"),
+        "--skip-existing": (f"{PIPE} -o there.h5 -q", "OPTION", "layout"),
+        "--jobs": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION 2", "workers"),
+        "--threads": (f"{PIPE} {MADE} --threads 2", "OPTION 0", "code"),
+        "--res": (f"box.csv path.csv {MADE}", "OPTION 11x9", "nodes"),
+        "--planes": (f"{PIPE} {MADE}", "OPTION 7", "nodes"),
+        "--up": (f"{PIPE} {MADE}", "OPTION 0,1,1", "nodes"),
+        "--twist": (f"{PIPE} {MADE}", "OPTION 10", "nodes"),
+        "--scale": (f"{PIPE} {MADE}", "OPTION .5", "nodes"),
+        "--cells": (f"{PIPE} {MADE}", "OPTION 60", "nodes"),
+        "--cell-size": (f"step.wkt path.csv {MADE}", "OPTION .5", "nodes"),
+        "--layout": (f"step.wkt path.csv --cells 400 {MADE}", "OPTION tall.json", "nodes"),
+        "--walls": (f"hole.wkt path.csv --first-cell .002 {MADE}", "OPTION bolt", "error"),
+        "--first-cell": (f"{PIPE} {MADE}", "OPTION .01", "nodes"),
+        "--y-plus": (f"{PIPE} --y-plus 90 --reynolds 1e5 {MADE}", "OPTION 80", "nodes"),
+        "--reynolds": (f"{PIPE} --y-plus 90 --reynolds 1e5 {MADE}", "OPTION 2e5", "nodes"),
+        "--growth": (f"{PIPE} --first-cell .001 {MADE}", "OPTION 1.5", "nodes"),
+        "--fail-on": (f"{PIPE} {MADE}", "OPTION max_angle>90.5", "code"),
+        "--allow-invalid": (f"folded.h5 path.csv {MADE}", "OPTION", "code"),
     },
     "models": {
         "--json": ("", "OPTION", "out"),
@@ -205,6 +258,17 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--log-csv": (TRAINING, "OPTION log.csv", "files"),
     },
 }  # fmt: skip
+SECTIONS = """
+[[sections]]
+airfoil = "naca:0012"
+chord = 1
+z = 0
+
+[[sections]]
+airfoil = "naca:0012"
+chord = 0.5
+z = {}
+"""
 ELSEWHERE = {
     ("models", "--debug"): "shipped models do not fail; test_cli_models breaks one",
     ("train", "--initial"): "test_the_quad_operator_learns_around_bodies_from_a_model_that_is_there",
@@ -249,6 +313,17 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "hole.wkt").write_text("POLYGON ((0 0, 3 0, 3 3, 0 3, 0 0), (1 1, 1 2, 2 2, 2 1, 1 1))")
     (folder / "box.csv").write_text("0,0\n2,0\n3,1\n0,1\n")
     (folder / "hump.csv").write_text("0,0\n1,0.3\n2,0\n2,1\n0,1\n")
+    for name, span in (("wing", 2), ("short", 1)):
+        (folder / f"{name}.toml").write_text(SECTIONS.format(span))
+    moon = SECTIONS.format(1).replace("naca:0012", "moon.csv")
+    (folder / "moon.toml").write_text(f'kind = "duct"\n{moon}')
+    t = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
+    angle, radius = 1.57 + 1.37 * np.cos(t), 0.8 + 0.2 * np.sin(t)
+    moon_points = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
+    np.savetxt(folder / "moon.csv", moon_points, delimiter=",")
+    (folder / "path.csv").write_text("0 0 0\n9 0 0\n18 3 0\n")
+    cube = np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1)
+    Grid.from_nodes(cube).write(folder / "cube.vts")
     shape = np.loadtxt(Path(__file__).parents[2] / "examples" / "naca2412.dat", skiprows=1) * 40
     (folder / "large.dat").write_text("large\n" + "\n".join(f"{x} {y}" for x, y in shape))
     for name in THERE:
@@ -265,6 +340,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
             "sample-boundary --family arch --count 8 --res 17 --split interpolation -o edges.h5",
             "solve-pde edges.h5 -o arches.h5",
             "layout tall.wkt -o tall.json",
+            "tfi wave.h5 --allow-invalid -o folded.h5",
         ):
             assert run([*words.split(), "-q"]) == 0
         if TORCH:

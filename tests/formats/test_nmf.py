@@ -7,6 +7,7 @@ import pytest
 from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.plot3d.nmf import write_grids
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 
 Row = tuple[str, list[int]]
@@ -40,7 +41,7 @@ def face_nodes(span: list[int], dims: list[int]) -> list[tuple[int, int, int]]:
 @pytest.mark.parametrize("make", [channel, ring, c_grid])
 def test_every_outer_node_of_a_layer_is_in_a_row(make: type[Grid], tmp_path: Path) -> None:
     grid = make()
-    write_grids(tmp_path / "g.nmf", [grid], (0.0, 1.0))
+    write_grids(tmp_path / "g.nmf", [extruded(grid, (0.0, 1.0))])
     dims, found = rows(tmp_path / "g.nmf")
     assert dims == [grid.ni, grid.nj, 2]
     covered = set()
@@ -70,7 +71,7 @@ def test_types_say_what_the_parts_are(tmp_path: Path) -> None:
     assert [kind for kind, _ in rows(tmp_path / "g.nmf")[1]] == [
         "VISCOUS", "south", "out_let", "north", "INFLOW",
     ]  # fmt: skip
-    write_grids(tmp_path / "g.nmf", [c_grid()], (0.0, 1.0))
+    write_grids(tmp_path / "g.nmf", [extruded(c_grid(), (0.0, 1.0))])
     assert rows(tmp_path / "g.nmf")[1] == [
         ("VISCOUS", [1, 5, 1, 2, 4, 12]),
         ("FARFIELD", [1, 4, 1, 4, 1, 2]),

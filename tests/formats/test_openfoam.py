@@ -113,7 +113,9 @@ def test_vtk_opens_the_case(make: type[Grid], tmp_path: Path) -> None:
 
 def test_the_planes_of_several_layers_are_symmetry_planes(tmp_path: Path) -> None:
     parts = (Patch("front", "south", 0, 12), Patch("far", "north", 0, 12))
-    write_grids(tmp_path / "case.foam", [extruded(Grid.from_nodes(ring().nodes, "o", parts), (0.0, 1.0, 2.0))])
+    write_grids(
+        tmp_path / "case.foam", [extruded(Grid.from_nodes(ring().nodes, "o", parts), (0.0, 1.0, 2.0))]
+    )
     found = patches(tmp_path / "constant" / "polyMesh")
     assert {name: told[:2] for name, told in found.items()} == {
         "front-2": ("wall", 24), "far": ("patch", 24),

@@ -14,6 +14,7 @@ from meshonet.formats.plot3d.read import read_grids, sniff
 from meshonet.formats.registry import format_named
 from meshonet.formats.source import Source, open_source
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 
 RING, CHANNEL = ring(13, 7), channel(9, 6)
@@ -204,7 +205,7 @@ def test_vtk_reads_our_text_when_told_its_layout(tmp_path: Path) -> None:
 def test_vtk_reads_a_layer(name: str, tmp_path: Path) -> None:
     writer = format_named(name).write_grids
     assert writer is not None
-    writer(tmp_path / "g", [RING], (0.0, 0.5))
+    writer(tmp_path / "g", [extruded(RING, (0.0, 0.5))])
     (points,) = vtk_blocks(tmp_path / "g")
     assert len(points) == 2 * RING.ni * RING.nj
     assert sorted(set(points[:, 2].tolist())) == [0.0, 0.5]

@@ -19,6 +19,7 @@ from meshonet.formats.plot3d.nmf import write_grids as write_nmf
 from meshonet.formats.plot3d.read import read_grids
 from meshonet.formats.plot3d.write import write_grids
 from meshonet.formats.source import open_source
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -38,7 +39,7 @@ def test_a_grid_comes_back_with_its_map(
     grid = make()
     options = frozenset(filter(None, words.split(",")))
     with whole_file(str(tmp_path / "g.xyz")) as part:
-        write_grids(part, [grid], heights, options=options)
+        write_grids(part, [extruded(grid, heights) if heights else grid], options=options)
     (found,) = back(tmp_path / "g.xyz")
     assert sorted_joints(found.connections) == sorted_joints(grid.connections) or make is sector
     for block, old in zip(found.blocks, grid.blocks, strict=True):
@@ -59,7 +60,7 @@ def test_a_grid_comes_back_with_its_map(
 @pytest.mark.parametrize("make", MANY)
 def test_the_map_joins_equal_nodes_in_the_order_that_it_says(make: Make, tmp_path: Path) -> None:
     grid = make()
-    write_nmf(tmp_path / "g.nmf", [grid], (0.0, 1.0))
+    write_nmf(tmp_path / "g.nmf", [extruded(grid, (0.0, 1.0))])
     lines = [line.split() for line in (tmp_path / "g.nmf").read_text().splitlines() if line[0] != "#"]
     count = int(lines[0][0])
     dims = [[int(word) for word in line[1:]] for line in lines[1 : count + 1]]

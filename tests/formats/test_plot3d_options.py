@@ -11,6 +11,7 @@ from test_plot3d import File, flat, solid
 from meshonet.formats.format import Format
 from meshonet.formats.plot3d import CHOICES
 from meshonet.formats.registry import format_named
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -20,12 +21,8 @@ RING, CHANNEL = ring(13, 7), channel(9, 6)
 def written(words: str, grids: list[Grid], folder: Path, heights: tuple[float, ...] = ()) -> bytes:
     """Return the file that ``--to plot3d:words`` writes."""
     record = format_named(f"plot3d:{words}")
-    if heights:
-        assert record.extrudes
-        record.write_grids(folder / "g", grids, heights)
-    else:
-        assert record.write_grids is not None
-        record.write_grids(folder / "g", grids)
+    assert record.write_grids is not None
+    record.write_grids(folder / "g", [extruded(grid, heights) if heights else grid for grid in grids])
     return (folder / "g").read_bytes()
 
 

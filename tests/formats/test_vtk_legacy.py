@@ -128,10 +128,6 @@ CASES = {
     "field": (vtk_text(field="FIELD a 1\nb 1 999999999 int\n"), "field 'b' claims 999999999 values"),
     "field line": (vtk_text(field="FIELD a 1\nb 1\n"), "not enough values"),
     "nan": (vtk_text(body="nan " * 18), "has x = nan"),
-    "solid": (
-        vtk_text("3 3 3", "27 double", " ".join(str(k * k % 17) for k in range(81))),
-        "three-dimensional",
-    ),
 }
 
 

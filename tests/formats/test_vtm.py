@@ -14,6 +14,7 @@ from meshonet.formats.output import whole_file
 from meshonet.formats.source import open_source
 from meshonet.formats.vtk.vtm import read_grids, write_grids
 from meshonet.formats.vtk.vts_read import read_grids as read_vts
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -31,13 +32,14 @@ def test_blocks_of_any_size_and_topology_come_back(tmp_path: Path) -> None:
         assert (back.name, back.topology, back.patches) == (grid.name, grid.topology, grid.patches)
 
 
-@pytest.mark.parametrize("heights", [(0.0,), (0.0, 0.5)])
+@pytest.mark.parametrize("heights", [(), (0.0, 0.5)])
 @pytest.mark.parametrize("make", MANY)
 def test_a_grid_of_blocks_is_one_among_others(
     make: Callable[[], Grid], heights: tuple[float, ...], tmp_path: Path
 ) -> None:
     grid = make()
-    write_grids(tmp_path / "g.vtm", [ring(), grid, grid, channel()], heights)
+    grids = [ring(), grid, grid, channel()]
+    write_grids(tmp_path / "g.vtm", [extruded(each, heights) if heights else each for each in grids])
     found = list(read_grids(open_source(str(tmp_path / "g.vtm"))))
     assert [each.topology for each in found] == ["o", "blocks", "blocks", "quad"]
     for back in found[1:3]:
@@ -52,7 +54,7 @@ def test_a_grid_of_blocks_is_one_among_others(
     reader.Update()
     nested = reader.GetOutput().GetBlock(1)
     assert nested.GetNumberOfBlocks() == len(grid.blocks)
-    assert nested.GetBlock(0).GetNumberOfPoints() == len(heights) * grid.blocks[0].nodes.size // 2
+    assert nested.GetBlock(0).GetNumberOfPoints() == max(len(heights), 1) * grid.blocks[0].nodes.size // 2
 
 
 def test_a_block_of_a_grid_is_a_grid_by_itself(tmp_path: Path) -> None:
@@ -92,7 +94,7 @@ def test_blocks_that_vtk_wrote_are_joined_where_they_touch(tmp_path: Path) -> No
 
 
 def test_vtk_opens_all_blocks(tmp_path: Path) -> None:
-    write_grids(tmp_path / "all.vtm", [ring(), channel()], (0.0, 1.0))
+    write_grids(tmp_path / "all.vtm", [extruded(each, (0.0, 1.0)) for each in (ring(), channel())])
     reader = vtk.vtkXMLMultiBlockDataReader()
     reader.SetFileName(str(tmp_path / "all.vtm"))
     reader.Update()

@@ -14,6 +14,7 @@ from meshonet.formats.source import open_source
 from meshonet.formats.vtk.vts import write, write_grids
 from meshonet.formats.vtk.vts_read import read_grids
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -88,7 +89,7 @@ def test_cell_data_of_another_shape_is_refused(tmp_path: Path) -> None:
 
 
 def test_vtk_sees_a_right_handed_layer_of_hexahedra(tmp_path: Path) -> None:
-    write_grids(tmp_path / "g.vts", [ring()], (0.0, 0.25))
+    write_grids(tmp_path / "g.vts", [extruded(ring(), (0.0, 0.25))])
     data = by_vtk(tmp_path / "g.vts")
     assert dims(data) == (13, 5, 2)
     assert data.GetBounds()[4:] == (0.0, 0.25)

@@ -15,7 +15,6 @@ from meshonet.geometry.blocks.connection import Connection, Motion, c_wake, o_se
 from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections, order
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
 
 MAKES = [butterfly, o_ring, duct]
 
@@ -111,8 +110,3 @@ def test_nodes_of_periodic_sides_become_those_of_the_first_moved() -> None:
         Grid((equal,), (), (joint,))
         np.testing.assert_allclose(move.inverse()(move(nodes)), nodes, atol=1e-14)
         assert replace(joint.reversed(), transform=None).reversed() == replace(joint, transform=None)
-
-
-def test_blocks_in_space_are_refused() -> None:
-    with pytest.raises(InputError, match="block 0 is not planar; find connections of planar blocks"):
-        find_connections([Block(np.random.default_rng(0).random((3, 3, 3)))])

@@ -110,6 +110,11 @@ class Airfoil:
             sides.append(float(np.interp(0.02 * self.chord, along, off @ np.array([-axis[1], axis[0]]))))
         return (0.5 * (sides[1] - sides[0])) ** 2 / (0.04 * self.chord)
 
+    @property
+    def stations(self) -> Stations:
+        """Where its base, its sides and its nose are along the curve."""
+        return Stations(self.curve, *self._arcs, self.chord, self.nose_radius, self._round)
+
     def normalised(self) -> Airfoil:
         """Return the same airfoil turned, scaled and moved to have its edges at (0, 0) and (1, 0)."""
         axis = (self.trailing_edge - self.leading_edge) / self.chord**2
@@ -150,8 +155,7 @@ class Airfoil:
         return self._nodes(ni, replace(sampling, spacing="tanh")), notes
 
     def _nodes(self, ni: int, sampling: Sampling) -> Floats:
-        stations = Stations(self.curve, *self._arcs, self.chord, self.nose_radius, self._round)
-        nodes = self.curve.at(wall_arcs(stations, ni, sampling))
+        nodes = self.curve.at(wall_arcs(self.stations, ni, sampling))
         nodes[-1] = nodes[0]
         crossing = find_crossing(nodes[:-1])
         if crossing is not None:

@@ -1,0 +1,184 @@
+"""Volumes around random wings: folds, angles, first cells and time; blades and pipes beside them.
+
+    python benchmarks/bench_wings.py --airfoils FOLDER [--count 60] [--page docs/benchmarks/wings.md]
+
+Wings are pairs of the sections in FOLDER (``.dat`` files), with a taper of 0.25 to 1, a twist of -8 to 4
+degrees, a sweep of -0.2 to 0.8 and a dihedral of -0.1 to 0.25 of the span, which is 1.5 to 4 chords.
+"""
+
+from __future__ import annotations
+
+import os
+
+for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
+
+import argparse
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from bench_hyperbolic import machine
+
+from meshonet.formats.registry import read_shapes
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.curves.path import SplinePath
+from meshonet.geometry.errors import MeshonetError, NoValidGridError
+from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.quality.summary import Quality
+from meshonet.geometry.sections.section import Section
+from meshonet.geometry.sections.stack import Kind, Stack
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.solvers.pipeline.stacks import make_stack
+from meshonet.solvers.stacking.request import StackRequest
+from meshonet.solvers.sweeping.butterfly import Disc, butterfly
+from meshonet.solvers.sweeping.sweep import Sweep, sweep
+
+SEED = 1
+COARSE = {"around": 81, "span": 33, "layers": 49, "first_cell": 2e-5, "far_field": 12.0}
+FINE = {"around": 129, "span": 57, "layers": 113, "first_cell": 1e-5}
+ROWS: tuple[tuple[str, Kind, dict[str, float]], ...] = (
+    ("wings, 81 around, first cell 2e-5", "wing", COARSE),
+    ("wings, first cell 1e-3 (default)", "wing", {}),
+    ("wings, 113 layers, first cell 1e-5", "wing", FINE),
+    ("blades, first cell 1e-5", "blade", {"first_cell": 1e-5}),
+)
+HEAD = """# Volumes from sections: wings, blades, pipes
+
+<!-- made by python benchmarks/bench_wings.py --airfoils FOLDER --page docs/benchmarks/wings.md -->
+
+Read this page to see how many random wings get a valid grid, and how good and how fast these are. How to make
+them is in [wings](../wings.md) and [pipes](../pipes.md).
+
+Wings are {count} random pairs of {files} airfoil files, sharp and blunt, with a taper of 0.25 to 1, a twist of
+-8 to 4 degrees, a sweep of -0.2 to 0.8 and a dihedral of -0.1 to 0.25 of the span. The far field is 15 chords
+away, or 12 in the first row.
+
+- *valid*: grids without a folded cell, by the eight corners of every cell and by the Bezier coefficients of
+  its Jacobian. The others end in an error, with the place.
+- *first cell error*: largest relative error at any wall node of any grid.
+- *least scaled Jacobian*, *largest angle* (of cell faces, in degrees): median / worst of the grids.
+- *CPU s*: processor time from sections to a judged grid, median / largest, one thread of {machine}, while
+  other programs used the machine.
+
+| grids | valid | nodes | first cell error | least scaled Jacobian | largest angle | CPU s | µs a node |
+| --- | --- | --- | --- | --- | --- | --- | --- |
+"""
+
+
+@dataclass
+class Figures:
+    """Of one grid."""
+
+    nodes: int
+    quality: Quality
+    first: float
+    seconds: float
+
+
+def stack_of(sections: Sequence[Airfoil], generator: np.random.Generator, kind: Kind) -> Stack:
+    """Return a random stack of two of the sections."""
+    root, tip = (sections[k] for k in generator.integers(len(sections), size=2))
+    span, sweep_, taper = (generator.uniform(*limits) for limits in ((1.5, 4.0), (-0.2, 0.8), (0.25, 1.0)))
+    twist, dihedral = generator.uniform(-8.0, 4.0), generator.uniform(-0.1, 0.25)
+    end = Section(tip, taper, span, x=sweep_ * span, y=dihedral * span, twist=twist)
+    return Stack((Section(root, 1.0, 0.0), end), kind=kind)
+
+
+def first_cell_error(grid: Grid, height: float, kind: Kind) -> float:
+    """Return the largest relative error of first cells; blades are exact at their sections."""
+    axis = 2 if kind == "wing" else 1
+    worst = 0.0
+    for block in grid.blocks:
+        nodes = np.moveaxis(block.nodes, axis, 0)
+        first = np.linalg.norm(nodes[1] - nodes[0], axis=-1)
+        first = first if kind == "wing" else first[:, [0, -1]]
+        worst = max(worst, float(np.abs(first / height - 1.0).max()))
+    return worst
+
+
+def timed(make: Callable[[], Grid], height: float, kind: Kind) -> Figures:
+    """Return the figures of what `make` returns."""
+    begun = time.process_time()
+    grid = make()
+    quality = measure(grid)
+    seconds = time.process_time() - begun
+    nodes = sum(int(np.prod(block.counts)) for block in grid.blocks)
+    return Figures(nodes, quality, first_cell_error(grid, height, kind), seconds)
+
+
+def row(name: str, count: int, made: Sequence[Figures]) -> str:
+    """Return the line of a table for figures of several grids."""
+    jacobian = [each.quality["scaled_jacobian"].min for each in made]
+    angle = [each.quality["max_angle"].max for each in made]
+    seconds, nodes = [each.seconds for each in made], [each.nodes for each in made]
+    valid = sum(each.quality.folded == 0 for each in made)
+    spent = 1e6 * float(np.median([s / n for s, n in zip(seconds, nodes, strict=True)]))
+    cells = (
+        name, f"{valid} of {count}", f"{np.median(nodes):.0f}", f"{max(each.first for each in made):.0e}",
+        f"{np.median(jacobian):.2f} / {min(jacobian):.2f}", f"{np.median(angle):.0f} / {max(angle):.0f}",
+        f"{np.median(seconds):.2f} / {max(seconds):.2f}", f"{spent:.2f}",
+    )  # fmt: skip
+    return "| " + " | ".join(cells) + " |"
+
+
+def pipes() -> str:
+    """Return the table of pipes."""
+    t = np.linspace(0.0, 1.0, 65)
+    turn = 1.5 * np.pi * t
+    knot = np.stack([np.sin(2 * np.pi * t) + 2 * np.sin(4 * np.pi * t),
+                     np.cos(2 * np.pi * t) - 2 * np.cos(4 * np.pi * t), -np.sin(6 * np.pi * t)], axis=1)  # fmt: skip
+    knot[-1] = knot[0]
+    paths = {
+        "helix": (np.stack([2 * np.cos(6 * t), 2 * np.sin(6 * t), 3 * t], axis=1), 0.6),
+        "bend, radius 1.2 of the pipe's": (
+            np.stack([1.2 * np.cos(turn), 1.2 * np.sin(turn), 0 * t], axis=1),
+            1.0,
+        ),
+        "knot, closed": (knot, 0.4),
+    }
+    lines = ["", "## Pipes", "", "| path | folded | nodes | least scaled Jacobian | largest angle | CPU ms |",
+             "| --- | --- | --- | --- | --- | --- |"]  # fmt: skip
+    for name, (points, radius) in paths.items():
+        begun = time.process_time()
+        grid = sweep(butterfly(Disc(radius, 1000, 0.01 * radius)), SplinePath(points), Sweep(planes=129))
+        spent = 1e3 * (time.process_time() - begun)
+        quality = measure(grid)
+        nodes = sum(int(np.prod(block.counts)) for block in grid.blocks)
+        jacobian, angle = quality["scaled_jacobian"].min, quality["max_angle"].max
+        lines.append(f"| {name} | {quality.folded} | {nodes} | {jacobian:.2f} | {angle:.0f} | {spent:.0f} |")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--airfoils", required=True, help="folder of .dat files")
+    parser.add_argument("--count", type=int, default=60)
+    parser.add_argument("--page", help="file to write; standard output without it")
+    options = parser.parse_args()
+    shapes = [next(read_shapes(str(path))) for path in sorted(Path(options.airfoils).glob("*.dat"))]
+    sections = [shape for shape in shapes if isinstance(shape, Airfoil)]
+    page = HEAD.format(count=options.count, files=len(sections), machine=machine())
+    for name, kind, settings in ROWS:
+        generator, made = np.random.default_rng(SEED), []
+        for _ in range(options.count):
+            stack = stack_of(sections, generator, kind)
+            request = StackRequest(threads=1, **settings)  # type: ignore[arg-type]
+            try:
+                made.append(timed(lambda: make_stack(stack, request).grid, request.height(), kind))  # noqa: B023
+            except (NoValidGridError, MeshonetError) as error:
+                print(f"{name}: {stack.sections[0].shape.name}, {stack.sections[1].shape.name}: {error}")
+        page += row(name, options.count, made) + "\n"
+    page += pipes() + "\n"
+    if options.page:
+        Path(options.page).write_text(page)
+    else:
+        print(page)
+
+
+if __name__ == "__main__":
+    main()

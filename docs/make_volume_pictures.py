@@ -1,0 +1,135 @@
+"""Draw the pictures of docs/wings.md and docs/pipes.md: python docs/make_volume_pictures.py."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from PIL import Image, ImageChops
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+import meshonet
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.polygon.corners import Indices
+
+FOLDER = Path(__file__).parent / "img"
+COLOURS, GAP = 64, 40
+PAGES = Path(__file__).parent
+LIGHT = np.array([0.35, -0.5, 0.8]) / np.linalg.norm([0.35, -0.5, 0.8])
+
+
+def toml_of(page: str, number: int = 0) -> str:
+    """Return the text of a block of TOML of a page."""
+    return (PAGES / page).read_text().split("```toml\n")[number + 1].split("```")[0]
+
+
+def quads(patch: Floats) -> Floats:
+    """Return the cells (n, 4, 3) of a patch, y upwards."""
+    corners = patch[:-1, :-1], patch[1:, :-1], patch[1:, 1:], patch[:-1, 1:]
+    return np.stack(corners, axis=2).reshape(-1, 4, 3)[..., [0, 2, 1]]
+
+
+def draw(ax: object, patches: list[tuple[Floats, str]], width: float = 0.25) -> None:
+    """Draw the cells of patches, shaded, with their edges."""
+    cells = np.concatenate([quads(patch) for patch, _ in patches])
+    colours = [np.tile(mpl.colors.to_rgb(colour), (len(quads(patch)), 1)) for patch, colour in patches]
+    normal = np.cross(cells[:, 2] - cells[:, 0], cells[:, 3] - cells[:, 1])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    shade = np.round(0.62 + 0.38 * np.abs(normal @ LIGHT), 1)
+    faces = shade[:, None] * np.concatenate(colours)
+    ax.add_collection3d(Poly3DCollection(cells, facecolors=faces, edgecolors="0.2", linewidths=width))  # type: ignore[attr-defined]
+
+
+def show(ax: object, points: Floats, angles: tuple[float, float], zoom: float = 1.3) -> None:
+    """Set limits, equal scales and the direction of view."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    ax.set_xlim(low[0], high[0])  # type: ignore[attr-defined]
+    ax.set_ylim(low[2], high[2])  # type: ignore[attr-defined]
+    ax.set_zlim(low[1], high[1])  # type: ignore[attr-defined]
+    ax.set_box_aspect((high - low)[[0, 2, 1]], zoom=zoom)  # type: ignore[attr-defined]
+    ax.view_init(*angles)  # type: ignore[attr-defined]
+    ax.set_axis_off()  # type: ignore[attr-defined]
+
+
+def near(patch: Floats, middle: Indices, reach: float) -> Floats:
+    """Return the rows of levels of a patch that stay within a reach of a point."""
+    away = np.linalg.norm(patch - middle, axis=-1).max(axis=0)
+    return patch[:, : max(2, int(np.searchsorted(away, reach)))]
+
+
+def wing() -> None:
+    """Draw the wing of docs/wings.md, its tip, and levels of the volume at its root."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "wing.toml"
+        path.write_text(toml_of("wings.md"))
+        volume: Grid = meshonet.stack(path, around=97, span=41)
+    colours = ("#9db8d9", "#f2c572", "#e39a8f")
+    surface = [(block.nodes[:, :, 0], colour) for block, colour in zip(volume.blocks, colours, strict=True)]
+    root = volume.blocks[0].nodes[:, 0]
+    plane = near(root, np.array([0.5, 0.0, 0.0]), 0.9)
+    fig = plt.figure(figsize=(8.0, 8.0))
+    ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
+    draw(ax, [(plane, "#dddddd"), *surface])
+    show(
+        ax,
+        np.concatenate([patch.reshape(-1, 3) for patch, _ in [(plane, ""), *surface]]),
+        (38.0, -150.0),
+        1.0,
+    )
+    left = image(fig)
+    tip = surface[0][0][:, -9:]
+    fig = plt.figure(figsize=(9.0, 9.0))
+    ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
+    draw(ax, [(tip, colours[0]), *surface[1:]], 0.4)
+    show(ax, np.concatenate([tip.reshape(-1, 3), surface[1][0].reshape(-1, 3)]), (14.0, 35.0), 1.0)
+    save([left, image(fig)], "wing.png")
+
+
+def pipe() -> None:
+    """Draw the pipe bend of docs/pipes.md."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "bend.toml"
+        path.write_text(toml_of("pipes.md"))
+        volume = meshonet.sweep("circle:0.5", path, cells=600, first_cell=0.01)
+    wall = [(block.nodes[:, 0], "#9db8d9") for block in volume.blocks[1:]]
+    ends = [(block.nodes[:, :, k], colour) for block, colour in zip(volume.blocks, ("#e39a8f", *["#f2c572"] * 4), strict=True)
+            for k in (0, -1)]  # fmt: skip
+    fig = plt.figure(figsize=(7.5, 7.5))
+    ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
+    shown = [(patch[..., [0, 2, 1]], colour) for patch, colour in wall + ends]  # z upwards
+    draw(ax, shown)
+    show(ax, np.concatenate([patch.reshape(-1, 3) for patch, _ in shown]), (35.0, -150.0), 1.0)
+    save([image(fig)], "pipe.png")
+
+
+def image(fig: plt.Figure) -> Image.Image:
+    """Return a figure without its white margins."""
+    with tempfile.NamedTemporaryFile(suffix=".png") as file:
+        fig.savefig(file.name, dpi=90)
+        plt.close(fig)
+        drawn = Image.open(file.name).convert("RGB")
+    box = ImageChops.difference(drawn, Image.new("RGB", drawn.size, "white")).getbbox()
+    return drawn.crop(box)
+
+
+def save(images: list[Image.Image], name: str) -> None:
+    """Write images side by side, in few colours."""
+    width = sum(each.width for each in images) + GAP * (len(images) - 1)
+    whole = Image.new("RGB", (width, max(each.height for each in images)), "white")
+    x = 0
+    for each in images:
+        whole.paste(each, (x, (whole.height - each.height) // 2))
+        x += each.width + GAP
+    whole.quantize(COLOURS).save(FOLDER / name, optimize=True)
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(exist_ok=True)
+    wing()
+    pipe()

@@ -1,0 +1,75 @@
+r"""Sides of volumes that are no more than a line or a point, as around an axis or at a pole.
+
+::
+
+      +---+          the nodes of a side that lie on each other are one; the cells at it have six nodes
+     /|    \         or five then, and faces three, and faces of no area are none
+    + |     +
+     \|    /
+      +---+
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Side
+from meshonet.geometry.blocks.block import PLACES, face_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+
+Indices = NDArray[np.int64]
+
+
+def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, NDArray[np.bool_]]]:
+    """Yield block, side, direction of the side, and which edges along it, (n-1, m) or (n, m-1), are points."""
+    for number, block in enumerate(grid.blocks):
+        for side in tuple(PLACES)[: 2 * len(block.counts)] if len(block.counts) == 3 else ():
+            face = block.face(side)
+            for direction, (first, second) in enumerate(((face[1:], face[:-1]), (face[:, 1:], face[:, :-1]))):
+                same = (first == second).all(axis=-1)
+                if same.any():
+                    yield number, side, direction, same
+
+
+def with_collapsed(grid: Grid, numbers: list[Indices]) -> list[Indices]:
+    """Return the numbers of the nodes of all blocks, those that a side has in one place as one.
+
+    They have no gaps, as those that come in, which are returned themselves where there is no such side. Nodes
+    are in one place where they are equal and neighbours.
+    """
+    edges = list(collapsed_edges(grid))
+    if not edges:
+        return numbers
+    pairs = []
+    for block, side, direction, same in edges:
+        face = face_of(numbers[block], side)
+        first, second = (face[1:], face[:-1]) if direction == 0 else (face[:, 1:], face[:, :-1])
+        pairs.append(np.stack([first[same], second[same]], axis=-1))
+    joined = np.concatenate(pairs)
+    label = np.arange(1 + max(int(number.max()) for number in numbers))
+    while True:
+        least = np.minimum(label[joined[:, 0]], label[joined[:, 1]])
+        before = label.copy()
+        np.minimum.at(label, joined.ravel(), np.repeat(least, 2))
+        label = label[label]
+        if np.array_equal(label, before):
+            break
+    rank = np.cumsum(label == np.arange(len(label))) - 1
+    return [rank[label[number]] for number in numbers]
+
+
+def refuse_collapsed(grid: Grid, what: str) -> None:
+    """Raise InputError for a grid of volumes with a side in which nodes are in one place; `what` holds it not."""
+    for block, side, direction, same in collapsed_edges(grid):
+        place = [int(index) for index in np.argwhere(same)[0]]
+        axes = [name for axis, name in enumerate("ijk") if axis != PLACES[side][0]]
+        at = ", ".join(f"{name}={index}" for name, index in zip(axes, place, strict=True))
+        x, y, z = grid.blocks[block].face(side)[tuple(place)]
+        problem = f"{what} has hexahedra, and an edge along {axes[direction]} has no length"
+        raise InputError(
+            problem,
+            "write cgns, plot3d, vtm or openfoam",
+            place=f"block {block}, {side}, {at}, x={x:.6g}, y={y:.6g}, z={z:.6g}",
+        )

@@ -1,0 +1,22 @@
+"""Cross-sections of what is swept: closed curves, domains, layouts, and planar grids, kept as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from meshonet.formats.registry import format_of, is_designation, read_grids, read_shapes
+from meshonet.formats.source import open_source
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.shapes.shape import Shape
+
+
+def read_sections(text: str, fmt: str | None = None) -> Iterator[Grid | Shape]:
+    """Yield the grids of a file, or the shapes of one without grids, of a layout and of a designation.
+
+    Raises InputError: a file that cannot be read.
+    """
+    if not is_designation(text):
+        record = format_of(open_source(text), fmt)
+        if record.read_grids is not None and record.name != "layout":
+            return iter(read_grids(text, fmt))
+    return iter(read_shapes(text, fmt))

@@ -1,0 +1,113 @@
+"""Stacks of sections in TOML: what ``meshonet stack`` reads.
+
+::
+
+    kind = "wing"              # wing, blade or duct
+    tip = "round"              # of a wing: round, flat or open
+    between = "linear"         # or smooth: cubics through three and more sections
+
+    [[sections]]               # the root
+    airfoil = "naca:2412"      # or a file, looked for beside this one
+    chord = 1.0                # in any unit, which is that of the grid
+    z = 0.0                    # along the span
+
+    [[sections]]
+    airfoil = "tip.dat"
+    chord = 0.5
+    twist = -2.0               # degrees, nose up
+    about = 0.25               # chords behind the leading edge; [x, y] also sets a height
+    z = 3.0
+    sweep = 20                 # degrees of the leading edge from the section before; or x = 1.09
+    dihedral = 5               # degrees, likewise; or y = 0.26
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from meshonet.formats.registry import is_designation, read_shapes
+from meshonet.formats.source import Source, open_source, printable
+from meshonet.formats.toml_table import Table, toml_table
+from meshonet.geometry.errors import InputError, in_source
+from meshonet.geometry.sections.section import QUARTER, Section
+from meshonet.geometry.sections.stack import BETWEEN, KINDS, TIPS, Stack
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.outline import Outline
+
+_STEEPEST = 85.0
+
+
+def stack_of(text: str) -> Stack:
+    """Return the stack of a file, or of standard input for ``-``.
+
+    Raises InputError: a file that cannot be read or is no TOML; a key that is not known, or a value that does
+    not fit, with its place; a section's file that holds no airfoil or closed curve.
+    """
+    return read_stack(open_source(text))
+
+
+def read_stack(source: Source) -> Stack:
+    """Return the stack of a source (see `stack_of`)."""
+    with in_source(source.name):
+        data = toml_table(source)
+        data.only("kind", "tip", "between", "name", "about", "sections")
+        about = data.pair("about", QUARTER)
+        sections: list[Section] = []
+        for row in data.rows("sections", least=2):
+            sections.append(_section(row, about, sections, source.path.parent if source.path else Path()))
+        return Stack(
+            tuple(sections),
+            kind=data.word("kind", KINDS, "wing"),  # type: ignore[arg-type]
+            tip=data.word("tip", TIPS, "round"),  # type: ignore[arg-type]
+            between=data.word("between", BETWEEN, "linear"),  # type: ignore[arg-type]
+            name=data.text("name", source.stem or "stack"),
+        )
+
+
+def _section(row: Table, about: tuple[float, float], before: list[Section], folder: Path) -> Section:
+    row.only("airfoil", "outline", "chord", "z", "x", "y", "twist", "about", "sweep", "dihedral")
+    z = row.number("z")
+    if before and not z > before[-1].z:
+        raise row.error("z", f"{z:g} is not behind {before[-1].z:g}", "give sections in order of z")
+    return Section(
+        _shape(row, folder),
+        row.positive("chord"),
+        z,
+        _along(row, "x", "sweep", z, before),
+        _along(row, "y", "dihedral", z, before),
+        row.number("twist", 0.0),
+        row.pair("about", about),
+    )
+
+
+def _along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
+    """Return x or y of a section: its own, or by the angle of the line from the section before."""
+    if angle not in row.data:
+        return row.number(direct, getattr(before[-1], direct) if before else 0.0)
+    if direct in row.data:
+        raise row.error(angle, f"stands beside {direct}", "give one of them")
+    if not before:
+        raise row.error(angle, "there is no section before", f"give {direct}")
+    degrees = row.number(angle)
+    if abs(degrees) > _STEEPEST:
+        raise row.error(angle, f"{degrees:g} degrees", f"use -{_STEEPEST:g} to {_STEEPEST:g}")
+    return float(getattr(before[-1], direct) + (z - before[-1].z) * math.tan(math.radians(degrees)))
+
+
+def _shape(row: Table, folder: Path) -> Airfoil | Outline:
+    """Return the shape of the file or designation that a section names."""
+    keys = [key for key in ("airfoil", "outline") if key in row.data]
+    remedy = "name one file, or a designation such as naca:2412"
+    if len(keys) != 1:
+        problem = "stands beside outline" if keys else "is missing"
+        raise row.error("airfoil", problem, remedy)
+    text = row.text(keys[0])
+    try:
+        shapes = list(read_shapes(text if is_designation(text) else str(folder / text)))
+    except InputError as error:
+        where = ": ".join(filter(None, (error.source, error.place, error.problem)))
+        raise row.error(keys[0], where, error.remedy) from None
+    if len(shapes) != 1 or not isinstance(shapes[0], Airfoil | Outline):
+        raise row.error(keys[0], f"{printable(text)} is not one airfoil or closed curve", remedy)
+    return shapes[0]

@@ -1,0 +1,118 @@
+"""Tables of TOML, their values looked at before they are used."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass
+from typing import Any
+
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.errors import InputError
+
+_SHOWN = 40
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table and where it stands, ``sections[1]``; InputError names the key of a value that does not fit."""
+
+    data: dict[str, Any]
+    place: str = ""
+
+    def error(self, key: str, problem: str, remedy: str) -> InputError:
+        """Return the error for a key of this table."""
+        return InputError(problem, remedy, place=f"{self.place}.{key}" if self.place else key)
+
+    def only(self, *keys: str) -> None:
+        """Raise InputError for a key that is none of these."""
+        for key in self.data:
+            if key not in keys:
+                raise self.error(printable(key), "is not known", "use " + ", ".join(keys))
+
+    def rows(self, key: str, least: int = 1) -> list[Table]:
+        """Return an array of tables with `least` or more."""
+        rows = self.data.get(key)
+        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows) or len(rows) < least:
+            many = "one or more" if least == 1 else f"{least} or more"
+            raise self.error(key, f"are not {many} tables", f"write [[{key}]] above each")
+        return [Table(row, f"{key}[{k}]") for k, row in enumerate(rows)]
+
+    def number(self, key: str, default: float | None = None) -> float:
+        """Return a finite number, `default` where there is none."""
+        if key not in self.data and default is not None:
+            return default
+        return self._number(key, self.data.get(key))
+
+    def positive(self, key: str) -> float:
+        """Return a number above 0."""
+        value = self.number(key)
+        if not value > 0:
+            raise self.error(key, f"{value:g} is not positive", "use more than 0")
+        return value
+
+    def text(self, key: str, default: str | None = None) -> str:
+        """Return a text that is not empty."""
+        value = self.data.get(key, default)
+        if not isinstance(value, str) or not value:
+            problem = "is missing" if value is None else f"{_shown(value)} is no text"
+            raise self.error(key, problem, "write it in quotes")
+        return value
+
+    def word(self, key: str, known: tuple[str, ...], default: str) -> str:
+        """Return one of the words that are `known`."""
+        value = self.text(key, default)
+        if value not in known:
+            raise self.error(key, f"{_shown(value)} is not known", "use " + ", ".join(known))
+        return value
+
+    def vector(
+        self, key: str, default: tuple[float, float, float] | None = None
+    ) -> tuple[float, float, float]:
+        """Return three finite numbers, `default` where there are none."""
+        if key not in self.data and default is not None:
+            return default
+        x, y, z = self._numbers(key, 3)
+        return x, y, z
+
+    def pair(self, key: str, default: tuple[float, float]) -> tuple[float, float]:
+        """Return two finite numbers; a single one stands for itself and 0."""
+        if key not in self.data:
+            return default
+        if not isinstance(self.data[key], list):
+            return self.number(key), 0.0
+        x, y = self._numbers(key, 2)
+        return x, y
+
+    def _numbers(self, key: str, count: int) -> list[float]:
+        values = self.data.get(key)
+        if not isinstance(values, list) or len(values) != count:
+            problem = "is missing" if values is None else f"{_shown(values)} is not {count} numbers"
+            raise self.error(key, problem, f"give {count} in brackets")
+        return [self._number(key, value) for value in values]
+
+    def _number(self, key: str, value: Any) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            problem = "is missing" if value is None else f"{_shown(value)} is no number"
+            raise self.error(key, problem, "give a number")
+        if not (abs(value) < 1e12 and math.isfinite(value)):
+            raise self.error(key, f"{_shown(value)} is out of range", "use a number below 1e12")
+        return float(value)
+
+
+def toml_table(source: Source) -> Table:
+    """Return the top table of a source.
+
+    Raises InputError: it is no TOML; says where.
+    """
+    try:
+        return Table(tomllib.loads(source.read_bytes().decode("utf-8")))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise InputError(f"is no TOML: {printable(str(error))}", "correct it, or give another file") from None
+
+
+def _shown(value: Any) -> str:
+    try:
+        return printable(repr(value))[:_SHOWN]
+    except ValueError:  # an integer of more digits than Python prints
+        return "a number"

@@ -1,0 +1,242 @@
+"""Where blocks in space touch each other or themselves, found by the places of their nodes.
+
+::
+
+    +-------+-------+      Cells of sides, quadrilaterals of volumes and edges of surface patches, are the
+    same |   0   |   1   |      where their corners are, in one of the eight (or two) ways in which one
+    lattice lies on +---+---+-------+      another. Those that follow each other in both lattices make a
+    connection, a part of a
+        | 2 |              side as well as a whole one.
+        +---+
+
+Volumes that touch lie on different sides of their common face, so copies of a block are not joined to it. A
+side that is a line, or an edge that is a point, joins nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import permutations, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import PLACES, Block, Range, form_of
+from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.outer_patches import JOINED, rectangles
+from meshonet.geometry.blocks.rounding import rounding
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices
+
+_DIRECTION = np.array([0.5403023, 0.6710117, 0.5076571])
+"""Cells are sorted along this direction, along which few grids have many of equal place."""
+_MOST = 0.25
+"""Nodes farther apart than this part of an edge are different, however coarsely they were rounded."""
+_FLAT = 1e-12
+"""Area of a cell, over the square of its longest edge, up to which it is a line."""
+
+
+def meeting_sides(
+    blocks: Sequence[Block], tolerance: float, without: Iterable[tuple[int, Side, Range]]
+) -> list[Connection]:
+    """Return the connections of volumes with volumes and of surface patches, as `find_connections` does.
+
+    Raises InputError: a block in the plane.
+    """
+    known = list(without)
+    joined: list[Connection] = []
+    for form in ("volume", "surface"):
+        numbers = [number for number, block in enumerate(blocks) if form_of(block.nodes) == form]
+        own = [(numbers.index(part[0]), *part[1:]) for part in known if part[0] in numbers]
+        for each in _meeting([blocks[number] for number in numbers], tolerance, own) if numbers else ():
+            joined.append(replace(each, block=numbers[each.block], donor=numbers[each.donor]))
+    for number, block in enumerate(blocks):
+        if form_of(block.nodes) == "plane":
+            raise InputError(
+                f"block {number} has no z, others have", "give all of them two coordinates, or three"
+            )
+    return joined
+
+
+def _meeting(
+    blocks: Sequence[Block], tolerance: float, without: Sequence[tuple[int, Side, Range]]
+) -> list[Connection]:
+    cells = _cells(blocks, without)
+    if not len(cells.block):  # all is known
+        return []
+    own, donor = _near(cells, tolerance)
+    groups = list(_groups(cells, own, donor, tolerance))
+    free = np.ones(len(cells.block), dtype=bool)
+    joined = []
+    for group in sorted(groups, key=lambda group: group.rank(cells)):
+        open_ = free[group.own] & free[group.donor]
+        for part in _rectangles(cells, group, open_):
+            free[group.own[part]] = free[group.donor[part]] = False
+            joined.append(_connection(cells, group, part))
+    return joined
+
+
+@dataclass(frozen=True)
+class _Cells:
+    """Cells (n) of the sides of all blocks."""
+
+    corners: Floats
+    """(n, 2, 3) of edges, (n, 2, 2, 3) of quadrilaterals."""
+    block: Indices
+    side: Indices
+    """Number of the side in `PLACES`."""
+    place: Indices
+    """(n, 1) or (n, 2) cell along each direction of the side."""
+    inwards: Floats | None
+    """(n, 3) from its centre to that of the face across, of volumes."""
+    slack: Floats
+    """How far a node may be from where it was meant."""
+
+    @property
+    def flat(self) -> Floats:
+        """(n, 2 or 4, 3) corners."""
+        return self.corners.reshape(len(self.block), -1, 3)
+
+    def reach(self, tolerance: float) -> Floats:
+        """Return how far nodes that are the same may be apart, (n,)."""
+        lengths = _edges(self.corners)
+        length = np.where(lengths > 0, lengths, np.inf).min(axis=1)
+        return np.minimum(np.maximum(tolerance * length, self.slack), _MOST * length)
+
+
+def _cells(blocks: Sequence[Block], known: Sequence[tuple[int, Side, Range]]) -> _Cells:
+    corners, numbers, sides, places, inwards = [], [], [], [], []
+    for number, block in enumerate(blocks):
+        for turn, side in enumerate(tuple(PLACES)[: 2 * len(block.counts)]):
+            own = _corners(block.face(side))
+            keep = _extended(own)
+            for span in (part[2] for part in known if part[:2] == (number, side)):
+                keep[tuple(slice(*ends) for ends in span)] = False
+            at = np.argwhere(keep)
+            axis, end = PLACES[side]
+            if len(block.counts) == len(PLACES) // 2:
+                layers = np.moveaxis(block.nodes, axis, 0)
+                beyond = _corners(layers[1 if end == 0 else -2])
+                inwards.append((beyond - own).mean(axis=(-2, -3))[keep])
+            corners.append(own[keep])
+            numbers.append(np.full(len(at), number))
+            sides.append(np.full(len(at), turn))
+            places.append(at)
+    every = np.concatenate(corners)
+    slack = 2.0 * rounding(every.reshape(-1))(
+        np.abs(every).max(axis=tuple(range(1, every.ndim)), initial=0.0)
+    )
+    place, away = np.concatenate(places), np.concatenate(inwards) if inwards else None
+    return _Cells(every, np.concatenate(numbers), np.concatenate(sides), place, away, slack)
+
+
+def _corners(face: Floats) -> Floats:
+    """Return the corners (n-1, 2, 3) or (n-1, m-1, 2, 2, 3) of the cells of a side."""
+    if face.ndim == 2:
+        return np.stack([face[:-1], face[1:]], axis=1)
+    rows = [np.stack([part[:, :-1], part[:, 1:]], axis=2) for part in (face[:-1], face[1:])]
+    return np.stack(rows, axis=2)
+
+
+def _edges(corners: Floats) -> Floats:
+    """Return the lengths (n, 1 or 4) of the edges of cells."""
+    ring = corners.reshape(len(corners), -1, 3)
+    ring = ring[:, [0, 2, 3, 1]] if ring.shape[1] == 4 else ring
+    steps = (np.roll(ring, -1, axis=1) - ring)[:, : 1 if ring.shape[1] == 2 else 4]
+    return np.asarray(np.sqrt((steps**2).sum(axis=-1)))
+
+
+def _extended(corners: Floats) -> NDArray[np.bool_]:
+    """Say for each cell of a side whether it is more than a point, or as a quadrilateral more than a line."""
+    shape = corners.shape[: (corners.ndim - 1) // 2]
+    flat = corners.reshape(-1, *corners.shape[len(shape) :])
+    longest = _edges(flat).max(axis=1)
+    if len(shape) == 1:
+        return np.asarray(longest > 0)
+    first, second = flat[:, 1, 1] - flat[:, 0, 0], flat[:, 1, 0] - flat[:, 0, 1]
+    area = np.sqrt((np.cross(first, second) ** 2).sum(axis=-1))
+    return np.asarray(area > _FLAT * longest**2).reshape(shape)
+
+
+def _near(cells: _Cells, tolerance: float) -> tuple[Indices, Indices]:
+    """Return pairs of cells, the first of the lower number, whose centres are in one place."""
+    reach, centre = cells.reach(tolerance), cells.flat.mean(axis=1)
+    place = centre @ _DIRECTION
+    row = np.argsort(place, kind="stable")
+    ordered = place[row]
+    stop = np.searchsorted(ordered, ordered + reach[row], side="right")
+    count = np.maximum(stop - np.arange(len(row)) - 1, 0)
+    first = np.repeat(np.arange(len(row)), count)
+    second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
+    a, b = np.minimum(row[first], row[second]), np.maximum(row[first], row[second])
+    same = np.sqrt(((centre[a] - centre[b]) ** 2).sum(axis=-1)) <= np.minimum(reach[a], reach[b])
+    if cells.inwards is not None:
+        corners = cells.flat[a]
+        normal = np.cross(corners[:, 3] - corners[:, 0], corners[:, 2] - corners[:, 1])
+        ways = [(normal * cells.inwards[number]).sum(axis=-1) for number in (a, b)]
+        same &= ways[0] * ways[1] <= 0
+    return a[same], b[same]
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Pairs of cells of one side and one donor side, all of one orientation and offset."""
+
+    own: Indices
+    donor: Indices
+    orientation: tuple[int, ...]
+
+    def rank(self, cells: _Cells) -> tuple[bool, int, int, int]:
+        """Return what decides between groups that claim the same cells: a block is joined to itself first."""
+        a, b = self.own[0], self.donor[0]
+        return bool(cells.block[a] != cells.block[b]), -len(self.own), int(a), int(b)
+
+
+def _groups(cells: _Cells, own: Indices, donor: Indices, tolerance: float) -> Iterator[_Group]:
+    """Yield the pairs whose corners are the same, by sides, orientation and offset."""
+    reach = cells.reach(tolerance)
+    near = np.minimum(reach[own], reach[donor])
+    directions = cells.place.shape[1]
+    for axes in permutations(range(directions)):
+        for ways in product((1, -1), repeat=directions):
+            turned = cells.corners[donor].transpose(0, *(axis + 1 for axis in axes), directions + 1)
+            turned = turned[(slice(None), *(slice(None, None, way) for way in ways))]
+            away = np.sqrt(((turned - cells.corners[own]) ** 2).sum(axis=-1))
+            pairs = np.flatnonzero(away.max(axis=tuple(range(1, away.ndim))) <= near)
+            a, b = own[pairs], donor[pairs]
+            offset = cells.place[b][:, list(axes)] - cells.place[a] * ways
+            sides = [cells.block[a], cells.side[a], cells.block[b], cells.side[b]]
+            key = np.stack([*sides, *offset.T], axis=1)
+            order = np.lexsort(key.T)
+            starts = np.flatnonzero((np.diff(key[order], axis=0) != 0).any(axis=1)) + 1
+            orientation = tuple(way * (axis + 1) for axis, way in zip(axes, ways, strict=True))
+            for part in np.split(order, starts) if len(order) else []:
+                inside = np.sort(part)
+                yield _Group(a[inside], b[inside], orientation)
+
+
+def _rectangles(cells: _Cells, group: _Group, open_: NDArray[np.bool_]) -> Iterator[Indices]:
+    """Yield the pairs of a group that make a rectangle each, of those that are `open_`."""
+    if not open_.any():
+        return
+    place = cells.place[group.own]
+    low = place.min(axis=0)
+    number = np.full(np.ptp(place, axis=0) + 1, -1)
+    number[tuple((place[open_] - low).T)] = np.flatnonzero(open_)
+    for _, spans in rectangles(np.where(number < 0, JOINED, 0)):
+        yield number[tuple(slice(*span) for span in spans)].ravel()
+
+
+def _connection(cells: _Cells, group: _Group, part: Indices) -> Connection:
+    """Return the connection of pairs of cells, the side that comes first in `PLACES` of a block as own."""
+    ends = []
+    for numbers in (group.own[part], group.donor[part]):
+        place = cells.place[numbers]
+        low, high = place.min(axis=0).tolist(), (place.max(axis=0) + 1).tolist()
+        side = list(PLACES)[int(cells.side[numbers[0]])]
+        ends.append((int(cells.block[numbers[0]]), side, tuple(zip(low, high, strict=True))))
+    joined = Connection(*ends[0], *ends[1], group.orientation)
+    first, second = ((number, list(PLACES).index(side), span) for number, side, span in ends)
+    return joined if first <= second else joined.reversed()

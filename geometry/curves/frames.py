@@ -1,0 +1,71 @@
+"""Frames along a curve in space that do not turn about it.
+
+Double reflection: W. Wang, B. Juettler, D. Zheng, Y. Liu, Computation of rotation minimizing frames, ACM
+Transactions on Graphics 27 (2008) 2; fourth order in the step.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.path import Path
+from meshonet.geometry.errors import InputError
+
+_FINER = 4
+"""Steps between two places that frames are wanted at."""
+
+
+def frames_along(path: Path, s: Floats, up: Floats | None = None) -> tuple[Floats, Floats]:
+    """Return the x and y axes (n, 3) of sections across a path, at increasing arc lengths `s` (n,) from 0.
+
+    They and the tangent are right-handed. At the start the y axis is as near to `up` as it can be: to z
+    unless given, to y where the path starts along z. Along a closed path the frames turn evenly, by what
+    brings the last one back to the first.
+
+    Raises InputError: `up` along the path.
+    """
+    fine = np.concatenate([np.linspace(a, b, _FINER, endpoint=False) for a, b in pairwise(s)])
+    fine = np.append(fine, s[-1])
+    points, tangents, _ = path.at(fine)
+    first = tangents[0]
+    if up is None:
+        up = np.array([0.0, 1.0, 0.0]) if abs(first[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
+    y = up - (up @ first) * first
+    size = float(np.linalg.norm(y))
+    if not size > 1e-6 * float(np.linalg.norm(up)):
+        raise InputError("points along the path where it starts", "give another direction", parameter="up")
+    y_axes = _reflected(points, tangents, y / size)
+    if path.closed:
+        x = np.cross(y_axes[-1], tangents[-1])
+        angle = np.arctan2(y_axes[0] @ x, y_axes[0] @ y_axes[-1])
+        y_axes = turned(y_axes, tangents, -angle * fine / path.length)
+    y_axes, tangents = y_axes[::_FINER], tangents[::_FINER]
+    return np.cross(y_axes, tangents), y_axes
+
+
+def turned(y_axes: Floats, tangents: Floats, angle: Floats) -> Floats:
+    """Return y axes (n, 3) turned about tangents (n, 3) by angles (n,) in radians, from x to y."""
+    x_axes = np.cross(y_axes, tangents)
+    return np.cos(angle)[:, None] * y_axes - np.sin(angle)[:, None] * x_axes
+
+
+def _reflected(points: Floats, tangents: Floats, y: Floats) -> Floats:
+    """Return the axis `y` (3,) carried along by reflections in the two planes between neighbouring places."""
+    axes = np.empty_like(points)
+    axes[0] = y
+    step = np.diff(points, axis=0)
+    size = (step * step).sum(axis=1)
+    mirrored = tangents[:-1] - (2.0 * (step * tangents[:-1]).sum(axis=1) / size)[:, None] * step
+    second = tangents[1:] - mirrored
+    weight = (second * second).sum(axis=1)
+    for k in range(len(step)):
+        y = y - (2.0 * (step[k] @ y) / size[k]) * step[k]
+        if weight[k] > 0:
+            y = y - (2.0 * (second[k] @ y) / weight[k]) * second[k]
+        y = y - (y @ tangents[k + 1]) * tangents[k + 1]  # rounding
+        y = y / np.linalg.norm(y)
+        axes[k + 1] = y
+    return axes

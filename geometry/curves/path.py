@@ -1,0 +1,210 @@
+"""Curves in space along which a section is swept: smooth ones through points, or lines and arcs.
+
+A path is its arc length, and at any place its point, its unit tangent and its curvature, the vector towards
+the centre of the circle that fits it there, 1/radius long.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.spline import open_slopes, periodic_slopes
+from meshonet.geometry.errors import InputError
+
+
+class Places(NamedTuple):
+    """Points, unit tangents and curvature vectors, (n, 3) each."""
+
+    points: Floats
+    tangents: Floats
+    curvature: Floats
+
+
+class Path(Protocol):
+    """A curve in space, by its arc length."""
+
+    length: float
+    closed: bool
+
+    def at(self, s: Floats) -> Places:
+        """Return the places at arc lengths `s` (n,), 0 to the length."""
+        ...
+
+
+_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+_PARTS = 16  # of an interval in the table of arc length
+
+
+class SplinePath:
+    """The cubic spline through `points` (n, 3), its curvature continuous.
+
+    A closed one repeats its first point. It is parametrised by the lengths of its chords; at the ends of an
+    open one the last intervals are parabolas. Raises InputError: fewer than two points (closed: four with the
+    repeated one), a point twice in a row, values that are not finite.
+
+    >>> SplinePath(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]])).length
+    3.0
+    """
+
+    length: float
+    closed: bool
+
+    def __init__(self, points: Floats) -> None:
+        self._points = nodes = _checked(points)
+        self.closed = bool(len(nodes) > 3 and np.array_equal(nodes[0], nodes[-1]))
+        chord = np.diff(nodes, axis=0)
+        h = np.linalg.norm(chord, axis=1)
+        if self.closed:
+            start = periodic_slopes(chord, h)
+            stop = np.roll(start, -1, axis=0)
+        else:
+            start, stop = open_slopes(chord, h, np.array([0, len(h)]))
+        a, b = h[:, None] * start, h[:, None] * stop
+        self._cubic = np.stack([nodes[:-1], a, 3 * chord - 2 * a - b, a + b - 2 * chord])
+        edges = np.arange(_PARTS) / _PARTS
+        t = (edges[:, None] + (0.5 + 0.5 * _GAUSS) / _PARTS).ravel()
+        speed = np.linalg.norm(self._derivative(np.arange(len(h))[:, None], t[None, :]), axis=-1)
+        pieces = speed.reshape(len(h), _PARTS, -1) @ (0.5 * _WEIGHTS / _PARTS)
+        self._table = np.concatenate([[0.0], np.cumsum(pieces)])
+        self.length = float(self._table[-1])
+
+    def at(self, s: Floats) -> Places:
+        """Return the places at arc lengths `s` (n,), 0 to the length."""
+        i, t = self._locate(np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length))
+        a, b, c, d = self._cubic[:, i]
+        u = t[:, None]
+        points = a + u * (b + u * (c + u * d))
+        points = np.where(u == 1.0, self._points[i + 1], points)
+        first, second = b + u * (2 * c + 3 * u * d), 2 * c + 6 * u * d
+        speed = np.linalg.norm(first, axis=1, keepdims=True)
+        tangents = first / speed
+        bend = second - (second * tangents).sum(axis=1, keepdims=True) * tangents
+        return Places(points, tangents, bend / speed**2)
+
+    def _locate(self, s: Floats) -> tuple[np.ndarray[tuple[int], np.dtype[np.intp]], Floats]:
+        """Return the interval and the parameter in it at arc lengths: by table and Newton's method."""
+        count = len(self._table) - 1
+        k = np.clip(np.searchsorted(self._table, s, side="right") - 1, 0, count - 1)
+        i, low = k // _PARTS, (k % _PARTS) / _PARTS
+        piece = self._table[k + 1] - self._table[k]
+        t = low + (s - self._table[k]) / piece / _PARTS
+        for _ in range(4):
+            inner = low[:, None] + (t - low)[:, None] * (0.5 + 0.5 * _GAUSS)
+            speed = np.linalg.norm(self._derivative(i[:, None], inner), axis=-1)
+            arc = self._table[k] + (t - low) * (speed @ (0.5 * _WEIGHTS))
+            here = np.linalg.norm(self._derivative(i, t), axis=-1)
+            t = np.clip(t + (s - arc) / here, 0.0, 1.0)
+        t = np.where(s >= self.length, 1.0, t)
+        return i, np.asarray(np.where(s <= 0.0, 0.0, t))
+
+    def _derivative(self, i: np.ndarray[tuple[int, ...], np.dtype[np.intp]], t: Floats) -> Floats:
+        _, b, c, d = self._cubic[:, i]
+        u = t[..., None]
+        return np.asarray(b + u * (2 * c + 3 * u * d))
+
+
+@dataclass(frozen=True)
+class Bend:
+    """A piece of a path: straight, or an arc of a circle.
+
+    Parameters
+    ----------
+    length : along the piece.
+    radius : of the arc; 0 is a straight line.
+    towards : direction (3,) from the path to the centre of the arc.
+    """
+
+    length: float
+    radius: float = 0.0
+    towards: tuple[float, float, float] = (0.0, 0.0, 1.0)
+
+
+class PiecedPath:
+    """Lines and arcs one behind the other, without kinks, from `start` (3,) in a `direction` (3,).
+
+    The `towards` of an arc is made perpendicular to the path where the arc begins. Raises InputError: no
+    piece; a length or radius that is not positive; a direction towards which a path cannot bend.
+    """
+
+    def __init__(self, pieces: tuple[Bend, ...], start: Floats, direction: Floats) -> None:
+        if not pieces:
+            raise InputError("a path without pieces", "give a line or an arc")
+        self.closed = False
+        starts, tangents, normals = [np.array(start, dtype=np.float64)], [], []
+        tangent = _unit(np.array(direction, dtype=np.float64), "the direction of the path")
+        for k, piece in enumerate(pieces):
+            if not piece.length > 0 or piece.radius < 0:
+                problem = f"a length of {piece.length:g} and a radius of {piece.radius:g}"
+                raise InputError(problem, "use positive ones", place=f"pieces[{k}]")
+            normal = np.zeros(3)
+            if piece.radius:
+                towards = np.array(piece.towards, dtype=np.float64)
+                normal = _unit(towards - (towards @ tangent) * tangent, f"the bend of pieces[{k}]")
+            tangents.append(tangent)
+            normals.append(normal)
+            end = _on_piece(starts[-1], tangent, normal, piece.radius, np.array([piece.length]))
+            starts.append(end.points[0])
+            tangent = end.tangents[0]
+        self._radius = np.array([piece.radius for piece in pieces])
+        self._ends = np.cumsum([0.0, *(piece.length for piece in pieces)])
+        self.length = float(self._ends[-1])
+        self._start, self._tangent, self._normal = np.array(starts), np.array(tangents), np.array(normals)
+
+    def at(self, s: Floats) -> Places:
+        """Return the places at arc lengths `s` (n,), 0 to the length; at joints of the piece behind."""
+        s = np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length)
+        k = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._radius) - 1)
+        places = [np.empty((len(s), 3)) for _ in range(3)]
+        for piece in range(len(self._radius)):
+            own = k == piece
+            made = _on_piece(
+                self._start[piece], self._tangent[piece], self._normal[piece], self._radius[piece],
+                s[own] - self._ends[piece],
+            )  # fmt: skip
+            for whole, part in zip(places, made, strict=True):
+                whole[own] = part
+        return Places(*places)
+
+    @property
+    def joints(self) -> Floats:
+        """Arc lengths (m,) between pieces."""
+        return self._ends[1:-1]
+
+
+def _on_piece(start: Floats, tangent: Floats, normal: Floats, radius: float, s: Floats) -> Places:
+    if radius == 0:
+        straight = np.broadcast_to(tangent, (len(s), 3))
+        return Places(start + s[:, None] * tangent, straight, np.zeros((len(s), 3)))
+    c, d = np.cos(s / radius)[:, None], np.sin(s / radius)[:, None]
+    inwards = c * normal - d * tangent
+    return Places(
+        start + radius * (d * tangent + (1 - c) * normal), c * tangent + d * normal, inwards / radius
+    )
+
+
+def _unit(vector: Floats, what: str) -> Floats:
+    length = float(np.linalg.norm(vector))
+    if not 1e-9 < length < 1e150:
+        raise InputError(f"{what} has no direction", "give three numbers, not along the path, not all 0")
+    return vector / length
+
+
+def _checked(points: Floats) -> Floats:
+    nodes = np.array(points, dtype=np.float64)
+    if nodes.ndim != 2 or nodes.shape[1] != 3:
+        raise InputError(f"points of a path have shape {nodes.shape}", "give (n, 3)")
+    if len(nodes) < 2:
+        raise InputError(f"a path of {len(nodes)} points", "give at least 2")
+    bad = np.flatnonzero(~np.isfinite(nodes).all(axis=1))
+    if bad.size:
+        raise InputError(f"point {bad[0]} of the path is not finite", "check the input for NaN or infinity")
+    same = np.flatnonzero((np.diff(nodes, axis=0) == 0).all(axis=1))
+    if same.size:
+        x, y, z = nodes[same[0]]
+        where = f"({x:.6g}, {y:.6g}, {z:.6g})"
+        raise InputError(f"point {same[0]} of the path and the next are the same, {where}", "remove one")
+    return nodes

@@ -1,0 +1,1 @@
+"""Sections of wings, blades and ducts, placed in space."""

@@ -1,0 +1,104 @@
+"""A section placed in space: an outline in a plane of constant z, scaled, twisted and moved.
+
+::
+
+      y ^                                    chord     length that the section is scaled to
+        |      .--------.____                twist     nose up, about a place in chords from the leading edge
+        |   LE (     +       ---- TE         x, y      of the leading edge before the twist
+        |      '--------'''''
+        +---------------------> x            z         of the section's plane, along the span
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.outline import Outline
+
+QUARTER = (0.25, 0.0)
+"""Chords from the leading edge to the place that sections are twisted about."""
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """An outline and where it stands.
+
+    Parameters
+    ----------
+    shape : an airfoil, or a closed curve, in any unit.
+    chord : length of the section in the unit of the whole.
+    z : of its plane.
+    x, y : of its leading edge before the twist.
+    twist : degrees, nose up.
+    about : place that it is twisted about, in chords from the leading edge along x and y.
+
+    Raises InputError: a chord that is not positive; a value that is not finite.
+    """
+
+    shape: Airfoil | Outline
+    chord: float
+    z: float
+    x: float = 0.0
+    y: float = 0.0
+    twist: float = 0.0
+    about: tuple[float, float] = QUARTER
+
+    def __post_init__(self) -> None:
+        values = {name: getattr(self, name) for name in ("chord", "z", "x", "y", "twist")}
+        for name, value in (*values.items(), *(("about", value) for value in self.about)):
+            if not math.isfinite(value) or abs(value) > 1e12:
+                raise InputError(f"{name} is {value:g}", "use a finite number", place=name)
+        if not self.chord > 0:
+            raise InputError(f"a chord of {self.chord:g}", "use more than 0", place="chord")
+
+    @property
+    def frame(self) -> tuple[Floats, float]:
+        """Leading edge (2,) and length of the shape as it was drawn, which become the origin and 1.
+
+        A section that was drawn from about 0 to 1, as airfoil files are, is taken as it is; none is turned.
+        """
+        if isinstance(self.shape, Airfoil):
+            nose, length = self.shape.leading_edge, self.shape.unit
+            if length == 1.0 and np.hypot(*nose) < 0.01:
+                return np.zeros(2), 1.0
+            return nose, length
+        low, high = self.shape.curve.points.min(axis=0), self.shape.curve.points.max(axis=0)
+        return np.array([low[0], 0.5 * (low[1] + high[1])]), float(high[0] - low[0])
+
+    @property
+    def placement(self) -> Floats:
+        """Chord, twist in radians, x, y and both of `about` (6,), which are interpolated in z."""
+        return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
+
+
+class Fade(NamedTuple):
+    """How much nodes take part in scale and twist: `weight` (n,), 1 is fully; others have the `chord`."""
+
+    weight: Floats
+    chord: float
+
+
+def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
+    """Return nodes (..., n, 2) of unit sections scaled, twisted and moved by placements (..., 6).
+
+    See `Section.placement`; leading axes broadcast.
+    """
+    chord, twist, x, y, about_x, about_y = (placement[..., k, None] for k in range(6))
+    if fade is not None:
+        chord, twist = fade.chord + (chord - fade.chord) * fade.weight, twist * fade.weight
+    away_x, away_y = unit[..., 0] - about_x, unit[..., 1] - about_y
+    c, s = np.cos(twist), np.sin(twist)
+    return np.stack(
+        [
+            chord * (about_x + c * away_x + s * away_y) + x,
+            chord * (about_y + c * away_y - s * away_x) + y,
+        ],
+        axis=-1,
+    )

@@ -1,0 +1,94 @@
+"""Sections one behind the other along z, and what lies between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.monotone import monotone_through
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sections.section import Fade, Section, placed
+
+Kind: TypeAlias = Literal["wing", "blade", "duct"]
+Tip: TypeAlias = Literal["round", "flat", "open"]
+Between: TypeAlias = Literal["linear", "smooth"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+TIPS: tuple[Tip, ...] = get_args(Tip)
+BETWEEN: tuple[Between, ...] = get_args(Between)
+
+
+@dataclass(frozen=True, eq=False)
+class Stack:
+    """At least two sections in order of z.
+
+    Parameters
+    ----------
+    sections : from the root on.
+    kind : ``wing`` has a tip behind its last section, ``blade`` two end walls, ``duct`` is flown through.
+    tip : of a wing: ``round``, ``flat``, or ``open``, which has none.
+    between : what lies between sections: ``linear``, or ``smooth``, cubics in z that do not overshoot.
+    name : what the input called it.
+
+    Raises InputError: fewer than two sections; z that does not increase.
+    """
+
+    sections: tuple[Section, ...]
+    kind: Kind = "wing"
+    tip: Tip = "round"
+    between: Between = "linear"
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        if len(self.sections) < 2:
+            raise InputError(f"{len(self.sections)} sections", "give at least two", place="sections")
+        for value, known, key in (
+            (self.kind, KINDS, "kind"), (self.tip, TIPS, "tip"), (self.between, BETWEEN, "between"),
+        ):  # fmt: skip
+            if value not in known:
+                raise InputError(f"{key} {value!r} is not known", "use " + "/".join(known), place=key)
+        for k, (before, after) in enumerate(pairwise(self.sections)):
+            if not after.z > before.z:
+                problem = f"z is {after.z:g} behind {before.z:g}"
+                raise InputError(problem, "give sections in order of z", place=f"sections[{k + 1}].z")
+
+    def with_tip(self, tip: Tip | None) -> Stack:
+        """Return the same stack with another tip; None leaves it as it is.
+
+        Raises InputError: no wing, or a tip that is not known.
+        """
+        if tip is None:
+            return self
+        if self.kind != "wing":
+            raise InputError(f"a {self.kind} has no tip", "leave {tip} out", parameter="tip")
+        return replace(self, tip=tip)
+
+    @property
+    def z(self) -> Floats:
+        """(n,) of the sections."""
+        return np.array([section.z for section in self.sections])
+
+    @property
+    def chord(self) -> float:
+        """The longest chord."""
+        return max(section.chord for section in self.sections)
+
+    def lofted(self, unit: Floats, z: Floats, weight: Floats | None = None) -> Floats:
+        """Return nodes (m, n, 3) at the heights `z` (m,) from those of the sections, `unit` (sections, n, 2).
+
+        Shape, chord, twist and place are interpolated each by itself, so that sections between two that are
+        twisted apart are as long as these. Nodes of no `weight` (n,) are not twisted, and are as far apart as
+        in a section of the longest chord.
+        """
+        fade = None if weight is None else Fade(weight, self.chord)
+        placements = np.stack([section.placement for section in self.sections])
+        planes = placed(self.between_sections(unit, z), self.between_sections(placements, z), fade)
+        heights = np.broadcast_to(z[:, None, None], (*planes.shape[:2], 1))
+        return np.concatenate([planes, heights], axis=-1)
+
+    def between_sections(self, values: Floats, z: Floats) -> Floats:
+        """Return `values` (sections, ...) of the sections interpolated at the heights `z` (m,)."""
+        return monotone_through(self.z, values, z, linear=self.between == "linear")

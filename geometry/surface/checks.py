@@ -1,0 +1,89 @@
+"""Faults of surfaces, each refused in one line that says where."""
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.surface.half_edges import ends_of
+from meshonet.geometry.surface.merge import near_pairs
+
+_GAP = 0.2
+"""Part of the shorter edge beside it within which another open side is a gap, not another place."""
+
+_SIDES = ("west", "east", "south", "north")
+
+
+def place_of(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
+    """Return where a node is: patch, i, j, x, y, z, the first such place."""
+    for number, lattice in enumerate(lattices):
+        at = np.argwhere(lattice == node)
+        if len(at):
+            x, y, z = nodes[node]
+            return f"patch {number}, i={at[0, 0]}, j={at[0, 1]}, x={x:.6g}, y={y:.6g}, z={z:.6g}"
+    return ""
+
+
+def check_quads(nodes: Floats, lattices: tuple[Indices, ...], quads: Indices) -> None:
+    """Raise InputError where an edge of a patch has no length, or a quadrilateral is folded on itself."""
+    for number, k in enumerate(lattices):
+        for side, line in zip(_SIDES, (k[0], k[-1], k[:, 0], k[:, -1]), strict=True):
+            if (line == line[0]).all():
+                problem = f"the {side} side of patch {number} is a single point"
+                remedy = "close the surface there by a patch of its own (a core), not by a pole"
+                raise InputError(problem, remedy, place=place_of(nodes, lattices, int(line[0])))
+    first, last = ends_of(quads)
+    none = np.flatnonzero(first == last)
+    if len(none):
+        place = place_of(nodes, lattices, int(first[none[0]]))
+        raise InputError("an edge has no length", "keep neighbouring nodes apart", place=place)
+    folded = np.flatnonzero((quads[:, 0] == quads[:, 2]) | (quads[:, 1] == quads[:, 3]))
+    if len(folded):
+        place = place_of(nodes, lattices, int(quads[folded[0], 0]))
+        problem = "opposite corners of a face are the same node"
+        raise InputError(problem, "close the surface there by a patch of its own", place=place)
+
+
+def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indices) -> None:
+    """Raise InputError where an edge belongs to three faces or more; `crowded` are nodes of such edges."""
+    if len(crowded):
+        owners = [str(n) for n, k in enumerate(lattices) if (k == crowded[0]).any()]
+        problem = f"an edge belongs to three faces or more (patches {', '.join(owners)})"
+        remedy = "leave out the patch that lies inside or twice at the same place"
+        raise InputError(problem, remedy, place=place_of(nodes, lattices, int(crowded[0])))
+
+
+def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
+    """Raise InputError where nodes of open `edges` (k, 2) nearly coincide but are not one node."""
+    if not len(edges):
+        return
+    length = np.sqrt(((nodes[edges[:, 0]] - nodes[edges[:, 1]]) ** 2).sum(axis=1))
+    shortest = np.full(len(nodes), np.inf)
+    for end in (0, 1):
+        np.minimum.at(shortest, edges[:, end], length)
+    at = np.flatnonzero(np.isfinite(shortest))
+    pairs = near_pairs(nodes[at], _GAP * float(np.median(shortest[at])))
+    pairs = at[pairs]
+    apart = np.sqrt(((nodes[pairs[:, 0]] - nodes[pairs[:, 1]]) ** 2).sum(axis=1))
+    near = np.flatnonzero(apart < _GAP * np.minimum(shortest[pairs[:, 0]], shortest[pairs[:, 1]]))
+    if not len(near):
+        return
+    widest = near[np.argmax(apart[near])]
+    places = [place_of(nodes, lattices, int(k)) for k in pairs[widest]]
+    problem = f"a gap of {apart[widest]:.3g} between sides that nearly match, at {places[0]} and {places[1]}"
+    raise InputError(problem, "make the nodes of both sides the same", place=f"{len(near)} nodes")
+
+
+def check_sides(
+    nodes: Floats, lattices: tuple[Indices, ...], quads: Indices, twin: Indices, valence: Indices
+) -> None:
+    """Raise InputError where two sheets touch in a single node, so that its faces are not one ring."""
+    first, _ = ends_of(quads)
+    faces = np.bincount(first, minlength=len(nodes))
+    opened = np.bincount(first[twin < 0], minlength=len(nodes))
+    torn = np.flatnonzero((faces != valence - (opened > 0)) | (opened > 1))
+    if len(torn):
+        place = place_of(nodes, lattices, int(torn[0]))
+        raise InputError(
+            "parts of the surface touch in a single node", "join them, or part them", place=place
+        )

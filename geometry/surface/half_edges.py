@@ -1,0 +1,73 @@
+"""Edges of quadrilaterals over one table of nodes, each as its quadrilaterals go along it.
+
+::
+
+    d <-- 2 --- c      half-edge 4 q + k goes from corner k of quadrilateral q to the next corner;
+    |           ^      its twin is the same edge as the quadrilateral on the other side goes along it,
+    3     q     1      the other way round where both are turned alike
+    v           |
+    a --- 0 --> b
+"""
+
+import numpy as np
+
+from meshonet.geometry.polygon.corners import Indices
+
+
+def ends_of(quads: Indices) -> tuple[Indices, Indices]:
+    """Return the first and last nodes (4 m,) of the half-edges of `quads` (m, 4)."""
+    return quads.ravel(), np.roll(quads, -1, axis=1).ravel()
+
+
+def open_sides(quads: Indices, twin: Indices) -> Indices:
+    """Return the corners (k, 4) of the quadrilaterals at open edges, the ends of the edge first."""
+    opened = np.flatnonzero(twin < 0)
+    around = (opened[:, None] % 4 + np.arange(4)) % 4
+    return np.asarray(quads[opened[:, None] // 4, around])
+
+
+def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
+    """Return the twin (4 m,) of each half-edge, -1 at open edges, and half-edges of edges of three or more.
+
+    `nodes` is how many there are; of such an edge the third half-edge is returned, and so on.
+    """
+    first, last = ends_of(quads)
+    key = np.minimum(first, last) * nodes + np.maximum(first, last)
+    order = np.argsort(key, kind="stable")
+    same = key[order[1:]] == key[order[:-1]]
+    again = np.append(False, same)
+    crowded = order[2:][same[1:] & same[:-1]]
+    starts = np.flatnonzero(~again[:-1] & same)
+    twin = np.full(len(key), -1)
+    twin[order[starts]], twin[order[starts + 1]] = order[starts + 1], order[starts]
+    return twin, crowded
+
+
+def rings(quads: Indices, twin: Indices, nodes: int) -> tuple[Indices, Indices]:
+    """Return the neighbours (n, w) in order around each node, -1 behind the last, and their number (n,).
+
+    All quadrilaterals are turned alike. The ring of a node at an open edge begins and ends with the
+    neighbours along open edges, and has a neighbour more than there are quadrilaterals; others close.
+    """
+    first, last = ends_of(quads)
+    edges = np.arange(len(first))
+    previous = edges - edges % 4 + (edges + 3) % 4
+    start = np.full(nodes, -1)
+    start[first[::-1]] = edges[::-1]
+    opened = edges[twin < 0]
+    start[first[opened]] = opened
+    table = np.full((nodes, int(np.bincount(first).max()) + 1), -1)
+    count = np.zeros(nodes, dtype=np.intp)
+    around = np.flatnonzero(start >= 0)
+    at = start[around]
+    while len(around):
+        table[around, count[around]] = last[at]
+        count[around] += 1
+        into = previous[at]  # the edge by which the quadrilateral's other side comes to the node
+        onward = twin[into]
+        ended = around[onward < 0]
+        table[ended, count[ended]] = first[into[onward < 0]]
+        count[ended] += 1
+        going = (onward >= 0) & (onward != start[around])
+        around, at = around[going], onward[going]
+    return table[:, : int(count.max())], count

@@ -1,0 +1,72 @@
+"""One table of nodes for patches whose sides meet: edge nodes at the same place are one node."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.polygon.corners import Indices
+
+TOLERANCE = 1e-8
+"""Part of the size of a surface within which edge nodes are one node."""
+
+_SLANT = np.array([0.5257311, 0.6513887, 0.5470973])  # along no axis, diagonal or face of a regular solid
+
+
+def size_of(nodes: Floats) -> float:
+    """Return the longest extent of `nodes` (n, 3) along an axis."""
+    return float(np.ptp(nodes, axis=0).max())
+
+
+def near_pairs(points: Floats, distance: float) -> Indices:
+    """Return the pairs (m, 2) of `points` (n, 3) at most so far apart along each axis, lesser index first.
+
+    Points are sorted along a slanted line, on which those far apart seldom meet.
+    """
+    along = points @ _SLANT
+    order = np.argsort(along, kind="stable")
+    along, window = along[order], distance * float(_SLANT.sum()) * (1.0 + 1e-12)
+    pairs = [np.empty((0, 2), dtype=np.intp)]
+    for gap in range(1, len(points)):
+        near = np.flatnonzero(along[gap:] - along[:-gap] <= window)
+        if not len(near):
+            break
+        first, second = order[near], order[near + gap]
+        close = (np.abs(points[first] - points[second]) <= distance).all(axis=1)
+        both = np.stack([first[close], second[close]], axis=1)
+        pairs.append(np.sort(both, axis=1))
+    return np.concatenate(pairs)
+
+
+def merged(patches: Sequence[Floats], tolerance: float = TOLERANCE) -> tuple[Floats, tuple[Indices, ...]]:
+    """Return the nodes (n, 3) of `patches` (ni, nj, 3) and the number (ni, nj) of each of their nodes.
+
+    Edge nodes within `tolerance` times the size of the surface are one node, with the coordinates of the
+    first of them; numbers ascend in the order in which nodes first appear.
+    """
+    points = np.concatenate([np.ascontiguousarray(patch).reshape(-1, 3) for patch in patches])
+    edge = np.concatenate([_edge(patch.shape[:2]).ravel() for patch in patches])
+    on_edge = np.flatnonzero(edge)
+    first = np.arange(len(points))
+    pairs = on_edge[near_pairs(points[on_edge], tolerance * size_of(points))]
+    changed = len(pairs) > 0
+    while changed:  # as often as chains of close nodes are long
+        least = np.minimum(first[pairs[:, 0]], first[pairs[:, 1]])
+        before = first[pairs]
+        np.minimum.at(first, pairs[:, 0], least)
+        np.minimum.at(first, pairs[:, 1], least)
+        changed = not np.array_equal(before, first[pairs])
+    kept = first == np.arange(len(points))
+    numbers = (np.cumsum(kept) - 1)[first]
+    ends = np.cumsum([0, *(patch.shape[0] * patch.shape[1] for patch in patches)])
+    lattices = tuple(
+        numbers[start:end].reshape(patch.shape[:2])
+        for start, end, patch in zip(ends, ends[1:], patches, strict=False)
+    )
+    return points[kept], lattices
+
+
+def _edge(counts: tuple[int, ...]) -> Indices:
+    edge = np.ones(counts, dtype=bool)
+    edge[1:-1, 1:-1] = False
+    return edge

@@ -1,0 +1,49 @@
+"""Planes of symmetry that the open edges of a surface show: normal to an axis, the surface on one side."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.surface.merge import size_of
+
+FLAT = 1e-6
+"""Part of the size of a surface by which nodes may be off a plane of symmetry."""
+FEWEST = 3
+"""Open edges in a plane, at least, that show it."""
+
+
+@dataclass(frozen=True)
+class Plane:
+    """All points whose coordinate `axis` (0, 1, 2) is `value`."""
+
+    axis: int
+    value: float
+
+    def __str__(self) -> str:
+        return f"{'xyz'[self.axis]} = {self.value:.6g}"
+
+
+def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
+    """Return the planes normal to an axis that open edges lie in, with all of the surface on one side.
+
+    `sides` (k, 4) are the faces at open edges, the edge's nodes first. A plane has at least `FEWEST` edges.
+    """
+    planes: list[Plane] = []
+    if not len(sides):
+        return ()
+    size = size_of(nodes)
+    for axis in range(3):
+        for value in (float(nodes[:, axis].min()), float(nodes[:, axis].max())):
+            inside = edges_in(nodes, sides, Plane(axis, value), FLAT * size)
+            if inside.sum() >= FEWEST:
+                exact = float(np.median(nodes[sides[inside, :2], axis]))
+                planes.append(Plane(axis, 0.0 if abs(exact) <= 1e-12 * size else exact))
+    return tuple(planes)
+
+
+def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
+    """Return which (k,) of the edges of `sides` (k, 4) lie in a plane, to `slack`, but their faces do not."""
+    near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
+    return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))

@@ -1,0 +1,162 @@
+"""A surface of patches in space over one table of nodes: seams, poles and folds need no special case.
+
+::
+
+    patch 0     patch 1            nodes are numbered once, lattices hold their numbers;
+    +--+--+     +--+--+            quadrilaterals are turned so that i x j faces outwards
+    |  |  |  +  |  |  |   ->   quads (m, 4), twins across shared edges, open edges
+    +--+--+     +--+--+
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.surface.checks import (
+    check_gaps,
+    check_manifold,
+    check_quads,
+    check_sides,
+    place_of,
+)
+from meshonet.geometry.surface.half_edges import ends_of, open_sides, paired, rings
+from meshonet.geometry.surface.merge import merged, size_of
+from meshonet.geometry.surface.orient import outward_sign, turned_alike
+from meshonet.geometry.surface.planes import Plane, planes_of
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Patches that share nodes, turned alike.
+
+    Parameters
+    ----------
+    nodes : (n, 3) the table of nodes, any unit of length.
+    lattices : the number (ni, nj) of each node of each patch; i x j faces outwards.
+    names : of the patches, ``wall`` where a file has none.
+    twin : (4 m,) the half-edge across each half-edge of `quads`, -1 at open edges (`half_edges`).
+    ring, valence : (n, w) and (n,) neighbours in order around each node (`half_edges.rings`).
+    planes : planes normal to an axis that open edges lie in, with the surface on one side of them.
+    notes : what was changed or taken for granted, a sentence each.
+    """
+
+    nodes: Floats
+    lattices: tuple[Indices, ...]
+    names: tuple[str, ...]
+    twin: Indices
+    ring: Indices
+    valence: Indices
+    planes: tuple[Plane, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def size(self) -> float:
+        """Its longest extent along an axis."""
+        return size_of(self.nodes)
+
+    @property
+    def quads(self) -> Indices:
+        """(m, 4) nodes of its quadrilaterals, patch after patch, i first, counter-clockwise from outside."""
+        return quads_of(self.lattices)
+
+    @property
+    def open_sides(self) -> Indices:
+        """(k, 4) corners of the quadrilaterals at edges that no other one has, the ends of the edge first."""
+        return open_sides(self.quads, self.twin)
+
+    @property
+    def open_edges(self) -> Indices:
+        """(k, 2) nodes of edges that belong to one quadrilateral."""
+        return self.open_sides[:, :2]
+
+    def place(self, node: int) -> str:
+        """Return where a node is: patch, i, j, x, y, z."""
+        return place_of(self.nodes, self.lattices, node)
+
+
+def quads_of(lattices: tuple[Indices, ...]) -> Indices:
+    """Return the quadrilaterals (m, 4) of lattices, patch after patch."""
+    corners = ((k[:-1, :-1], k[1:, :-1], k[1:, 1:], k[:-1, 1:]) for k in lattices)
+    return np.concatenate([np.stack(each, axis=-1).reshape(-1, 4) for each in corners])
+
+
+def surface_of(grid: Grid) -> Surface:
+    """Return the surface that the patches (ni, nj, 3) of a grid make together.
+
+    Patches that face the other way are turned round (i reversed), with a note. A closed surface, or one that
+    planes normal to one axis close, faces outwards; any other the way that most of its area does.
+
+    Raises InputError with the place: blocks that are no patches; an edge of no length; an edge of three
+    quadrilaterals; a node where two sheets touch; sides that nearly match; a surface with one side only.
+    """
+    if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
+        problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"
+        raise InputError(problem, "give patches of a surface in space")
+    nodes, lattices = merged([block.nodes for block in grid.blocks])
+    quads = quads_of(lattices)
+    check_quads(nodes, lattices, quads)
+    twin, crowded = paired(quads, len(nodes))
+    check_manifold(nodes, lattices, ends_of(quads)[0][crowded])
+    check_gaps(nodes, lattices, open_sides(quads, twin)[:, :2])
+    lattices, quads, planes, notes = _turned(nodes, lattices, quads, twin)
+    twin, _ = paired(quads, len(nodes))
+    ring, valence = rings(quads, twin, len(nodes))
+    check_sides(nodes, lattices, quads, twin, valence)
+    names = _names(grid)
+    return Surface(nodes, lattices, names, twin, ring, valence, planes, notes)
+
+
+def _names(grid: Grid) -> tuple[str, ...]:
+    named = grid.provenance.get("zones") or ()
+    if len(named) == len(grid.blocks) and all(isinstance(name, str) and name for name in named):
+        return tuple(named)
+    return ("wall",) * len(grid.blocks)
+
+
+def _turned(
+    nodes: Floats, lattices: tuple[Indices, ...], quads: Indices, twin: Indices
+) -> tuple[tuple[Indices, ...], Indices, tuple[Plane, ...], tuple[str, ...]]:
+    """Return lattices and quadrilaterals turned alike and outwards, planes of open edges, and notes."""
+    counts = [(k.shape[0] - 1) * (k.shape[1] - 1) for k in lattices]
+    patch = np.repeat(np.arange(len(lattices)), counts)
+    component, signs, torn = turned_alike(np.repeat(patch, 4), ends_of(quads), twin, len(lattices))
+    if torn is not None:
+        problem = f"the surface has one side only: patches {torn[0]} and {torn[1]} cannot face the same way"
+        raise InputError(problem, "leave one of the patches out")
+    alike = np.where(np.array(signs)[patch, None] < 0, quads[:, ::-1], quads)
+    notes: list[str] = []
+    planes: list[Plane] = []
+    final = np.array(signs)
+    for part in range(max(component) + 1):
+        members = [k for k, c in enumerate(component) if c == part]
+        own = np.isin(patch, members)
+        mine = np.flatnonzero(twin < 0)
+        flat = planes_of(nodes, open_sides(quads, twin)[own[mine // 4]])
+        planes += [plane for plane in flat if plane not in planes]
+        sign = outward_sign(nodes, alike[own], sorted({plane.axis for plane in flat}))
+        if sign is None:
+            faces = sum(signs[k] * counts[k] for k in members)
+            sign = -1 if faces < 0 else 1
+            notes.append("the surface encloses nothing: it is taken to face as its patches do, i x j")
+        final[members] *= sign
+    lattices = tuple(k[::-1] if sign < 0 else k for k, sign in zip(lattices, final, strict=True))
+    turned = [str(k) for k, sign in enumerate(final) if sign < 0]
+    if turned:
+        notes.append(_turned_note(turned, len(lattices)))
+    return lattices, quads_of(lattices), tuple(planes), tuple(notes)
+
+
+def _turned_note(turned: list[str], count: int) -> str:
+    if len(turned) == count:
+        return "all patches faced inwards and were turned round (i reversed)"
+    which = "patches " + ", ".join(turned[:12]) + (" ..." if len(turned) > 12 else "")
+    were = "was" if len(turned) == 1 else "were"
+    if len(turned) == 1:
+        which = f"patch {turned[0]}"
+    return f"{which} faced the other way than the rest and {were} turned round (i reversed)"

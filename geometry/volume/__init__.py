@@ -1,0 +1,1 @@
+"""Hexahedra that share nodes: grids of blocks in space as one mesh."""

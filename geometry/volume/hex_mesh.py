@@ -1,0 +1,197 @@
+"""Blocks in space over one table of nodes: interface nodes, singular edges and poles are one node each.
+
+::
+
+    block 0        block 1              beyond block 0: -1 -1 -1 -1 -1
+    +--+--+        +--+--+                              -1  0  2  4  6
+    |  |  |    +   |  |  |                              -1  1  3  5  7
+    +--+--+        +--+--+                              -1 -1 -1 -1 -1
+         east = west                   (one lattice of its nodes and of those one step across connected sides)
+
+A block is a lattice of node numbers, as in a plane `meshonet.geometry.layout.layout.Layout`. Nodes that lie
+in one place along a whole line of a side, as at the pole of a sphere, are one node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import AnyArray, Floats, Side
+from meshonet.geometry.blocks.block import PLACES, Block, face_of
+from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.handedness import signed_volume
+from meshonet.geometry.blocks.shared_nodes import shared_nodes
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices
+
+Bools: TypeAlias = NDArray[np.bool_]
+FaceValues: TypeAlias = Callable[[int, Side], NDArray[Any]]
+"""Gives a view (n, m) of values at a side of a block."""
+
+_MOST = 0.8
+"""Part of the cells of a left-handed block that are negative at least: others are folded."""
+POLE = 1e-12
+"""Part of the size of the grid within which nodes of a line of a side are in one place."""
+
+
+@dataclass(frozen=True, eq=False)
+class HexMesh:
+    """Conforming hexahedra in blocks.
+
+    Parameters
+    ----------
+    nodes : (n, 3).
+    blocks : lattices (ni, nj, nk) of node numbers, right-handed.
+    connections : those of the grid that are no periodic ones.
+    """
+
+    nodes: Floats
+    blocks: tuple[Indices, ...]
+    connections: tuple[Connection, ...]
+
+    @property
+    def cells(self) -> int:
+        """Cells of all blocks."""
+        return int(sum(np.prod([n - 1 for n in block.shape]) for block in self.blocks))
+
+    @cached_property
+    def outer(self) -> Bools:
+        """(n,) whether a node is on a side, or a part of one, that no connection joins to another."""
+        outer = np.zeros(len(self.nodes), dtype=bool)
+        for number, block in enumerate(self.blocks):
+            for side in PLACES:
+                face = face_of(block, side)
+                free = self.free_cells(number, side)
+                for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
+                    outer[face[i : i + free.shape[0], j : j + free.shape[1]][free]] = True
+        return outer
+
+    def free_cells(self, number: int, side: Side) -> Bools:
+        """Say of each cell of a side of a block (n-1, m-1) whether no connection joins it to another."""
+        face = face_of(self.blocks[number], side)
+        free = np.ones((face.shape[0] - 1, face.shape[1] - 1), dtype=bool)
+        for each in self.connections:
+            ends = (each.block, each.side, each.range), (each.donor, each.donor_side, each.donor_range)
+            for block, joined, ((a, b), (c, d)) in ends:
+                if (block, joined) == (number, side):
+                    free[a:b, c:d] = False
+        return free
+
+    @cached_property
+    def beyond(self) -> tuple[Indices, ...]:
+        """The blocks with the nodes one step across connected sides (ni+2, nj+2, nk+2), -1 for none."""
+        wider = tuple(np.pad(block, 1, constant_values=-1) for block in self.blocks)
+
+        def outside(number: int, side: Side) -> Indices:
+            axis = PLACES[side][0]
+            inside = tuple(slice(None) if k == axis else slice(1, -1) for k in range(3))
+            return face_of(wider[number][inside], side)
+
+        def inside(number: int, side: Side) -> Indices:
+            return second_layer(self.blocks[number], side)
+
+        exchange(self.connections, outside, inside)
+        return wider
+
+    def with_nodes(self, nodes: Floats) -> HexMesh:
+        """Return the mesh with its nodes (n, 3) elsewhere."""
+        return replace(self, nodes=nodes)
+
+
+def any_corner(nodes: Bools) -> Bools:
+    """Say of each cell of a block of nodes (ni, nj, nk) whether any of its corners is one of some."""
+    cells = nodes
+    for axis in range(3):
+        ends = np.moveaxis(cells, axis, 0)
+        cells = np.moveaxis(ends[1:] | ends[:-1], 0, axis)
+    return np.asarray(cells)
+
+
+def second_layer(values: AnyArray, side: Side) -> AnyArray:
+    """Return a view of what `values` (ni, nj, nk) are one step inside of a side."""
+    axis, end = PLACES[side]
+    return np.moveaxis(values, axis, 0)[1 if end == 0 else -2]
+
+
+def exchange(
+    connections: Sequence[Connection], outside: FaceValues, inside: FaceValues
+) -> None:  # fmt: skip
+    """Fill what is `outside` of both sides of connections with what is `inside` of the other one."""
+    for each in connections:
+        own_out, donor_out = each.nodes(lambda block, side: outside(block, side)[..., None])
+        own_in, donor_in = each.nodes(lambda block, side: inside(block, side)[..., None])
+        own_out[...], donor_out[...] = donor_in, own_in
+
+
+def hex_mesh_of(grid: Grid) -> HexMesh:
+    """Return the mesh of the volume blocks of a grid.
+
+    Raises InputError: blocks that are no volumes, or left-handed.
+    """
+    for number, block in enumerate(grid.blocks):
+        if len(block.counts) != 3:
+            sizes = " x ".join(map(str, block.counts))
+            raise InputError(
+                f"block {number} of {sizes} nodes is no volume", "give blocks of three directions"
+            )
+        if _left_handed(block.nodes):
+            remedy = "reverse one of its directions"
+            raise InputError("the block is left-handed", remedy, place=f"block {number}")
+    joined = tuple(each for each in grid.connections if each.transform is None)
+    numbers = shared_nodes([block.counts for block in grid.blocks], joined)
+    nodes = np.empty((1 + max(int(lattice.max()) for lattice in numbers), 3))
+    for lattice, block in zip(numbers, grid.blocks, strict=True):
+        nodes[lattice] = block.nodes
+    return HexMesh(*_with_poles(nodes, numbers), joined)
+
+
+def _left_handed(nodes: Floats) -> bool:
+    """Say whether a block is one whose volume and most of whose cells are negative."""
+    corner = nodes[:-1, :-1, :-1]
+    with np.errstate(over="ignore", invalid="ignore"):
+        if not signed_volume([nodes[..., axis] for axis in range(3)]) < 0:
+            return False
+        u, v, w = nodes[1:, :-1, :-1] - corner, nodes[:-1, 1:, :-1] - corner, nodes[:-1, :-1, 1:] - corner
+        return bool(np.mean(np.einsum("...c,...c", u, np.cross(v, w)) < 0) > _MOST)
+
+
+def _with_poles(nodes: Floats, numbers: tuple[Indices, ...]) -> tuple[Floats, tuple[Indices, ...]]:
+    """Return nodes and blocks of node numbers, those of lines of sides that are in one place made one."""
+    near = POLE * float(np.ptp(nodes, axis=0).max())
+    pairs = [
+        pair for number in numbers for side in PLACES for pair in _poles(face_of(number, side), nodes, near)
+    ]
+    if not pairs:
+        return nodes, numbers
+    first, second = (np.concatenate(ends) for ends in zip(*pairs, strict=True))
+    label, before = np.arange(len(nodes)), None
+    while before is None or not np.array_equal(label, before):  # as often as lines meet
+        before = label.copy()
+        np.minimum.at(label, first, label[second])
+        np.minimum.at(label, second, label[first])
+    kept, rank = np.unique(label, return_inverse=True)
+    return nodes[kept], tuple(rank.reshape(-1)[number] for number in numbers)
+
+
+def _poles(face: Indices, nodes: Floats, near: float) -> list[tuple[Indices, Indices]]:
+    """Return pairs of nodes of the lines of a side (n, m) whose nodes are all in one place."""
+    pairs = []
+    for lines in (face, face.T):
+        places = nodes[lines]
+        collapsed = (np.abs(places - places[:1]) <= near).all(axis=(0, 2))
+        if collapsed.any():
+            among = lines[:, collapsed]
+            pairs.append((np.broadcast_to(among[:1], among.shape).ravel(), among.ravel()))
+    return pairs
+
+
+def with_nodes(grid: Grid, mesh: HexMesh) -> Grid:
+    """Return `grid` with the nodes of a mesh of it, moved; those of connected sides are bitwise equal."""
+    return replace(grid, blocks=tuple(Block(mesh.nodes[block]) for block in mesh.blocks))

@@ -1,0 +1,236 @@
+/* A march from a surface to the far field: sub-steps of the size that cells allow, levels kept where they are asked.
+
+   The volume of a step is its length times the area around a node, smoothed over neighbours, by and by from the wall
+   on, and drawn to the mean: V <- f V + (1 - f) mean V, f = (1 + (1 - blend)^(level - 1))/2. Its height is volume over
+   area. step.c has the equations of a step.
+
+   Fronts that spread, or are smoothed, come less far than the steps are long: what a step comes to, on average over the
+   surface, is measured, and the next one is made as much longer. */
+#include "march.h"
+#include "solve.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double FAR_POWER = 0.15;
+static const double LEAST_YIELD = 0.3;
+
+typedef struct {
+    Solver solver;
+    const SurfaceMarch *settings;
+    double *levels;
+    const double *heights;
+    ptrdiff_t count;
+    double *volume, *other; /* (rows) */
+    SurfaceMarched *made;
+} March;
+
+typedef struct {
+    Solver solver; /* a copy, with pointers that are swapped alike by all threads */
+    double *volume, *other;
+    double gone, last, shortest; /* mean distance so far, the step before, the least reach */
+    double yield;                /* mean distance that a step came to, over its length */
+    ptrdiff_t first, end;        /* chunks of this thread */
+    Member member;
+} Runner;
+
+static void measure(Runner *r)
+{
+    for (ptrdiff_t c = r->first; c < r->end; c++) {
+        ptrdiff_t first, last;
+        chunk_range(&r->solver, c, &first, &last);
+        r->solver.sums[c] = step_sizes(&r->solver.step, first, last);
+    }
+    team_wait(r->member);
+    r->shortest = r->solver.sums[0];
+    for (ptrdiff_t c = 1; c < r->solver.chunks; c++)
+        if (!(r->solver.sums[c] >= r->shortest))
+            r->shortest = r->solver.sums[c];
+}
+
+static void swap(double **a, double **b)
+{
+    double *held = *a;
+    *a = *b, *b = held;
+}
+
+/* Volumes of a unit step in r->volume, and their mean. */
+static double smooth_volumes(const March *m, Runner *r, double part)
+{
+    const SurfaceMarch *set = m->settings;
+    const Graph *g = r->solver.step.graph;
+    const ptrdiff_t sweeps = part > 0.0 ? set->sweeps : 0, chunks = r->solver.chunks;
+    for (ptrdiff_t k = 0; k <= sweeps; k++) {
+        const double *from = k ? r->volume : r->solver.step.area;
+        for (ptrdiff_t c = r->first; c < r->end; c++) {
+            ptrdiff_t first, last;
+            chunk_range(&r->solver, c, &first, &last);
+            double *values = (double *)from, *sums = r->solver.sums + chunks;
+            fill_equal_ghosts(g, values, first, last);
+            sums[c] = step_smooth(g, values, r->other, k ? set->weight : 0.0, first, last);
+        }
+        team_wait(r->member);
+        swap(&r->volume, &r->other);
+    }
+    double sum = 0.0;
+    for (ptrdiff_t c = 0; c < chunks; c++)
+        sum += r->solver.sums[chunks + c];
+    return sum / (double)g->nodes;
+}
+
+MESHONET_CLONES
+static void heights_chunk(const Step *step, const double *volume, double length, double part, double keep, double mean,
+                          double again, ptrdiff_t first, ptrdiff_t last)
+{
+    const Graph *g = step->graph;
+    const ptrdiff_t rows = g->nodes + g->ghosts;
+    const double *restrict area = step->area;
+    double *restrict height = step->height;
+    for (ptrdiff_t i = first; i < last; i++) {
+        const double v = (1.0 - part) * area[i] + part * volume[i];
+        height[i] = length * (keep * v + (1.0 - keep) * mean) / area[i];
+    }
+    for (int d = 0; d < 3; d++)
+        for (ptrdiff_t i = first; i < last; i++)
+            step->change[d * rows + i] *= again;
+}
+
+/* Move to the next level; returns the distances times the areas, which are added to `areas`. */
+MESHONET_CLONES
+static double advance_chunk(const Step *step, double *areas, ptrdiff_t first, ptrdiff_t last)
+{
+    const ptrdiff_t rows = step->graph->nodes + step->graph->ghosts;
+    double *restrict x = step->x;
+    const double *restrict dx = step->change, *restrict dy = dx + rows, *restrict dz = dy + rows;
+    double swept = 0.0, area = 0.0;
+    for (ptrdiff_t i = first; i < last; i++) {
+        x[i] += dx[i], x[rows + i] += dy[i], x[2 * rows + i] += dz[i];
+        swept += step->area[i] * sqrt(dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i]);
+        area += step->area[i];
+    }
+    *areas = area;
+    return swept;
+}
+
+/* Add the step to the level; how far it came is kept for the next one. */
+static void advance(Runner *r, double length)
+{
+    double *sums = r->solver.sums;
+    const ptrdiff_t chunks = r->solver.chunks;
+    for (ptrdiff_t c = r->first; c < r->end; c++) {
+        ptrdiff_t first, last;
+        chunk_range(&r->solver, c, &first, &last);
+        sums[2 * chunks + c] = advance_chunk(&r->solver.step, sums + 3 * chunks + c, first, last);
+    }
+    team_wait(r->member);
+    double swept = 0.0, area = 0.0;
+    for (ptrdiff_t c = 0; c < chunks; c++)
+        swept += sums[2 * chunks + c], area += sums[3 * chunks + c];
+    r->gone += swept / area;
+    r->yield = fmin(fmax(swept / area / length, LEAST_YIELD), 1.0);
+    r->last = length;
+}
+
+/* One step of the way `left` to a level, which becomes less; returns iterations, negative where it diverged. */
+static int take_step(const March *m, Runner *r, double *left, ptrdiff_t level)
+{
+    const SurfaceMarch *set = m->settings;
+    Solver *solver = &r->solver;
+    Step *step = &solver->step;
+    measure(r);
+    const double whole = *left / r->yield;
+    double length = fmin(whole, set->longest * r->shortest);
+    if (whole > length && whole - length < 0.3 * length)
+        length = 0.5 * whole;
+    *left = whole > length ? *left - length * r->yield : 0.0;
+    if (!(length > 0.0) || !(length < INFINITY))
+        return -1;
+    const double part = set->ramp > 0 ? fmin(1.0, (double)(level - 1) / (double)set->ramp) : 1.0;
+    const double keep = 0.5 * (1.0 + pow(1.0 - set->blend, (double)(level - 1)));
+    const double mean = smooth_volumes(m, r, part);
+    const double far = fmin(1.0, pow((r->gone + length) / set->size, FAR_POWER));
+    const StepRule rule = {set->explicit_smoothing, set->implicit_smoothing, set->theta, far, set->sharp,
+                           r->gone == 0.0};
+    if (rule.first)
+        step->before = step->along;
+    for (ptrdiff_t c = r->first; c < r->end; c++) {
+        ptrdiff_t first, last;
+        chunk_range(solver, c, &first, &last);
+        heights_chunk(step, r->volume, length, part, keep, mean, r->last > 0.0 ? length / r->last : 1.0, first, last);
+        step_rows(step, &rule, first, last);
+    }
+    team_wait(r->member);
+    const int iterations = solve_step(solver, r->member);
+    if (rule.first)
+        step->before = m->solver.step.before;
+    swap(&step->along, &step->before);
+    advance(r, length);
+    return iterations;
+}
+
+static void keep_level(const March *m, const Runner *r, ptrdiff_t level)
+{
+    const Graph *g = r->solver.step.graph;
+    const ptrdiff_t n = g->nodes, rows = n + g->ghosts;
+    for (ptrdiff_t c = r->first; c < r->end; c++) {
+        ptrdiff_t first, last;
+        chunk_range(&r->solver, c, &first, &last);
+        for (int d = 0; d < 3; d++)
+            memcpy(m->levels + (3 * level + d) * n + first, r->solver.step.x + d * rows + first,
+                   (size_t)(last - first) * sizeof(double));
+    }
+}
+
+static void run(void *data, Member member)
+{
+    const March *m = data;
+    Runner r = {.solver = m->solver, .volume = m->volume, .other = m->other, .member = member, .yield = 1.0};
+    team_share(r.solver.chunks, member, &r.first, &r.end);
+    ptrdiff_t steps = 0, iterations = 0, level = 1;
+    for (int fine = 1; fine && level <= m->count; level++) {
+        for (double left = m->heights[level - 1] - (level > 1 ? m->heights[level - 2] : 0.0); fine && left > 0.0;) {
+            const int taken = take_step(m, &r, &left, level);
+            steps++, iterations += taken < 0 ? -taken : taken;
+            fine = taken >= 0 && steps < m->settings->most * m->count;
+        }
+        if (!fine)
+            break;
+        keep_level(m, &r, level);
+    }
+    if (member.rank == 0)
+        *m->made = (SurfaceMarched){level - 1, steps, iterations};
+}
+
+int surface_march(double *levels, const double *heights, ptrdiff_t count, const Graph *graph,
+                  const SurfaceMarch *settings, int threads, SurfaceMarched *made)
+{
+    const ptrdiff_t n = graph->nodes, rows = n + graph->ghosts;
+    March m = {.settings = settings, .levels = levels, .heights = heights, .count = count, .made = made};
+    Solver *s = &m.solver;
+    s->step.graph = graph, s->tolerance = settings->tolerance, s->most = 60;
+    s->red_chunks = (graph->red + CHUNK - 1) / CHUNK;
+    s->chunks = s->red_chunks + (n - graph->red + CHUNK - 1) / CHUNK;
+    double **long_ones[] = {&s->step.x, &s->step.change, &s->p, &s->s};
+    double **short_ones[] = {&s->step.right, &s->r, &s->r0, &s->v, &s->t};
+    double **single[] = {&s->step.area, &m.volume, &m.other};
+    double **plain[] = {&s->step.reach, &s->step.height, &s->step.diagonal, &s->step.tie};
+    double *room = calloc((size_t)(4 * 3 * rows + 5 * 3 * n + 3 * rows + 4 * n + 4 * n + 18 * n + SUMS * s->chunks),
+                          sizeof(double));
+    if (room == NULL)
+        return -1;
+    double *next = room;
+    for (int k = 0; k < 4; k++, next += 3 * rows)
+        *long_ones[k] = next;
+    for (int k = 0; k < 5; k++, next += 3 * n)
+        *short_ones[k] = next;
+    for (int k = 0; k < 3; k++, next += rows)
+        *single[k] = next;
+    for (int k = 0; k < 4; k++, next += n)
+        *plain[k] = next;
+    s->step.along = next, s->step.before = next + 2 * n, s->step.flux = next + 4 * n, s->sums = next + 22 * n;
+    for (int d = 0; d < 3; d++)
+        memcpy(s->step.x + d * rows, levels + d * n, (size_t)n * sizeof(double));
+    team_run(threads, run, &m);
+    free(room);
+    return 0;
+}

@@ -1,0 +1,23 @@
+#pragma once
+#include "graph.h"
+
+typedef struct {
+    double explicit_smoothing, implicit_smoothing, theta;
+    double sharp;         /* cosine between the normals of faces beyond which their edge is averaged */
+    double size;          /* half the size of the surface */
+    double longest;       /* step over the least distance of neighbours, at most */
+    double weight, blend; /* of one smoothing sweep of the volumes; how fast volumes become equal */
+    ptrdiff_t sweeps, ramp; /* such sweeps; levels over which they set in */
+    double tolerance;     /* of linear systems */
+    ptrdiff_t most;       /* iterations of one, and steps a level on average */
+} SurfaceMarch;
+
+typedef struct {
+    ptrdiff_t levels;     /* that were made, the wall not counted */
+    ptrdiff_t steps, iterations;
+} SurfaceMarched;
+
+/* Fill levels 1 .. count of `levels` (count + 1, 3, nodes) from level 0, `heights` (count) of which are apart from the
+   wall. Returns 0, or -1 without memory. */
+int surface_march(double *levels, const double *heights, ptrdiff_t count, const Graph *graph,
+                  const SurfaceMarch *settings, int threads, SurfaceMarched *made);

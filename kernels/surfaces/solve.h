@@ -1,0 +1,29 @@
+/* The linear system of a step, solved by a team of threads with the same result for any number of them. */
+#pragma once
+#include "step.h"
+#include "team.h"
+
+#define CHUNK 256 /* nodes that are added up together */
+#define SUMS 6
+
+typedef struct {
+    Step step;
+    ptrdiff_t red_chunks, chunks;
+    double tolerance;   /* of the residual, relative to the right side */
+    int most;           /* iterations */
+    double *p, *s;      /* (3, rows) directions */
+    double *r, *r0, *v, *t; /* (3, nodes) */
+    double *sums;       /* (SUMS, chunks) */
+} Solver;
+
+/* First and last (excluded) node of a chunk: nodes of both kinds are not mixed. */
+static inline void chunk_range(const Solver *solver, ptrdiff_t chunk, ptrdiff_t *first, ptrdiff_t *last)
+{
+    const ptrdiff_t red = solver->step.graph->red, from = chunk - solver->red_chunks;
+    const ptrdiff_t end = from < 0 ? red : solver->step.graph->nodes;
+    *first = from < 0 ? chunk * CHUNK : red + from * CHUNK;
+    *last = *first + CHUNK < end ? *first + CHUNK : end;
+}
+
+/* Solve for step.change from what it holds. Returns the iterations, negative where they diverged. */
+int solve_step(Solver *solver, Member member);

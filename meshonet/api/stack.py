@@ -1,0 +1,31 @@
+"""`meshonet.stack`."""
+
+from pathlib import Path
+from typing import Any
+
+from meshonet.formats.stack import stack_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.sections.stack import Stack, Tip
+from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
+from meshonet.solvers.stacking.request import stack_request
+
+
+def stack(
+    sections: str | Path | Stack, *, tip: Tip | None = None, surface: bool = False, **parameters: Any
+) -> Grid:
+    """Return the volume around a wing or blade, or inside a duct, from sections placed in space.
+
+    Parameters
+    ----------
+    sections : a TOML file, or the stack itself.
+    tip : ``round``, ``flat`` or ``open``; None is what the stack says.
+    surface : the patches of its surface instead of a volume.
+    parameters : those of `meshonet.StackRequest`, such as ``around``, ``span``, ``first_cell``, ``y_plus``,
+        ``reynolds``, ``layers``, ``growth``, ``far_field``.
+
+    Raises InputError: a file or parameter that cannot be used; NoValidGridError: cells are folded, and
+    `allow_invalid` was not given.
+    """
+    what = (sections if isinstance(sections, Stack) else stack_of(str(sections))).with_tip(tip)
+    request = stack_request(**parameters)
+    return stack_surface(what, request)[0] if surface else make_stack(what, request).grid

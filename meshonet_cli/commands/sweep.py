@@ -1,0 +1,90 @@
+"""``meshonet sweep``."""
+
+from typing import Annotated
+
+import typer
+
+from meshonet_cli import options as o
+
+EXAMPLES = (
+    "meshonet sweep circle:0.5 bend.toml -o pipe.h5",
+    "meshonet sweep circle:0.5 bend.toml --cells 800 --first-cell 0.005 -o layers.h5",
+    "meshonet sweep duct.csv path.csv --res 41x21 --twist 45 -o duct.h5",
+)
+_sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
+
+
+# fmt: off
+@o.expanded
+def sweep(
+    files: Annotated[list[str], typer.Argument(
+        metavar="OUTLINE... PATH", show_default=False,
+        help="Cross-sections: circle:RADIUS, or a file with a closed curve, a domain, a layout or a planar "
+        "grid. Then the path of all: a file of points x y z, one a line, or lines and arcs in TOML.",
+    )],
+    output: o.Output,
+    printing: o.PrintOptions,
+    res: Annotated[str | None, _sampling(
+        "--res", metavar="N|NIxNJ", help="Nodes along the sides of a four-sided section. [default: 65x33]",
+    )] = None,
+    planes: Annotated[int | None, _volume(
+        "--planes", metavar="K",
+        help="Planes of nodes along the path. [default: cells turn by up to 4 degrees and are up to three "
+        "times as long as wide]",
+    )] = None,
+    up: Annotated[str | None, _volume(
+        "--up", metavar="X,Y,Z",
+        help="Direction that the section's y axis points to where the path starts. [default: z, or y for a "
+        "path along z]",
+    )] = None,
+    twist: Annotated[float, _volume(
+        "--twist", metavar="DEGREES", show_default=True, help="Turn the section by this from start to end.",
+    )] = 0.0,
+    scale: Annotated[float, _volume(
+        "--scale", metavar="F", show_default=True,
+        help="Size of the section at the end, in sizes at the start.",
+    )] = 1.0,
+    cells: Annotated[int | None, o.option_of(o.DOMAIN)(
+        "--cells", metavar="N",
+        help="About so many cells in the section. [default: 320 in a circle, or 2500]",
+    )] = None,
+    cell_size: Annotated[float | None, o.option_of(o.DOMAIN)(
+        "--cell-size", metavar="H", help="Length of edges in the section away from walls, in its unit.",
+    )] = None,
+    layout: Annotated[str | None, o.option_of(o.DOMAIN)(
+        "--layout", metavar="LAYOUT.json", help="Take the blocks of a layout for the section.",
+    )] = None,
+    walls: o.Walls = None,
+    first_cell: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
+        "--first-cell", "--wall-spacing", metavar="H",
+        help="Height of the first cell at walls, in the section's unit.",
+    )] = None,
+    y_plus: o.YPlus = None,
+    reynolds: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
+        "--reynolds", metavar="RE", help="Reynolds number of the section's extent, a pipe's diameter.",
+    )] = None,
+    growth: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
+        "--growth", metavar="G", help="Largest ratio of neighbouring cells away from walls. [default: 1.2]",
+    )] = None,
+    allow_invalid: o.AllowInvalid = False,
+    fail_on: o.FailOn = None,
+    from_format: o.From = None,
+    to_format: o.To = None,
+    skip_existing: o.SkipExisting = False,
+    jobs: o.Jobs = 1,
+    threads: o.Threads = None,
+) -> int:
+    """Make the volume of a pipe or duct: a cross-section carried along a curve."""
+    from meshonet_cli.volume_batch import vector, write_sweeps
+
+    section = {
+        "cells": cells, "cell_size": cell_size, "walls": walls or (), "layout": layout,
+        "first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds, "growth": growth,
+        "allow_invalid": allow_invalid, "threads": threads,
+    }
+    along = {"planes": planes, "up": vector(up), "twist": twist, "scale": scale}
+    return write_sweeps(
+        files, output, res, section, along, printing.session(), fail_on=fail_on, from_format=from_format,
+        to_format=to_format, skip_existing=skip_existing, jobs=jobs,
+    )
+# fmt: on

@@ -1,0 +1,154 @@
+"""The volumes of `stack` and `sweep`, one after the other."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from meshonet.api.grid import domain_parameters
+from meshonet.formats.path import path_of
+from meshonet.formats.section import read_sections
+from meshonet.formats.stack import stack_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.curves.path import Path
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.gates import need_percentiles, parse_gates
+from meshonet.geometry.sections.stack import Stack, Tip
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.threads import cores
+from meshonet.solvers.pipeline.parameters import grid_request
+from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
+from meshonet.solvers.pipeline.sweeps import make_sweep
+from meshonet.solvers.stacking.request import StackRequest, stack_request
+from meshonet.solvers.sweeping.sweep import Sweep
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import deliver, one_by_one, prepare, process
+from meshonet_cli.batch.sources import items
+from meshonet_cli.batch.timed import Delivered, part_names
+from meshonet_cli.grid_batch import judging, reported
+from meshonet_cli.options.groups import bad_value
+from meshonet_cli.options.sampling import resolution
+from meshonet_cli.provenance import provenance
+from meshonet_cli.report.grid import Report
+from meshonet_cli.session import Session
+
+
+def write_stacks(
+    sources: Sequence[str], output: str, parameters: Mapping[str, Any], session: Session, *,
+    tip: Tip | None = None, surface: bool = False, fail_on: Sequence[str] | None = None,
+    to_format: str | None = None, skip_existing: bool = False, jobs: int = 1,
+) -> int:  # fmt: skip
+    """Write the volumes, or the surfaces, of the stacks of `sources` and return the exit code."""
+    percentiles = need_percentiles(parse_gates(fail_on))
+    request = stack_request(**_shared(parameters, jobs), percentiles=percentiles)
+    members = items(sources, lambda source: iter([stack_of(source).with_tip(tip)]), session)
+    if surface:
+        if fail_on:
+            raise InputError("{fail_on} judges cells, and a surface has none", "leave it out")
+        destination = Destination(output, to_format, "grids")
+        return process(
+            sources, members, _Surfaces(request), destination, session, skip_existing=skip_existing, jobs=jobs
+        )
+    return _write(
+        sources, members, _Stacks(request), output, session, fail_on, to_format, skip_existing, jobs
+    )
+
+
+def write_sweeps(
+    files: Sequence[str], output: str, res: str | None, section: Mapping[str, Any], along: Mapping[str, Any],
+    session: Session, *, fail_on: Sequence[str] | None = None, from_format: str | None = None,
+    to_format: str | None = None, skip_existing: bool = False, jobs: int = 1,
+) -> int:  # fmt: skip
+    """Write the volumes of sections along the path that is the last of `files`; return the exit code."""
+    *sources, path = files
+    if not sources:
+        raise InputError(
+            "there is no path", f"name it: meshonet sweep {path} PATH -o pipe.h5", source="sweep"
+        )
+    parameters = domain_parameters(_shared(section, jobs))
+    parameters["percentiles"] = need_percentiles(parse_gates(fail_on))
+    request = grid_request(res=None if res is None else _counts(res), **parameters)
+    make = _Sweeps(path_of(path), request, Sweep(**along))
+    members = items(sources, lambda source: read_sections(source, from_format), session)
+    return _write(sources, members, make, output, session, fail_on, to_format, skip_existing, jobs)
+
+
+def _counts(text: str) -> tuple[int, int]:
+    ni, nj, nk = resolution(text)
+    if nk is not None:
+        raise bad_value(text, "the nodes of a section", "use NIxNJ, and {planes} along the path", "res")
+    return ni, nj
+
+
+def vector(text: str | None) -> tuple[float, float, float] | None:
+    """Return the vector ``X,Y,Z``, or raise InputError.
+
+    >>> vector("0,0,1")
+    (0.0, 0.0, 1.0)
+    """
+    if text is None:
+        return None
+    try:
+        x, y, z = (float(word) for word in text.split(","))
+    except ValueError:
+        raise bad_value(text, "a direction", "use X,Y,Z, e.g. 0,0,1", "up") from None
+    return x, y, z
+
+
+def _shared(parameters: Mapping[str, Any], jobs: int) -> dict[str, Any]:
+    """Return parameters, the cores shared out among so many processes."""
+    if jobs == 1 or parameters.get("threads") is not None:
+        return dict(parameters)
+    return {**parameters, "threads": max(cores() // jobs, 1)}
+
+
+def _write(
+    sources: Sequence[str], members: Iterator[Item[Any]], make: Callable[[Any], tuple[Grid, Report]],
+    output: str, session: Session, fail_on: Sequence[str] | None, to_format: str | None, skip_existing: bool,
+    jobs: int,
+) -> int:  # fmt: skip
+    destination = Destination(output, to_format, "grids")
+    prepare(sources, destination, session)
+    written = judging(session, fail_on)
+    deliver(members, one_by_one(make), destination, session, written, skip_existing=skip_existing, jobs=jobs)
+    return session.finish()
+
+
+@dataclass(frozen=True)
+class _Stacks:
+    """Makes the volumes of stacks."""
+
+    request: StackRequest
+
+    def __call__(self, item: Item[Stack]) -> tuple[Grid, Report]:
+        return reported(item, make_stack(item.what, self.request))  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class _Sweeps:
+    """Makes the volumes of sections along a path."""
+
+    path: Path
+    request: GridRequest
+    settings: Sweep
+
+    def __call__(self, item: Item[Shape]) -> tuple[Grid, Report]:
+        return reported(item, make_sweep(item.what, self.path, self.request, self.settings))
+
+
+@dataclass(frozen=True)
+class _Surfaces:
+    """Makes the surfaces of stacks."""
+
+    request: StackRequest
+
+    def __call__(self, item: Item[Stack]) -> tuple[Grid, Delivered]:
+        begun = time.perf_counter()
+        grid, notes = stack_surface(item.what, self.request)
+        report = Delivered(item, grid, part_names(grid), "surface", notes)
+        report.seconds["grid"] = time.perf_counter() - begun
+        return grid.with_provenance(**provenance()), report

@@ -1,0 +1,1 @@
+"""Volumes marched from surfaces of many patches."""

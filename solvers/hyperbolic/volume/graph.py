@@ -1,0 +1,212 @@
+"""The graph that a march works on: neighbours in order, ghosts beyond open edges, nodes in two groups.
+
+::
+
+    in the plane of symmetry            at a free edge
+
+        b                                   b
+        |         rings a b c B             |         rings a b c B
+    a---o---c     B is b mirrored       a---o---c     B is b extrapolated: o - s (b - o)
+        :                                   :
+        B                                   B
+
+Nodes of the first group (red) are no neighbours of each other; ``kernels/surfaces/graph.h`` has the arrays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.surface.planes import Plane
+from meshonet.geometry.surface.surface import Surface
+
+MOST_NEIGHBOURS = 24  # as in graph.h
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a node sees in a direction: own x(node) + sign x(base) + shift."""
+
+    base: int
+    own: float = 0.0
+    sign: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @property
+    def real(self) -> bool:
+        """Whether it is a node itself."""
+        return self.own == 0.0 and self.sign == (1.0, 1.0, 1.0)
+
+    def mirrored(self, plane: Plane) -> Seen:
+        """Return it on the other side of a plane."""
+        sign, shift = np.array(self.sign), np.array(self.shift)
+        sign[plane.axis] *= -1.0
+        shift[plane.axis] = 2.0 * plane.value - shift[plane.axis]
+        return Seen(self.base, self.own, _triple(sign), _triple(shift))
+
+    def opposite(self, splay: float) -> Seen:
+        """Return what lies opposite it, 1 + `splay` times as far."""
+        far = 1.0 + splay
+        return Seen(
+            self.base, 1.0 + far, _triple(-far * np.array(self.sign)), _triple(-far * np.array(self.shift))
+        )
+
+
+def _triple(values: Floats) -> tuple[float, float, float]:
+    x, y, z = values.tolist()
+    return x, y, z
+
+
+@dataclass(frozen=True, eq=False)
+class MarchGraph:
+    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) is the node of the surface that each node is."""
+
+    order: Indices
+    red: int
+    near: Indices
+    odd_nodes: Indices
+    odd_start: Indices
+    odd_near: Indices
+    owner: Indices
+    base: Indices
+    own: Floats
+    sign: Floats
+    shift: Floats
+    fixed_nodes: Indices
+    moves: Floats
+
+
+def march_graph(surface: Surface, planes: Sequence[Plane], in_plane: Indices, splay: float) -> MarchGraph:
+    """Return the graph of a surface, whose open edges lie in `planes` as far as `in_plane` (p, k) says."""
+    n = len(surface.nodes)
+    regular = surface.valence == 4
+    edges = surface.open_edges
+    regular[edges.ravel()] = False
+    rings = {int(k): [Seen(int(m)) for m in surface.ring[k] if m >= 0] for k in np.flatnonzero(~regular)}
+    held: dict[int, set[int]] = {}
+    at_edge: dict[tuple[int, int], list[Plane]] = {}
+    for k, (a, b) in enumerate(edges.tolist()):
+        inside = [plane for plane, flags in zip(planes, in_plane, strict=True) if flags[k]]
+        at_edge[a, b] = at_edge[b, a] = inside
+        for node in (a, b):
+            held.setdefault(node, set()).update(plane.axis for plane in inside)
+    for node in held:
+        arc = rings[node]
+        rings[node] = _closed(arc, at_edge[node, arc[0].base], at_edge[node, arc[-1].base], splay)
+    coupled = np.zeros(n, dtype=bool)
+    for node in rings:
+        if node not in held and len(rings[node]) == 2:
+            rings[node], coupled[node] = _with_diagonals(surface, node, rings[node]), True
+        coupled[node] |= any(seen.own != 0.0 for seen in rings[node])
+    red = _independent(surface, coupled)
+    return _sorted(surface, red, rings, held)
+
+
+def _closed(arc: list[Seen], before: list[Plane], after: list[Plane], splay: float) -> list[Seen]:
+    """Return the ring of a node at an open edge, from its neighbours and the planes of its two open edges."""
+    shared = [plane for plane in before if plane in after]
+    if shared and len(arc) > 2:
+        return arc + [seen.mirrored(shared[0]) for seen in arc[-2:0:-1]]
+    if before and after and not shared:
+        arc = arc + [seen.mirrored(after[0]) for seen in arc[-2::-1]]
+        return arc + [seen.mirrored(before[0]) for seen in arc[-2:0:-1]]
+    if before and not shared:
+        arc = [seen.mirrored(before[0]) for seen in arc[:0:-1]] + arc
+    elif after and not shared:
+        arc = arc + [seen.mirrored(after[0]) for seen in arc[-2::-1]]
+    if len(arc) == 2:
+        return arc + [seen.opposite(splay) for seen in arc]
+    return arc + [seen.opposite(splay) for seen in arc[-2:0:-1]]
+
+
+def _with_diagonals(surface: Surface, node: int, pair: list[Seen]) -> list[Seen]:
+    """Return both neighbours of a node of two faces and the corners opposite to it, in order."""
+    quads = surface.quads
+    opposite = []
+    for a, b in ((pair[0], pair[1]), (pair[1], pair[0])):
+        for quad in quads[(quads == node).any(axis=1)].tolist():
+            k = quad.index(node)
+            if quad[(k + 1) % 4] == a.base and quad[(k + 3) % 4] == b.base:
+                opposite.append(Seen(quad[(k + 2) % 4]))
+    return [pair[0], opposite[0], pair[1], opposite[1]]
+
+
+def _independent(surface: Surface, coupled: Indices) -> Indices:
+    """Return which nodes (n,) are red: not `coupled` to themselves, and no neighbours of each other."""
+    ring, n = surface.ring, len(surface.nodes)
+    colour = np.full(n, -1)
+    for seed in range(n):
+        if colour[seed] >= 0:
+            continue
+        front, now = np.array([seed]), 0
+        colour[seed] = 0
+        while len(front):
+            near = ring[front].ravel()
+            near = near[near >= 0]
+            near = near[colour[near] < 0]
+            now = 1 - now
+            colour[near] = now
+            marked = np.zeros(n, dtype=bool)
+            marked[near] = True
+            front = np.flatnonzero(marked)
+        if (colour >= 0).all():
+            break
+    red = (colour == 0) & ~coupled
+    for column in ring.T:
+        both = np.flatnonzero((column >= 0) & red & red[column])
+        red[np.maximum(both, column[both])] = False
+    return red
+
+
+def _sorted(
+    surface: Surface, red: Indices, rings: dict[int, list[Seen]], held: dict[int, set[int]]
+) -> MarchGraph:
+    """Return the arrays, nodes in their new order."""
+    n = len(surface.nodes)
+    order = np.concatenate([np.flatnonzero(red), np.flatnonzero(~red)])
+    new = np.empty(n, dtype=np.intp)
+    new[order] = np.arange(n)
+    width = max(4, surface.ring.shape[1])
+    ring = np.full((n, width), -1)
+    ring[:, : surface.ring.shape[1]] = surface.ring
+    near = new[ring[order, :4].T]
+    ghosts: list[tuple[int, Seen]] = []
+    odd: list[tuple[int, list[int]]] = []
+    for node in sorted(rings, key=lambda k: int(new[k])):
+        row, k = [], int(new[node])
+        for seen in rings[node]:
+            row.append(int(new[seen.base]) if seen.real else n + len(ghosts))
+            if not seen.real:
+                ghosts.append((k, seen))
+        if len(row) == 4:
+            near[:, k] = row
+        else:
+            near[:, k] = (row + row)[:4]
+            odd.append((k, row))
+    sign, shift = (np.empty((3, len(ghosts))) for _ in range(2))
+    for k, (_, seen) in enumerate(ghosts):
+        sign[:, k], shift[:, k] = seen.sign, seen.shift
+    fixed = sorted((int(new[node]), axes) for node, axes in held.items() if axes)
+    moves = np.ones((3, len(fixed)))
+    for k, (_, axes) in enumerate(fixed):
+        moves[list(axes), k] = 0.0
+    return MarchGraph(
+        order,
+        int(red.sum()),
+        np.ascontiguousarray(near),
+        np.array([k for k, _ in odd], dtype=np.intp),
+        np.cumsum([0, *(len(row) for _, row in odd)]),
+        np.array([m for _, row in odd for m in row], dtype=np.intp),
+        np.array([k for k, _ in ghosts], dtype=np.intp),
+        np.array([int(new[seen.base]) for _, seen in ghosts], dtype=np.intp),
+        np.array([seen.own for _, seen in ghosts]),
+        sign,
+        shift,
+        np.array([k for k, _ in fixed], dtype=np.intp),
+        moves,
+    )

@@ -1,0 +1,156 @@
+"""Volumes marched from surfaces of many patches; the height of first cells is met exactly.
+
+::
+
+    surface --graph--> march --> levels --move along lines--> first cells exact --test--> grid
+                         ^                                                         |
+                         +--------------- other smoothing, smaller steps ----------+
+
+The equations stand in ``kernels/surfaces/step.c``, what is tried while cells are folded in
+`meshonet.solvers.hyperbolic.volume.settings`.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.errors import BadCell, NoValidGridError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, worst_solids
+from meshonet.geometry.surface.planes import Plane
+from meshonet.geometry.surface.surface import Surface
+from meshonet.geometry.threads import thread_count
+from meshonet.kernels._native import respace_lines, surface_march
+from meshonet.solvers.hyperbolic.volume.blocks import blocks_of, volume_grid
+from meshonet.solvers.hyperbolic.volume.graph import MarchGraph, march_graph
+from meshonet.solvers.hyperbolic.volume.settings import ATTEMPTS, Smoothing, VolumeMarch
+from meshonet.solvers.hyperbolic.volume.symmetry import (
+    free_edges_note,
+    in_planes,
+    planes_note,
+    symmetry_planes,
+)
+from meshonet.solvers.solution import Solution
+
+__all__ = ["VolumeMarch", "march_surface"]
+
+FADE = 12.0  # cells over which what first cells needed fades away along a line
+SWEEPS = 10  # of the smoothing of steps along lines
+WORST = 10
+
+
+class _Volume(NamedTuple):
+    """Blocks of a march, how many cells it came from the wall, and how many of all are folded."""
+
+    blocks: tuple[Block, ...]
+    made: int
+    folded: int
+
+
+def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
+    """Return the volume between a surface and a far field, a block a patch.
+
+    i and j of a block are those of its patch, k goes from the wall (``bottom``) to the far field (``top``).
+    Sides in planes of symmetry are patches ``symmetry``, free ones ``free``; all others are connected. First
+    cells are as high as asked, along every line.
+
+    Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` has what differs.
+
+    Raises InputError: settings that no march can meet; NoValidGridError with the worst cells: cells stay
+    folded, by their corners or a Bezier coefficient of their Jacobian.
+    """
+    begun = time.perf_counter()
+    planes, inside = symmetry_planes(surface, settings.symmetry)
+    nodes = in_planes(surface, planes, inside)
+    steps = settings.steps(surface.size)
+    volume, tries = _best(surface, planes, inside, nodes, steps)
+    if volume.made < len(steps) or volume.folded:
+        raise _refusal(volume, len(steps))
+    grid = volume_grid(surface, volume.blocks, np.any(inside, axis=0))
+    notes = [*surface.notes, planes_note(planes, settings.symmetry), free_edges_note(surface, inside)]
+    if tries > 1:
+        notes.append(f"{tries} marches were made: others left folded cells")
+    return Solution(
+        grid,
+        "hyperbolic",
+        seconds={"grid": time.perf_counter() - begun},
+        notes=tuple(note for note in notes if note),
+        first_cells={"bottom": settings.first_cell},
+    )
+
+
+def _best(
+    surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, steps: Floats
+) -> tuple[_Volume, int]:
+    """Return the first volume without folded cells, or that which comes closest, and how many were tried."""
+    best: _Volume | None = None
+    for tries, smoothing in enumerate(ATTEMPTS, start=1):
+        graph = march_graph(surface, planes, inside, smoothing.splay)
+        lines = _respaced(march_levels(surface, graph, nodes, steps, smoothing), graph, steps)
+        _keep_planes(lines, surface, planes, inside)
+        made = lines.shape[2] - 1
+        blocks = blocks_of(surface, lines) if made else ()
+        folded = sum(count_folded_solids(block.nodes, BEZIER) for block in blocks)
+        volume = _Volume(blocks, made, folded)
+        if made == len(steps) and not folded:
+            return volume, tries
+        if best is None or (made, -folded) > (best.made, -best.folded):
+            best = volume
+    return best or volume, len(ATTEMPTS)
+
+
+def march_levels(
+    surface: Surface, graph: MarchGraph, nodes: Floats, steps: Floats, smoothing: Smoothing
+) -> Floats:
+    """Return levels (made + 1, 3, n) of a march by `steps` (m,) as far as it goes, nodes as in `graph`."""
+    levels = np.empty((len(steps) + 1, 3, len(nodes)))
+    levels[0] = nodes[graph.order].T
+    numbers = smoothing.numbers(0.5 * surface.size)
+    made, _, _ = surface_march(levels, np.cumsum(steps), graph, numbers, thread_count())
+    return levels[: made + 1]
+
+
+def _respaced(levels: Floats, graph: MarchGraph, steps: Floats) -> Floats:
+    """Return the lines (3, n, levels) of a march, nodes moved along them so that first cells are exact."""
+    made = len(levels) - 1
+    lines = np.empty((3, levels.shape[2], made + 1))
+    if made < 2:
+        lines[:, graph.order] = np.moveaxis(levels, 0, -1)
+        return lines
+    fade = np.exp(-np.arange(made) / FADE)
+    respace_lines(levels, steps[:made], fade, graph.order, SWEEPS, lines, thread_count())
+    return lines
+
+
+def _keep_planes(lines: Floats, surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> None:
+    """Put what rounding moved out of planes of symmetry back, in place."""
+    edges = surface.open_edges
+    for plane, flags in zip(planes, inside, strict=True):
+        lines[plane.axis, edges[flags]] = plane.value
+
+
+def _refusal(volume: _Volume, cells: int) -> NoValidGridError:
+    if volume.made < cells:
+        problem = f"the march stops after {volume.made} of {cells} cells from the wall"
+    else:
+        columns = sum((block.counts[0] - 1) * (block.counts[1] - 1) for block in volume.blocks)
+        problem = f"{volume.folded} of {cells * columns} cells are folded"
+    remedy = (
+        f"after {len(ATTEMPTS)} tries with other smoothing; give a nearer {{far_field}}, or smoother patches"
+    )
+    return NoValidGridError(f"{problem} {remedy}", _worst(volume.blocks))
+
+
+def _worst(blocks: tuple[Block, ...]) -> list[BadCell]:
+    """Return folded cells, those with the least corners first, of each block in turn."""
+    cells: list[BadCell] = []
+    for number, block in enumerate(blocks):
+        worst = worst_solids(block.nodes, WORST, BEZIER)
+        cells += [replace(cell, block=number) for cell in worst]
+    return cells[:WORST]

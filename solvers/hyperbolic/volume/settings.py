@@ -1,0 +1,106 @@
+"""What a march from a surface is asked for, and the smoothing that is tried in turn."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.growth import cells_for_growth, growing_steps
+
+GROWTH = 1.2
+"""Of cells along a line, where neither layers nor growth are given."""
+FAR_FIELD = 15.0
+"""Distance of the far field in lengths of the surface, where none is given."""
+FEWEST = 3
+
+
+@dataclass(frozen=True)
+class VolumeMarch:
+    """A march from a surface.
+
+    Parameters
+    ----------
+    first_cell : height of the cells at the wall, in the surface's unit of length.
+    layers : nodes along each line, the wall's included; None: as many as `growth` needs.
+    far_field : distance that is marched, in the surface's unit; None: 15 times its longest extent.
+    symmetry : axis that planes of symmetry lie across, or ``none`` where all open edges are free; None: open
+        edges in a plane across an axis, with the surface on one side, lie in a plane of symmetry.
+    growth : of cells along a line, at most; None: 1.2 if `layers` is None, else what `layers` need.
+    """
+
+    first_cell: float
+    layers: int | None = None
+    far_field: float | None = None
+    symmetry: Literal["x", "y", "z", "none"] | None = None
+    growth: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("first_cell", "far_field"):
+            value = getattr(self, name)
+            if value is not None and not 0.0 < value < math.inf:
+                raise InputError(f"{value:g} is no length", "give a positive one", parameter=name)
+        if self.layers is not None and self.layers < FEWEST:
+            raise InputError(f"{self.layers} is too few", f"give {FEWEST} or more", parameter="layers")
+        if self.growth is not None and not 1.0 <= self.growth < math.inf:
+            raise InputError(f"{self.growth:g} is no growth", "give e.g. 1.2", parameter="growth")
+        if self.symmetry not in (None, "x", "y", "z", "none"):
+            raise InputError(f"{self.symmetry!r} is no axis", "use x, y, z or none", parameter="symmetry")
+
+    def steps(self, size: float) -> Floats:
+        """Return the steps (layers - 1,) of a march from a surface of that size.
+
+        Raises InputError: too few layers for the growth, or for any.
+        """
+        far = FAR_FIELD * size if self.far_field is None else self.far_field
+        if far < 2.0 * self.first_cell:
+            problem = f"the far field at {far:.4g} is nearer than two first cells of {self.first_cell:.4g}"
+            raise InputError(problem, "give a larger {far_field} or a smaller {first_cell}")
+        needed = 1 + max(cells_for_growth(self.first_cell, far, self.growth or GROWTH), FEWEST - 1)
+        if self.layers is not None and self.growth is not None and self.layers < needed:
+            away = f"{self.layers} layers from {self.first_cell:.4g} to {far:.4g}"
+            problem = f"{away} grow by more than {self.growth:g}"
+            raise InputError(problem, f"give {needed} {{layers}} or a larger {{growth}}")
+        cells = (needed if self.layers is None else self.layers) - 1
+        if cells * self.first_cell > far:
+            problem = (
+                f"{cells + 1} layers of {self.first_cell:.4g} or more reach beyond the far field at {far:.4g}"
+            )
+            raise InputError(problem, f"give at most {int(far / self.first_cell) + 1} {{layers}}")
+        return np.asarray(growing_steps(self.first_cell, far, cells))
+
+
+class Smoothing(NamedTuple):
+    """Numbers of ``kernels/surfaces/march.h`` in its order, but for the size, which stands between them."""
+
+    explicit: float = 0.4
+    implicit: float = 1.5
+    theta: float = 1.0
+    sharp: float = -0.5
+    longest: float = 3.0
+    weight: float = 0.25
+    blend: float = 5e-4
+    sweeps: int = 10
+    ramp: int = 10
+    tolerance: float = 1e-3
+    most: int = 40
+    splay: float = 0.0
+    """Of free edges (`meshonet.solvers.hyperbolic.volume.graph`)."""
+
+    def numbers(self, size: float) -> tuple[float, ...]:
+        """Return the numbers of a march over a surface of half that size."""
+        return (*self[:4], size, *self[4:11])
+
+
+ATTEMPTS = (
+    Smoothing(),
+    Smoothing(explicit=1.0, implicit=2.0),
+    Smoothing(explicit=1.0, implicit=2.0, sweeps=60),
+    Smoothing(explicit=1.0, implicit=2.0, theta=0.0, longest=0.5, sweeps=60),
+    Smoothing(explicit=2.0, implicit=4.0, theta=0.0, longest=0.5, sweeps=60),
+)
+"""Tried in turn while cells are folded."""

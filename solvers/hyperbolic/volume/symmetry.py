@@ -1,0 +1,78 @@
+"""Which open edges of a surface lie in planes of symmetry, and the nodes moved exactly into these."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.surface.planes import FLAT, Plane, edges_in
+from meshonet.geometry.surface.surface import Surface
+
+ROUGH = 1e-3
+"""Part of the size of a surface by which nodes may be off a plane of symmetry that was named."""
+
+
+def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ...], Indices]:
+    """Return the planes of symmetry and which (p, k) of the open edges lie in each.
+
+    `axis` is that of planes that were named, ``none`` for no plane, None for those that the surface shows.
+
+    Raises InputError: no open edge lies across the axis.
+    """
+    sides, nodes = surface.open_sides, surface.nodes
+    if axis in (None, "none"):
+        planes, slack = (surface.planes if axis is None else ()), FLAT * surface.size
+    else:
+        planes, slack = tuple(p for p in surface.planes if "xyz"[p.axis] == axis), FLAT * surface.size
+        if not planes:
+            planes, slack = (
+                _named(nodes, sides, "xyz".index(str(axis)), ROUGH * surface.size),
+                ROUGH * surface.size,
+            )
+        if not planes:
+            problem = f"no open edge of the surface lies in a plane across {axis}"
+            raise InputError(problem, "leave {symmetry} out, or name another axis", parameter="symmetry")
+    inside = np.zeros((len(planes), len(sides)), dtype=bool)
+    for k, plane in enumerate(planes):
+        inside[k] = edges_in(nodes, sides, plane, slack)
+    return planes, inside
+
+
+def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plane, ...]:
+    """Return planes at the ends of the surface along an axis that open edges lie in, to `slack`."""
+    planes = []
+    for end in (float(nodes[:, axis].min()), float(nodes[:, axis].max())):
+        inside = edges_in(nodes, sides, Plane(axis, end), 2.0 * slack)
+        if inside.any():
+            planes.append(Plane(axis, float(np.median(nodes[sides[inside, :2], axis]))))
+    return tuple(planes)
+
+
+def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> Floats:
+    """Return the nodes (n, 3) of a surface, those of open edges `inside` planes moved exactly into them."""
+    nodes, edges = surface.nodes.copy(), surface.open_edges
+    for plane, flags in zip(planes, inside, strict=True):
+        nodes[edges[flags], plane.axis] = plane.value
+    return nodes
+
+
+def free_edges_note(surface: Surface, inside: Indices) -> str:
+    """Return a sentence on open edges in no plane of symmetry, empty without such."""
+    edges = surface.open_edges
+    free = ~inside.any(axis=0) if len(inside) else np.ones(len(edges), dtype=bool)
+    if not free.any():
+        return ""
+    count, node = int(free.sum()), int(edges[free][0, 0])
+    return (
+        f"{count} open edges are in no plane of symmetry and are left free, their lines splayed, first at "
+        f"{surface.place(node)}"
+    )
+
+
+def planes_note(planes: tuple[Plane, ...], named: str | None) -> str:
+    """Return a sentence on the planes of symmetry that were taken for such, empty if they were named."""
+    if not planes or named is not None:
+        return ""
+    return "open edges are in a plane of symmetry at " + " and ".join(str(plane) for plane in planes)

@@ -1,0 +1,150 @@
+"""Blades and ducts: planar grids of all sections, alike, and the volume between them along z.
+
+::
+
+    blade   O grids marched from the sections, between two end walls, ``hub`` and ``shroud``. Twist and scale
+            fade away from the blade, so that the far field is a straight cylinder.
+    duct    one block in sections of four sides, five in others; ``inlet`` and ``outlet`` at the ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.extrude import End, thickened
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sections.section import Section
+from meshonet.geometry.sections.stack import Stack
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.far_field import o_boundary
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.growth import cells_for_growth
+from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.pipeline.make_grid import make_grid
+from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.stacking.request import StackRequest
+from meshonet.solvers.stacking.section_nodes import around, unit_nodes
+from meshonet.solvers.stacking.wing_surface import span_heights
+from meshonet.solvers.sweeping.butterfly import CORE, filled, ring_rows
+
+_FADE = 4.0
+"""Distance from a blade, in chords, at which two thirds of its twist and scale are gone."""
+_GROWTH = 1.2
+
+
+def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
+    """Return the volume around a blade between its first and its last section, and notes.
+
+    Raises InputError: counts that do not suffice; NoValidGridError: a section's own grid is folded.
+    """
+    plan = around(stack.sections, request.around, gap=request.base)
+    height = request.height() * stack.chord
+    least = height / stack.chord
+    rows = request.layers or 1 + cells_for_growth(least, request.far_field, request.growth or _GROWTH)
+    planes, notes = [], []
+    for section in stack.sections:
+        nodes, note = unit_nodes(section, plan)
+        wall = nodes[::-1].copy()  # clockwise, as planar grids around bodies are
+        edges = o_boundary(wall, rows, np.array([0.5, 0.0]), request.far_field, chord=1.0, turned=False)
+        march = GridRequest(method="hyperbolic", first_cell=height / section.chord)
+        planes.append(make_grid(edges, march).grid)
+        notes.append(note)
+    nodes_of = np.stack([plane.nodes for plane in planes])
+    away = np.linalg.norm(nodes_of - nodes_of[:, :, :1], axis=-1).mean(axis=0)
+    weight = np.exp(-((away / min(_FADE, request.far_field / 3.0)) ** 2))
+    grid = _lofted(stack, planes, request.span, (("hub", "wall"), ("shroud", "wall")), weight.ravel())
+    named = [replace(p, name="blade", kind="wall") if p.name == "wall" else p for p in grid.patches]
+    return replace(grid, patches=tuple(named)), tuple(dict.fromkeys(note for note in notes if note))
+
+
+def duct_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
+    """Return the volume inside a duct between its first and its last section, and notes.
+
+    Raises InputError: a section that is an airfoil; counts that do not suffice.
+    """
+    for k, section in enumerate(stack.sections):
+        if isinstance(section.shape, Airfoil):
+            problem = "an airfoil is no section of a duct"
+            raise InputError(problem, "give a closed curve without a trailing edge", place=f"sections[{k}]")
+    chosen = request.first_cell is not None or request.y_plus is not None
+    first = request.height() * stack.chord if chosen else None
+    single = all(section.shape.topology == "quad" for section in stack.sections)  # type: ignore[union-attr]
+    planes = _four_sided(stack, request, first) if single else _five_blocks(stack, request, first)
+    return _lofted(stack, planes, request.span, (("inlet", "inlet"), ("outlet", "outlet"))), ()
+
+
+def _four_sided(stack: Stack, request: StackRequest, first: float | None) -> list[Grid]:
+    """Return the single blocks inside sections of four sides, their sides walls."""
+    n = _side(request) + 1
+    planes = []
+    for section in stack.sections:
+        length = section.frame[1]
+        h = None if first is None else first / section.chord * length
+        sides = GridRequest(
+            Sampling(n, n), slide=False, spacing_south=h, spacing_north=h, spacing_west=h, spacing_east=h
+        )
+        plane = make_grid(section.shape, sides).grid
+        patches = (replace(p, name="wall", kind="wall") for p in plane.outer_patches())
+        planes.append(replace(_unit(plane, section), patches=tuple(patches)))
+    return planes
+
+
+def _five_blocks(stack: Stack, request: StackRequest, first: float | None) -> list[Grid]:
+    """Return a core and a ring of four blocks inside each section."""
+    side = _side(request)
+    arcs_of, widths = [], []
+    for section in stack.sections:
+        assert isinstance(section.shape, Outline)  # noqa: S101 - ducts have no others
+        edges = section.shape.boundary(Sampling(side + 1, side + 1, topology="quad"))
+        origin, length = section.frame
+        loop = (edges.east, edges.north[::-1], edges.west[::-1], edges.south)
+        arcs_of.append([(arc - origin) / length for arc in loop])
+        points = np.concatenate(arcs_of[-1])
+        widths.append((1.0 - CORE) * float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean()))
+    k = int(np.argmax([width * section.chord for width, section in zip(widths, stack.sections, strict=True)]))
+    width = widths[k] * stack.sections[k].chord
+    edge = width / (1.0 - CORE) * 0.25 * np.pi * (1.0 + CORE) / side
+    rows = request.layers - 1 if request.layers else ring_rows(width, edge, first, request.growth)
+    planes = []
+    for section, arcs, own in zip(stack.sections, arcs_of, widths, strict=True):
+        part = None if first is None else first / section.chord / own
+        planes.append(filled(arcs, rows, part))
+    return planes
+
+
+def _side(request: StackRequest) -> int:
+    """Return the cells along a quarter of a section."""
+    if (request.around - 1) % 4:
+        remedy = "use a multiple of 4, and one more"
+        raise InputError(
+            f"{request.around} nodes around the four sides of a duct", remedy, parameter="around"
+        )
+    return (request.around - 1) // 4
+
+
+def _unit(plane: Grid, section: Section) -> Grid:
+    origin, length = section.frame
+    return plane.with_nodes((plane.nodes - origin) / length)
+
+
+def _lofted(
+    stack: Stack, planes: list[Grid], span: int, ends: tuple[End, End], weight: Floats | None = None
+) -> Grid:
+    """Return the volume between planar grids of the sections, of unit chord and alike."""
+    z = span_heights(stack.z, span, None)
+    nodes = []
+    for k, block in enumerate(planes[0].blocks):
+        ni, nj = block.counts
+        unit = np.stack([plane.blocks[k].nodes.reshape(-1, 2) for plane in planes])
+        made = stack.lofted(unit, z, weight).reshape(len(z), ni, nj, 3)
+        nodes.append(_planar(made))
+    return replace(thickened(planes[0], nodes, ends), name=stack.name)
+
+
+def _planar(planes: Floats) -> Floats:
+    """Return nodes (ni, nj, nk, 3) in planar layout from those of planes (nk, ni, nj, 3)."""
+    return np.moveaxis(np.ascontiguousarray(planes.transpose(3, 1, 2, 0)), 0, -1)

@@ -1,0 +1,126 @@
+"""The planar grid of a cross-section that is swept or stacked: the inside of an outline."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import CORNER_DEG, Loop
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.polygon.corners import turning
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.circle import Circle
+from meshonet.geometry.shapes.domain_shape import DomainShape, four_sided
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
+from meshonet.solvers.pipeline.make_grid import make_grid
+from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.sweeping.butterfly import DEFAULT_CELLS, Disc, butterfly
+
+_SIDES = 65, 33
+"""Nodes along the sides of a four-sided section, unless they are given."""
+
+
+def section_grid(shape: Shape | Grid, request: GridRequest) -> tuple[Grid, tuple[str, ...]]:
+    """Return the planar grid inside a closed curve or domain, and notes; a grid is taken as it is.
+
+    A circle is made of five blocks, a four-sided outline of one, others of the blocks that are found.
+    Walls with a first cell are all sides, or the stretches that the request names.
+
+    Raises InputError: parameters that do not fit the shape; as `make_grid`.
+    """
+    if isinstance(shape, Grid):
+        for name in ("cells", "cell_size", "first_cell", "y_plus", "layout"):
+            if getattr(request, name) is not None:
+                raise InputError(f"{{{name}}} is of no use to a section that is a grid", "leave it out")
+        return shape, ()
+    request, note = _with_height(shape, request)
+    notes = (note,) if note else ()
+    if (
+        isinstance(shape, Circle)
+        and request.cell_size is None
+        and request.layout is None
+        and not request.walls
+    ):
+        return _disc(shape, request), notes
+    inside = _inside(shape)
+    if isinstance(inside, DomainShape) and inside.many:
+        request = _walled(inside, request)
+    elif request.first_cell is not None and not request.asks_for_blocks:
+        h = request.first_cell
+        request = replace(
+            request, first_cell=None, slide=False, spacing_south=h, spacing_north=h, spacing_west=h,
+            spacing_east=h,
+        )  # fmt: skip
+    if isinstance(inside, Outline) and request.sampling.ni is None and not request.asks_for_blocks:
+        request = replace(request, sampling=replace(request.sampling, ni=_SIDES[0], nj=_SIDES[1]))
+    result = make_grid(inside, request)
+    return result.grid, (*notes, *result.notes)
+
+
+def extent(shape: Shape | Grid) -> float:
+    """Return the larger side of the box around a section."""
+    if isinstance(shape, Grid):
+        points = np.concatenate([block.nodes.reshape(-1, 2) for block in shape.blocks])
+    elif isinstance(shape, DomainShape):
+        return shape.domain.extent
+    elif isinstance(shape, Boundary):
+        points = shape.outline()
+    else:
+        points = shape.curve.points  # type: ignore[attr-defined]
+    return float(np.ptp(points, axis=0).max())
+
+
+def _with_height(shape: Shape, request: GridRequest) -> tuple[GridRequest, str]:
+    """Return the request with the height of a y+, by the extent of the section, and where it is from."""
+    if request.y_plus is None or request.reynolds is None:
+        return request, ""
+    unit = extent(shape)
+    height = first_cell(request.y_plus, request.reynolds, request.chord_fraction) * unit
+    note = (
+        f"y+ {request.y_plus:g} at Re {request.reynolds:g} on a length of {unit:.6g} is {height:.6g}: "
+        f"{FORMULA} ({SOURCE})"
+    )
+    return replace(request, y_plus=None, reynolds=None, chord_fraction=0.5, first_cell=height), note
+
+
+def _disc(shape: Circle, request: GridRequest) -> Grid:
+    if request.sampling.ni is not None:
+        raise InputError("a circle is made of five blocks", "give {cells} instead", parameter="res")
+    cells = request.cells or DEFAULT_CELLS * (1 if request.first_cell is None else 2)
+    return butterfly(Disc(shape.radius, cells, request.first_cell, request.growth))
+
+
+def _inside(shape: Shape) -> Shape:
+    """Return a closed curve as the domain in it; one block where that has four sides."""
+    if not isinstance(shape, Outline | Airfoil):
+        return shape
+    loop = _loop(shape.curve)
+    domain = Domain((loop,), shape.name, shape.notes)
+    if isinstance(shape, Outline) and shape.topology == "quad" and four_sided(domain):
+        return shape
+    return DomainShape(domain)
+
+
+def _loop(curve: Curve) -> Loop:
+    """Return the loop along a smooth curve, the domain inside."""
+    if polygon_area(curve.points) < 0:
+        points, last = curve.points[::-1], len(curve.points) - 1
+        curve = Curve(points, closed=True, corners=np.sort(last - curve.corner_index))
+    turn = np.abs(np.degrees(turning(curve.points, closed=True)))[curve.corner_index]
+    return Loop(curve, tuple(int(k) for k in curve.corner_index[turn > CORNER_DEG]), ("wall",))
+
+
+def _walled(shape: DomainShape, request: GridRequest) -> GridRequest:
+    """Return the request with layers along all loops that can have them, unless it names some."""
+    loops = shape.domain.loops
+    if request.first_cell is None or request.walls or (loops[0].corner_cells < 2).any():
+        return request
+    return replace(request, walls=tuple(dict.fromkeys(name for loop in loops for name in loop.names)))

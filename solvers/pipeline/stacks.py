@@ -1,0 +1,79 @@
+"""Stacks of sections: a wing's surface and the volume marched from it, lofted blades and ducts; measured."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sections.stack import Stack
+from meshonet.geometry.threads import limited_to
+from meshonet.solvers.pipeline.make_grid import Result, judged
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.stacking.request import StackRequest
+from meshonet.solvers.stacking.wing_surface import wing_surface
+
+_REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"
+
+
+def stack_surface(stack: Stack, request: StackRequest | None = None) -> tuple[Grid, tuple[str, ...]]:
+    """Return the surface patches of a wing, and notes.
+
+    Raises InputError: a stack that is no wing; nodes that do not suffice.
+    """
+    if stack.kind == "duct":
+        raise InputError("a duct has no surface of its own", "leave {surface} out", parameter="surface")
+    shown = stack if stack.kind == "wing" else replace(stack, tip="open")
+    return wing_surface(shown, (request or StackRequest()).surface)
+
+
+def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
+    """Return the volume around or inside a stack, measured.
+
+    Raises InputError: parameters and stack do not go together; NoValidGridError: cells are folded, and that
+    was not allowed.
+    """
+    request = request or StackRequest()
+    seconds: dict[str, float] = {}
+    with limited_to(request.threads):
+        make = _wing if stack.kind == "wing" else _loft
+        solution = make(stack, request, seconds)
+        return judged(
+            solution, seconds, percentiles=request.percentiles, allow_invalid=request.allow_invalid,
+            remedy=_REMEDY,
+        )  # fmt: skip
+
+
+def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
+    """Return the volume between the planar grids of a blade's or a duct's sections."""
+    begun = time.perf_counter()
+    from meshonet.solvers.pipeline.lofts import blade_volume, duct_volume
+
+    grid, notes = (blade_volume if stack.kind == "blade" else duct_volume)(stack, request)
+    seconds["grid"] = time.perf_counter() - begun
+    note = request.note(stack.chord)
+    return Solution(grid, "loft", notes=(*notes, note) if note else notes)
+
+
+def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
+    """Return the volume marched from the surface of a wing, whose root lies in a plane of symmetry."""
+    begun = time.perf_counter()
+    from meshonet.geometry.surface.surface import surface_of
+    from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_surface
+
+    loaded = time.perf_counter()
+    grid, notes = wing_surface(stack, request.surface)
+    surface = surface_of(grid)
+    seconds["boundary"] = time.perf_counter() - loaded
+    chord = stack.chord
+    settings = VolumeMarch(
+        first_cell=request.height() * chord, layers=request.layers, far_field=request.far_field * chord,
+        symmetry="z", growth=request.growth,
+    )  # fmt: skip
+    seconds["load"] = loaded - begun
+    begun = time.perf_counter()
+    solution = march_surface(surface, settings)
+    seconds["grid"] = time.perf_counter() - begun
+    notes = (*notes, *(note for note in (request.note(chord),) if note), *solution.notes)
+    return replace(solution, grid=replace(solution.grid, name=stack.name), notes=notes)

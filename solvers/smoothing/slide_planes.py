@@ -1,0 +1,86 @@
+"""Nodes of flat outer patches: they may slide in their planes, and along the lines where two of them meet."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import face_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
+from meshonet.solvers.energy.hexes import Slides
+
+FLAT = 1e-9
+"""Part of the size of a patch by which its nodes may leave a plane."""
+_SAME = 1e-6
+"""Between unit normals of one plane."""
+
+
+def slides_of(grid: Grid, mesh: HexMesh) -> tuple[Slides, Bools]:
+    """Return how outer nodes slide, and which ones (n,) of all nodes do.
+
+    Nodes of patches that are not flat, of borders between patches of different names in one plane, and where
+    three planes meet stay where they are.
+    """
+    fixed = mesh.outer.copy()
+    known = np.zeros(len(mesh.nodes), dtype=bool)
+    normals = np.zeros((len(mesh.nodes), 2, 3))
+    count = np.zeros(len(mesh.nodes), dtype=np.intp)
+    names = np.full(len(mesh.nodes), -1)
+    numbers = {name: k for k, name in enumerate(sorted({patch.name for patch in grid.patches}))}
+    for patch in grid.patches:
+        spans = patch.range(face_of(mesh.blocks[patch.block], patch.side).shape)
+        part = tuple(slice(a, b + 1) for a, b in spans)
+        free = mesh.free_cells(patch.block, patch.side)[tuple(slice(a, b) for a, b in spans)]
+        nodes = np.unique(face_of(mesh.blocks[patch.block], patch.side)[part])
+        nodes = nodes[mesh.outer[nodes]]
+        if not free.all():
+            fixed[nodes], known[nodes], count[nodes] = True, True, 9
+            continue
+        _add_plane(nodes, _normal(mesh.nodes[nodes]), numbers[patch.name], normals, count, names)
+        known[nodes] = True
+    slide = mesh.outer & known & (count > 0) & (count < 3)
+    at = np.flatnonzero(slide)
+    return Slides(at, _projections(normals[at], count[at])), slide
+
+
+def _normal(points: Floats) -> Floats | None:
+    """Return the unit normal (3,) of the plane of points (n, 3), None where they are in none."""
+    size = float(np.ptp(points, axis=0).max())
+    centred = points - points.mean(axis=0)
+    values, vectors = np.linalg.eigh(centred.T @ centred)
+    normal = vectors[:, 0]
+    if values[1] <= (FLAT * size) ** 2 or np.abs(centred @ normal).max() > FLAT * size:
+        return None
+    axis = int(np.argmax(np.abs(normal)))
+    if abs(normal[axis]) > 1 - 1e-12:  # exactly a plane of coordinates: those stay bitwise
+        normal = np.eye(3)[axis]
+    return np.asarray(normal)
+
+
+def _add_plane(
+    nodes: Indices, normal: Floats | None, name: int, normals: Floats, count: Indices, names: Indices
+) -> None:  # fmt: skip
+    """Add a plane to those of nodes; `count` becomes 3 or more for nodes that stay."""
+    if normal is None:
+        count[nodes] = 9
+        return
+    for node in nodes[count[nodes] < 3]:
+        same = [k for k in range(count[node]) if abs(normals[node, k] @ normal) > 1 - _SAME]
+        if not same:
+            if count[node] < 2:
+                normals[node, count[node]] = normal
+            count[node] += 1
+        elif names[node] != name:
+            count[node] = 9
+        names[node] = name
+
+
+def _projections(normals: Floats, count: Indices) -> Floats:
+    """Return the projections (k, 3, 3) on the planes of normals (k, 2, 3), or on lines where two meet."""
+    first, second = normals[:, 0], normals[:, 1]
+    second = second - np.einsum("kc,kc->k", first, second)[:, None] * first
+    size = np.linalg.norm(second, axis=1)
+    second = np.where((count > 1)[:, None], second / np.where(size > 0, size, 1.0)[:, None], 0.0)
+    return np.asarray(np.eye(3) - sum(each[:, :, None] * each[:, None, :] for each in (first, second)))

@@ -1,0 +1,148 @@
+"""Layers at the outer sides of volumes, with the heights that they had.
+
+As `meshonet.solvers.smoothing.layers` in the plane: nodes of thin cells are moved along the optimised line
+that leaves the side to where their old heights add up, and held there while the rest is optimised once
+more.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
+from meshonet.solvers.energy.hex_bricks import Targets
+
+THIN = 3.0
+"""Ratio of the shorter of the other sides to the height from which on a cell is one of layers."""
+_LOW = 3.0
+"""Ratio of the mean height along a line to that of its first cell, from which on this one is of layers."""
+_UNLIKE = np.log(1.5)
+"""By how much a height may differ from what is wanted around it; else it is not one that was meant."""
+_ROOM = 0.9
+"""Part of a line up to its last node inside that layers may take."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layers:
+    """Lines from outer sides inwards, of nodes (n,) each of which the first is on the side.
+
+    `rows` (m,) of lines (m, n) are how many edges from the side on end thin cells, `heights` (m, n-1) those
+    that the edges should have.
+    """
+
+    lines: Indices
+    rows: Indices
+    heights: Floats
+
+    @property
+    def first(self) -> Indices:
+        """(m, 2) nodes of the first edges of lines with layers."""
+        return self.lines[self.rows > 0, :2]
+
+
+def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[Layers]:
+    """Return the layers at outer sides of a mesh of which nodes `moves` (n,) are free."""
+    layers = []
+    for number, (block, wanted) in enumerate(zip(mesh.blocks, targets, strict=True)):
+        for side, (axis, end) in PLACES.items():
+            free = mesh.free_cells(number, side)
+            if not free.any() or block.shape[axis] < 4:
+                continue
+            way = slice(None, None, -1 if end else 1)
+            lattice = np.moveaxis(block, axis, 0)[way]
+            logs = [np.moveaxis(each, axis, 0)[way] for each in wanted]
+            edges = [logs[axis][1:-1], *(_own(logs[d], d, axis) for d in range(3) if d != axis)]
+            rows = _rows(edges, free)
+            rows[~moves[lattice[1]]] = 0
+            rows = np.minimum(rows, len(lattice) - 3).ravel()
+            if rows.any():
+                at = np.flatnonzero(rows)
+                lines = lattice.reshape(len(lattice), -1)[:, at].T
+                heights = _heights(mesh.nodes[lines], edges[0].reshape(len(lattice) - 1, -1)[:, at].T)
+                layers.append(Layers(lines, rows[at], heights))
+    return _of_one_foot(layers, len(mesh.nodes))
+
+
+def _own(logs: Floats, direction: int, axis: int) -> Floats:
+    """Return the edges along a direction without those beyond the block; the first index is along `axis`."""
+    place = direction + 1 if direction < axis else direction
+    return np.moveaxis(np.moveaxis(logs, place, 0)[1:-1], 0, place)
+
+
+def _rows(logs: list[Floats], free: Bools) -> Indices:
+    """Return how many rows from a side on are thin at each of its nodes (n, m)."""
+    height, first, second = logs
+    mean = 0.25 * (height[:, 1:, 1:] + height[:, 1:, :-1] + height[:, :-1, 1:] + height[:, :-1, :-1])
+    low = np.exp(mean).mean(axis=0) > _LOW * np.exp(mean[0])
+    wide = [0.25 * (each[1:, ...] + each[:-1, ...]) for each in (first, second)]
+    along = wide[0][:, :, 1:] + wide[0][:, :, :-1], wide[1][:, 1:] + wide[1][:, :-1]
+    thin = (np.minimum(*along) - mean > np.log(THIN)) & free
+    count = np.maximum(np.logical_and.accumulate(thin, axis=0).sum(axis=0), low & free)
+    rows = np.full([n + 1 for n in count.shape], np.iinfo(np.intp).max)
+    for i, j in np.ndindex(2, 2):
+        part = rows[i : i + count.shape[0], j : j + count.shape[1]]
+        np.minimum(part, np.where(free, count, np.iinfo(np.intp).max), out=part)
+    rows[rows == np.iinfo(np.intp).max] = 0
+    return rows
+
+
+def _heights(points: Floats, logs: Floats) -> Floats:
+    """Return the lengths (m, n-1) along lines (m, n, 3), or what is wanted where one is quite another."""
+    steps = np.diff(points, axis=1)
+    squares = np.einsum("...c,...c", steps, steps)
+    own = 0.5 * np.log(np.maximum(squares, 1e-300))
+    return np.where(np.abs(own - logs) < _UNLIKE, np.sqrt(squares), np.exp(logs))
+
+
+def _of_one_foot(layers: list[Layers], count: int) -> list[Layers]:
+    """Return layers whose rows end where nodes are over more than one node of outer sides."""
+    low, high = np.full(count, count), np.full(count, -1)
+    for each in layers:
+        for row in range(int(each.rows.max())):
+            at = each.lines[each.rows > row]
+            np.minimum.at(low, at[:, row + 1], at[:, 0])
+            np.maximum.at(high, at[:, row + 1], at[:, 0])
+    alone = low >= high
+    rows = [np.logical_and.accumulate(alone[each.lines[:, 1:]], axis=1).sum(axis=1) for each in layers]
+    return [replace(each, rows=np.minimum(each.rows, most)) for each, most in zip(layers, rows, strict=True)]
+
+
+def with_layers(nodes: Floats, layers: list[Layers]) -> tuple[Floats, Bools]:
+    """Return `nodes` (n, 3) with layers as high as they should be, and which of them (n,) are in layers."""
+    moved, held = nodes.copy(), np.zeros(len(nodes), dtype=bool)
+    for each in layers:
+        points = nodes[each.lines]
+        steps = np.diff(points, axis=1)
+        place = np.cumsum(np.sqrt(np.einsum("...c,...c", steps, steps)), axis=1)
+        wanted = np.cumsum(each.heights, axis=1)
+        rows = np.where(wanted[np.arange(len(wanted)), each.rows - 1] < _ROOM * place[:, -2], each.rows, 0)
+        for row in range(int(rows.max(initial=0))):
+            at = np.flatnonzero(rows > row)
+            moved[each.lines[at, row + 1]] = _at(points[at], place[at], wanted[at, row])
+            held[each.lines[at, row + 1]] = True
+        at = np.flatnonzero(rows > 0)
+        moved = with_first_heights(moved, each.lines[at, :2], each.heights[at, 0])
+    return moved, held
+
+
+def _at(points: Floats, place: Floats, wanted: Floats) -> Floats:
+    """Return the points (m, 3) at arc lengths (m,) of lines (m, n, 3) with arc lengths `place` (m, n-1)."""
+    k = np.minimum((place < wanted[:, None]).sum(axis=1), place.shape[1] - 1)
+    line = np.arange(len(points))
+    before = np.where(k > 0, place[line, k - 1], 0.0)
+    part = (wanted - before) / np.maximum(place[line, k] - before, 1e-300)
+    return np.asarray(points[line, k] + part[:, None] * (points[line, k + 1] - points[line, k]))
+
+
+def with_first_heights(nodes: Floats, first: Indices, heights: Floats) -> Floats:
+    """Return `nodes` with the second node of each edge (m, 2) exactly at a height (m,) over the first."""
+    foot = nodes[first[:, 0]]
+    way = nodes[first[:, 1]] - foot
+    moved = nodes.copy()
+    moved[first[:, 1]] = foot + way * (heights / np.maximum(np.linalg.norm(way, axis=1), 1e-300))[:, None]
+    return moved

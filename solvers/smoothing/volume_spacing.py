@@ -1,0 +1,90 @@
+"""What lengths the edges of a given grid of volumes should have: its own, without noise and without jumps.
+
+Logarithms of lengths are diffused along grid lines and across them, where there are neighbours on both
+sides, so that geometric growth stays what it is. Edges between nodes that do not move keep their lengths.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import PLACES, face_of
+from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, exchange, second_layer
+from meshonet.solvers.energy.hex_bricks import Targets
+
+ROUNDS = 12
+"""Of diffusion: over about so many cells as their root."""
+_SHARE = 0.1
+"""Of the second differences along three directions, that an edge gives way by in a round."""
+_OUTLIER = np.log(2.0)
+"""By which an edge may differ from the mean of its neighbours."""
+_CLIPPED = 4
+"""Rounds in which it is held to that."""
+
+
+def wanted_edges(mesh: HexMesh, moves: Bools, rounds: int = ROUNDS) -> Targets:
+    """Return the logarithms of wanted lengths of edges of a mesh of which nodes `moves` (n,) are free."""
+    logs = [tuple(_logs(mesh.nodes[block], axis) for axis in range(3)) for block in mesh.blocks]
+    stays = [tuple(_stays(moves[block], axis) for axis in range(3)) for block in mesh.blocks]
+    _fill_beyond(mesh, logs)
+    for number in range(rounds):
+        for edges, still in zip(logs, stays, strict=True):
+            for axis in range(3):
+                _diffuse(edges[axis], axis, still[axis], clip=number < _CLIPPED)
+        _fill_beyond(mesh, logs)
+    return [tuple(np.nan_to_num(each) for each in edges) for edges in logs]  # type: ignore[misc]
+
+
+def _logs(nodes: Floats, axis: int) -> Floats:
+    """Return the logarithms of lengths along a direction, with NaN for one edge beyond either end.
+
+    Edges without a length have that of the middle one.
+    """
+    steps = np.diff(nodes, axis=axis)
+    squares = np.einsum("...c,...c", steps, steps)
+    known = squares > 0.0
+    least = float(np.median(squares[known])) if known.any() else 1.0
+    logs = 0.5 * np.log(np.where(known, squares, least))
+    return np.pad(logs, [(int(k == axis),) * 2 for k in range(3)], constant_values=np.nan)
+
+
+def _stays(moves: Bools, axis: int) -> Bools:
+    ends = np.moveaxis(moves, axis, 0)
+    return np.moveaxis(~(ends[1:] | ends[:-1]), 0, axis)
+
+
+def _fill_beyond(mesh: HexMesh, logs: list[tuple[Floats, ...]]) -> None:
+    """Copy the first edges across each connection to what is beyond the sides that it joins."""
+
+    def edges(number: int, side: Side) -> Floats:
+        return logs[number][PLACES[side][0]]
+
+    exchange(
+        mesh.connections,
+        lambda number, side: face_of(edges(number, side), side),
+        lambda number, side: second_layer(edges(number, side), side),
+    )
+
+
+def _diffuse(logs: Floats, axis: int, stays: Bools, *, clip: bool) -> None:
+    """Move logarithms along `axis` towards those around, where they may."""
+    own = np.moveaxis(np.moveaxis(logs, axis, 0)[1:-1], 0, axis)
+    bend, mean, count = (np.zeros(own.shape) for _ in range(3))
+    for direction in range(3):
+        at = partial(np.moveaxis, source=direction, destination=0)
+        values = at(logs) if direction == axis else at(own)
+        if len(values) < 3:
+            continue
+        both = 0.5 * (values[2:] + values[:-2])
+        known = np.isfinite(both)
+        inner = slice(None) if direction == axis else slice(1, -1)
+        at(bend)[inner] += np.where(known, 2.0 * (both - values[1:-1]), 0.0)
+        at(mean)[inner] += np.where(known, both, 0.0)
+        at(count)[inner] += known
+    if clip:
+        around = np.where(count > 0, mean / np.maximum(count, 1), own)
+        own[...] = np.where(stays, own, np.clip(own, around - _OUTLIER, around + _OUTLIER))
+    own += np.where(stays, 0.0, _SHARE * bend)

@@ -1,0 +1,189 @@
+"""Given grids of many blocks in space, smoothed: the joint optimum of their nodes, with their own spacing.
+
+The optimum is `meshonet.solvers.energy.hexes`'s, which wants cells and edges as long as they were given,
+without noise (`meshonet.solvers.smoothing.volume_spacing`); layers at outer sides keep their heights
+(`meshonet.solvers.smoothing.volume_layers`). Folded cells are unfolded first, from around them on. Neither
+the least scaled Jacobian nor the mean deviation from 90 degrees becomes worse
+(`meshonet.solvers.smoothing.volume_judge`): where they would, nodes go part of the way.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner, hex_mesh_of, with_nodes
+from meshonet.solvers.energy.hex_bricks import Targets
+from meshonet.solvers.energy.hexes import HexProblem, Slides, optimise, unfold
+from meshonet.solvers.smoothing.slide_planes import slides_of
+from meshonet.solvers.smoothing.volume_judge import Measures, cells_below, measures
+from meshonet.solvers.smoothing.volume_layers import Layers, layers_of, with_first_heights, with_layers
+from meshonet.solvers.smoothing.volume_restart import harmonic
+from meshonet.solvers.smoothing.volume_spacing import wanted_edges
+from meshonet.solvers.solution import Outcome, Solution
+
+METHOD = "variational"
+ITERATIONS = 100
+TOLERANCE = 1e-5
+_AROUND = (2, 4)
+"""Cells around folded ones that unfold with them, before all of them do."""
+_ROUNDS, _GENTLE = 12, 5
+"""Tries to go part of the way at the most, and those after which nodes of bad cells stay at once."""
+_SHARES = (0.5, 0.7, 0.85)
+"""Of its way that a node of a bad cell keeps in a round, and nodes one and two cells from it."""
+_AS_GOOD = "the grid is kept as it was: its optimum is no better"
+
+
+def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = False) -> Solution:
+    """Return `grid` with its nodes moved to the optimum of all blocks.
+
+    Nodes of outer sides stay bitwise, and so do those of periodic ones; with `slide` those of flat patches
+    move in their planes. `iterations` are those of the optimum at the most.
+
+    Raises InputError: blocks that are no volumes, or left-handed.
+    """
+    begun = time.perf_counter()
+    given = hex_mesh_of(grid)
+    before = measures(given)
+    slides, sliding = slides_of(grid, given) if slide else (Slides.none(), np.zeros(len(given.nodes), bool))
+    moves = ~given.outer | sliding
+    made, after = given, before
+    if moves.any():
+        made, after = _best(given, before, moves, slides, iterations)
+    notes = () if made is not given else (_AS_GOOD,)
+    result = with_nodes(grid, made) if made is not given else grid
+    return Solution(
+        result.with_provenance(method=METHOD, slide=slide),
+        METHOD,
+        seconds={"grid": time.perf_counter() - begun},
+        notes=notes,
+        outcome=Outcome.FOLDED if after.folded else Outcome.DONE,
+    )
+
+
+def _best(
+    given: HexMesh, before: Measures, moves: Bools, slides: Slides, iterations: int
+) -> tuple[HexMesh, Measures]:
+    """Return the smoothed mesh and its measures, the given one where it is no better."""
+    targets = wanted_edges(given, moves)
+    layers = layers_of(given, moves, targets)
+    start, valid = given, before
+    if before.folded:
+        start, valid, targets = _unfolded(given, before, moves, targets, slides)
+        if valid.folded:
+            return (start, valid) if valid.folded < before.folded else (given, before)
+    for made in _optima(start, moves, targets, layers, slides, iterations):
+        best = _held_back(start, made, valid, layers)
+        if best is not None:
+            return best
+    return start, valid
+
+
+def _unfolded(
+    given: HexMesh, before: Measures, moves: Bools, targets: Targets, slides: Slides
+) -> tuple[HexMesh, Measures, Targets]:
+    """Return the mesh without folded cells, or with fewer, and the edges that are wanted.
+
+    What is around folded cells is moved first, then all, then all from a new beginning.
+    """
+    mesh, measured = given, before
+    for reach in (*_AROUND, None):
+        near = moves if reach is None else moves & _around(mesh, reach)
+        mesh, measured = _with_fewer(mesh, mesh, measured, near, targets, slides)
+        if not measured.folded:
+            return mesh, measured, targets
+    anew = given.with_nodes(harmonic(given, ~given.outer))
+    wanted = wanted_edges(anew, moves)
+    fewer, now = _with_fewer(mesh, anew, measured, moves, wanted, slides)
+    return (mesh, measured, targets) if fewer is mesh else (fewer, now, wanted)
+
+
+def _with_fewer(
+    mesh: HexMesh, start: HexMesh, measured: Measures, moves: Bools, targets: Targets, slides: Slides
+) -> tuple[HexMesh, Measures]:
+    """Return `start` unfolded, and its measures, where it has fewer folded cells than `mesh`; else that."""
+    problem = HexProblem(start, moves, targets, slides)
+    unfold(problem)
+    tried = start.with_nodes(problem.result())
+    now = measures(tried)
+    return (tried, now) if now.folded < measured.folded else (mesh, measured)
+
+
+def _around(mesh: HexMesh, reach: int) -> Bools:
+    """Return which nodes (n,) are within so many cells of folded ones."""
+    near = _nodes_of(mesh, cells_below(mesh, 0.0))
+    for _ in range(reach):
+        near = _dilated(near, mesh)
+    return near
+
+
+def _nodes_of(mesh: HexMesh, cells: list[Bools]) -> Bools:
+    """Return which nodes (n,) are corners of some cells of each block."""
+    nodes = np.zeros(len(mesh.nodes), dtype=bool)
+    for block, some in zip(mesh.blocks, cells, strict=True):
+        for corner in np.ndindex(2, 2, 2):
+            at = tuple(slice(c, c + n) for c, n in zip(corner, some.shape, strict=True))
+            nodes[block[at][some]] = True
+    return nodes
+
+
+def _dilated(nodes: Bools, mesh: HexMesh) -> Bools:
+    """Return which nodes are in a cell with one of some."""
+    return _nodes_of(mesh, [any_corner(nodes[block]) for block in mesh.blocks])
+
+
+def _optima(
+    start: HexMesh, moves: Bools, targets: Targets, layers: list[Layers], slides: Slides, iterations: int
+) -> list[HexMesh]:
+    """Return what there is of optima, the better first: with layers at their heights, and without."""
+    optimum = optimise(start, moves, targets, slides=slides, iterations=iterations, tolerance=TOLERANCE)
+    if not optimum.valid:
+        return []
+    if not layers:
+        return [start.with_nodes(optimum.nodes)]
+    nodes, held = with_layers(optimum.nodes, layers)
+    rest = optimise(
+        start.with_nodes(nodes),
+        moves & ~held,
+        targets,
+        slides=slides,
+        iterations=iterations,
+        tolerance=TOLERANCE,
+    )
+    return [start.with_nodes(rest.nodes if rest.valid else nodes)]
+
+
+def _held_back(
+    start: HexMesh, made: HexMesh, before: Measures, layers: list[Layers]
+) -> tuple[HexMesh, Measures] | None:
+    """Return `made` moved back towards `start` until it is no worse, None where nothing would move."""
+    part = np.ones(len(start.nodes))
+    for number in range(_ROUNDS):
+        tried = start.with_nodes(_part_of_the_way(start.nodes, made.nodes, part, layers))
+        now = measures(tried)
+        if now.no_worse(before):
+            return tried, now
+        bad = _nodes_of(start, cells_below(tried, 0.0 if now.folded else before.bound))
+        if not bad.any():  # the mean deviation
+            bad[:] = True
+        for share in _SHARES:
+            part[bad] *= share if number < _GENTLE else 0.0
+            bad = _dilated(bad, start)
+        if not part.any():
+            break
+    return None
+
+
+def _part_of_the_way(old: Floats, new: Floats, part: Floats, layers: list[Layers]) -> Floats:
+    """Return nodes at `part` (n,) of the way between two, first cells of layers as high as they were."""
+    nodes = old + part[:, None] * (new - old)
+    still = part == 0.0
+    nodes[still], nodes[part == 1.0] = old[still], new[part == 1.0]
+    for each in layers:
+        first, heights = each.lines[:, :2], each.heights[:, 0]
+        between = (each.rows > 0) & (part[first[:, 1]] > 0.0) & (part[first[:, 1]] < 1.0)
+        nodes = with_first_heights(nodes, first[between], heights[between])
+    return nodes

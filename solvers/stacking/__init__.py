@@ -1,0 +1,1 @@
+"""Surfaces and volumes from sections placed in space."""

@@ -1,0 +1,108 @@
+"""How a stack becomes a surface or a volume."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.growth import LARGEST
+from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
+from meshonet.solvers.stacking.section_nodes import GAP
+from meshonet.solvers.stacking.wing_surface import DEFAULT_AROUND, DEFAULT_SPAN, WingSurface
+
+DEFAULT_FIRST_CELL, DEFAULT_FAR_FIELD = 1e-3, 15.0
+
+
+@dataclass(frozen=True)
+class StackRequest:
+    """How a stack becomes a surface or a volume; validates itself. Lengths are in longest chords.
+
+    Parameters
+    ----------
+    around : nodes around a section, the first one repeated; odd.
+    span : nodes from the first section to the last.
+    base : least height of trailing edges, in chords of their section.
+    first_cell : height of the first cell at every node of the wall; None is 1e-3.
+    y_plus, reynolds, chord_fraction : the same height by its y+, converted for a flat plate; the Reynolds
+        number is that of the longest chord.
+    layers : nodes away from the wall, the wall's included; None: what `growth` needs.
+    growth : ratio of neighbouring cells away from the wall, where `layers` is not given; None is 1.2.
+    far_field : distance of the far field.
+    threads : that kernels work with; None: all there are.
+    percentiles : whether the quality includes percentiles.
+    allow_invalid : whether a folded grid is a result.
+
+    Raises InputError: a value out of its range; parameters that need or exclude each other.
+    """
+
+    around: int = DEFAULT_AROUND
+    span: int = DEFAULT_SPAN
+    base: float = GAP
+    first_cell: float | None = None
+    y_plus: float | None = None
+    reynolds: float | None = None
+    chord_fraction: float = 0.5
+    layers: int | None = None
+    growth: float | None = None
+    far_field: float = DEFAULT_FAR_FIELD
+    threads: int | None = None
+    percentiles: bool = False
+    allow_invalid: bool = False
+
+    def __post_init__(self) -> None:
+        if self.first_cell is not None and self.y_plus is not None:
+            raise InputError("{first_cell} and {y_plus} both say how high it is", "give one of them")
+        if (self.y_plus is None) != (self.reynolds is None):
+            raise InputError("{y_plus} and {reynolds} belong together", "give both")
+        if self.chord_fraction != 0.5 and self.y_plus is None:
+            raise InputError("{chord_fraction} without {y_plus}", "give {y_plus} as well, or leave it out")
+        if not 1.0 < self.far_field <= 1e6:
+            problem = f"{self.far_field:g} chords"
+            raise InputError(problem, "use more than 1 and at most 1e6", parameter="far_field")
+        if not 1e-12 <= self.height() < 0.5 * self.far_field:
+            problem = f"{self.height():g} chords"
+            raise InputError(problem, "use 1e-12 to half of {far_field}", parameter="first_cell")
+        if self.layers is not None and not 3 <= self.layers <= 100_000:
+            raise InputError(f"{self.layers} nodes", "use 3 to 100000", parameter="layers")
+        if self.growth is not None and not 1.0 < self.growth <= LARGEST:
+            problem = f"{self.growth:g}"
+            raise InputError(problem, f"use more than 1 and at most {LARGEST:g}", parameter="growth")
+        if self.layers is not None and self.growth is not None:
+            raise InputError("{layers} and {growth} both say how many there are", "give one of them")
+        if self.threads is not None and self.threads < 1:
+            raise InputError(f"{self.threads} threads", "use 1 or more", parameter="threads")
+
+    @property
+    def surface(self) -> WingSurface:
+        """Its nodes on the surface."""
+        return WingSurface(self.around, self.span, self.base)
+
+    def height(self) -> float:
+        """Return the height of the first cell in chords."""
+        if self.y_plus is not None and self.reynolds is not None:
+            return first_cell(self.y_plus, self.reynolds, self.chord_fraction)
+        return DEFAULT_FIRST_CELL if self.first_cell is None else self.first_cell
+
+    def note(self, chord: float) -> str:
+        """Return where the height comes from, when it was computed."""
+        if self.y_plus is None:
+            return ""
+        return (
+            f"y+ {self.y_plus:g} at Re {self.reynolds:g} on a chord of {chord:.6g} is "
+            f"{self.height() * chord:.6g}: {FORMULA} ({SOURCE})"
+        )
+
+
+def stack_request(**parameters: Any) -> StackRequest:
+    """Return the request with the parameters, fields of `StackRequest`; ``wall_spacing`` is ``first_cell``.
+
+    Raises InputError: as `StackRequest`, or a parameter that it does not have.
+    """
+    if "wall_spacing" in parameters:
+        parameters["first_cell"] = parameters.pop("wall_spacing")
+    known = [each.name for each in fields(StackRequest)]
+    for name in parameters:
+        if name not in known:
+            raise InputError(f"a stack has no {{{name}}}", f"leave {{{name}}} out")
+    return StackRequest(**parameters)

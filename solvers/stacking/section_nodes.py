@@ -1,0 +1,153 @@
+"""Nodes around the sections of a stack, at the same places of each.
+
+::
+
+            n - h ...  upper side  ... nose        0 is the middle of the base; h cells go from there to each
+      0 |                                )         of its corners, the rest to the two sides in equal parts,
+        h  ...  lower side  ...  nose  '           by the same law of arc length on every side
+                                                   (drawn clockwise; nodes run upper side first)
+
+A section whose base is lower than `gap` is opened to it: its thickness grows by what is missing, in
+proportion to the distance from the nose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.self_intersection import find_crossing
+from meshonet.geometry.sections.section import Section
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.section_curve import farthest_arc
+from meshonet.geometry.shapes.far_field import straight
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.laws import TanhLaw
+
+BASE_CELLS = 8
+GAP = 0.005
+"""Least height of a base in chords."""
+_NOSE_CELL = 0.35
+_EDGE_CELL = 1.2
+LEAST_AROUND = 33
+
+
+@dataclass(frozen=True)
+class Around:
+    """Where nodes lie around every section.
+
+    Parameters
+    ----------
+    cells : of a side.
+    base : cells of the base, an even number.
+    law : from the length along a side to places on it.
+    gap : least height of the base in chords.
+    """
+
+    cells: int
+    base: int
+    law: TanhLaw
+    gap: float
+
+    @property
+    def nodes(self) -> int:
+        """Nodes around, the first repeated."""
+        return 2 * self.cells + self.base + 1
+
+
+def around(sections: tuple[Section, ...], nodes: int, *, gap: float = GAP, base: int = BASE_CELLS) -> Around:
+    """Return the law of `nodes` nodes around all `sections`, the first node repeated at the end.
+
+    Cells beside the base are `_EDGE_CELL` of those on it in the mean of all sections, those at the nose
+    `_NOSE_CELL` of the mean cell.
+
+    Raises InputError: too few nodes, or an even number.
+    """
+    if nodes < LEAST_AROUND or nodes % 2 == 0:
+        problem = f"{nodes} nodes around a section"
+        raise InputError(problem, f"use an odd number from {LEAST_AROUND} on", parameter="around")
+    if not 0 < gap < 0.2:
+        raise InputError(f"a base of {gap:g} chords", "use more than 0 and less than 0.2", parameter="base")
+    cells = (nodes - 1 - base) // 2
+    heights = [max(_base_height(section), gap) for section in sections]
+    step = _EDGE_CELL * float(np.exp(np.mean(np.log(heights)))) / base
+    edge, nose = min(step, 1.0 / cells), _NOSE_CELL / cells
+    return Around(cells, base, TanhLaw.fitted(cells, edge, nose), gap)
+
+
+def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
+    """Return nodes (n, 2) around a section of unit chord, upper side first, and a note if it was changed.
+
+    Raises InputError: the nodes cross themselves.
+    """
+    shape, note = section.shape, ""
+    name = shape.name or "a section"
+    origin, length = section.frame
+    if isinstance(shape, Airfoil):
+        upper, lower = ((side - origin) / length for side in _airfoil_sides(shape, plan))
+        height = float(np.hypot(*(upper[0] - lower[0])))
+        if height < plan.gap * (1 - 1e-9):
+            upper, lower = _opened(upper, lower, plan.gap)
+            note = (
+                f"{name} is changed: its trailing edge, {height:.2g} chords high, is opened to a base of "
+                f"{plan.gap:g} chords"
+            )
+        middle = 0.5 * (upper[0] + lower[0])
+        to_upper, to_lower = (straight(middle, side[0], plan.base // 2 + 1) for side in (upper, lower))
+    else:
+        lines = (((line - origin) / length) for line in _outline_sides(shape, plan))
+        to_upper, upper, to_lower, lower = lines
+    nodes = np.concatenate([to_upper, upper[1:], lower[-2::-1], to_lower[-2::-1]])
+    crossing = find_crossing(nodes[:-1])
+    if crossing is not None:
+        where = f"({crossing.x:.4g}, {crossing.y:.4g}) chords"
+        problem = f"{len(nodes)} nodes around {name} cross themselves at {where}"
+        raise InputError(problem, "use more nodes around, or a higher base")
+    return nodes, note
+
+
+def _base_height(section: Section) -> float:
+    """Return the height of a section's base in chords, 0 where it has none."""
+    shape = section.shape
+    return shape.gap / shape.unit if isinstance(shape, Airfoil) and shape.blunt else 0.0
+
+
+def _airfoil_sides(shape: Airfoil, plan: Around) -> tuple[Floats, Floats]:
+    """Return nodes (cells + 1, 2) of the upper and of the lower side, both from the base to the nose."""
+    stations, s = shape.stations, plan.law(np.linspace(0.0, 1.0, plan.cells + 1))
+    lower = stations.half_base + (stations.nose - stations.half_base) * s
+    upper = stations.upper - (stations.upper - stations.nose) * s
+    nodes = shape.curve.at(np.concatenate([upper, lower]))
+    sides = nodes[: len(s)], nodes[len(s) :]
+    sides[0][-1] = sides[1][-1]
+    return sides
+
+
+def _outline_sides(shape: Outline, plan: Around) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return nodes of the upper half of what stands for a base, the upper side, and the same below.
+
+    Steps are equal on each half of the curve, from its rightmost place to that which is farthest from it.
+    """
+    curve, half = shape.clockwise(), plan.base // 2
+    nose = farthest_arc(curve, curve.points[0])
+    q = np.linspace(0.0, 1.0, plan.cells + half + 1)
+    lower, upper = curve.at(nose * q), curve.at(curve.length - (curve.length - nose) * q[1:])
+    upper = np.concatenate([lower[:1], upper])
+    upper[-1] = lower[-1]
+    return upper[: half + 1], upper[half:], lower[: half + 1], lower[half:]
+
+
+def _opened(upper: Floats, lower: Floats, gap: float) -> tuple[Floats, Floats]:
+    """Return sides (n, 2) from base to nose, moved apart so that the base is `gap` high."""
+    across = upper[0] - lower[0]
+    chord = 0.5 * (upper[0] + lower[0]) - upper[-1]
+    normal = np.array([-chord[1], chord[0]]) / np.hypot(*chord)
+    missing = 0.5 * (gap - float(across @ normal))
+    sides = []
+    for side, sign in ((upper, 1.0), (lower, -1.0)):
+        along = np.clip((side - upper[-1]) @ chord / (chord @ chord), 0.0, None)
+        sides.append(side + sign * missing * along[:, None] * normal)
+    return sides[0], sides[1]

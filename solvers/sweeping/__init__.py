@@ -1,0 +1,1 @@
+"""Volumes swept along curves by sections of the plane."""

@@ -1,0 +1,194 @@
+"""A planar grid carried along a curve in space to blocks of volume.
+
+::
+
+      inlet                                   Planes of nodes stand across the path; the x and y axes of the
+      .--.          _.--._                    section lie in frames that do not turn about it. k runs along
+      |  |--------''      ''-------.  outlet  the path, from `bottom`, the inlet, to `top`, the outlet.
+      |  |--------..____..---------'
+      '--'
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import SIDES, Floats
+from meshonet.geometry.blocks.extrude import thickened
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.curves.frames import frames_along, turned
+from meshonet.geometry.curves.path import Path
+from meshonet.geometry.errors import InputError
+
+TURN_DEG = 4.0
+"""Largest angle that the path turns by within a cell, unless the number of planes is given."""
+_LONG = 3.0
+_LOOKED_AT = 1025
+_UNNAMED = (*SIDES, "outer")
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """How a section is carried along a path.
+
+    Parameters
+    ----------
+    planes : planes of nodes; None: cells turn by at most `TURN_DEG` and are at most three times as long as
+        those of the section are wide in the mean.
+    up : direction (3,) that the section's y axis is nearest to where the path starts; None is z, or y for a
+        path along z.
+    twist : degrees that the section turns by from start to end, in addition.
+    scale : its size at the end, in sizes at the start.
+
+    Raises InputError: a value out of its range.
+    """
+
+    planes: int | None = None
+    up: tuple[float, float, float] | None = None
+    twist: float = 0.0
+    scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        if self.planes is not None and not 2 <= self.planes <= 1_000_000:
+            raise InputError(f"{self.planes} planes", "use 2 to 1000000", parameter="planes")
+        if not 1e-6 < self.scale < 1e6:
+            raise InputError(f"{self.scale:g}", "use a number above 0", parameter="scale")
+        if not abs(self.twist) < 1e6:
+            raise InputError(f"{self.twist:g} degrees", "use fewer", parameter="twist")
+
+
+def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
+    """Return the volume that a planar section makes when it is carried along a path.
+
+    The first plane is the patch ``inlet`` and the last ``outlet``; a closed path has none and is connected to
+    itself. Outer patches that nobody named are called ``wall``; those whose names tell no kind are walls too.
+
+    Raises InputError: a section that is not planar or is periodic; a bend that is too tight for it, with the
+    place; as `frames_along`.
+    """
+    settings = settings or Sweep()
+    section = _walled(section)
+    _check_closed(path, settings)
+    s = np.linspace(0.0, path.length, settings.planes or _planes(section, path))
+    looked = np.linspace(0.0, path.length, max(_LOOKED_AT, len(s)))
+    outline = np.concatenate([section.face(p.block, p.side)[p.start : p.stop + 1] for p in section.patches])
+    _check_bends(outline, path, looked, _axes(path, looked, settings), settings)
+    size = _sizes(path, s, settings)[:, None]
+    x, y = (size * axis for axis in _axes(path, s, settings))
+    points = path.at(s).points
+    if path.closed:
+        for each in (x, y, points):
+            each[-1] = each[0]
+    nodes = [_carried(block.nodes, points, x, y) for block in section.blocks]
+    return thickened(section, nodes, None if path.closed else (("inlet", "inlet"), ("outlet", "outlet")))
+
+
+def _carried(plane: Floats, points: Floats, x: Floats, y: Floats) -> Floats:
+    """Return nodes (ni, nj, nk, 3), in planar layout, of a plane (ni, nj, 2) at points (nk, 3) with axes."""
+    ni, nj = plane.shape[:2]
+    nodes = np.empty((3, ni, nj, len(points)))
+    for d in range(3):
+        np.multiply(plane[..., 0, None], x[:, d], out=nodes[d])
+        nodes[d] += plane[..., 1, None] * y[:, d]
+        nodes[d] += points[:, d]
+    return np.moveaxis(nodes, 0, -1)
+
+
+def _axes(path: Path, s: Floats, settings: Sweep) -> tuple[Floats, Floats]:
+    """Return x and y axes (n, 3) of the section at arc lengths, its twist included."""
+    up = None if settings.up is None else np.array(settings.up, dtype=np.float64)
+    x, y = frames_along(path, s, up)
+    if settings.twist:
+        tangents = path.at(s).tangents
+        y = turned(y, tangents, math.radians(settings.twist) * s / path.length)
+        x = np.cross(y, tangents)
+    return x, y
+
+
+def _sizes(path: Path, s: Floats, settings: Sweep) -> Floats:
+    return np.asarray(1.0 + (settings.scale - 1.0) * s / path.length)
+
+
+def _check_closed(path: Path, settings: Sweep) -> None:
+    if path.closed and (settings.scale != 1.0 or settings.twist % 360.0):
+        problem = "the path is closed and the section does not come back to itself"
+        raise InputError(problem, "leave {scale} out, and give whole turns of {twist}")
+
+
+def _planes(section: Grid, path: Path) -> int:
+    """Return the planes of nodes that a path needs (see `Sweep`)."""
+    places = path.at(np.linspace(0.0, path.length, _LOOKED_AT))
+    bend = float(np.linalg.norm(places.curvature, axis=1).max())
+    area = cells = 0.0
+    for block in section.blocks:
+        x, y = block.nodes[..., 0], block.nodes[..., 1]
+        u, v = x[1:, 1:] - x[:-1, :-1], y[1:, 1:] - y[:-1, :-1]
+        area += 0.5 * float(np.abs(u * (y[:-1, 1:] - y[1:, :-1]) - v * (x[:-1, 1:] - x[1:, :-1])).sum())
+        cells += u.size
+    step = _LONG * math.sqrt(area / cells)
+    step = min(step, math.radians(TURN_DEG) / bend) if bend else step
+    return max(2, math.ceil(path.length / step - 1e-9) + 1)
+
+
+def _check_bends(
+    outline: Floats, path: Path, s: Floats, axes: tuple[Floats, Floats], settings: Sweep
+) -> None:
+    """Raise InputError where the path bends more tightly than the section reaches to its inside."""
+    points, _, curvature = path.at(s)
+    size = _sizes(path, s, settings)
+    inwards = np.stack([(curvature * axis).sum(axis=1) for axis in axes], axis=1) * size[:, None]
+    worst = np.array([float((outline @ way).max()) for way in inwards])
+    k = int(np.argmax(worst))
+    if worst[k] < 1.0:
+        return
+    radius = 1.0 / float(np.linalg.norm(curvature[k]))
+    x, y, z = points[k]
+    raise InputError(
+        f"the path bends with a radius of {radius:.4g} at ({x:.4g}, {y:.4g}, {z:.4g}), "
+        f"{s[k]:.4g} from its start, where the section reaches {worst[k] * radius:.4g} to the inside",
+        "use a wider bend or a smaller section",
+    )
+
+
+def _walled(section: Grid) -> Grid:
+    """Return a section whose whole outer boundary has patches, each of a kind."""
+    if any(connection.transform for connection in section.connections):
+        raise InputError("the section is periodic", "leave its periodic connections out")
+    patches: list[Patch] = []
+    for patch in section.outer_patches():
+        if patch.kind == "other" or (patch.side == "south" and section.around_body):
+            name = "wall" if patch.name in _UNNAMED else patch.name
+            patch = replace(patch, name=name, kind="wall")
+        patches.append(patch)
+    return replace(section, patches=tuple(patches))
+
+
+def self_crossing(path: Path, reach: float) -> tuple[float, float, float] | None:
+    """Return a place where a section that reaches so far about the path runs through itself, if there is one.
+
+    Places of the path that are farther apart along it than half a circle of that reach, and nearer to each
+    other than twice the reach, are such.
+    """
+    count = int(min(1500, max(64, 4 * path.length / max(reach, 1e-300))))
+    s = np.linspace(0.0, path.length, count)
+    points = path.at(s).points
+    apart = np.abs(s[:, None] - s[None, :])
+    if path.closed:
+        apart = np.minimum(apart, path.length - apart)
+    near = np.linalg.norm(points[:, None] - points[None, :], axis=-1) < 2.0 * reach
+    both = np.argwhere(near & (apart > math.pi * reach + 2.0 * path.length / count))
+    if len(both) == 0:
+        return None
+    x, y, z = 0.5 * (points[both[0, 0]] + points[both[0, 1]])
+    return float(x), float(y), float(z)
+
+
+def reach_of(section: Grid) -> float:
+    """Return how far a section reaches from its origin."""
+    corners: Sequence[Floats] = [block.nodes.reshape(-1, 2) for block in section.blocks]
+    return max(float(np.hypot(*each.T).max()) for each in corners)

@@ -1,0 +1,102 @@
+"""``meshonet stack``: from sections in TOML to volumes and surfaces."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import Meshonet
+
+import meshonet as library
+from meshonet.formats.registry import read_grids
+
+SECTIONS = """
+[[sections]]
+airfoil = "naca:2412"
+chord = 2.0
+z = 0.0
+
+[[sections]]
+airfoil = "naca:0012"
+chord = 1.0
+z = 3.0
+sweep = 20
+"""
+SMALL = ("--around", "49", "--span", "13", "--first-cell", "0.002")
+
+
+@pytest.fixture
+def wing(tmp_path: Path) -> Path:
+    path = tmp_path / "wing.toml"
+    path.write_text(SECTIONS)
+    return path
+
+
+def test_a_wing_is_valid_with_its_names_first_cells_and_far_field(meshonet: Meshonet, wing: Path) -> None:
+    done = meshonet("stack", str(wing), *SMALL, "-o", "wing.h5", "--json")
+    assert done.code == 0, done.err
+    assert done.only["folded"] == 0
+    assert done.only["method"] == "hyperbolic"
+    (grid,) = read_grids("wing.h5")
+    assert {patch.name for patch in grid.patches} == {"wing", "tip", "symmetry", "farfield"}
+    first = [np.linalg.norm(block.nodes[:, :, 1] - block.nodes[:, :, 0], axis=-1) for block in grid.blocks]
+    assert np.concatenate([each.ravel() for each in first]) == pytest.approx(0.004, rel=1e-9)
+    far = grid.blocks[0].nodes[:, :, -1]
+    assert np.linalg.norm(far - [1.0, 0.0, 1.5], axis=-1).min() > 20.0
+
+
+def test_changed_trailing_edges_are_told_and_y_plus_says_its_height(meshonet: Meshonet, wing: Path) -> None:
+    done = meshonet("stack", str(wing), *SMALL[:4], "--y-plus", "90", "--reynolds", "1e5", "-o", "w.h5")
+    assert done.code == 0, done.err
+    assert "NACA 2412 is changed: its trailing edge" in done.err
+    assert "y+ 90 at Re 100000 on a chord of 2 is" in done.err
+
+
+def test_the_surface_alone_is_what_solve_pde_marches_from(meshonet: Meshonet, wing: Path) -> None:
+    assert meshonet("stack", str(wing), *SMALL[:4], "--surface", "-o", "surface.h5", "-q").code == 0
+    (surface,) = read_grids("surface.h5")
+    assert [block.counts for block in surface.blocks] == [(49, 13), (49, 7), (17, 9)]
+    words = "solve-pde surface.h5 --method hyperbolic --wall-spacing 0.004 --far-field 30 -o volume.h5 -q"
+    assert meshonet(*words.split()).code == 0
+    assert meshonet("stack", str(wing), *SMALL, "-o", "wing.h5", "-q").code == 0
+    (volume,), (made,) = read_grids("volume.h5"), read_grids("wing.h5")
+    assert [block.counts for block in volume.blocks] == [block.counts for block in made.blocks]
+
+
+def test_the_function_makes_what_the_command_writes(meshonet: Meshonet, wing: Path) -> None:
+    assert meshonet("stack", str(wing), *SMALL, "-o", "wing.h5", "-q").code == 0
+    (written,) = read_grids("wing.h5")
+    made = library.stack(wing, around=49, span=13, first_cell=0.002)
+    for one, two in zip(written.blocks, made.blocks, strict=True):
+        assert np.array_equal(one.nodes, two.nodes)
+
+
+def test_a_gate_ends_with_1(meshonet: Meshonet, wing: Path) -> None:
+    done = meshonet("stack", str(wing), *SMALL, "-o", "wing.h5", "-q", "--fail-on", "max_angle>91")
+    assert done.code == 1
+    assert "gate not met" in done.err
+
+
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        (("--around", "50"), "--around: 50 nodes around a section"),
+        (("--span", "2"), "--span: 2 nodes"),
+        (("--base", "0"), "--base: a base of 0 chords"),
+        (("--far-field", "0.5"), "--far-field: 0.5 chords"),
+        (("--first-cell", "0"), "--first-cell: 0 chords"),
+        (
+            ("--first-cell", "1e-3", "--y-plus", "1", "--reynolds", "1e6"),
+            "--first-cell and --y-plus both say",
+        ),
+        (("--y-plus", "1"), "--y-plus and --reynolds belong together"),
+        (("--layers", "9", "--growth", "1.2"), "--layers and --growth both say"),
+        (("--surface", "--fail-on", "folded>0"), "--fail-on judges cells, and a surface has none"),
+    ],
+)
+def test_values_that_do_not_fit_get_a_line(
+    meshonet: Meshonet, wing: Path, words: tuple[str, ...], problem: str
+) -> None:
+    done = meshonet("stack", str(wing), *words, "-o", "wing.h5")
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert problem in done.err
+    assert not Path("wing.h5").exists()

@@ -1,0 +1,108 @@
+"""``meshonet sweep``: cross-sections along paths."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import Meshonet
+
+import meshonet as library
+from meshonet.formats.registry import read_grids
+
+BEND = """
+[[pieces]]
+line = 1
+[[pieces]]
+arc = 90
+radius = 2
+towards = [0, 1, 0]
+"""
+
+
+@pytest.fixture(autouse=True)
+def inputs(tmp_path: Path) -> None:
+    (tmp_path / "bend.toml").write_text(BEND)
+    (tmp_path / "path.csv").write_text("0,0,0\n1,0,0\n3,1,0\n4,3,0\n")
+    (tmp_path / "box.csv").write_text("0,0\n1,0\n1,0.5\n0,0.5\n")
+    angle = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    ellipse = np.stack([0.6 * np.cos(angle), 0.4 * np.sin(angle)], axis=1)
+    np.savetxt(tmp_path / "ellipse.csv", ellipse, delimiter=",")
+    (tmp_path / "rings.wkt").write_text(
+        "POLYGON ((-1 -1, 1 -1, 1 1, -1 1, -1 -1), (-.3 -.3, -.3 .3, .3 .3, .3 -.3, -.3 -.3))"
+    )
+
+
+def swept(meshonet: Meshonet, *words: str):
+    done = meshonet("sweep", *words, "-o", "made.h5", "-q")
+    assert done.code == 0, done.err
+    (grid,) = read_grids("made.h5")
+    return grid
+
+
+def test_a_circle_becomes_a_pipe_of_five_blocks(meshonet: Meshonet) -> None:
+    grid = swept(meshonet, "circle:0.5", "bend.toml", "--cells", "100", "--planes", "21")
+    assert len(grid.blocks) == 5
+    assert {(patch.name, patch.kind) for patch in grid.patches} == {
+        ("wall", "wall"), ("inlet", "inlet"), ("outlet", "outlet"),
+    }  # fmt: skip
+    assert all(block.counts[2] == 21 for block in grid.blocks)
+
+
+def test_a_closed_curve_is_filled_with_blocks_and_a_four_sided_one_with_one(meshonet: Meshonet) -> None:
+    assert len(swept(meshonet, "ellipse.csv", "bend.toml", "--cells", "200").blocks) >= 5
+    box = swept(meshonet, "box.csv", "bend.toml", "--res", "21x11", "--first-cell", "0.004")
+    assert box.blocks[0].counts[:2] == (21, 11)
+    first = np.linalg.norm(box.blocks[0].nodes[:, 1] - box.blocks[0].nodes[:, 0], axis=-1)
+    assert first == pytest.approx(np.full(first.shape, 0.004), rel=1e-6)
+
+
+def test_a_domain_with_a_hole_keeps_the_names_of_its_loops(meshonet: Meshonet) -> None:
+    grid = swept(meshonet, "rings.wkt", "bend.toml", "--cells", "200")
+    assert {patch.name for patch in grid.patches} == {"wall", "body", "inlet", "outlet"}
+    assert {patch.kind for patch in grid.patches if patch.name == "body"} == {"wall"}
+
+
+def test_a_planar_grid_is_swept_as_it_is(meshonet: Meshonet) -> None:
+    assert meshonet("tfi", "box.csv", "--res", "9x5", "-o", "box.h5", "-q").code == 0
+    grid = swept(meshonet, "box.h5", "path.csv")
+    assert grid.blocks[0].counts[:2] == (9, 5)
+
+
+def test_several_sections_go_along_one_path(meshonet: Meshonet) -> None:
+    done = meshonet(
+        "sweep", "circle:0.5", "circle:0.3", "path.csv", "--cells", "60", "-o", "{index}.h5", "-q"
+    )
+    assert done.code == 0, done.err
+    assert {path.name for path in Path().glob("*.h5")} == {"0.h5", "1.h5"}
+
+
+def test_the_function_makes_what_the_command_writes(meshonet: Meshonet) -> None:
+    written = swept(meshonet, "circle:0.5", "path.csv", "--cells", "60", "--twist", "20")
+    points = np.loadtxt("path.csv", delimiter=",")
+    made = library.sweep("circle:0.5", points, cells=60, twist=20.0)
+    for one, two in zip(written.blocks, made.blocks, strict=True):
+        assert np.array_equal(one.nodes, two.nodes)
+
+
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        (("circle:3", "bend.toml"), "the path bends with a radius of 2 at (1"),
+        (("bend.toml",), "there is no path"),
+        (("circle:x", "bend.toml"), "'x' is no radius"),
+        (("circle:-1", "bend.toml"), "a circle of radius -1"),
+        (("circle:0.5", "none.csv"), "none.csv"),
+        (("circle:0.5", "box.csv"), "line 1: '0,0' is not x, y and z"),
+        (("circle:0.5", "bend.toml", "--up", "1,0,0"), "--up: points along the path"),
+        (("circle:0.5", "bend.toml", "--up", "north"), "--up: 'north' is not a direction"),
+        (("circle:0.5", "bend.toml", "--res", "9"), "--res: a circle is made of five blocks"),
+        (("circle:0.5", "bend.toml", "--planes", "1"), "--planes"),
+        (("circle:0.5", "bend.toml", "--scale", "0"), "--scale: 0"),
+        (("circle:0.5", "bend.toml", "--first-cell", "0.4"), "--first-cell: 0.4 in a circle"),
+    ],
+)
+def test_what_cannot_be_swept_gets_a_line(meshonet: Meshonet, words: tuple[str, ...], problem: str) -> None:
+    done = meshonet("sweep", *words, "-o", "made.h5")
+    assert (done.code, done.err.count("\n")) == (2, 1), done.err
+    assert problem in done.err
+    assert not Path("made.h5").exists()

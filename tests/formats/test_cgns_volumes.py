@@ -1,0 +1,187 @@
+"""Volumes and surfaces in CGNS: ours to the last bit, others' with their interfaces and names."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from volume_grids import VOLUMES, pipe, shifted, turned_sector
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
+
+from meshonet.formats.cgns.read import read_grids
+from meshonet.formats.cgns.write import write_grids
+from meshonet.formats.source import open_source
+from meshonet.geometry.blocks.block import PLACES, Block
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+
+Make = Callable[[], Grid]
+
+
+def surface() -> Grid:
+    """The wall of the pipe as patches that know nothing of each other."""
+    grid = pipe()
+    faces = [grid.face(patch.block, patch.side) for patch in grid.patches if patch.name == "wall"]
+    return Grid(tuple(map(Block, faces)), (Patch("rim", "west", 0, 3, block=1),), (), "skin")
+
+
+def back(path: Path) -> list[Grid]:
+    return list(read_grids(open_source(str(path))))
+
+
+def checked(path: Path) -> str:
+    """What cgnscheck says of a file, without errors and warnings."""
+    done = subprocess.run(["cgnscheck", "-v", str(path)], capture_output=True, text=True, timeout=60)
+    told = done.stdout + done.stderr
+    assert done.returncode == 0
+    assert "WARNING" not in told, told
+    assert "ERROR" not in told, told
+    return told
+
+
+@pytest.mark.parametrize("make", [*VOLUMES, surface])
+def test_a_grid_comes_back_to_the_last_bit(make: Make, tmp_path: Path) -> None:
+    grid = make()
+    write_grids(tmp_path / "g.cgns", [grid])
+    (found,) = back(tmp_path / "g.cgns")
+    for block, old in zip(found.blocks, grid.blocks, strict=True):
+        assert np.array_equal(block.nodes.view(np.uint64), old.nodes.view(np.uint64))
+    assert (found.connections, found.name, found.provenance) == (grid.connections, grid.name, grid.provenance)
+    assert sorted(found.patches, key=repr) == sorted(grid.patches, key=repr)
+
+
+@pytest.mark.client("cgnscheck")
+@pytest.mark.parametrize("make", VOLUMES)
+def test_cgnscheck_has_neither_errors_nor_warnings(make: Make, tmp_path: Path) -> None:
+    write_grids(tmp_path / "g.cgns", [make()])
+    told = checked(tmp_path / "g.cgns")
+    joints = make().connections
+    assert told.count("checking donor interface") == 2 * len(joints)
+    assert told.count("checking periodic property") == 2 * sum(c.transform is not None for c in joints)
+
+
+@pytest.mark.client("cgnscheck")
+def test_cgnscheck_takes_a_surface_and_volumes_in_bases_of_their_own(tmp_path: Path) -> None:
+    write_grids(tmp_path / "g.cgns", [surface(), pipe()])
+    assert "Base2" in checked(tmp_path / "g.cgns")
+    with h5py.File(tmp_path / "g.cgns") as file:
+        assert [file[base]["\x20data"][()].tolist() for base in ("Base", "Base2")] == [[2, 3], [3, 3]]
+    one, two = back(tmp_path / "g.cgns")
+    assert [len(grid.blocks[0].counts) for grid in (one, two)] == [2, 3]
+
+
+@pytest.mark.parametrize("make", VOLUMES)
+def test_vtk_reads_every_zone(make: Make, tmp_path: Path) -> None:
+    grid = make()
+    write_grids(tmp_path / "g.cgns", [grid])
+    reader = vtkCGNSReader()
+    reader.SetFileName(str(tmp_path / "g.cgns"))
+    reader.UpdateInformation()
+    reader.EnableAllBases()
+    reader.Update()
+    base = reader.GetOutput().GetBlock(0)
+    assert base.GetNumberOfBlocks() == len(grid.blocks)
+    for k, block in enumerate(grid.blocks):
+        zone = base.GetBlock(k)
+        zone = zone.GetBlock(0) if zone.IsA("vtkMultiBlockDataSet") else zone
+        points = vtk_to_numpy(zone.GetPoints().GetData())
+        assert np.array_equal(points.reshape(*block.counts[::-1], 3).transpose(2, 1, 0, 3), block.nodes)
+
+
+@pytest.mark.parametrize("make", VOLUMES)
+def test_both_sides_of_an_interface_are_joined_node_by_node(make: Make, tmp_path: Path) -> None:
+    """By the standard's rule: the donor's index is begin + T (here - begin), T of the short form."""
+    grid = make()
+    write_grids(tmp_path / "g.cgns", [grid])
+    with h5py.File(tmp_path / "g.cgns") as file:
+        zones = [node for node in file["Base"].values() if node.attrs.get("label") == b"Zone_t"]
+        names = [zone.name.rpartition("/")[2] for zone in zones]
+        for k, zone in enumerate(zones):
+            for joint in zone.get("ZoneGridConnectivity", {}).values():
+                own, donor, short = (
+                    joint[f"{name}/ data"][()] for name in ("PointRange", "PointRangeDonor", "Transform")
+                )
+                matrix = np.zeros((3, 3), int)
+                for axis, target in enumerate(short):
+                    matrix[abs(target) - 1, axis] = np.sign(target)
+                assert round(np.linalg.det(matrix)) == 1  # of right-handed zones
+                np.testing.assert_array_equal(matrix @ (own[1] - own[0]), donor[1] - donor[0])
+                other = names.index(joint[" data"][()].tobytes().decode())
+                ways = [np.arange(abs(b - a) + 1) * np.sign(b - a) for a, b in own.T]
+                steps = np.stack(np.meshgrid(*ways, indexing="ij"), axis=-1).reshape(-1, 3)
+                here, there = own[0] + steps, donor[0] + steps @ matrix.T
+                nodes, theirs = (
+                    grid.blocks[number].nodes[tuple(index.T - 1)]
+                    for number, index in ((k, here), (other, there))
+                )
+                if "GridConnectivityProperty" in joint:
+                    periodic = joint["GridConnectivityProperty/Periodic"]
+                    centre, angles, shift = (
+                        periodic[f"{name}/ data"][()]
+                        for name in ("RotationCenter", "RotationAngle", "Translation")
+                    )
+                    nodes = (nodes - centre) @ _turn(*angles).T + centre + shift
+                    np.testing.assert_allclose(nodes, theirs, atol=1e-6)  # of float32
+                else:
+                    np.testing.assert_array_equal(nodes, theirs)
+
+
+def _turn(a: float, b: float, c: float) -> np.ndarray:
+    """About x by a, then y by b, then z by c."""
+    x = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
+    y = np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0], [-np.sin(b), 0, np.cos(b)]])
+    z = np.array([[np.cos(c), -np.sin(c), 0], [np.sin(c), np.cos(c), 0], [0, 0, 1]])
+    return z @ y @ x
+
+
+@pytest.mark.parametrize("make", VOLUMES)
+def test_conditions_cover_the_boundary_once(make: Make, tmp_path: Path) -> None:
+    grid = make()
+    write_grids(tmp_path / "g.cgns", [grid])
+    with h5py.File(tmp_path / "g.cgns") as file:
+        zones = [node for node in file["Base"].values() if node.attrs.get("label") == b"Zone_t"]
+        for k, zone in enumerate(zones):
+            seen = {side: np.zeros([n - 1 for n in grid.face(k, side).shape[:2]], int) for side in PLACES}
+            groups = zone.get("ZoneBC", {}), zone.get("ZoneGridConnectivity", {})
+            for node in [node for group in groups for node in group.values()]:
+                low, high = node["PointRange/ data"][()]
+                low, high = np.minimum(low, high) - 1, np.maximum(low, high) - 1
+                (axis,) = np.flatnonzero(low == high)
+                side = list(PLACES)[2 * axis + (low[axis] > 0)]
+                part = [slice(low[other], high[other]) for other in range(3) if other != axis]
+                seen[side][tuple(part)] += 1
+            assert all((cells == 1).all() for cells in seen.values())
+
+
+FACTS = (
+    "topology", "parts", "kinds", "name", "provenance", "block", "connections", "across", "coordinates",
+)  # fmt: skip
+
+
+def without(path: Path, *names: str) -> None:
+    """Remove nodes of these names from all zones: what is left anybody could have written."""
+    with h5py.File(path, "r+") as file:
+        for zone in file["Base"].values():
+            for name in set(names) & set(zone):
+                del zone[name]
+
+
+@pytest.mark.parametrize("make", VOLUMES)
+def test_a_file_of_others_comes_in_with_interfaces_and_names(make: Make, tmp_path: Path) -> None:
+    grid = make()
+    write_grids(tmp_path / "g.cgns", [grid])
+    without(tmp_path / "g.cgns", *FACTS)
+    (found,) = back(tmp_path / "g.cgns")
+    periodic = make in (shifted, turned_sector)
+    assert len(found.connections) == len(grid.connections)
+    if not periodic:
+        assert set(found.connections) == set(grid.connections)
+    for mine, other in zip(found.blocks, grid.blocks, strict=True):
+        np.testing.assert_allclose(mine.nodes, other.nodes, atol=1e-12 if periodic else 0)
+    outer = [(p.name.replace(" ", "_"), p.side, p.start, p.stop, p.across) for p in grid.outer_patches()]
+    assert [(p.name, p.side, p.start, p.stop, p.across) for p in found.outer_patches()] == outer

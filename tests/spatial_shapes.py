@@ -1,0 +1,27 @@
+"""Surfaces and faces in space that tests of several rooms make."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.grid import Grid
+
+Floats = NDArray[np.float64]
+
+
+def cubed_sphere(n: int = 9, radius: float = 1.0) -> Grid:
+    """Six patches (n, n, 3) of a sphere, their normals outwards."""
+    at = np.tan(np.linspace(-np.pi / 4, np.pi / 4, n))
+    a, b = np.meshgrid(at, at, indexing="ij")
+    one = np.ones_like(a)
+    faces = [(one, a, b), (-one, b, a), (b, one, a), (a, -one, b), (a, b, one), (b, a, -one)]
+    patches = [np.stack(face, axis=-1) for face in faces]
+    return Grid(tuple(Block(radius * p / np.linalg.norm(p, axis=-1, keepdims=True)) for p in patches))
+
+
+def box(ni: int = 9, nj: int = 8, nk: int = 7, bump: float = 0.2) -> Floats:
+    """Nodes (ni, nj, nk, 3) of a box 2 x 1 x 1 whose bottom has a bump, interpolated linearly in between."""
+    x, y, z = np.meshgrid(np.linspace(0, 2, ni), np.linspace(0, 1, nj), np.linspace(0, 1, nk), indexing="ij")
+    floor = bump * np.exp(-20 * ((x - 1) ** 2 + (y - 0.5) ** 2))
+    floor *= 16 * (x * (2 - x)) * (y * (1 - y)) / 4
+    return np.stack([x, y, floor + (1 - floor) * z], axis=-1)
