@@ -16,7 +16,7 @@ CYCLES = 100
 """Cycles on all nodes at the most."""
 RATE = 0.4
 """What a cycle leaves of an error, until two of them tell."""
-ENOUGH = 0.5
+ENOUGH = 1.0
 """Part of the discretisation error that may be left of the equations' own."""
 CAREFUL = ((1, 1.0), (2, 0.7))
 """Sweeps before and after the coarser levels and their relaxation factor, tried in turn while cycles diverge."""
@@ -62,5 +62,5 @@ def _solved(multigrid: Multigrid, tol: float | None, most: int) -> tuple[Floats,
     while change * rate > ENOUGH * (1.0 - rate) * apart / 3.0 and cycles < most and np.isfinite(change):
         last = change
         change, cycles = multigrid.cycle(x)[1], cycles + 1
-        rate = min(max(change / last, 0.05), 0.95)
+        rate = min(max(change / last, 0.2), 0.95)
     return x, cycles, None, change * rate <= ENOUGH * (1.0 - rate) * apart / 3.0
