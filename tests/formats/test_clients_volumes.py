@@ -75,7 +75,7 @@ def test_check_mesh_finds_no_fault(name: str, folder: Path) -> None:
     told = run("checkMesh", "-case", str(path.parent), "-allTopology", folder=folder)
     assert "***" not in told
     assert "Mesh OK." in told
-    boundary = (path.parent / "constant" / "polyMesh" / "boundary").read_text().split()
+    boundary = (path.parent / "constant" / "polyMesh" / "boundary").read_text().partition("}")[2].split()
     types = {boundary[k - 1]: boundary[k + 2].strip(";") for k, word in enumerate(boundary) if word == "{"}
     assert types == PATCHES[name]
 
