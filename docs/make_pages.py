@@ -52,10 +52,11 @@ Look here for the files that meshonet reads and writes. `meshonet convert IN OUT
 `--from` and `--to` name a format where the ending is ambiguous. `meshonet convert --list-formats` prints this
 table.
 
-*names*: names of patches are kept. *3D*: `--extrude H` (`--planes K`) repeats the grid in z. *blocks*: a grid
-of several blocks is written with its blocks kept, or merged to one mesh; other formats refuse it. *many*: one
-file can hold several grids or boundaries. *options* are written behind a colon, one of each group, for
-example `--to gmsh:4.1,ascii`. The first of a group is the default unless the ending says otherwise.
+*names*: names of patches are kept. *3D*: which grids in space it holds; where these are volumes, `--extrude H`
+(`--planes K`) makes them of plane grids. *blocks*: a grid of several blocks is written with its blocks kept, or
+merged to one mesh; other formats refuse it. *many*: one file can hold several grids or boundaries. *options*
+are written behind a colon, one of each group, for example `--to gmsh:4.1,ascii`. The first of a group is the
+default unless the ending says otherwise.
 
 """
 FORMATS_REST = """
@@ -100,7 +101,8 @@ may have repeats, commas or D exponents. `--from plot3d:fortran,big` or `--plot3
 the same words choose the variant to write. A grid of several blocks gets a neutral map beside the file,
 `NAME.nmf`, and a map of that name is read with any file: its types, or the names in its comments, become
 names of patches. `single` omits the count of blocks, `planes` writes the coordinates of one k after the
-other, and `span-i` repeats the grid in z along its first index. iblank is reported but not kept.
+other, and `span-i` has the third direction of volumes as the first index of the file. iblank is reported
+but not kept. Of a block of 2 GiB or more there is no Fortran record: write `plot3d:binary`.
 
 ## HDF5
 
@@ -127,8 +129,38 @@ donor's direction that runs along it, counted from 1, negative when reversed; `t
 
 ## Three-dimensional files
 
-A file is read when it is a plane, or identical planes along any index. Other three-dimensional files are
-refused.
+What a file of structured blocks holds, its blocks decide together:
+
+1. Files of this program say it themselves (`.vts`, `.vtm`, `.vtk`, CGNS, HDF5).
+2. A block is a *slice* if it is one plane of nodes in which a coordinate is constant, or a layer one cell
+   thick: two planes that are copies of each other, shifted along one coordinate. Where all blocks are slices
+   across the same coordinate at the same places, the file holds a grid in the plane. That coordinate and the
+   index across are left out.
+3. Else a block with one plane of nodes, along any index, is a patch of a surface, any other one a volume.
+
+Left-handed volumes get i reversed, and so do the ranges that the file has for them. Surface patches stay
+as they are. Volumes that touch are one grid; all patches of surface of a file are one grid, whether they
+touch or not, so that gaps can be told of. Where a file does not say what is joined, parts of faces of volumes
+and of edges of patches whose nodes coincide are, as in the plane.
+
+`--extrude` repeats blocks, patches and interfaces in z, between a `back` and a `front` that are symmetry planes.
+The same grid goes into every format, with its blocks where the format keeps blocks. It is read as plane again
+from files that hold names; Plot3D files of more than one layer of cells are volumes.
+
+**CGNS.** Zones of three indices, or of two for a surface (cell dimension 2, physical 3), each kind of grid in a
+base of its own; interfaces with `Transform` and, for periodic sides, centre, angles about x, y, z in turn, and
+shift; a family for each name. Conditions of others may be ranges or lists of points, of nodes or faces; a list
+becomes the rectangles that it fills. Cartesian coordinates only.
+
+**OpenFOAM.** One mesh of all blocks, in upper-triangular order as it is written, 129 x 129 x 129 nodes in half a
+second. Meshes of more than 65,536 nodes are binary, smaller ones text; `--to openfoam:ascii` or
+`openfoam:binary` chooses. A plane grid, or one that is one cell thick between symmetry planes, has them as a
+patch `frontAndBack` of type `empty`. Symmetry patches that are flat are `symmetryPlane`, walls `wall`, periodic
+sides `cyclic`, all others `patch`. Where the nodes of a side lie on each other, at an axis, cells are prisms or
+pyramids.
+
+**SU2, Gmsh, `.vtu`.** Hexahedra, and quadrilaterals by the names of patches. SU2 and Gmsh refuse a side whose
+nodes lie on each other.
 
 ## Not read
 
@@ -137,7 +169,7 @@ refused.
 - Gmsh meshes other than 2.2 and 4.1, and binary DXF.
 
 Worked cases of flow solvers: `examples/naca0012-openfoam`, `examples/cylinder-openfoam`,
-`examples/naca0012-su2`.
+`examples/pipe-bend-openfoam`, `examples/naca0012-su2`.
 """
 
 FAMILIES_HEAD = """# The six test families

@@ -11,7 +11,7 @@ from meshonet.formats.plot3d import CHOICES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
-_DRAW = "meshonet.formats.figure.figure:write_grids"
+_DRAW = "meshonet.formats.figure.files:write_grids"
 _BOTH: Any = ("volumes", "surfaces")
 _VOLUMES: Any = ("volumes",)
 _HDF5 = b"\x89HDF\r\n\x1a\n"

@@ -152,6 +152,8 @@ def upsample(
 INTEGER_BYTES: int
 FLOAT_BYTES: int
 
+def count_words(text: NDArray[np.int8]) -> int: ...
+def take_numbers(text: NDArray[np.int8], out: Floats) -> tuple[int, int]: ...
 def put_rows(out: NDArray[np.int8], rows: Reals, text: bytes, at: Indices) -> int: ...
 def inner_faces(
     nodes: NDArray[np.int32], beyond: Sequence[NDArray[np.int32]], first: int, faces: NDArray[np.int32],
@@ -288,6 +290,7 @@ def volume_energy(
     x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float, threads: int,
     gradient: Floats,
 ) -> tuple[float, float]: ...  # fmt: skip
+def volume_jacobians(x: Floats, over: tuple[float, float, float], threads: int, least: Floats) -> None: ...
 
 class VolumeDescent:
     def __init__(self, counts: tuple[int, ...], threads: int) -> None: ...
@@ -295,3 +298,12 @@ class VolumeDescent:
         self, x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
         most: int, renew: int, still: float, reach: float, gain: float,
     ) -> tuple[float, float, int]: ...  # fmt: skip
+
+def winslow_room(counts: tuple[int, ...], threads: int) -> int: ...
+def winslow_smooth(x: Floats, right: Floats | None, factor: float, threads: int, room: Floats) -> None: ...
+def winslow_residual(
+    x: Floats, right: Floats | None, residual: Floats, threads: int, room: Floats
+) -> float: ...  # fmt: skip
+def combine_along(
+    source: Floats, axis: int, first: Indices, weights: Floats, add: bool, threads: int, to: Floats
+) -> None: ...  # fmt: skip

@@ -13,6 +13,8 @@ import pytest
 from test_architecture import BLOCKED, HEAVY, ROOT, python
 
 import meshonet
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.solvers.method import METHODS, Each, method_named
 
 if TYPE_CHECKING:
@@ -98,10 +100,17 @@ def test_pyvista_is_told_of_when_it_is_missing_and_has_the_nodes(monkeypatch: py
         made.to_pyvista()
     fake = ModuleType("pyvista")
     fake.StructuredGrid = lambda *planes: planes  # type: ignore[attr-defined]
+    fake.MultiBlock = dict  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "pyvista", fake)
     x, y, z = made.to_pyvista()
     assert x.shape == y.shape == z.shape == (9, 9, 1)
     np.testing.assert_array_equal(y[..., 0], made.y)
+    patch = np.random.default_rng(0).random((3, 4, 3))
+    assert [plane.shape for plane in Grid.from_nodes(patch).to_pyvista()] == [(3, 4, 1)] * 3
+    cube = np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1)
+    many = Grid((Block(cube), Block(cube + np.array([3, 0, 0])))).to_pyvista()
+    assert list(many) == ["block-0", "block-1"]
+    np.testing.assert_array_equal(many["block-1"][0], cube[..., 0] + 3)
 
 
 @pytest.mark.parametrize("name", METHODS)

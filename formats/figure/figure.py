@@ -1,4 +1,4 @@
-"""Pictures of a grid: ``.png``, ``.svg``, ``.pdf``. Only this room imports matplotlib.
+"""A picture of a grid in the plane. Only this room imports matplotlib.
 
 A picture has far fewer pixels than a fine grid has cells, so cells are coloured in blocks of about a
 pixel, each with the worst value in it, and only every k-th grid line is drawn.
@@ -6,8 +6,6 @@ pixel, each with the worst value in it, and only every k-th grid line is drawn.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,7 +30,6 @@ from meshonet.formats.figure.layers import (
     paint,
     rule,
 )
-from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -41,7 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_DOTS = 160
+DOTS = 160
 """Dots an inch of the picture."""
 _NAME = 48
 """Letters of a grid's name that fit above a view."""
@@ -58,7 +55,7 @@ def draw(
     singles = _singles(grid)
     views = [zoom] if zoom else _views(grid)
     parts = [_visible(grid, singles, view) for view in views]
-    figure, axes, bar = _frame([_ratio(view) for view in views], colouring is not None)
+    figure, axes, bar = frame([_ratio(view) for view in views], colouring is not None)
     mesh = None
     # near a body one block has the colours of what matters there; many blocks have those of the whole
     ruling = parts[-1] if grid.topology == "blocks" else parts[0]
@@ -85,28 +82,6 @@ def draw(
     title = f"{name}   {size}".strip()
     axes[0].set_title(title, size=10, color=INK, loc="left", pad=4)
     return figure
-
-
-def write(
-    path: Path,
-    grid: Grid,
-    kind: str = "png",
-    colouring: Colouring | None = None,
-    zoom: Box | None = None,
-    every: int | None = None,
-) -> None:
-    """Draw `grid` into a file of `kind` ``png``, ``svg`` or ``pdf``; the same input gives the same bytes."""
-    import matplotlib as mpl
-
-    dates: dict[str, dict[str, str | None]] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
-    with mpl.rc_context({"svg.hashsalt": "meshonet", "svg.fonttype": "none"}):
-        figure = draw(grid, colouring, zoom, every)
-        figure.savefig(path, format=kind, dpi=_DOTS, metadata=dates.get(kind))
-
-
-def write_grids(path: Path, grids: Iterable[Grid], *, kind: str) -> None:
-    """Draw the one grid of `grids`, lines only."""
-    write(path, only_one(grids, f"a .{kind} file"), kind)
 
 
 def _singles(grid: Grid) -> list[Grid]:
@@ -194,7 +169,7 @@ def _beyond(colouring: Colouring, limits: tuple[float, float]) -> str:
     return ("neither", "min", "max", "both")[below + 2 * above]
 
 
-def _frame(ratios: list[float], bar: bool) -> tuple[Figure, list[Axes], Axes | None]:
+def frame(ratios: list[float], bar: bool) -> tuple[Figure, list[Axes], Axes | None]:
     """Return a figure with one axes a view, equally high side by side, and one for the colour bar."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -205,7 +180,7 @@ def _frame(ratios: list[float], bar: bool) -> tuple[Figure, list[Axes], Axes | N
     height = min(max(room / sum(ratios), 1.6), 6.2)
     width = left + height * sum(ratios) + gap * (len(ratios) - 1) + side + right
     total = low + height + top
-    figure = Figure(figsize=(width, total), facecolor="white", dpi=_DOTS)
+    figure = Figure(figsize=(width, total), facecolor="white", dpi=DOTS)
     FigureCanvasAgg(figure)
     axes, at = [], left
     for ratio in ratios:
@@ -223,16 +198,27 @@ def _frame(ratios: list[float], bar: bool) -> tuple[Figure, list[Axes], Axes | N
 
 def _note_lines(ax: Axes, steps: list[tuple[int, int]]) -> None:
     """Say in the picture which lines are drawn, unless all are."""
-    each = {step for pair in steps for step in pair}
-    if max(each) == 1:
+    each = sorted({step for pair in steps for step in pair})
+    note(ax, _drawn_lines(*steps[0]) if len(steps) == 1 and len(each) > 1 else step_words(each))
+
+
+def step_words(steps: list[int]) -> str:
+    """Return in words which lines are drawn, of ascending steps; nothing where all are.
+
+    >>> step_words([1, 5]), step_words([2]), step_words([1])
+    ('every 1st to 5th line', 'every 2nd line', '')
+    """
+    if steps[-1] == 1:
+        return ""
+    if len(steps) == 1:
+        return f"every {_ordinal(steps[0])}line"
+    return f"every {_ordinal(steps[0]) or '1st '}to {_ordinal(steps[-1])}line"
+
+
+def note(ax: Axes, text: str) -> None:
+    """Write a line of text, if any, into the lower right corner."""
+    if not text:
         return
-    if len(steps) == 1 or len(each) == 1:
-        _note(ax, _drawn_lines(*steps[0]))
-    else:
-        _note(ax, f"every {_ordinal(min(each)) or '1st '}to {_ordinal(max(each))}line")
-
-
-def _note(ax: Axes, text: str) -> None:
     paper = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 2.0}
     place: dict[str, Any] = {"transform": ax.transAxes, "ha": "right", "va": "bottom", "zorder": 5}
     ax.text(0.985, 0.015, text, size=7, color=INK, bbox=paper, **place)

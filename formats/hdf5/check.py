@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 TOGETHER = 1 << 17
 """Bytes of small samples that are read in one go."""
 
+LARGE = 1 << 22
+"""Bytes of a sample up to which it is read as it stands."""
 _DEFLATE_LIMIT = 1032
 """Most that deflate, the densest of HDF5's own filters, can shrink; a claim beyond it is a lie."""
 _MOST_SEARCHED = 1 << 28
@@ -110,6 +112,17 @@ class Checked:
             first, rows = k, self._rows_from(self._file[name], k)
             self._rows[name] = first, rows
         return np.array(rows[k - first], dtype=np.float64)
+
+    def nodes(self, name: str, k: int) -> Floats:
+        """Return row `k` of a checked dataset of nodes; a large one in planar layout, read in parts."""
+        data = self._file[name]
+        if 8 * int(np.prod(data.shape[1:])) <= LARGE:
+            return self.sample(name, k)
+        nodes = np.empty((data.shape[-1], *data.shape[1:-1]))
+        step = max(1, LARGE * data.shape[1] // (8 * nodes.size))
+        for start in range(0, data.shape[1], step):
+            nodes[:, start : start + step] = np.moveaxis(data[k, start : start + step], -1, 0)
+        return np.moveaxis(nodes, 0, -1)
 
     @staticmethod
     def _rows_from(data: h5py.Dataset, k: int) -> Any:

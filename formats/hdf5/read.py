@@ -60,7 +60,7 @@ def _grid(data: Checked, k: int) -> Grid:
             raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
         named = _patches(data, k), data.text("names", k), facts, _origin(data, k)
         if data.blocks:
-            blocks = (usable(data.sample(f"blocks/{m}", k)) for m in range(data.blocks))
+            blocks = (usable(data.nodes(f"blocks/{m}", k)) for m in range(data.blocks))
             return Grid(tuple(map(Block, blocks)), named[0], data.connections, *named[1:])
         return Grid.from_nodes(usable(data.sample("nodes", k)), data.topology, *named)
 

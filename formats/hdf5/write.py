@@ -100,7 +100,8 @@ class Writer:
                 return
             self._bytes += len(value)
         else:
-            value = np.array(value, dtype=np.float64)
+            large = value.nbytes >= BLOCK  # and written before anybody can change it
+            value = np.asarray(value, np.float64) if large else np.array(value, np.float64)
             self._bytes += value.nbytes
         self._held.setdefault(name, []).append((self._count, value))
 
@@ -110,6 +111,9 @@ class Writer:
         for name, entries in held.items():
             data = self._row(name)
             data.resize(entries[-1][0] + 1, axis=0)
+            if len(entries) == 1 and not isinstance(entries[0][1], str):
+                _put(data, *entries[0])
+                continue
             rows = [row for row, _ in entries]
             where: Any = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] + 1 == len(rows) else rows
             data[where] = np.array([value for _, value in entries], dtype=object if name in TEXTS else None)
@@ -122,9 +126,25 @@ class Writer:
             text, shape = name in TEXTS, self._shapes.get(name, ())
             some = 64 if text else max(1, CHUNK // max(8 * int(np.prod(shape)), 1))
             kind: Any = h5py.string_dtype() if text else "f8"
-            size = {"maxshape": (None, *shape), "chunks": (some, *shape)}
+            size = {"maxshape": (None, *shape), "chunks": (some, *_chunk(shape))}
             self._data[name] = self._file.create_dataset(name, (0, *shape), kind, **size)
         return self._data[name]
+
+
+def _chunk(shape: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the part of a sample that is stored together: all of it, or some `BLOCK` bytes of rows."""
+    row = 8 * int(np.prod(shape[1:]))
+    return shape if row * (shape or (1,))[0] <= 4 * BLOCK else (max(1, BLOCK // row), *shape[1:])
+
+
+def _put(data: h5py.Dataset, row: int, value: Floats) -> None:
+    """Write a sample, a large one chunk by chunk, which h5py brings into the order of the file."""
+    step = data.chunks[1] if value.ndim else 1
+    if not value.ndim or step >= len(value):
+        data[row] = value
+        return
+    for start in range(0, len(value), step):
+        data[row, start : start + step] = value[start : start + step]
 
 
 @contextlib.contextmanager

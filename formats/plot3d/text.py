@@ -7,6 +7,7 @@ import numpy as np
 
 from meshonet.formats.format import Options
 from meshonet.formats.plot3d.layouts import Candidate, Layout, layouts
+from meshonet.formats.text.free_format import leading_numbers
 from meshonet.formats.text.number_table import parsed
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
@@ -76,18 +77,21 @@ def _misfit(tried: list[Layout], numbers: int) -> InputError:
 
 def _numbers(data: bytes) -> Floats:
     """Return every number of the file, repeats expanded; unusual spellings are read word by word."""
+    values, stop = leading_numbers(data)
+    if stop == len(data):
+        return values
     plain = data.translate(_FREE_FORMAT)
     counts = None
     if b"*" in plain:
         plain, counts = _repeats(plain)
         if int(counts.sum()) > _MOST_REPEATED * len(data):
             raise InputError("repeats a number too often for its size", "write the values out")
-    values = parsed(plain)
-    if values is None:
-        values = parsed(b" ".join(_spelled(word, data) for word in plain.split()))
-    if values is None:
+    every = parsed(plain)
+    if every is None:
+        every = parsed(b" ".join(_spelled(word, data) for word in plain.split()))
+    if every is None:
         raise InputError("has a word that is not a number", "write numbers only")
-    return values if counts is None else np.repeat(values, counts)
+    return every if counts is None else np.repeat(every, counts)
 
 
 def _repeats(text: bytes) -> tuple[bytes, np.ndarray[tuple[int], np.dtype[np.int64]]]:

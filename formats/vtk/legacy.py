@@ -6,6 +6,7 @@ https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
 
 import re
 from collections.abc import Iterable, Iterator
+from mmap import mmap
 from pathlib import Path
 from typing import Any, BinaryIO
 from urllib.parse import unquote
@@ -17,6 +18,7 @@ from meshonet.formats.format import Options, only_one
 from meshonet.formats.mesh.metadata import facts_of
 from meshonet.formats.mesh.structured import grid_of_block
 from meshonet.formats.source import Source, printable
+from meshonet.formats.text.free_format import leading_numbers
 from meshonet.formats.text.number_table import write_rows
 from meshonet.formats.vtk.arrays import CUT, points_of
 from meshonet.geometry.arrays import Floats
@@ -68,7 +70,7 @@ def _write_facts(stream: BinaryIO, grid: Grid, *, text: bool) -> None:
 class _Cursor:
     """Bytes read front to back."""
 
-    def __init__(self, data: bytes) -> None:
+    def __init__(self, data: bytes | mmap) -> None:
         self.data, self.at = data, 0
 
     def line(self) -> str:
@@ -91,12 +93,20 @@ class _Cursor:
         self.at = len(self.data) - len(rest[count]) if len(rest) > count else len(self.data)
         return rest[:count]
 
-    def bytes(self, count: int) -> bytes:
-        """Return the next `count` bytes."""
+    def numbers(self, count: int) -> Floats:
+        """Return the next `count` numbers."""
+        values, stop = leading_numbers(self.data, count, self.at)
+        if len(values) < count:
+            return np.array(self.words(count), dtype=np.float64)
+        self.at = stop
+        return values
+
+    def bytes(self, count: int) -> memoryview:
+        """Return the next `count` bytes, a view."""
         if count > len(self.data) - self.at:
             raise InputError(f"should have {count} more bytes and is too short", CUT)
         self.at += count
-        return self.data[self.at - count : self.at]
+        return memoryview(self.data)[self.at - count : self.at]
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
@@ -104,7 +114,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
     Raises InputError: not such a file, another dataset than STRUCTURED_GRID, damaged.
     """
-    cursor = _Cursor(source.read_bytes())
+    cursor = _Cursor(source.buffer())
     try:
         coordinates, facts = _read(cursor)
     except (ValueError, OverflowError, IndexError) as error:
@@ -158,7 +168,7 @@ def _field(cursor: _Cursor, count: int, *, text: bool) -> dict[str, list[str]]:
         elif text:
             facts[name] = [unquote(_raw_line(cursor)) for _ in range(total)]
         else:
-            facts[name] = [_counted(cursor).decode("utf-8", "replace") for _ in range(total)]
+            facts[name] = [_counted(cursor).tobytes().decode("utf-8", "replace") for _ in range(total)]
     return facts
 
 
@@ -166,7 +176,7 @@ def _numbers(cursor: _Cursor, kind: str, count: int, *, text: bool) -> NDArray[A
     if kind.lower() not in _KINDS:
         raise InputError(f"number type {kind[:40]!r} is not known", "write double or float")
     if text:
-        return np.array(cursor.words(count), dtype=np.float64)
+        return cursor.numbers(count)
     dtype = np.dtype(">" + _KINDS[kind.lower()])
     return np.frombuffer(cursor.bytes(count * dtype.itemsize), dtype)
 
@@ -178,9 +188,9 @@ def _raw_line(cursor: _Cursor) -> str:
     return cursor.data[start : cursor.at - 1].decode("latin-1").strip()
 
 
-def _counted(cursor: _Cursor) -> bytes:
+def _counted(cursor: _Cursor) -> memoryview:
     """Return a string behind its length in 1, 2, 4 or 8 bytes; the first two bits say in how many."""
     first = cursor.bytes(1)
     width = {3: 1, 2: 2, 1: 4, 0: 8}[first[0] >> 6]
-    length = int.from_bytes(first + cursor.bytes(width - 1), "big") & ((1 << (8 * width - 2)) - 1)
+    length = int.from_bytes(bytes(first) + cursor.bytes(width - 1), "big") & ((1 << (8 * width - 2)) - 1)
     return cursor.bytes(length)

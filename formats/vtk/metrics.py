@@ -13,7 +13,7 @@ from meshonet.formats.vtk.vts import write
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import folded_cells, per_cell_of_blocks
-from meshonet.geometry.quality.metrics import NAMES
+from meshonet.geometry.quality.metrics import metrics_of as metrics_of_cells
 
 
 def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> None:
@@ -25,14 +25,14 @@ def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> N
         vtm.write_grids(path, grids, cell_data=metrics_of)
         return
     grid = only_one(grids, "a .vts file")
-    if grid.topology == "blocks":
+    if len(grid.blocks) > 1 or (grid.form == "plane" and grid.topology == "blocks"):
         raise InputError(f"a .vts file holds one block, not {len(grid.blocks)}", "name it FILE.vtm")
     write(path, grid, metrics_of(grid)[0])
 
 
 def metrics_of(grid: Grid) -> list[dict[str, NDArray[Any]]]:
-    """Return for each block every metric, and ``folded``, of its cells (ni-1, nj-1) by name."""
-    every = {name: per_cell_of_blocks(grid, name) for name in NAMES}
+    """Return for each block every metric, and ``folded``, of its cells (ni-1, nj-1[, nk-1]) by name."""
+    every = {metric.name: per_cell_of_blocks(grid, metric.name) for metric in metrics_of_cells(grid)}
     found: list[dict[str, NDArray[Any]]] = []
     for number, block in enumerate(grid.blocks):
         folded = np.zeros([count - 1 for count in block.counts], dtype=np.int8)

@@ -138,6 +138,15 @@ class Connection:
         return [(side, *nodes[0]) for number, side, nodes in ends if number == block]
 
 
+def cells_at(connection: Connection, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return views of the values (n, m, d) of the cells at both sides of a connection, in one order.
+
+    `face` gives the values of the cells at a side of a block.
+    """
+    spans = [tuple((a, b - 1) for a, b in span) for span in (connection.range, connection.donor_range)]
+    return replace(connection, range=spans[0], donor_range=spans[1], transform=None).nodes(face)
+
+
 def check_connections(connections: Sequence[Connection], counts: Sequence[tuple[int, ...]]) -> None:
     """Raise InputError for a connection of blocks, sides or nodes that there are none of.
 

@@ -207,14 +207,24 @@ class Grid(Connected):
         import_module("meshonet").write(self, path, to_format=to_format)
 
     def to_pyvista(self) -> Any:
-        """Return the grid as a `pyvista.StructuredGrid` in the plane z = 0.
+        """Return the grid as a `pyvista.StructuredGrid`, many blocks as a `pyvista.MultiBlock` of these.
 
-        Raises InputError: pyvista is not installed.
+        What is in the plane has z = 0. Raises InputError: pyvista is not installed.
         """
         try:
-            from pyvista import StructuredGrid
+            from pyvista import MultiBlock, StructuredGrid
         except ImportError:
             remedy = "install it: pip install 'meshonet[pyvista]'"
             raise InputError("to_pyvista needs pyvista, which is not installed", remedy) from None
-        planes = (np.ascontiguousarray(plane)[..., None] for plane in (self.x, self.y, np.zeros_like(self.x)))
-        return StructuredGrid(*planes)
+        grids = [StructuredGrid(*_coordinates(block.nodes)) for block in self.blocks]
+        if len(grids) == 1:
+            return grids[0]
+        return MultiBlock({f"block-{number}": grid for number, grid in enumerate(grids)})
+
+
+def _coordinates(nodes: Floats) -> list[Floats]:
+    """Return x, y, z, each (ni, nj, nk), of nodes; nk is 1 but in volumes, z 0 in the plane."""
+    planes = [np.ascontiguousarray(nodes[..., axis]) for axis in range(nodes.shape[-1])]
+    if form_of(nodes) == "plane":
+        planes.append(np.zeros_like(planes[0]))
+    return planes if form_of(nodes) == "volume" else [plane[..., None] for plane in planes]

@@ -1,4 +1,7 @@
-"""What OpenFOAM's checkMesh says of a grid one cell thick: non-orthogonality, skewness, aspect ratio.
+"""What OpenFOAM's checkMesh says of a grid: non-orthogonality, skewness, aspect ratio.
+
+Here of a grid in the plane as one that is a cell thick; of volumes see
+`meshonet.geometry.quality.checkmesh_solid`.
 
 ::
 
@@ -31,9 +34,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.across import across, planar, rows_beside
+from meshonet.geometry.blocks.across import across, rows_beside
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.checkmesh_solid import cells_of, solid_faces
 from meshonet.geometry.quality.growth import Extreme, Tally, beyond_seam, strips
 
 SEVERE = 70.0
@@ -49,7 +54,7 @@ Inside: TypeAlias = tuple[int, int, Floats, Floats, int | None]
 class Faces:
     """Measures of the faces, the greatest at cell (i, j), whose face it is; None where there is no such face.
 
-    In a grid of many blocks cells are (block, i, j).
+    In a grid of many blocks cells are (block, i, j), in volumes (block, i, j, k).
 
     `severe` counts the faces with a non-orthogonality beyond 70 degrees.
     """
@@ -63,16 +68,36 @@ class Faces:
 def faces(grid: Grid) -> Faces:
     """Return the measures of the faces of `grid`.
 
-    Raises InputError: one of many blocks that is not in the plane.
+    Raises InputError: a surface, which has no faces between cells of volume.
     """
+    if grid.form == "volume":
+        return _of_volume(grid)
     if grid.topology != "blocks":
         only: Iterator[Values] = ((i, 0, _box_ratio(part), None) for i, part in strips(grid.nodes, 1))
         return _summed(_inside(grid), _outside(grid), only)
-    planar(grid)
+    if grid.form == "surface":
+        problem = "a surface has no faces between cells, which this profile judges"
+        raise InputError(
+            problem, "make a volume of it, or judge it by pointwise or verdict", parameter="profile"
+        )
     blocks = list(enumerate(grid.blocks))
     within = (face for number, block in blocks for face in _within(block.nodes, number))
     boxes = ((0, 0, _box_ratio(block.nodes), number) for number, block in blocks)
     return _summed(chain(within, _across(grid)), _outer(grid), boxes)
+
+
+def _of_volume(grid: Grid) -> Faces:
+    cells = [cells_of(block.nodes) for block in grid.blocks]
+    angles, cosines, skews, boxes, severe = Tally(), Tally(), Tally(), Tally(), 0
+    for place, axis, angle, skew in solid_faces(grid, cells):
+        skews.add_from(place, np.expand_dims(skew, axis))
+        if angle is not None:
+            angles.add_from(place, np.expand_dims(angle, axis))
+            cosines.add_from(place, np.expand_dims(np.cos(np.radians(angle)), axis))
+            severe += int((angle > SEVERE).sum())
+    for number, own in enumerate(cells):
+        boxes.add_from((number, 0, 0, 0), own.aspect)
+    return Faces(_of_cosines(angles.extreme, cosines.extreme), severe, skews.extreme, boxes.extreme)
 
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
@@ -104,10 +129,14 @@ def _summed(inside: Iterable[Inside], outside: Iterable[Values], box_ratios: Ite
         skews.add(i, j, skew, block)
     for i, j, ratio, block in box_ratios:
         boxes.add(i, j, ratio, block)
-    turned, mean = angles.extreme, cosines.extreme
-    if turned and mean:
-        turned = replace(turned, mean=math.degrees(math.acos(min(1.0, max(-1.0, mean.mean)))))
-    return Faces(turned, severe, skews.extreme, boxes.extreme)
+    return Faces(_of_cosines(angles.extreme, cosines.extreme), severe, skews.extreme, boxes.extreme)
+
+
+def _of_cosines(angle: Extreme | None, cosine: Extreme | None) -> Extreme | None:
+    """Return an angle whose mean is that of the mean cosine."""
+    if angle is None or cosine is None:
+        return None
+    return replace(angle, mean=math.degrees(math.acos(min(1.0, max(-1.0, cosine.mean)))))
 
 
 def _inside(grid: Grid) -> Iterator[Inside]:

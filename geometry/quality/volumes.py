@@ -7,7 +7,7 @@ corners at which an edge has no length are left out of both tests. Kernels work 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, Side, as_planar
 from meshonet.geometry.blocks.block import PLACES
-from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.connection import cells_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.metrics import SOLID_METRICS, SOLID_NAMES
@@ -146,15 +146,6 @@ def padded_volumes(grid: Grid) -> list[Floats]:
         if own.shape == donor.shape:
             beyond[...], before[...] = donor, own
     return padded
-
-
-def cells_at(connection: Connection, face: Callable[[int, Side], NDArray[Any]]) -> Sequence[NDArray[Any]]:
-    """Return views of the values of the cells at both sides of a connection, in one order.
-
-    `face` gives the values (n, m, d) of the cells at a side of a block.
-    """
-    spans = [tuple((a, b - 1) for a, b in span) for span in (connection.range, connection.donor_range)]
-    return replace(connection, range=spans[0], donor_range=spans[1], transform=None).nodes(face)
 
 
 @dataclass(frozen=True)

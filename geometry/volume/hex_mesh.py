@@ -35,6 +35,8 @@ Bools: TypeAlias = NDArray[np.bool_]
 FaceValues: TypeAlias = Callable[[int, Side], NDArray[Any]]
 """Gives a view (n, m) of values at a side of a block."""
 
+_MOST = 0.8
+"""Part of the cells of a left-handed block that are negative at least: others are folded."""
 POLE = 1e-12
 """Part of the size of the grid within which nodes of a line of a side are in one place."""
 
@@ -139,7 +141,7 @@ def hex_mesh_of(grid: Grid) -> HexMesh:
             raise InputError(
                 f"block {number} of {sizes} nodes is no volume", "give blocks of three directions"
             )
-        if signed_volume([block.nodes[..., axis] for axis in range(3)]) < 0:
+        if _left_handed(block.nodes):
             remedy = "reverse one of its directions"
             raise InputError("the block is left-handed", remedy, place=f"block {number}")
     joined = tuple(each for each in grid.connections if each.transform is None)
@@ -148,6 +150,16 @@ def hex_mesh_of(grid: Grid) -> HexMesh:
     for lattice, block in zip(numbers, grid.blocks, strict=True):
         nodes[lattice] = block.nodes
     return HexMesh(*_with_poles(nodes, numbers), joined)
+
+
+def _left_handed(nodes: Floats) -> bool:
+    """Say whether a block is one whose volume and most of whose cells are negative."""
+    corner = nodes[:-1, :-1, :-1]
+    with np.errstate(over="ignore", invalid="ignore"):
+        if not signed_volume([nodes[..., axis] for axis in range(3)]) < 0:
+            return False
+        u, v, w = nodes[1:, :-1, :-1] - corner, nodes[:-1, 1:, :-1] - corner, nodes[:-1, :-1, 1:] - corner
+        return bool(np.mean(np.einsum("...c,...c", u, np.cross(v, w)) < 0) > _MOST)
 
 
 def _with_poles(nodes: Floats, numbers: tuple[Indices, ...]) -> tuple[Floats, tuple[Indices, ...]]:

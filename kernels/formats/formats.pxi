@@ -70,6 +70,36 @@ def put_rows(out, rows, bytes text, at):
     return count
 
 
+cdef extern from "formats/words.h":
+    ptrdiff_t c_count_words "count_words"(const char *text, ptrdiff_t n) nogil
+    ptrdiff_t c_take_numbers "take_numbers"(const char *text, ptrdiff_t n, double *out, ptrdiff_t room,
+                                            ptrdiff_t *stop, const power_of_ten *powers) nogil
+
+
+def count_words(text):
+    """Return how many words of free format there are at the most in the bytes `text`."""
+    cdef ptrdiff_t n = len(text), count
+    cdef const char *of = <const char *>numbers(text, b"b", 1, (n,), False)
+    with nogil:
+        count = c_count_words(of, n)
+    return count
+
+
+def take_numbers(text, out):
+    """Read words of the bytes `text` as numbers to `out` (n,); return how many, and where the next word starts.
+
+    It stops when `out` is full, or at a word that is no number or that no shortcut serves.
+    """
+    cdef ptrdiff_t n = len(text), room = len(out), stop = 0, count
+    cdef const char *of = <const char *>numbers(text, b"b", 1, (n,), False)
+    cdef double *to = <double *>numbers(out, b"d", 8, (room,), True)
+    if not _known:
+        _learn_powers()
+    with nogil:
+        count = c_take_numbers(of, n, to, room, &stop, _powers)
+    return count, stop
+
+
 cdef extern from "formats/faces.h":
     ctypedef struct cell_block:
         const int32_t *nodes

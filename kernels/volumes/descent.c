@@ -10,6 +10,8 @@
 #include <math.h>
 #include <string.h>
 
+#define CLOSER 0.4 /* part of the smallest Jacobian that a step may leave */
+
 static ptrdiff_t whole_panels(ptrdiff_t n)
 {
     return (n + PANEL - 1) / PANEL * PANEL;
@@ -251,6 +253,8 @@ static double attempt(void *problem, double factor, double *smallest)
     if (factor > 0.0)
         move(d, factor);
     const double value = volume_energy(&d->f, factor > 0.0 ? d->trial : d->x, d->g, smallest, d->room);
+    if (factor > 0.0 && !(d->f.epsilon > 0.0) && *smallest < CLOSER * d->steps.smallest)
+        return INFINITY; /* a node this near the barrier would hold up all steps that follow */
     for (ptrdiff_t c = 0; c < 3; c++)
         for (ptrdiff_t i = 0; i < d->m[0]; i++)
             for (ptrdiff_t j = 0; j < d->m[1]; j++)

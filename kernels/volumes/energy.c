@@ -279,3 +279,49 @@ void volume_stiffness(const Functional3 *f, const double *x, double *h, double *
     t.stiffness = 1;
     team_run(f->threads, share, &t);
 }
+
+typedef struct {
+    const Functional3 *f;
+    const double *x;
+    double *least;
+} Jacobians;
+
+MESHONET_CLONES
+static void jacobian_row(const double *at, ptrdiff_t nodes, ptrdiff_t face, ptrdiff_t n3, double scale,
+                         double *restrict least)
+{
+    for (ptrdiff_t k = 0; k < n3 - 1; k++)
+        least[k] = INFINITY;
+    for (int di = 0; di < 2; di++)
+        for (int dj = 0; dj < 2; dj++)
+            for (int dk = 0; dk < 2; dk++) {
+                const double *u = at + dj * n3 + dk, *v = at + di * face + dk, *w = at + di * face + dj * n3;
+                MESHONET_INDEPENDENT
+                for (ptrdiff_t k = 0; k < n3 - 1; k++) {
+                    const Vector3 normal = cross3(edge3(u + k, u + k + face, nodes, scale),
+                                                  edge3(v + k, v + k + n3, nodes, 1.0));
+                    const double jacobian = dot3(normal, edge3(w + k, w + k + 1, nodes, 1.0));
+                    least[k] = lower(least[k], jacobian);
+                }
+            }
+}
+
+static void jacobian_share(void *data, Member member)
+{
+    const Jacobians *t = data;
+    const Functional3 *f = t->f;
+    const ptrdiff_t face = f->n2 * f->n3, nodes = f->n1 * face;
+    const double scale = f->over[0] * f->over[1] * f->over[2];
+    ptrdiff_t first, last;
+    team_share(f->n1 - 1, member, &first, &last);
+    for (ptrdiff_t i = first; i < last; i++)
+        for (ptrdiff_t j = 0; j < f->n2 - 1; j++)
+            jacobian_row(t->x + i * face + j * f->n3, nodes, face, f->n3, scale,
+                         t->least + (i * (f->n2 - 1) + j) * (f->n3 - 1));
+}
+
+void volume_jacobians(const Functional3 *f, const double *x, double *least)
+{
+    Jacobians t = {f, x, least};
+    team_run(f->threads, jacobian_share, &t);
+}

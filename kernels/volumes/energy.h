@@ -19,5 +19,8 @@ size_t volume_energy_room(const Functional3 *f);
    Jacobian is not positive and epsilon is 0. */
 double volume_energy(const Functional3 *f, const double *x, double *g, double *smallest, double *room);
 
+/* The smallest corner Jacobian of each cell, (n1 - 1, n2 - 1, n3 - 1), its edges over the lengths of f. */
+void volume_jacobians(const Functional3 *f, const double *x, double *least);
+
 /* About a third of the traces of the blocks of the Hessian at inner nodes, in one plane h. */
 void volume_stiffness(const Functional3 *f, const double *x, double *h, double *room);

@@ -22,6 +22,7 @@ cdef extern from "volumes/energy.h":
     size_t volume_energy_room(const Functional3 *f) nogil
     double c_volume_energy "volume_energy"(const Functional3 *f, const double *x, double *g, double *smallest,
                                            double *room) nogil
+    void c_volume_jacobians "volume_jacobians"(const Functional3 *f, const double *x, double *least) nogil
 
 cdef extern from "volumes/descent.h":
     ctypedef struct Descent3:
@@ -111,6 +112,15 @@ def volume_energy(x, tuple over, tuple weights, double epsilon, int threads, gra
     return value, smallest
 
 
+def volume_jacobians(x, tuple over, int threads, least):
+    """Fill least (n1-1, n2-1, n3-1) with the smallest corner Jacobian of each cell of the planes x (3, n1, n2, n3)."""
+    cdef Functional3 f = functional3(x.shape[1:], over, (0.5, 1.0, 2), 0.0, threads)
+    cdef Read nodes = reads(x, (3, f.n1, f.n2, f.n3))
+    cdef Written to = fills(least, (f.n1 - 1, f.n2 - 1, f.n3 - 1))
+    with nogil:
+        c_volume_jacobians(&f, nodes, to)
+
+
 cdef class VolumeDescent:
     """Descents of the functional over inner nodes of volumes of one shape, (n1, n2, n3)."""
 
@@ -151,3 +161,70 @@ cdef class VolumeDescent:
                 state = descent3_take(&self.state)
             done += 1
         return self.state.steps.value, self.state.steps.smallest, done
+
+
+cdef extern from "volumes/winslow.h":
+    ctypedef struct Winslow3:
+        ptrdiff_t n1, n2, n3
+        double *x
+        const double *f
+        int threads
+    size_t c_winslow_room "winslow_room"(const Winslow3 *w) nogil
+    void c_winslow_smooth "winslow_smooth"(const Winslow3 *w, double factor, double *room) nogil
+    double c_winslow_residual "winslow_residual"(const Winslow3 *w, double *r, double *room) nogil
+    void c_combine_along "combine_along"(const double *source, ptrdiff_t before, ptrdiff_t n, ptrdiff_t after,
+                                         ptrdiff_t m, const ptrdiff_t *first, const double *weights, ptrdiff_t terms,
+                                         int add, int threads, double *to) nogil
+
+
+cdef Winslow3 winslow3(x, right, int threads) except *:
+    cdef Winslow3 w
+    w.n1, w.n2, w.n3 = x.shape[1:]
+    if min(x.shape[1:]) < 3:
+        raise ValueError("nodes without inner ones")
+    w.x, w.f, w.threads = fills(x, (3, w.n1, w.n2, w.n3)), NULL, min(max(threads, 1), 64)
+    if right is not None:
+        w.f = reads(right, x.shape)
+    return w
+
+
+def winslow_room(tuple counts, int threads):
+    """Return the doubles of scratch that relaxation of (n1, n2, n3) nodes needs."""
+    cdef Winslow3 w
+    w.n1, w.n2, w.n3 = counts
+    w.threads = min(max(threads, 1), 64)
+    return c_winslow_room(&w)
+
+
+def winslow_smooth(x, right, double factor, int threads, room):
+    """Relax the planes x (3, n1, n2, n3) by lines in three directions, in place; `right` sides of the same shape or None."""
+    cdef Winslow3 w = winslow3(x, right, threads)
+    cdef Written work = fills_room(room, c_winslow_room(&w))
+    with nogil:
+        c_winslow_smooth(&w, factor, work)
+
+
+def winslow_residual(x, right, residual, int threads, room):
+    """Fill `residual` (3, n1, n2, n3), `right` less the operator; return the sum of its squares."""
+    cdef Winslow3 w = winslow3(x, right, threads)
+    cdef Written work = fills_room(room, c_winslow_room(&w)), r = fills(residual, x.shape)
+    cdef double total
+    with nogil:
+        total = c_winslow_residual(&w, r, work)
+    return total
+
+
+def combine_along(source, int axis, first, weights, bint add, int threads, to):
+    """Set or add along `axis` of `to`: the sum over k of weights (m, k) times `source` at first (m,) + k."""
+    cdef ptrdiff_t n = source.shape[axis], m = to.shape[axis], before = 1, after = 1, terms = weights.shape[1]
+    for size in source.shape[:axis]:
+        before *= size
+    for size in source.shape[axis + 1:]:
+        after *= size
+    if to.shape != (*source.shape[:axis], m, *source.shape[axis + 1:]):
+        raise ValueError("arrays of different shapes")
+    cdef const ptrdiff_t *places = reads_places(first, (m,), n - terms + 1)
+    cdef Read w = reads(weights, (m, terms)), values = reads(source, source.shape)
+    cdef Written result = fills(to, to.shape)
+    with nogil:
+        c_combine_along(values, before, n, after, m, places, w, terms, add, threads, result)

@@ -13,8 +13,10 @@ def plot(
     output: str | Path,
     *,
     metric: str | None = "max_angle",
-    zoom: tuple[float, float, float, float] | None = None,
+    zoom: tuple[float, ...] | None = None,
     every: int | None = None,
+    slice: str | None = None,  # noqa: A002
+    seen_from: tuple[float, float] | None = None,
     to_format: str | None = None,
 ) -> None:
     """Draw a grid, coloured by a quality metric.
@@ -24,14 +26,17 @@ def plot(
     grid : a grid, or a file that holds one.
     output : picture to write, ``.png``, ``.svg`` or ``.pdf``.
     metric : colours the cells; None draws lines only.
-    zoom : x0, x1, y0, y1 of the part to show; None shows all.
+    zoom : x0, x1, y0, y1 of the part to show, with z0, z1 of a picture in space; None shows all.
     every : draw every so many-th grid line; None chooses by the resolution of the picture.
+    slice : slice of a volume, a layer ``i=10`` or ``k=-1`` or a plane ``x=.5``; None draws its walls, or the
+        outer boundary without any.
+    seen_from : azimuth and elevation in degrees that a picture in space is seen from.
     to_format : ``png``, ``svg`` or ``pdf``, when the ending does not say.
 
-    Raises InputError: an unknown metric or ending, a box that shows none of the grid, a file that cannot be
-    read or written.
+    Raises InputError: an unknown metric, slice or ending, a box that shows none of the grid, a file that
+    cannot be read or written.
     """
-    picture = Picture(metric, zoom, every)
+    picture = Picture(metric, zoom, every, slice, seen_from)
     kind = picture_format(str(output), to_format).name
     with whole_file(str(output)) as part:
         picture.draw(kind, part, [single_grid(grid)])

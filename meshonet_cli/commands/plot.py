@@ -7,7 +7,10 @@ from meshonet_cli import options as o
 EXAMPLES = (
     "meshonet plot grid.vts -o grid.png",
     "meshonet plot grid.vts --zoom 0.9,1.1,-0.1,0.1 --every 1 --metric skewness -o edge.svg",
+    "meshonet plot wing.cgns --slice y=.5 -o slice.png",
 )
+_BOX = ("a box", "x0,x1,y0,y1", "zoom")
+_DIRECTION = ("a direction", "azimuth and elevation in degrees, e.g. -125,25", "seen_from")
 _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 
@@ -25,7 +28,18 @@ def plot(
         "--metric", metavar="METRIC", show_default=True,
         help="Colour the cells by this metric; none draws lines only.",
     )] = "max_angle",
-    zoom: Annotated[str | None, _option("--zoom", metavar="x0,x1,y0,y1", help="Show this part only.")] = None,
+    zoom: Annotated[str | None, _option(
+        "--zoom", metavar="x0,x1,y0,y1", help="Show this part only; in space x0,x1,y0,y1,z0,z1.",
+    )] = None,
+    slice_: Annotated[str | None, _option(
+        "--slice", metavar="SLICE",
+        help="Show this slice of a volume: a layer of an index, i=10 or k=-1, or a cut by a plane, x=.5. "
+        "[default: its walls, or the outer boundary without any]",
+    )] = None,
+    seen_from: Annotated[str | None, _option(
+        "--seen-from", metavar="AZIMUTH,ELEVATION",
+        help="Direction in degrees that volumes and surfaces are seen from. [default: -125,25]",
+    )] = None,
     every: Annotated[int | None, _option(
         "--every", metavar="K", help="Draw every K-th grid line. [default: as many as can be distinguished]",
     )] = None,
@@ -40,7 +54,9 @@ def plot(
     from meshonet.formats.figure.picture import Picture
     from meshonet_cli.plot_batch import plot_grids
 
-    picture = Picture(None if metric == "none" else metric, _box(zoom), every)
+    box, direction = _numbers(zoom, (4, 6), _BOX), _numbers(seen_from, (2,), _DIRECTION)
+    view = None if direction is None else (direction[0], direction[1])
+    picture = Picture(None if metric == "none" else metric, box, every, slice_, view)
     return plot_grids(
         grid, output, picture, printing.session(),
         from_format=from_format, to_format=to_format, skip_existing=skip_existing,
@@ -48,12 +64,17 @@ def plot(
 # fmt: on
 
 
-def _box(text: str | None) -> tuple[float, float, float, float] | None:
-    """Return the box ``x0,x1,y0,y1``."""
+def _numbers(
+    text: str | None, counts: tuple[int, ...], what: tuple[str, str, str]
+) -> tuple[float, ...] | None:
+    """Return the numbers of an option, as many as one of `counts`; `what` is thing, form and parameter."""
     if text is None:
         return None
+    thing, form, parameter = what
     try:
-        x0, x1, y0, y1 = (float(word) for word in text.split(","))
+        numbers = tuple(float(word) for word in text.split(","))
     except ValueError:
-        raise o.bad_value(text, "a box", "use x0,x1,y0,y1", "zoom") from None
-    return x0, x1, y0, y1
+        numbers = ()
+    if len(numbers) not in counts:
+        raise o.bad_value(text, thing, f"use {form}", parameter)
+    return numbers

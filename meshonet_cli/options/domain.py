@@ -17,8 +17,8 @@ BlocksName = Annotated[Literal["auto", "single"], _option(
 )]
 Walls = Annotated[str | None, _option(
     "--walls", metavar="NAME,NAME",
-    help="Holes, and outer loops without convex corners, that --first-cell or --y-plus make layers along; "
-    "whole loops, by the names of all their parts. [default: every hole]",
+    help="Walls that --first-cell or --y-plus make layers along: names of holes, and of parts of loops. "
+    "Layers end at corners of about 90 degrees, or meet there. [default: every hole]",
 )]
 
 

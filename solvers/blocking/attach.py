@@ -9,6 +9,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -71,16 +72,8 @@ def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
     )
     joined.arc[joined.loop < 0] = 0.0
     joined.cells[joined.loop < 0] = 0
-    whole = QuadMesh(domain, np.concatenate(nodes), quads_of(blocks), joined)
+    whole = QuadMesh(domain, np.concatenate(nodes), lattice_quads(blocks), joined)
     return Layout(whole, tuple(blocks), layers)
-
-
-def quads_of(blocks: Sequence[Indices]) -> Indices:
-    """Return the quads (m, 4) of blocks, counter-clockwise, block after block."""
-    cells = [
-        np.stack([b[:-1, :-1], b[1:, :-1], b[1:, 1:], b[:-1, 1:]], axis=-1).reshape(-1, 4) for b in blocks
-    ]
-    return np.concatenate(cells)
 
 
 def _places(rows: Rows, domain: Domain) -> Places:

@@ -6,28 +6,19 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.attach import beside, quads_of, spaced
+from meshonet.solvers.blocking.attach import beside, spaced
 from meshonet.solvers.blocking.c_sheets import Sheet
 from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.layer_law import layer_arcs
 from meshonet.solvers.blocking.layer_rows import JOIN, LayerSettings, arc_shares, heights_inside
 
 
-def front_nodes(mesh: QuadMesh, cut: CutLoop, k: int) -> tuple[Indices, Floats]:
-    """Return the nodes (m,) of a mesh on the front of a sheet, in order, and their column numbers (m,)."""
-    start, stop = cut.span(k)
-    on = np.flatnonzero((mesh.places.loop == 0) & (mesh.places.arc >= start) & (mesh.places.arc <= stop))
-    order = on[np.argsort(mesh.places.arc[on], kind="stable")]
-    index = cut.index(k, mesh.places.arc[order])
-    near = np.round(index)
-    return order, np.where(np.abs(index - near) < 1e-7, near, index)
-
-
 def attach_sheets(
-    layout: Layout, cut: CutLoop, domain: Domain, numbers: dict[int, int], settings: LayerSettings,
+    layout: Layout, cut: CutLoop[Sheet], domain: Domain, numbers: dict[int, int], settings: LayerSettings,
     rows: list[int],
 ) -> Layout:  # fmt: skip
     """Return the layout with the blocks of C sheets, of so many `rows` each, in `domain`.
@@ -41,7 +32,7 @@ def attach_sheets(
     nodes = mesh.nodes.copy()
     heights = _heights(layout)
     on_fronts = np.zeros(len(nodes), dtype=bool)
-    found = [front_nodes(mesh, cut, k) for k in range(len(cut.sheets))]
+    found = [cut.front_nodes(mesh, 0, k) for k in range(len(cut.layers))]
     for order, _ in found:
         on_fronts[order] = True
     rest = np.flatnonzero((old.loop == 0) & ~on_fronts)
@@ -52,7 +43,7 @@ def attach_sheets(
     count = len(nodes)
     blocks, layers = list(layout.blocks), dict(layout.layers)
     for k, (order, index) in enumerate(found):
-        sheet = cut.sheets[k]
+        sheet = cut.layers[k]
         loop[order], cells[order], arc[order] = -1, 0, 0.0
         loop[order[[0, -1]]], arc[order[[0, -1]]] = 0, np.mod(sheet.ends, cut.outer.length)
         lines, starts = _lines(sheet, index, nodes[order], heights[order], settings, rows[k])
@@ -66,7 +57,7 @@ def attach_sheets(
             layers[len(blocks)] = rows[k]
             blocks.append(table[block][:, ::-1])
     joined = Places(*(np.concatenate([vars(p)[name] for p in parts]) for name in vars(parts[0])))
-    whole = QuadMesh(domain, np.concatenate(coordinates), quads_of(blocks), joined)
+    whole = QuadMesh(domain, np.concatenate(coordinates), lattice_quads(blocks), joined)
     return Layout(whole, tuple(blocks), layers)
 
 
@@ -106,7 +97,7 @@ def _lines(
 
 
 def _numbered(
-    sheet: Sheet, cut: CutLoop, order: Indices, starts: Floats, lines: Floats, count: int
+    sheet: Sheet, cut: CutLoop[Sheet], order: Indices, starts: Floats, lines: Floats, count: int
 ) -> tuple[Indices, Floats, Places]:
     """Return numbers (k, rows + 1) from the front to wake and wall, and new nodes with their places."""
     k, rows = len(order), lines.shape[1] - 1

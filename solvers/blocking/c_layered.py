@@ -21,18 +21,22 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking import layered
 from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.base_complex import base_complex
-from meshonet.solvers.blocking.c_attach import attach_sheets, front_nodes
+from meshonet.solvers.blocking.c_attach import attach_sheets
 from meshonet.solvers.blocking.c_domain import Sheets
+from meshonet.solvers.blocking.c_sheets import Sheet
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.decompose import Timings
 from meshonet.solvers.blocking.even_growth import evened
 from meshonet.solvers.blocking.even_loops import evened_loops
-from meshonet.solvers.blocking.even_rows import evened_rows, guarded
+from meshonet.solvers.blocking.even_metric import metric_places
+from meshonet.solvers.blocking.finished import finished, respaced_layers
+from meshonet.solvers.blocking.folds import unfolded
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_rows
+from meshonet.solvers.blocking.on_loops import on_loops
 from meshonet.solvers.blocking.outside import found_outside
 from meshonet.solvers.blocking.refine import multiplied, refine
-from meshonet.solvers.blocking.respace import respaced
+from meshonet.solvers.blocking.wall_layers import wanted_counts
 from meshonet.solvers.energy.quads import optimise
 
 SKEW_DEG = 35.0
@@ -113,11 +117,11 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
     """Return the fine layout outside sheets and rings, its nodes alike on both sides of wakes."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, _, times, metric = layered.wanted_counts(sheets, chords, cells, 0.0)
-        coarse = refine(layout, counts, chords)
+        counts, _, times, metric = wanted_counts(sheets, chords, cells, 0.0)
+        coarse = refine(layout, counts, chords, metric_places(chords, counts, metric))
     with timings.stage("optimum"):
         mesh = coarse.mesh
-        for k in range(len(sheets.cut.sheets)):
+        for k in range(len(sheets.cut.layers)):
             mesh = _balanced(mesh, sheets.cut, k)
         held, fronts = None, sheets.measures
         for turn in range(layered.FREE + 1):
@@ -127,7 +131,7 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
             mesh = optimum.mesh
             if turn == layered.FREE - 1:
                 held = np.zeros(len(mesh.nodes), dtype=bool)
-                for k in range(len(sheets.cut.sheets)):
+                for k in range(len(sheets.cut.layers)):
                     mesh, on = _tied(mesh, sheets.cut, k, times * layered.EVEN if even else 0.0)
                     held[on] = True
                 if even and fronts:
@@ -135,13 +139,13 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
                     held |= np.isin(mesh.places.loop, list(fronts))
     with timings.stage("refine"):
         fine = multiplied(Layout(mesh, coarse.blocks), times)
-        return layered.unfolded(fine, fine.mesh.wall_nodes)
+        return unfolded(fine, fine.mesh.wall_nodes)
 
 
-def _balanced(mesh: QuadMesh, cut: CutLoop, k: int) -> QuadMesh:
+def _balanced(mesh: QuadMesh, cut: CutLoop[Sheet], k: int) -> QuadMesh:
     """Return the mesh with nodes of a front moved along it, as many on both sides of the wake."""
-    order, index = front_nodes(mesh, cut, k)
-    sheet, last = cut.sheets[k], len(order) - 1
+    order, index = cut.front_nodes(mesh, 0, k)
+    sheet, last = cut.layers[k], len(order) - 1
     n = len(sheet.levels)
     corner = mesh.places.cells[order] > 0
     low, high = (int(np.flatnonzero(corner & (index == at))[0]) for at in (sheet.edge, n - 1 - sheet.edge))
@@ -157,14 +161,14 @@ def _balanced(mesh: QuadMesh, cut: CutLoop, k: int) -> QuadMesh:
     return _moved(mesh.with_places(mesh.nodes, replace(mesh.places, cells=cells)), cut, k, order, new)
 
 
-def _tied(mesh: QuadMesh, cut: CutLoop, k: int, limit: float) -> tuple[QuadMesh, Indices]:
+def _tied(mesh: QuadMesh, cut: CutLoop[Sheet], k: int, limit: float) -> tuple[QuadMesh, Indices]:
     """Return the mesh with nodes at the same columns on both sides of a wake, and these nodes.
 
     Neighbouring cells along the front differ by at most the exponential of `limit`, unless that is 0.
     """
-    order, index = front_nodes(mesh, cut, k)
-    last = len(cut.sheets[k].levels) - 1.0
-    edge = int(np.flatnonzero(index == cut.sheets[k].edge)[0])
+    order, index = cut.front_nodes(mesh, 0, k)
+    last = len(cut.layers[k].levels) - 1.0
+    edge = int(np.flatnonzero(index == cut.layers[k].edge)[0])
     new = index.copy()
     mean = 0.5 * (index[: edge + 1] + last - index[::-1][: edge + 1])
     if limit:
@@ -182,7 +186,7 @@ def _tied(mesh: QuadMesh, cut: CutLoop, k: int, limit: float) -> tuple[QuadMesh,
     return _moved(mesh, cut, k, order, new), held
 
 
-def _moved(mesh: QuadMesh, cut: CutLoop, k: int, order: Indices, index: Floats) -> QuadMesh:
+def _moved(mesh: QuadMesh, cut: CutLoop[Sheet], k: int, order: Indices, index: Floats) -> QuadMesh:
     nodes, arc = mesh.nodes.copy(), mesh.places.arc.copy()
     arc[order] = cut.front_arcs(k, index)
     nodes[order] = cut.loop.at(arc[order])
@@ -195,7 +199,7 @@ def _whole(sheets: Sheets, outside: Layout) -> Layout:
     first = near.circle if near else domain.loops[0]
     fronts = [sheets.rings[k].front if k in sheets.rings else loop for k, loop in enumerate(domain.loops)]
     inner = Domain((first, *fronts[1:]), domain.name)
-    rows = [sheets.sheet_rows(sheet) for sheet in sheets.cut.sheets]
+    rows = [sheets.sheet_rows(sheet) for sheet in sheets.cut.layers]
     layout = attach_sheets(outside, sheets.cut, inner, sheets.numbers, sheets.settings, rows)
     rings = [
         ring_rows(layout.mesh, k, ring, sheets.rows(ring), sheets.settings, heights_inside(layout, k))
@@ -203,24 +207,12 @@ def _whole(sheets: Sheets, outside: Layout) -> Layout:
     ]
     walls = Domain((first, *domain.loops[1:]), domain.name)
     layout = attach(layout, walls, rings)
-    change = respaced(layout, sheets.settings).mesh.nodes - layout.mesh.nodes
-    nodes = guarded(layout.mesh.nodes, change, layout.mesh, layered.RESPACED_SINE)
-    layout = _on_outer(replace(layout, mesh=layout.mesh.with_nodes(nodes)))
+    layout = respaced_layers(layout, sheets.settings)
+    sliding = (layout.mesh.places.loop == 0) & (layout.mesh.places.cells == 0)
+    layout = replace(layout, mesh=on_loops(layout.mesh, sliding))
     if near is not None:
         layout = attach(layout, domain, [near.rows(layout.mesh, heights_inside(layout, 0))])
-    layout = evened_rows(
-        _conforming(layout), layered.MARGIN * float(np.log(sheets.settings.growth)), sheets.settings.constant
-    )
-    held = np.zeros(len(layout.mesh.nodes), dtype=bool)
-    for number in layout.layers:
-        block = layout.blocks[number]
-        held[block[:, : 2 * block.shape[1] // 3]] = True
-    layout = _exact(layered.unfolded(layout, held), sheets.settings.first)
-    corners = layered.corner_jacobians(layout.mesh)
-    if corners.min() <= 0.0:
-        x, y = layout.mesh.nodes[layout.mesh.quads[int(corners.argmin())]].mean(axis=0)
-        raise NoValidGridError(f"layers or cells beside them are folded at ({x:.6g}, {y:.6g})")
-    return layout
+    return _exact(finished(_conforming(layout), sheets.settings), sheets.settings.first)
 
 
 def _conforming(layout: Layout) -> Layout:
@@ -243,19 +235,6 @@ def _conforming(layout: Layout) -> Layout:
                 layers[len(blocks)] = turned.shape[1] - 1
         blocks.append(turned)
     return Layout(mesh, tuple(blocks), layers)
-
-
-def _on_outer(layout: Layout) -> Layout:
-    """Return the layout with nodes of the outer loop on it."""
-    mesh = layout.mesh
-    nodes, arc = mesh.nodes.copy(), mesh.places.arc.copy()
-    on = np.flatnonzero((mesh.places.loop == 0) & (mesh.places.cells == 0))
-    outer = mesh.domain.loops[0]
-    for _ in range(3):
-        arc[on] += ((nodes[on] - outer.at(arc[on])) * outer.tangent(arc[on])).sum(axis=1)
-    arc[on] = np.mod(arc[on], outer.length)
-    nodes[on] = outer.at(arc[on])
-    return replace(layout, mesh=mesh.with_nodes(nodes, arc))
 
 
 def _exact(layout: Layout, first: float) -> Layout:

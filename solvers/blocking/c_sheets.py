@@ -21,13 +21,11 @@ from meshonet.geometry.domain.gap import gaps_in_front, wall_points
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
-from meshonet.kernels._native import hyperbolic_march
+from meshonet.solvers.blocking.column_weights import column_weights, line_lengths, started, whole_columns
 from meshonet.solvers.blocking.free_wake import Wake
-from meshonet.solvers.blocking.rings import GAP_PART, MARCH_GROWTH, SLOPE, THINNER, TRIES
+from meshonet.solvers.blocking.marched import GAP_PART, SLOPE, THINNER, TRIES, marched
 from meshonet.solvers.blocking.wall_columns import wall_columns
-from meshonet.solvers.hyperbolic.march import AREA_SMOOTHING
-from meshonet.solvers.hyperbolic.settings import OPEN_ATTEMPTS, RISING, MarchSettings
+from meshonet.solvers.hyperbolic.settings import OPEN_ATTEMPTS
 
 SPREAD = 0.03
 """By how much the sheet thickens along the wake."""
@@ -35,6 +33,7 @@ WAKE_GROWTH, WAKE_LARGEST = 1.1, 1.0 / 15.0
 """Ratio of neighbouring columns along the wake, and the largest, in chords."""
 OPENING, NEAR = 5.0, 0.3
 """First cells x chords behind the edge are higher than at the wall by 1 + 5 x²/(x + 0.3)."""
+_MARGIN = 0.3
 OUTLET = 0.5
 """Chords around the end of the wake in which the outer loop is not in the way."""
 
@@ -69,9 +68,30 @@ class Sheet:
         return np.ascontiguousarray(self.levels[:, -1])
 
     @property
+    def front_corners(self) -> tuple[int, ...]:
+        """Its ends, and the columns at the edge."""
+        last = len(self.levels) - 1
+        return (0, self.edge, last - self.edge, last)
+
+    @property
+    def front_names(self) -> tuple[str, ...]:
+        """That of the wall."""
+        return (self.wall.names[0],) * 3
+
+    @property
+    def margins(self) -> tuple[float, float]:
+        """Lengths of the outer loop beside the front in which it has no points."""
+        return (_MARGIN * (self.ends[1] - self.ends[0]),) * 2
+
+    @property
+    def joined(self) -> tuple[bool, bool]:
+        """Fronts of sheets begin and end on the outer loop."""
+        return False, False
+
+    @property
     def thickness(self) -> Floats:
         """(n,) lengths of the columns."""
-        return np.asarray(np.hypot(*np.diff(self.levels, axis=1).transpose(2, 0, 1)).sum(axis=1))
+        return line_lengths(self.levels)
 
     def columns(self, index: Floats, start: Floats) -> tuple[Floats, Floats]:
         """Return lines (k, m, 2) at column numbers (k,), which need not be whole, and their openings.
@@ -81,13 +101,7 @@ class Sheet:
         weights, rows = self._cubics(index)
         nodes = np.einsum("kj,kjmd->kmd", weights, self.levels[rows])
         opening = np.exp((weights * np.log(self.opening[rows])).sum(axis=1))
-        begin = self.begin(start)
-        step = np.diff(nodes, axis=1)
-        height = np.cumsum(np.hypot(step[..., 0], step[..., 1]), axis=1)
-        left = 1.0 - np.pad(height / height[:, -1:], ((0, 0), (1, 0)))
-        nodes += left[..., None] * (begin - nodes[:, 0])[:, None]
-        nodes[:, 0] = begin
-        return nodes, opening
+        return started(nodes, self.begin(start)), opening
 
     def begin(self, index: Floats) -> Floats:
         """Return the points (k, 2) of wake and wall at column numbers (k,)."""
@@ -112,24 +126,12 @@ class Sheet:
     def _cubics(self, index: Floats) -> tuple[Floats, Indices]:
         """Return weights (k, 4) and rows (k, 4) of columns that do not reach over the edge."""
         n, edge = len(self.levels), self.edge
-        near = np.round(index)
-        index = np.where(np.abs(index - near) < 1e-7, near, index)
+        index = whole_columns(index)
         base = np.minimum(index.astype(np.intp), n - 2)
         low = np.where(base < edge, 0, np.where(base < n - 1 - edge, edge, n - 1 - edge))
         high = np.where(base < edge, edge, np.where(base < n - 1 - edge, n - 1 - edge, n - 1))
-        first = np.clip(base - 1, low, np.maximum(high - 3, low))
-        width = np.minimum(high - first, 3)
-        offset = index - first
-        weights = np.zeros((len(index), 4))
-        for k in range(4):
-            weight = np.ones(len(index))
-            for other in range(4):
-                if other != k:
-                    used = (other <= width) & (k <= width)
-                    weight *= np.where(used, (offset - other) / (k - other), 1.0)
-            weights[:, k] = np.where(k > width, 0.0, weight)
-        rows = np.minimum(first[:, None] + np.arange(4), n - 1)
-        return weights, rows
+        weights, first = column_weights(index, low, high)
+        return weights, np.minimum(first[:, None] + np.arange(4), n - 1)
 
 
 def march_sheet(
@@ -157,8 +159,8 @@ def march_sheet(
         wanted = graded(np.minimum(thick, room), along, 4.0 * along[-1], SLOPE)
         if wanted.min() < max(4.0 * first, 0.1 * thickness):
             return None
-        levels = _marched(start, wanted, first, np.stack([-ends, ends]))
-        if levels is not None:
+        levels, folded = marched(start, wanted, first, OPEN_ATTEMPTS, np.stack([-ends, ends]))
+        if levels is not None and not folded.any():
             return _sheet(domain, number, wake, outer, levels, edge, arcs, behind, chords)
         thickness *= THINNER
     return None
@@ -195,38 +197,3 @@ def _wake_columns(wake: Wake, first: float) -> tuple[Floats, Floats]:
     arcs *= 1.0 + rise * (curve.length / arcs[-1] - 1.0)
     arcs[-1] = curve.length
     return arcs, curve.at(arcs)
-
-
-def _marched(start: Floats, thickness: Floats, first: float, ends: Floats) -> Floats | None:
-    """Return levels (n, m, 2) that are not folded, of the first march that gives such."""
-    cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
-    ratios = np.array(
-        [growth_ratio(first, each, cells) if each > cells * first else 1.0 for each in thickness]
-    )
-    for settings in OPEN_ATTEMPTS:
-        levels = _march(start, cells, first, ratios, settings, ends)
-        if np.isfinite(levels).all() and not _folded(levels):
-            return levels
-    return None
-
-
-def _march(
-    start: Floats, cells: int, first: float, ratios: Floats, settings: MarchSettings, ends: Floats
-) -> Floats:
-    levels = np.empty((2, cells + 1, len(start)))
-    levels[:, 0] = start.T
-    most = float(ratios.max())
-    knobs = (
-        settings.dissipation, settings.even, settings.tolerated, settings.bend, 1.0 + settings.theta,
-        AREA_SMOOTHING, settings.sweeps, round(RISING * cells),
-    )  # fmt: skip
-    steps = np.asarray(first * most ** np.arange(cells), dtype=np.float64)
-    hyperbolic_march(levels[0], levels[1], steps, *knobs, ends=ends, ratios=ratios / most)
-    return np.ascontiguousarray(levels.transpose(2, 1, 0))
-
-
-def _folded(levels: Floats) -> bool:
-    z = levels[..., 0] + 1j * levels[..., 1]
-    along, across = np.diff(z, axis=0), np.diff(z, axis=1)
-    pairs = [(e, s) for e in (along[:, :-1], along[:, 1:]) for s in (across[:-1], across[1:])]
-    return bool(min((np.conj(e) * s).imag.min() for e, s in pairs) <= 0.0)

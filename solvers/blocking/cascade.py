@@ -142,8 +142,7 @@ class Cascade:
     @cached_property
     def rows_of_layers(self) -> int:
         """Rows of cells in the layers."""
-        thickness = np.hypot(*np.diff(self.ring.levels, axis=1).transpose(2, 0, 1)).sum(axis=1)
-        return self.layers.rows(float(thickness.max()))
+        return self.layers.rows(float(self.ring.thickness.max()))
 
     @cached_property
     def metric(self) -> SizeMetric:

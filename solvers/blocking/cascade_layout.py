@@ -21,13 +21,14 @@ from meshonet.solvers.blocking.attach import Rows, loop_nodes
 from meshonet.solvers.blocking.cascade import Cascade
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings
+from meshonet.solvers.blocking.folds import smallest_corner
 from meshonet.solvers.blocking.layer_rows import heights_inside, ring_rows
-from meshonet.solvers.blocking.layered import smallest_corner
 from meshonet.solvers.blocking.passage import BLADE, INLET, OUTLET, Passage, extended, laid_out, turned_round
 from meshonet.solvers.blocking.passage_template import cut_of, template
 from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.blocking.respace import respaced
 from meshonet.solvers.blocking.size_metric import SizeMetric
+from meshonet.solvers.blocking.wanted_counts import WantedCounts
 from meshonet.solvers.energy.quads import optimise
 
 MOST_OPTIMISED = 4000
@@ -40,7 +41,6 @@ FIRST, ITERATIONS, PASSES = 150, 120, 2
 ROW_GROWTH = 1.1
 """Ratio of neighbouring cells on the way to inlet and outlet."""
 _BISECTIONS = 14
-_PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
 
 def cascade_layout(
@@ -144,7 +144,7 @@ def _counts(
     cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
     """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
-    wanted = _Wanted(chords, cascade.metric)
+    wanted = WantedCounts(chords, cascade.metric)
     if cell_size is not None:
         sizes = np.minimum(cascade.metric.across, cell_size)
         metric = replace(cascade.metric, across=sizes, along=sizes, largest=cell_size)
@@ -177,25 +177,3 @@ def _attached_cells(cascade: Cascade, chords: Chords, counts: Indices, metric: S
                 len(_steps(abs(cascade.left) / along[number], length, metric.largest)) - 1
             )
     return total
-
-
-class _Wanted:
-    """What edges of chords want, for any sizes at the same points."""
-
-    def __init__(self, chords: Chords, metric: SizeMetric) -> None:
-        self.chords = chords
-        nodes = chords.layout.mesh.nodes
-        start = nodes[np.concatenate([edge[:-1] for edge in chords.edges])]
-        step = nodes[np.concatenate([edge[1:] for edge in chords.edges])] - start
-        self.length = np.hypot(*step.T)
-        self.near = [metric.near(start + part * step, step) for part in _PARTS]
-        self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
-
-    def counts(self, metric: SizeMetric) -> Indices:
-        """Return counts (chords,): the mean, by length, of the logarithms of what edges want."""
-        parts = [self.length / near.length(metric.across, metric.along, metric.largest) for near in self.near]
-        chords = self.chords
-        wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
-        weight = np.bincount(chords.chord, wanted, chords.count)
-        mean = np.bincount(chords.chord, wanted * np.log(np.maximum(wanted, 1e-9)), chords.count) / weight
-        return np.maximum(chords.least, np.round(np.exp(mean)).astype(np.intp))

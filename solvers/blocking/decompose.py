@@ -9,9 +9,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import reduce
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.base_complex import base_complex
 from meshonet.solvers.blocking.collapse import simplify
 from meshonet.solvers.blocking.errors import BlockingError, most_folded
-from meshonet.solvers.blocking.padding import loops_to_pad, pad
+from meshonet.solvers.blocking.padding import Span, loops_to_pad, pad, pad_span, spans_to_pad
 from meshonet.solvers.blocking.quad_mesh import quad_mesh
 from meshonet.solvers.blocking.score import PRICE
 from meshonet.solvers.blocking.seamless_map import seamless_map
@@ -38,6 +39,8 @@ MOST = 9_000
 """Blocks, before any collapse, beyond which there is no answer in good time: of too many corners, say."""
 COUNT = 1500
 """About how many points the triangulation has."""
+PADDED = 3
+"""Attempts in which stretches without singularities are asked for."""
 
 
 @dataclass
@@ -68,6 +71,7 @@ def decompose(
     attempts: int = ATTEMPTS,
     timings: Timings | None = None,
     sizes: SizeMetric | None = None,
+    spans: Sequence[Span] = (),
 ) -> Layout:
     """Return a layout of the blocks of a domain, its quad mesh optimised.
 
@@ -79,6 +83,7 @@ def decompose(
     attempts : how often to try, each time with a finer triangulation and another seed.
     timings : filled with what the stages took.
     sizes : of the edges of the quad mesh, in place of `cells`; by default they are all alike.
+    spans : stretches of loops between convex corners along which no singularity is to lie.
 
     Raises BlockingError: no attempt came to a valid layout, or the domain has too many corners.
     """
@@ -91,7 +96,7 @@ def decompose(
             mesh = _quad_mesh(domain, *finer, attempt, timings, sizes)
             if len(mesh.quads) > MOST and len(base_complex(mesh).blocks) > MOST:
                 break
-            return _blocks(mesh, price, timings, sizes)
+            return _blocks(mesh, price, timings, sizes, spans if attempt < PADDED else ())
         except SolverError as error:
             problem = error
     else:
@@ -111,13 +116,16 @@ def _too_many(domain: Domain) -> str:
     )
 
 
-def _blocks(mesh: QuadMesh, price: float, timings: Timings, sizes: SizeMetric | None) -> Layout:
+def _blocks(
+    mesh: QuadMesh, price: float, timings: Timings, sizes: SizeMetric | None, spans: Sequence[Span]
+) -> Layout:
     """Return the layout of a quad mesh as it comes, its nodes anywhere."""
-    loops = loops_to_pad(mesh)
+    loops, spans = loops_to_pad(mesh), spans_to_pad(mesh, spans)
     with timings.stage("first optimum"):
-        mesh = _optimised(mesh, BEFORE_PADDING if loops else FIRST_ITERATIONS, sizes)
-        if loops:
-            mesh = _optimised(pad(mesh, loops), FIRST_ITERATIONS, sizes)
+        mesh = _optimised(mesh, BEFORE_PADDING if loops or spans else FIRST_ITERATIONS, sizes)
+        if loops or spans:
+            mesh = reduce(pad_span, spans, pad(mesh, loops))
+            mesh = _optimised(mesh, FIRST_ITERATIONS, sizes)
     timings.blocks_found = len(base_complex(mesh).blocks)
     with timings.stage("collapse"):
         return simplify(mesh, price=price, sizes=sizes).layout

@@ -12,8 +12,9 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.attach import sampled
 from meshonet.solvers.blocking.chords import Chords
-from meshonet.solvers.blocking.even_growth import evened
+from meshonet.solvers.blocking.even_growth import Bools, evened
 from meshonet.solvers.blocking.grid_lines import Row, rows_of
+from meshonet.solvers.blocking.on_loops import on_loops
 
 ROUNDS = 1
 FILTERS = 3
@@ -29,8 +30,8 @@ _SPREAD = 0.15
 def evened_rows(layout: Layout, limit: float, held: int = 1, rounds: int = ROUNDS) -> Layout:
     """Return the layout with nodes moved along grid lines, where cells differ by more than a ratio.
 
-    `limit` is the logarithm of the ratio; nodes of walls, of lines along layers and of the first `held` cells
-    from a wall with layers stay.
+    `limit` is the logarithm of the ratio; nodes of walls with layers, of lines along layers and of the first
+    `held` cells from such walls stay, those of others slide along them.
     """
     mesh = layout.mesh
     walls = np.zeros(len(mesh.nodes), dtype=bool)
@@ -42,15 +43,17 @@ def evened_rows(layout: Layout, limit: float, held: int = 1, rounds: int = ROUND
         if not _along_layers(layout, row)
     ]
     nodes = mesh.nodes
+    sliding = mesh.wall_nodes & ~walls & (mesh.places.cells == 0) & (mesh.places.partner < 0)
     for _ in range(rounds):
         change = np.zeros_like(nodes)
         for row in rows:
-            _add_moves(change, nodes, row, limit)
-        change[mesh.wall_nodes] = 0.0
+            _add_moves(change, nodes, row, limit, mesh.wall_nodes)
+        change[mesh.wall_nodes & ~sliding] = 0.0
         if not change.any():
             break
-        nodes = guarded(nodes, change, mesh, LEAST_SINE)
-    return replace(layout, mesh=mesh.with_nodes(nodes))
+        mesh = on_loops(mesh.with_nodes(guarded(nodes, change, mesh, LEAST_SINE)), sliding)
+        nodes = mesh.nodes
+    return replace(layout, mesh=mesh)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,11 +64,17 @@ class _Held:
 
 
 def _along_layers(layout: Layout, row: Row) -> bool:
-    block = layout.blocks[row.blocks[0]]
-    return row.blocks[0] in layout.layers and bool(np.isin(row.nodes[:, 0], block[[0, -1]]).all())
+    """Return whether the lines of a row run along layers anywhere."""
+    sides = row.nodes[0], row.nodes[-1]
+    for number in row.blocks:
+        if number in layout.layers:
+            wall = layout.blocks[number][:2, 0]
+            if any(np.isin(wall, side).all() for side in sides):
+                return True
+    return False
 
 
-def _add_moves(change: Floats, nodes: Floats, each: _Held, limit: float) -> None:
+def _add_moves(change: Floats, nodes: Floats, each: _Held, limit: float, on_wall: Bools) -> None:
     """Add to `change` (n, 2) where the nodes of a row of blocks want to go."""
     row, lines = each.row, each.row.nodes
     step = np.diff(nodes[lines], axis=1)
@@ -90,7 +99,8 @@ def _add_moves(change: Floats, nodes: Floats, each: _Held, limit: float) -> None
     if not some.any():
         return
     share = np.ones((len(lines), 1, 1))
-    share[[0, -1]] = 0.5  # sides belong to two rows
+    for side in (0, -1):  # sides belong to two rows, but for walls
+        share[side] = 1.0 if on_wall[lines[side]].all() else 0.5
     lines, arc, part, unit, share = lines[some], arc[some], part[some], unit[some], share[some]
     at = np.maximum.accumulate(np.clip(arc + part * unit, 0.0, arc[:, -1:]), axis=1)
     moves = share * np.where((part != 0.0)[..., None], sampled(nodes[lines], arc, at) - nodes[lines], 0.0)

@@ -17,6 +17,7 @@ from meshonet.solvers.blocking.size_metric import SizeMetric
 
 JOIN = 1.1
 """Ratio of the first cell outside a ring to the last one inside."""
+_WINDOW = 4  # columns to either side over which lengths along fronts are averaged
 
 
 @dataclass(frozen=True)
@@ -50,13 +51,31 @@ def ring_metric(ring: Ring, settings: LayerSettings) -> SizeMetric:
     length = np.hypot(*step.T)
     along = _smooth(0.5 * (length + np.roll(length, 1)))
     tangent = step + np.roll(step, 1, axis=0)
-    tangent /= np.hypot(*tangent.T)[:, None]
-    normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
-    thickness = np.hypot(*np.diff(ring.levels, axis=1).transpose(2, 0, 1)).sum(axis=1)
-    rows = settings.rows(float(thickness.max()))
-    arcs = layer_arcs(thickness, settings.first, np.full_like(thickness, np.inf), rows, settings.constant)
-    across = JOIN * (arcs[:, -1] - arcs[:, -2])
-    return SizeMetric(points, normal, across, along, np.inf)
+    across = last_layers(ring.thickness, settings.rows(float(ring.thickness.max())), settings)
+    return SizeMetric(points, _normals(tangent), across, along, np.inf)
+
+
+def open_metric(points: Floats, across: Floats) -> SizeMetric:
+    """Return the sizes that an open front (n, 2) asks for: its columns, and `across` (n,)."""
+    length = np.hypot(*np.diff(points, axis=0).T)
+    length = np.concatenate([length[:1], np.sqrt(length[1:] * length[:-1]), length[-1:]])
+    around = np.pad(np.log(length), _WINDOW, mode="reflect")
+    kernel = np.full(2 * _WINDOW + 1, 1.0 / (2 * _WINDOW + 1))
+    along = np.exp(np.convolve(around, kernel, "valid"))
+    return SizeMetric(points, _normals(np.gradient(points, axis=0)), across, along, np.inf)
+
+
+def last_layers(thickness: Floats, rows: int, settings: LayerSettings) -> Floats:
+    """Return the heights (n,) that cells beyond so many layers, `thickness` (n,) in all, begin with."""
+    none = np.full_like(thickness, np.inf)
+    arcs = layer_arcs(thickness, settings.first, none, rows, settings.constant)
+    return np.asarray(JOIN * (arcs[:, -1] - arcs[:, -2]))
+
+
+def _normals(tangents: Floats) -> Floats:
+    """Return unit normals (n, 2) to the left of tangents (n, 2)."""
+    unit = tangents / np.hypot(*tangents.T)[:, None]
+    return np.stack([-unit[:, 1], unit[:, 0]], axis=1)
 
 
 def ring_rows(
@@ -65,15 +84,23 @@ def ring_rows(
     """Return the layers under the nodes of a front, `inner` (k,) the heights of the cells beyond it."""
     order = loop_nodes(mesh, loop)
     columns, starts = ring.columns(mesh.places.arc[order])
-    part = arc_shares(columns)
-    columns += part[..., None] * (mesh.nodes[order] - columns[:, -1])[:, None]
+    lines = layer_lines(columns, mesh.nodes[order], inner, rows, settings)
+    return Rows(loop, lines[:, ::-1], starts, True)
+
+
+def layer_lines(columns: Floats, ends: Floats, inner: Floats, rows: int, settings: LayerSettings) -> Floats:
+    """Return the nodes (k, rows + 1, 2) of layers along columns (k, m, 2), from the wall to `ends` (k, 2).
+
+    `inner` (k,) are the heights of the cells beyond.
+    """
+    columns = columns + arc_shares(columns)[..., None] * (ends - columns[:, -1])[:, None]
 
     def law(length: Floats) -> Floats:
         return layer_arcs(length, settings.first, inner / JOIN, rows, settings.constant, settings.growth)
 
     lines = spaced(columns, law)
     _exact(lines, settings.first)
-    return Rows(loop, lines[:, ::-1], starts, True)
+    return lines
 
 
 def heights_inside(layout: Layout, loop: int) -> Floats:
@@ -92,7 +119,7 @@ def heights_inside(layout: Layout, loop: int) -> Floats:
     return height[loop_nodes(mesh, loop)]
 
 
-def _smooth(values: Floats, window: int = 4) -> Floats:
+def _smooth(values: Floats, window: int = _WINDOW) -> Floats:
     """Return the geometric running mean (n,) of values around a closed curve."""
     around = np.arange(-window, len(values) + window) % len(values)
     kernel = np.full(2 * window + 1, 1.0 / (2 * window + 1))

@@ -108,58 +108,38 @@ def _with_layers(
     from meshonet.solvers.blocking.c_layered import bodies_with_layers
     from meshonet.solvers.blocking.layer_rows import LayerSettings
     from meshonet.solvers.blocking.layered import layered
+    from meshonet.solvers.blocking.stretches import layered_walls
 
-    numbers = _layered_loops(domain, request)
+    numbers, stretches = layered_walls(domain, request.walls)
     size = _wanted(domain, request)[1]
     settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1, request.multiple)
     cells = 0 if size else (request.cells or LAYERED_CELLS) * request.multiple**2
     size = (size or 0.0) / request.multiple
-    if layout is None and cells and request.multiple == 1:
+    if layout is None and cells and request.multiple == 1 and not stretches:
         return bodies_with_layers(domain, numbers, settings, cells=cells, timings=timings)
-    fine = layered(domain, numbers, settings, cells=cells, cell_size=size, layout=layout, timings=timings)
+    fine = layered(
+        domain, numbers, settings, stretches=stretches, cells=cells, cell_size=size, layout=layout,
+        timings=timings,
+    )  # fmt: skip
     return fine, ()
 
 
 def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout: Layout | None) -> Layout:
     """Return the blocks of what the layers leave of a domain."""
     from meshonet.solvers.blocking.layer_rows import LayerSettings
-    from meshonet.solvers.blocking.layered import Rings
     from meshonet.solvers.blocking.outside import found_outside, taken_outside
+    from meshonet.solvers.blocking.stretches import layered_walls
+    from meshonet.solvers.blocking.wall_layers import WallLayers
 
     for name in ("cells", "cell_size", "res", "refine"):
         if getattr(request, name):
             problem = f"{{{name}}} for a layout with layers"
             raise InputError(problem, f"drop {{{name}}}: the grid has cells, which follow from the layers")
-    rings = Rings.around(domain, _layered_loops(domain, request), LayerSettings(height))
+    loops, stretches = layered_walls(domain, request.walls)
+    walls = WallLayers.of(domain, loops, LayerSettings(height), stretches)
     if layout is None:
-        return found_outside(rings.rest, rings.rings)
-    return taken_outside(layout, rings.rest, rings.rings)
-
-
-def _layered_loops(domain: Domain, request: BlockRequest) -> list[int]:
-    """Return the numbers of the loops that layers are around.
-
-    Raises InputError: there are none; only a part of a loop was named, or one with convex corners.
-    """
-    numbers = [
-        k for k, loop in enumerate(domain.loops) if (request.walls and set(loop.names) & set(request.walls))
-    ] or list(range(1, len(domain.loops)))
-    if not numbers:
-        remedy = "drop it: layers go around holes, or along an outer loop that {walls} names"
-        raise InputError("a first cell in a domain without holes", remedy)
-    for number in numbers:
-        loop = domain.loops[number]
-        others = list(dict.fromkeys(name for name in loop.names if name not in request.walls))
-        if request.walls and others:
-            problem = f"layers at a part of a loop, which is {', '.join(others)} too"
-            raise InputError(problem, "layers go along whole loops: name all of its parts", parameter="walls")
-        if (loop.corner_cells == 1).any():
-            x, y = loop.at(loop.corner_arcs[loop.corner_cells == 1][:1])[0]
-            problem = (
-                f"layers at {', '.join(dict.fromkeys(loop.names))} would cross in corner ({x:.6g}, {y:.6g})"
-            )
-            raise InputError(problem, "name walls without convex corners", parameter="walls")
-    return numbers
+        return found_outside(walls.rest, walls.fronts, spans=walls.spans)
+    return taken_outside(layout, walls.rest, walls.fronts)
 
 
 def _passage(domain: Domain, request: BlockRequest, height: float | None, timings: Timings) -> Layout:

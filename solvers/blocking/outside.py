@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from meshonet.geometry.domain.domain import Domain
@@ -11,19 +11,22 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
+from meshonet.solvers.blocking.padding import Span
 from meshonet.solvers.blocking.reuse import carried_over
 
 PRICE = -0.02
 """Degrees of mean deviation that a block costs, a gain here: few blocks leave sizes no way to change."""
 
 
-def found_outside(rest: Domain, fronts: Collection[int], timings: Timings | None = None) -> Layout:
-    """Return the blocks of a domain of which some loops are fronts of layers.
+def found_outside(
+    rest: Domain, fronts: Collection[int], timings: Timings | None = None, spans: Sequence[Span] = ()
+) -> Layout:
+    """Return the blocks of a domain of which some loops are fronts of layers, or stretches, `spans`, of them.
 
     Raises BlockingError: no blocks are found.
     """
     plain = replace(rest, loops=tuple(_smooth(loop) for loop in rest.loops))
-    layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
+    layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE, spans=spans)
     mesh = replace(layout.mesh, domain=rest)
     return replace(layout, mesh=mesh, fronts=tuple(sorted(fronts)))
 

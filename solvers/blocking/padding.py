@@ -1,7 +1,8 @@
-"""A ring of quads along smooth loops where the field put singularities on the wall.
+"""A row of quads along smooth walls where the field put singularities on the wall.
 
 A loop without corners, a disc for instance, may carry nodes where more or fewer than two quads meet. With a
-ring of quads along the loop they become irregular nodes inside, and every node on the wall regular.
+ring of quads along the loop they become irregular nodes inside, and every node on the wall regular. So does a
+row of quads along a stretch between two corners where one quad meets.
 
 Mitchell, Tautges, "Pillowing doublets: refining a mesh to ensure that faces share at most one edge", 4th
 International Meshing Roundtable (1995).
@@ -9,15 +10,20 @@ International Meshing Roundtable (1995).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import distinct
+from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 
 INSET = 0.25
 """How far old wall nodes move inside, in lengths of the shorter edge beside them."""
+
+Span = tuple[int, float, float]
+"""Number of a loop, and the arc lengths of the corners at which a stretch of it begins and ends."""
 
 
 def wrong_count(mesh: QuadMesh) -> NDArray[np.bool_]:
@@ -31,6 +37,16 @@ def loops_to_pad(mesh: QuadMesh) -> list[int]:
     """Return the numbers of loops without corners on which some node has a wrong count of quads."""
     wrong = distinct(mesh.places.loop[wrong_count(mesh)])
     return [int(loop) for loop in wrong if loop >= 0 and not mesh.domain.loops[loop].corners]
+
+
+def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
+    """Return those of some stretches within which some node has a wrong count of quads."""
+    places, wrong = mesh.places, wrong_count(mesh)
+    return [
+        (loop, begin, end)
+        for loop, begin, end in spans
+        if wrong[(places.loop == loop) & (places.arc > begin) & (places.arc < end)].any()
+    ]
 
 
 def pad(mesh: QuadMesh, loops: list[int]) -> QuadMesh:
@@ -53,14 +69,50 @@ def pad(mesh: QuadMesh, loops: list[int]) -> QuadMesh:
     ring = np.stack([copy[along], copy[ahead], ahead, along], axis=1)
     before = np.empty(n, dtype=np.intp)
     before[ahead] = along
-    here, last, coming = mesh.nodes[along], mesh.nodes[before[along]], mesh.nodes[ahead]
+    nodes = np.concatenate([mesh.nodes, mesh.nodes[along]])
+    nodes[along] += _inwards(mesh.nodes, before[along], along, ahead)
+    return QuadMesh(mesh.domain, nodes, np.concatenate([mesh.quads, ring]), _moved(mesh.places, along))
+
+
+def _inwards(nodes: Floats, before: Indices, along: Indices, ahead: Indices) -> Floats:
+    """Return by what wall nodes (k,) move inside, between those before and ahead of them."""
+    here, last, coming = nodes[along], nodes[before], nodes[ahead]
     tangent = coming - last
     tangent /= np.hypot(*tangent.T)[:, None]
     left = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
     shorter = np.minimum(np.hypot(*(here - last).T), np.hypot(*(coming - here).T))
-    nodes = np.concatenate([mesh.nodes, here])
-    nodes[along] += INSET * shorter[:, None] * left
-    return QuadMesh(mesh.domain, nodes, np.concatenate([mesh.quads, ring]), _moved(mesh.places, along))
+    return np.asarray(INSET * shorter[:, None] * left)
+
+
+def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
+    """Return the mesh with a row of quads along a stretch, which begins and ends at corners of one quad.
+
+    Old nodes at these corners go on along the walls beyond.
+    """
+    number, begin, end = span
+    places, loop = mesh.places, mesh.domain.loops[number]
+    along, ahead = _wall_edges(mesh, [number])
+    after = dict(zip(along.tolist(), ahead.tolist(), strict=True))
+    arcs = places.arc[along]
+    chain = [int(along[np.argmin(np.abs(arcs - begin))])]
+    last = int(along[np.argmin(np.abs(arcs - end % loop.length))])
+    while chain[-1] != last or len(chain) == 1:
+        chain.append(after[chain[-1]])
+    line, n = np.array(chain), len(mesh.nodes)
+    new = n + np.arange(len(line))
+    nodes = np.concatenate([mesh.nodes, mesh.nodes[line]])
+    row = np.stack([new[:-1], new[1:], line[1:], line[:-1]], axis=1)
+    inner = line[1:-1]
+    nodes[inner] += _inwards(mesh.nodes, line[:-2], inner, line[2:])
+    moved = _moved(places, line)
+    previous = int(along[ahead == line[0]][0])
+    for node, beyond in ((line[0], previous), (line[-1], after[last])):
+        way = places.arc[beyond] - places.arc[node]
+        way -= loop.length * np.round(way / loop.length)
+        moved.loop[node], moved.arc[node] = number, np.mod(places.arc[node] + INSET * way, loop.length)
+        nodes[node] = loop.at(moved.arc[node : node + 1])[0]
+    moved.cells[new[[0, -1]]] = 1
+    return QuadMesh(mesh.domain, nodes, np.concatenate([mesh.quads, row]), moved)
 
 
 def _wall_edges(mesh: QuadMesh, loops: list[int]) -> tuple[Indices, Indices]:

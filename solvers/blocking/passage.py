@@ -17,10 +17,11 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain, Periodic
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.attach import Rows, attach, loop_nodes, quads_of
+from meshonet.solvers.blocking.attach import Rows, attach, loop_nodes
 from meshonet.solvers.blocking.passage_map import PassageMap, inner_point
 from meshonet.solvers.blocking.unwrap import unwrap
 
@@ -129,7 +130,7 @@ def laid_out(layout: Layout, passage: Passage, cut: Indices) -> Flat:
         # the passage is on the left of each loop: down at the inlet, up at the outlet
         places.arc[on] = side.max() - side if loop == INLET else side - side.min()
     nodes[flat.upper] = nodes[flat.lower] + pitch
-    mesh = QuadMesh(passage.domain, nodes, quads_of(flat.blocks), places)
+    mesh = QuadMesh(passage.domain, nodes, lattice_quads(flat.blocks), places)
     return Flat(Layout(mesh, flat.blocks), flat.lower, flat.upper)
 
 

@@ -18,10 +18,10 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.attach import quads_of
 from meshonet.solvers.blocking.passage import BLADE, INLET, OUTLET, Passage
 from meshonet.solvers.blocking.passage_flow import PassageFlow
 from meshonet.solvers.blocking.passage_map import of_zeta
@@ -123,7 +123,7 @@ def _placed(
     for number, loop in enumerate(domain.loops):
         on = places.loop == number
         mapped[on] = loop.at(places.arc[on])
-    return Layout(QuadMesh(domain, mapped, quads_of(blocks), places), blocks)
+    return Layout(QuadMesh(domain, mapped, lattice_quads(blocks), places), blocks)
 
 
 def _put_at_corners(layout: Layout, front: Loop) -> None:

@@ -8,11 +8,14 @@ where it is: a family of nested grids.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -21,14 +24,19 @@ from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.wall_turning import corners_between
 
+_FINER = 8  # points a cell, between which nodes at given places lie on straight lines
 
-def refine(layout: Layout, counts: Indices, chords: Chords | None = None) -> Layout:
+
+def refine(
+    layout: Layout, counts: Indices, chords: Chords | None = None, places: Sequence[Floats] | None = None
+) -> Layout:
     """Return the layout with `counts` (chords,) of cells along the edges of each of its `Chords`.
 
+    Nodes of each edge lie at `places`, (cells + 1,) in numbers of its old nodes, at equal steps without.
     Corners of the domain inside an edge become the wall node nearest to them. Layers are not kept track of.
     """
     chords = chords or Chords.of(layout)
-    return _Refined(chords, counts).layout
+    return _Refined(chords, counts, places).layout
 
 
 def multiplied(layout: Layout, times: int) -> Layout:
@@ -40,8 +48,8 @@ def multiplied(layout: Layout, times: int) -> Layout:
 class _Refined:
     """New nodes in the order vertices, edges, blocks."""
 
-    def __init__(self, chords: Chords, counts: Indices) -> None:
-        self.chords, self.old = chords, chords.layout.mesh
+    def __init__(self, chords: Chords, counts: Indices, places: Sequence[Floats] | None) -> None:
+        self.chords, self.old, self.at = chords, chords.layout.mesh, places
         self.cells = counts[chords.chord]
         vertices = chords.layout.vertices
         self.number = np.full(len(self.old.nodes), -1, dtype=np.intp)
@@ -50,8 +58,7 @@ class _Refined:
         self.first = len(vertices) + np.concatenate([[0], np.cumsum(inner)])
         self.nodes = np.empty((int(self.first[-1]), 2))
         self.nodes[: len(vertices)] = self.old.nodes[vertices]
-        places, more = self.old.places.take(vertices), Places.inside(int(inner.sum()))
-        self.places = _joined(places, more)
+        self.places = _joined(self.old.places.take(vertices), Places.inside(int(inner.sum())))
         self.edges = [self._edge(k) for k in range(len(chords.edges))]
         self._set_partners()
         self.layout = self._filled()
@@ -61,21 +68,29 @@ class _Refined:
         old, own = self.chords.edges[k], self.number
         inner = np.arange(self.first[k], self.first[k + 1])
         new = np.concatenate([own[old[:1]], inner, own[old[-1:]]])
+        at = np.linspace(0.0, len(old) - 1.0, len(new)) if self.at is None else self.at[k]
         if self.chords.wall[k]:
             number = int(self.old.places.loop[old[0]])
             loop = self.old.domain.loops[number]
             before = self.chords.arcs(k)
-            arcs, corners = _wall_arcs(loop, before, len(new))
+            arcs, corners = _wall_arcs(loop, before, at)
             self.places.loop[inner] = number
             self.places.arc[inner] = np.mod(arcs[1:-1], loop.length)
             self.places.cells[inner] = corners[1:-1]
             self.nodes[inner] = loop.at(arcs[1:-1])
         else:
             ring = old[0] == old[-1] and len(old) > 3
-            spline = spline_matrix(len(old), len(new), bool(ring))
-            self.nodes[inner] = (spline @ self.old.nodes[old])[1:-1]
+            finer = 1 if self.at is None else _FINER
+            spline = spline_matrix(len(old), finer * (len(new) - 1) + 1, bool(ring))
+            line = spline @ self.old.nodes[old]
+            if self.at is not None:
+                dense = np.linspace(0.0, len(old) - 1.0, len(line))
+                line = np.stack([np.interp(at, dense, line[:, axis]) for axis in (0, 1)], axis=1)
+            self.nodes[inner] = line[1:-1]
         whole, rest = divmod(len(new) - 1, len(old) - 1)
-        if not rest:  # nodes that stay keep their coordinates bitwise, unless one was put at a corner
+        if (
+            not rest and self.at is None
+        ):  # nodes that stay keep their coordinates bitwise, unless one was put at a corner
             stay = np.ones(len(old), dtype=bool)
             if self.chords.wall[k]:
                 stay = np.abs(arcs[::whole] - before) <= 1e-9 * loop.length
@@ -117,7 +132,7 @@ class _Refined:
             lattices.append(lattice)
             count += len(inside)
         places = _joined(self.places, Places.inside(count - len(self.nodes)))
-        quads = np.concatenate([quads_of(lattice) for lattice in lattices])
+        quads = lattice_quads(lattices)
         mesh = QuadMesh(self.old.domain, np.concatenate(parts), quads, places)
         return Layout(mesh, tuple(lattices))
 
@@ -129,15 +144,9 @@ class _Refined:
         south, north, west, east = (np.ascontiguousarray(self.nodes[edge].T)[None] for edge in four)
         fine = quad.evaluate(coarse, (south, north, west, east))[0]
         strides = [divmod(n - 1, m - 1) for n, m in zip(fine.shape[1:], block.shape, strict=True)]
-        if not strides[0][1] and not strides[1][1]:
+        if not strides[0][1] and not strides[1][1] and self.at is None:
             fine[:, :: strides[0][0], :: strides[1][0]] = coarse[0]
         return np.asarray(fine[:, 1:-1, 1:-1].reshape(2, -1).T)
-
-
-def quads_of(lattice: Indices) -> Indices:
-    """Return the quads ((ni - 1) (nj - 1), 4) of a lattice of nodes (ni, nj), counter-clockwise."""
-    corners = lattice[:-1, :-1], lattice[1:, :-1], lattice[1:, 1:], lattice[:-1, 1:]
-    return np.stack(corners, axis=-1).reshape(-1, 4)
 
 
 def _joined(first: Places, second: Places) -> Places:
@@ -145,13 +154,12 @@ def _joined(first: Places, second: Places) -> Places:
     return Places(*(np.concatenate(pair) for pair in pairs))
 
 
-def _wall_arcs(loop: Loop, arcs: Floats, count: int) -> tuple[Floats, Indices]:
-    """Return `count` arc lengths at equal steps of the index of `arcs` (n,), and the cells at corners.
+def _wall_arcs(loop: Loop, arcs: Floats, at: Floats) -> tuple[Floats, Indices]:
+    """Return arc lengths (m,) at numbers `at` (m,) of the places `arcs` (n,), and the cells at corners.
 
     Nodes nearest to the corners of the loop are put there.
     """
-    n, way = len(arcs), 1.0 if arcs[-1] > arcs[0] else -1.0
-    at = np.linspace(0.0, n - 1.0, count)
+    n, count, way = len(arcs), len(at), 1.0 if arcs[-1] > arcs[0] else -1.0
     new = monotone_cubic(np.arange(float(n)), way * arcs, at)  # rising, whichever way the edge runs
     new[[0, -1]] = way * arcs[[0, -1]]
     cells = np.zeros(count, dtype=np.intp)

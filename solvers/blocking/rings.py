@@ -10,7 +10,6 @@ itself is a map from (place along the front, height) that gives a column of node
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -21,27 +20,13 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
-from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
-from meshonet.kernels._native import hyperbolic_march
+from meshonet.solvers.blocking.column_weights import column_weights, line_lengths, started, whole_columns
+from meshonet.solvers.blocking.marched import GAP_PART, fitted
 from meshonet.solvers.blocking.wall_columns import wall_columns
-from meshonet.solvers.hyperbolic.march import AREA_SMOOTHING
-from meshonet.solvers.hyperbolic.settings import ATTEMPTS, RISING, MarchSettings
+from meshonet.solvers.hyperbolic.settings import ATTEMPTS
 
-GAP_PART = 0.38
-"""Part of the gap in front of a wall that a ring may fill: two of them leave a fourth of it."""
-SLOPE = 0.25
-"""How fast the thickness of a ring may change along the wall."""
-MARCH_GROWTH = 1.2
-"""Ratio of neighbouring levels of the march; the layers themselves are placed anew on its lines."""
-THINNER = 0.6
-"""What the thickness is multiplied by when the march has folded with every setting."""
-TRIES = 4
-FEWEST_CELLS = 4.0
-"""Thickness of a ring in first cells, at the least."""
 _FINER = 8
 
 
@@ -63,6 +48,11 @@ class Ring:
     levels: Floats
     front: Loop
 
+    @property
+    def thickness(self) -> Floats:
+        """(n,) lengths of the columns."""
+        return line_lengths(self.levels)
+
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
         """Return the lines (k, m, 2) to `places` (k,), arc lengths of the front, and where they start.
 
@@ -72,35 +62,19 @@ class Ring:
         n = len(self.arcs)
         knots = np.append(self.front.curve.knots, self.front.length)
         index = np.interp(np.mod(places, self.front.length), knots, np.arange(n + 1.0))
-        near = np.round(index)
-        index = np.where(np.abs(index - near) < 1e-7, near, index)
-        base = np.minimum(index.astype(np.intp), n - 1)
-        low, high = self._piece(base)
-        first = np.clip(base - 1, low, np.maximum(high - 3, low))
-        offset = index - first
+        index = whole_columns(index)
+        low, high = self._piece(np.minimum(index.astype(np.intp), n - 1))
+        weights, first = column_weights(index, low, high)
         nodes = np.zeros((len(places), *self.levels.shape[1:]))
-        width = np.minimum(high - first, 3)
         for k in range(4):
-            weight = np.ones(len(places))
-            for other in range(4):
-                used = (other <= width) & (k <= width)
-                if other != k:
-                    weight *= np.where(used, (offset - other) / (k - other), 1.0)
-            weight[k > width] = 0.0
-            nodes += weight[:, None, None] * self.levels[(first + k) % n]
+            nodes += weights[:, k, None, None] * self.levels[(first + k) % n]
         starts = (
             monotone_cubic(np.arange(-1.0, n + 2.0), self._unwrapped(), np.clip(index, 0.0, n))
             % self.wall.length
         )
         exact = index == np.round(index)
         starts[exact] = self.arcs[index[exact].astype(np.intp) % n]
-        wall = self.wall.at(starts)
-        step = np.diff(nodes, axis=1)
-        height = np.cumsum(np.hypot(step[..., 0], step[..., 1]), axis=1)
-        left = 1.0 - np.pad(height / height[:, -1:], ((0, 0), (1, 0)))  # of the way to the front
-        nodes += left[..., None] * (wall - nodes[:, 0])[:, None]
-        nodes[:, 0] = wall
-        return nodes, starts
+        return started(nodes, self.wall.at(starts)), starts
 
     @cached_property
     def along_wall(self) -> tuple[Floats, Floats]:
@@ -134,81 +108,24 @@ def march_ring(domain: Domain, loop: Loop, first: float, thickness: float, large
     unit. Raises InputError: a gap that no layer fits in, or a wall that every march folds at; with the place.
     """
     arcs = wall_columns(loop, largest)
-    gaps = wall_gaps(domain, loop, arcs)
-    room = GAP_PART * gaps
-    place = _place(loop, arcs, int(np.argmin(room)))
-    if room.min() < FEWEST_CELLS * first:
-        raise InputError(
-            f"a gap of {gaps.min():.3g} leaves no room for layers of {first:.3g}",
-            "use thinner first cells, or none there",
-            place=place,
-        )
-    thickness = max(thickness, FEWEST_CELLS * first)  # of thick first cells
-    folded = np.zeros(len(arcs))
-    for _ in range(TRIES):
-        wanted = graded(np.minimum(thickness, room), arcs, loop.length, SLOPE)
-        if wanted.min() < 0.99 * FEWEST_CELLS * first:
-            break
-        levels, folded = _marched(loop.at(arcs), wanted, first)
-        if levels is not None and not folded.any():
-            return _ring(loop, arcs, levels)
-        thickness *= THINNER
-    at = int(np.argmax(folded)) if folded.any() else 0
-    raise InputError(
-        "layers fold at the wall however thin", "smooth the wall there, or leave its layers out",
-        place=_place(loop, arcs, at),
-    )  # fmt: skip
-
-
-def _place(loop: Loop, arcs: Floats, column: int) -> str:
-    x, y = loop.at(arcs[column : column + 1])[0]
-    return f"{loop.name_at(float(arcs[column]))}, ({x:.6g}, {y:.6g})"
-
-
-def _marched(start: Floats, thickness: Floats, first: float) -> tuple[Floats | None, Floats]:
-    """Return levels (n, m, 2), and where (n,) they are folded, of the best of several marches."""
-    cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
-    ratios = np.array(
-        [growth_ratio(first, each, cells) if each > cells * first else 1.0 for each in thickness]
+    room = GAP_PART * wall_gaps(domain, loop, arcs)
+    levels = fitted(
+        loop.at(arcs),
+        arcs,
+        loop.length,
+        room,
+        thickness,
+        first,
+        ATTEMPTS,
+        place=lambda k: place(loop, arcs[k]),
     )
-    best, where = None, np.ones(len(start), dtype=bool)
-    for settings in ATTEMPTS:
-        levels = _march(start, cells, first, ratios, settings)
-        if not np.isfinite(levels).all():
-            continue
-        folded = _folded(levels)
-        if best is None or folded.sum() < where.sum():
-            best, where = levels, folded
-        if not folded.any():
-            break
-    return best, where
+    return _ring(loop, arcs, levels)
 
 
-def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: MarchSettings) -> Floats:
-    """Return levels (n, cells + 1, 2) whose steps grow by `ratios` (n,)."""
-    levels = np.empty((2, cells + 1, len(start)))
-    levels[:, 0] = start.T
-    most = float(ratios.max())
-    knobs = (
-        settings.dissipation, settings.even, settings.tolerated, settings.bend, 1.0 + settings.theta,
-        AREA_SMOOTHING, settings.sweeps, round(RISING * cells),
-    )  # fmt: skip
-    steps = np.asarray(first * most ** np.arange(cells), dtype=np.float64)
-    hyperbolic_march(levels[0], levels[1], steps, *knobs, ratios=ratios / most)
-    return np.ascontiguousarray(levels.transpose(2, 1, 0))
-
-
-def _folded(levels: Floats) -> Floats:
-    """Return which columns (n,) of closed levels (n, m, 2) have a cell with a corner that is folded."""
-    z = levels[..., 0] + 1j * levels[..., 1]
-    along, across = np.roll(z, -1, axis=0) - z, np.diff(z, axis=1)
-    after = np.roll(across, -1, axis=0)
-    least = [
-        (np.conj(edge) * side).imag.min(axis=1)
-        for edge in (along[:, :-1], along[:, 1:])
-        for side in (across, after)
-    ]
-    return np.asarray(np.min(least, axis=0) <= 0.0)
+def place(loop: Loop, arc: float) -> str:
+    """Return the name and the coordinates of a place on a loop, for messages."""
+    x, y = loop.at(np.array([arc]))[0]
+    return f"{loop.name_at(float(arc))}, ({x:.6g}, {y:.6g})"
 
 
 def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
@@ -224,8 +141,3 @@ def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
 
 def _corner_columns(loop: Loop, arcs: Floats) -> Indices:
     return np.flatnonzero(np.isin(arcs, loop.corner_arcs))
-
-
-def fronts(rings: Sequence[Ring]) -> tuple[Loop, ...]:
-    """Return the loops along the fronts of rings."""
-    return tuple(ring.front for ring in rings)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,13 +19,13 @@ GRADING = 0.13
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """Edges, their nearest points of a metric, and how they lie to these.
+    """Edges, the nearest point of each part of a metric, and how they lie to these.
 
     Parameters
     ----------
-    point : (m,) the nearest point of each edge.
-    rise : (m,) what distance adds to lengths.
-    square : (m,) square of the cosine between edge and normal.
+    point : (p, m) the nearest point of each of p parts to each edge.
+    rise : (p, m) what distance adds to lengths.
+    square : (p, m) square of the cosine between edge and normal.
     scale : (m,) of the map there.
     """
 
@@ -34,10 +35,11 @@ class Near:
     scale: Floats
 
     def length(self, across: Floats, along: Floats, largest: float) -> Floats:
-        """Return the lengths (m,) of the edges, from those (n,) at the points."""
+        """Return the lengths (m,) of the edges, the least of all parts, from those (n,) at the points."""
         high = np.minimum(across[self.point] + self.rise, largest)
         wide = np.minimum(along[self.point] + self.rise, largest)
-        return np.asarray(self.scale / np.sqrt(self.square / high**2 + (1.0 - self.square) / wide**2))
+        most = np.sqrt(self.square / high**2 + (1.0 - self.square) / wide**2).max(axis=0)
+        return np.asarray(self.scale / most)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +55,8 @@ class SizeMetric:
     grading : by how much lengths grow with the distance.
     scale : of a conformal map, how much longer (n,) edges at places (n, 2) of its plane are; lengths and
         distances above are those before the map, places, points and directions those behind it.
+    starts : numbers of the points at which parts begin, walls that ask for sizes of their own: an edge gets
+        the least of these, so that sizes change gradually from one wall to the next.
     """
 
     points: Floats
@@ -62,11 +66,13 @@ class SizeMetric:
     largest: float
     grading: float = GRADING
     scale: Callable[[Floats], Floats] | None = None
+    starts: tuple[int, ...] = (0,)
 
     @classmethod
     def joined(cls, metrics: Sequence[SizeMetric]) -> SizeMetric:
         """Return what several ask for together."""
         first = metrics[0]
+        starts = np.cumsum([0, *(len(each.points) for each in metrics[:-1])])
         return cls(
             np.concatenate([each.points for each in metrics]),
             np.concatenate([each.normals for each in metrics]),
@@ -75,6 +81,7 @@ class SizeMetric:
             min(each.largest for each in metrics),
             first.grading,
             first.scale,
+            tuple(starts.tolist()),
         )
 
     def length(self, places: Floats, directions: Floats) -> Floats:
@@ -88,15 +95,20 @@ class SizeMetric:
 
     def near(self, places: Floats, directions: Floats) -> Near:
         """Return what `length` needs of `places` (m, 2) and `directions` (m, 2) whatever the sizes are."""
-        k, squares = nearest_points(np.ascontiguousarray(places), self.points)
-        distance = np.sqrt(squares)
-        scale = np.ones(len(k))
-        if self.scale is not None:
-            scale = self.scale(places)
-            distance = distance / np.sqrt(scale * self.scale(self.points)[k])
-        size = np.hypot(directions[:, 0], directions[:, 1])
-        cosine = np.abs((directions * self.normals[k]).sum(axis=1)) / np.maximum(size, 1e-300)
-        return Near(k, self.grading * distance, cosine**2, scale)
+        places = np.ascontiguousarray(places)
+        scale = np.ones(len(places)) if self.scale is None else self.scale(places)
+        size = np.maximum(np.hypot(directions[:, 0], directions[:, 1]), 1e-300)
+        shape = len(self.starts), len(places)
+        point, rise, square = np.empty(shape, dtype=np.intp), np.empty(shape), np.empty(shape)
+        for part, (start, stop) in enumerate(pairwise((*self.starts, len(self.points)))):
+            k, squares = nearest_points(places, self.points[start:stop])
+            k += start
+            distance = np.sqrt(squares)
+            if self.scale is not None:
+                distance = distance / np.sqrt(scale * self.scale(self.points)[k])
+            cosine = np.abs((directions * self.normals[k]).sum(axis=1)) / size
+            point[part], rise[part], square[part] = k, self.grading * distance, cosine**2
+        return Near(point, rise, square, scale)
 
     def edges(self, mesh: QuadMesh) -> Floats:
         """Return the lengths (e,) of the edges of a mesh, where they are now."""

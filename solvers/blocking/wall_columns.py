@@ -67,6 +67,7 @@ def _sizes(loop: Loop, arcs: Floats, largest: float) -> Floats:
         pieces = np.diff(corners, append=corners[0] + length)
         shortest = np.minimum(pieces, np.roll(pieces, 1))
         at_corner = np.minimum(_CORNER_PART * largest, _PIECE_PART * shortest)
-        for arc, smallest in zip(corners, at_corner, strict=True):
-            size[np.searchsorted(arcs, arc)] = smallest
+        for arc, smallest, cells in zip(corners, at_corner, loop.corner_cells, strict=True):
+            if cells > 1:  # columns converge at convex corners, where layers end
+                size[np.searchsorted(arcs, arc)] = smallest
     return graded(size, arcs, length, GROWTH)

@@ -19,6 +19,8 @@ from meshonet.solvers.energy.hex_bricks import Targets
 
 THIN = 3.0
 """Ratio of the shorter of the other sides to the height from which on a cell is one of layers."""
+_LOW = 3.0
+"""Ratio of the mean height along a line to that of its first cell, from which on this one is of layers."""
 _UNLIKE = np.log(1.5)
 """By how much a height may differ from what is wanted around it; else it is not one that was meant."""
 _ROOM = 0.9
@@ -76,10 +78,11 @@ def _rows(logs: list[Floats], free: Bools) -> Indices:
     """Return how many rows from a side on are thin at each of its nodes (n, m)."""
     height, first, second = logs
     mean = 0.25 * (height[:, 1:, 1:] + height[:, 1:, :-1] + height[:, :-1, 1:] + height[:, :-1, :-1])
+    low = np.exp(mean).mean(axis=0) > _LOW * np.exp(mean[0])
     wide = [0.25 * (each[1:, ...] + each[:-1, ...]) for each in (first, second)]
     along = wide[0][:, :, 1:] + wide[0][:, :, :-1], wide[1][:, 1:] + wide[1][:, :-1]
     thin = (np.minimum(*along) - mean > np.log(THIN)) & free
-    count = np.logical_and.accumulate(thin, axis=0).sum(axis=0)
+    count = np.maximum(np.logical_and.accumulate(thin, axis=0).sum(axis=0), low & free)
     rows = np.full([n + 1 for n in count.shape], np.iinfo(np.intp).max)
     for i, j in np.ndindex(2, 2):
         part = rows[i : i + count.shape[0], j : j + count.shape[1]]

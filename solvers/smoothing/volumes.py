@@ -21,6 +21,7 @@ from meshonet.solvers.energy.hexes import HexProblem, Slides, optimise, unfold
 from meshonet.solvers.smoothing.slide_planes import slides_of
 from meshonet.solvers.smoothing.volume_judge import Measures, cells_below, measures
 from meshonet.solvers.smoothing.volume_layers import Layers, layers_of, with_first_heights, with_layers
+from meshonet.solvers.smoothing.volume_restart import harmonic
 from meshonet.solvers.smoothing.volume_spacing import wanted_edges
 from meshonet.solvers.solution import Outcome, Solution
 
@@ -71,8 +72,7 @@ def _best(
     layers = layers_of(given, moves, targets)
     start, valid = given, before
     if before.folded:
-        start = _unfolded(given, before, moves, targets, slides)
-        valid = measures(start)
+        start, valid, targets = _unfolded(given, before, moves, targets, slides)
         if valid.folded:
             return (start, valid) if valid.folded < before.folded else (given, before)
     for made in _optima(start, moves, targets, layers, slides, iterations):
@@ -82,20 +82,34 @@ def _best(
     return start, valid
 
 
-def _unfolded(given: HexMesh, before: Measures, moves: Bools, targets: Targets, slides: Slides) -> HexMesh:
-    """Return the mesh without folded cells, or with fewer: what is around them is moved first, then all."""
+def _unfolded(
+    given: HexMesh, before: Measures, moves: Bools, targets: Targets, slides: Slides
+) -> tuple[HexMesh, Measures, Targets]:
+    """Return the mesh without folded cells, or with fewer, and the edges that are wanted.
+
+    What is around folded cells is moved first, then all, then all from a new beginning.
+    """
     mesh, measured = given, before
     for reach in (*_AROUND, None):
         near = moves if reach is None else moves & _around(mesh, reach)
-        problem = HexProblem(mesh, near, targets, slides)
-        unfold(problem)
-        tried = mesh.with_nodes(problem.result())
-        now = measures(tried)
-        if now.folded < measured.folded:
-            mesh, measured = tried, now
+        mesh, measured = _with_fewer(mesh, mesh, measured, near, targets, slides)
         if not measured.folded:
-            break
-    return mesh
+            return mesh, measured, targets
+    anew = given.with_nodes(harmonic(given, ~given.outer))
+    wanted = wanted_edges(anew, moves)
+    fewer, now = _with_fewer(mesh, anew, measured, moves, wanted, slides)
+    return (mesh, measured, targets) if fewer is mesh else (fewer, now, wanted)
+
+
+def _with_fewer(
+    mesh: HexMesh, start: HexMesh, measured: Measures, moves: Bools, targets: Targets, slides: Slides
+) -> tuple[HexMesh, Measures]:
+    """Return `start` unfolded, and its measures, where it has fewer folded cells than `mesh`; else that."""
+    problem = HexProblem(start, moves, targets, slides)
+    unfold(problem)
+    tried = start.with_nodes(problem.result())
+    now = measures(tried)
+    return (tried, now) if now.folded < measured.folded else (mesh, measured)
 
 
 def _around(mesh: HexMesh, reach: int) -> Bools:

@@ -4,7 +4,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.threads import thread_count
-from meshonet.kernels._native import VolumeDescent, volume_energy
+from meshonet.kernels._native import VolumeDescent, volume_jacobians
 from meshonet.solvers.volumes.functional import OPENING, UNFOLDING, Weights, inverse_lengths
 
 RENEWED = 10
@@ -22,9 +22,6 @@ OPENED = 10
 ROUNDS, ROUND = 14, 10
 """Rounds of unfolding at the most, and iterations of each."""
 NARROW = 8  # rounds after which ε is 0.3 of what it would be
-EPSILON = 0.1
-"""ε at which Jacobians of folded grids are looked at."""
-
 
 class Descent:
     """Descents from planes of nodes (3, ni, nj, nk), which they change in place, at inner nodes only."""
@@ -34,13 +31,16 @@ class Descent:
         self._over = inverse_lengths(planes)
         self._run = VolumeDescent(planes.shape[1:], thread_count())
 
+    def jacobians(self) -> Floats:
+        """Return the smallest corner Jacobian of each cell (ni-1, nj-1, nk-1), 1 in one of mean edges."""
+        least = np.empty([n - 1 for n in self.planes.shape[1:]])
+        volume_jacobians(self.planes, self._over, thread_count(), least)
+        return least
+
     @property
     def smallest(self) -> float:
-        """The smallest corner Jacobian, 1 in a cell of mean edges."""
-        weights = UNFOLDING.shape, 0.0, UNFOLDING.power
-        return volume_energy(
-            self.planes, self._over, weights, EPSILON, thread_count(), np.empty_like(self.planes)
-        )[1]
+        """The smallest corner Jacobian."""
+        return float(self.jacobians().min())
 
     def run(self, weights: Weights, most: int, epsilon: float = 0.0) -> float:
         """Take `most` iterations, fewer where nothing moves any more; return the smallest Jacobian."""

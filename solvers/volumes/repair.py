@@ -1,12 +1,13 @@
 """Unfold the folded cells of a volume on windows around them, whose faces stay."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import folded_cells
 from meshonet.solvers.volumes.descent import Descent
 from meshonet.solvers.volumes.functional import OPENING, OPTIMAL, UNFOLDING
-from meshonet.solvers.volumes.windows import windows
+from meshonet.solvers.volumes.windows import Window, windows
 
 MARGINS = 5, 8, 11, 14
 """Nodes around a group of folded cells that windows reach, round by round while cells stay folded."""
@@ -28,12 +29,22 @@ def repair(planes: Floats) -> int:
         if len(bad) == 0:
             break
         for window in windows(bad, margin, planes.shape[1:]):
-            part = np.ascontiguousarray(planes[:, window[0], window[1], window[2]])
-            if min(part.shape[1:]) > 2:
-                _unfold(part)
-                planes[:, window[0], window[1], window[2]] = part
+            _mend(planes, window)
         bad = folded_cells(nodes)
     return len(bad)
+
+
+def lift(planes: Floats, flat: NDArray[np.bool_]) -> None:
+    """Open the cells `flat` (ni-1, nj-1, nk-1) of planes (3, ni, nj, nk) on windows, in place."""
+    for window in windows(np.argwhere(flat), MARGINS[0], planes.shape[1:]):
+        _mend(planes, window)
+
+
+def _mend(planes: Floats, window: Window) -> None:
+    part = np.ascontiguousarray(planes[:, window[0], window[1], window[2]])
+    if min(part.shape[1:]) > 2:
+        _unfold(part)
+        planes[:, window[0], window[1], window[2]] = part
 
 
 def _unfold(part: Floats) -> None:

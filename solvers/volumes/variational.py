@@ -15,7 +15,7 @@ from meshonet.solvers.volumes.evaluate import evaluate
 from meshonet.solvers.volumes.functional import OPTIMAL
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import Laws, arc_laws, mean_laws, uniform_laws
-from meshonet.solvers.volumes.repair import repair
+from meshonet.solvers.volumes.repair import lift, repair
 
 COARSE = 33
 """Nodes along a direction on which the optimum is found, unless chosen."""
@@ -97,6 +97,8 @@ def _settle(planes: Floats, most: int) -> int:
         smallest = descent.unfold(descent.smallest)
     if 0.0 < smallest < FLAT and (folded or max(planes.shape) <= FEW):
         descent.open()
+    elif 0.0 < smallest < FLAT:
+        lift(planes, descent.jacobians() < FLAT)
     if smallest > 0.0:
         descent.run(OPTIMAL, most)
     return descent.iterations

@@ -25,6 +25,7 @@ from command_line import Meshonet, dataset, duct, wave
 
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet_cli.app import application
 
 TORCH = importlib.util.find_spec("torch") is not None
@@ -163,6 +164,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--metric": ("grid.h5 -o made.png -q", "OPTION skewness", "bytes"),
         "--zoom": ("grid.h5 -o made.png -q", "OPTION .5,1.5,0,.5", "bytes"),
         "--every": ("grid.h5 -o made.png -q", "OPTION 5", "bytes"),
+        "--slice": ("cube.vts -o made.png -q", "OPTION z=1.5", "bytes"),
+        "--seen-from": ("cube.vts -o made.png -q", "OPTION 30,60", "bytes"),
     },
     "layout": PRINTING | DOMAINS | {
         "--json": ("step.wkt -o made.json", "OPTION", "prints"),
@@ -319,6 +322,8 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     moon_points = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
     np.savetxt(folder / "moon.csv", moon_points, delimiter=",")
     (folder / "path.csv").write_text("0 0 0\n9 0 0\n18 3 0\n")
+    cube = np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1)
+    Grid.from_nodes(cube).write(folder / "cube.vts")
     shape = np.loadtxt(Path(__file__).parents[2] / "examples" / "naca2412.dat", skiprows=1) * 40
     (folder / "large.dat").write_text("large\n" + "\n".join(f"{x} {y}" for x, y in shape))
     for name in THERE:

@@ -144,21 +144,18 @@ def test_a_size_of_cells_is_that_of_the_longest_edges_outside_layers(
     ("walls", "problem"),
     [
         (
-            ("--walls", "floor"),
-            "layers at a part of a loop, which is outlet, roof, inlet too; layers go along",
+            ("--walls", "ramp"),
+            "layers at ramp would end where the boundary goes straight on, at (2, 0); name floor as well",
         ),
-        (("--walls", "floor,outlet,roof,inlet"), "would cross in corner (0, 0); name walls without convex"),
-        ((), "a first cell in a domain without holes; drop it: layers go around holes, or along an outer"),
+        (("--walls", "step"), "would end where the boundary turns away, at (4, 2.5); name roof as well"),
+        ((), "a first cell in a domain without holes; name the walls with --walls: without names"),
     ],
 )
 def test_walls_that_no_layers_go_along_are_refused(
     meshonet: Meshonet, walls: tuple[str, ...], problem: str
 ) -> None:
-    ring = [[0, 0], [4, 0], [4, 1], [0, 2], [0, 0]]
-    properties = {"names": [["floor", "outlet", "roof", "inlet"]]}
-    geometry = {"type": "Polygon", "coordinates": [ring]}
-    text = json.dumps({"type": "Feature", "geometry": geometry, "properties": properties})
-    Path("duct.geojson").write_text(text)
+    ring = [[0, 0], [2, 0], [6, 2.4], [6, 3], [4, 3], [4, 2.5], [0, 2.5], [0, 0]]
+    duct(ring, ["floor", "ramp", "outlet", "top", "step", "roof", "inlet"])
     words = ("infer", "duct.geojson", "--cells", 900, "--first-cell", 1e-3)
     done = meshonet(*words, *walls, "-o", "g.h5")
     assert (done.code, len(done.err.splitlines())) == (2, 1), done.err
@@ -174,3 +171,37 @@ def test_layers_go_along_a_smooth_outer_loop(meshonet: Meshonet) -> None:
     assert done.code == 0, done.err
     grid = grid_of("g.h5")
     assert {patch.side for patch in grid.outer_patches()} == {"south"}
+
+
+def duct(ring: list[list[float]], names: list[str]) -> None:
+    """Write duct.geojson, a domain inside a ring of points, with a name from each to the next."""
+    geometry = {"type": "Polygon", "coordinates": [ring]}
+    text = json.dumps({"type": "Feature", "geometry": geometry, "properties": {"names": [names]}})
+    Path("duct.geojson").write_text(text)
+
+
+@pytest.mark.parametrize("walls", ["floor", "floor,roof", "floor,outlet,roof,inlet"])
+def test_layers_go_along_named_walls_of_a_duct(meshonet: Meshonet, walls: str) -> None:
+    duct([[0, 0], [4, 0], [4, 1], [0, 2], [0, 0]], ["floor", "outlet", "roof", "inlet"])
+    words = ("infer", "duct.geojson", "--cells", 3000, "--first-cell", 1e-3, "--walls", walls)
+    done = meshonet(*words, "-o", "g.h5")
+    assert done.code == 0, done.err
+    grid = grid_of("g.h5")
+    for patch in grid.outer_patches():
+        if patch.name in walls.split(","):
+            nodes = grid.blocks[patch.block].nodes[..., :2]
+            lines = nodes if patch.side in ("south", "north") else nodes.transpose(1, 0, 2)
+            wall, beside = (0, 1) if patch.side in ("south", "west") else (-1, -2)
+            height = np.hypot(*(lines[:, beside] - lines[:, wall]).T)
+            np.testing.assert_allclose(height, 1e-3, rtol=1e-6)
+
+
+def test_a_layout_outside_layers_along_walls_is_taken_for_a_duct_like_it(meshonet: Meshonet) -> None:
+    names = ["floor", "outlet", "roof", "inlet"]
+    duct([[0, 0], [4, 0], [4, 1], [0, 2], [0, 0]], names)
+    words = ("--first-cell", 1e-3, "--walls", "floor,roof")
+    assert meshonet("layout", "duct.geojson", *words, "-o", "l.json").code == 0
+    duct([[0, 0], [5, 0], [5, 1.5], [0, 2], [0, 0]], names)
+    done = meshonet("infer", "duct.geojson", "--layout", "l.json", *words, "--refine", 1, "-o", "g.h5")
+    assert done.code == 0, done.err
+    assert all((n - 1) % 2 == 0 for block in grid_of("g.h5").blocks for n in block.nodes.shape[:2])

@@ -15,10 +15,13 @@ import numpy as np
 from domains import step_layout
 from format_shapes import VARIANTS, channel
 from many_blocks import passage
+from surface_grids import sphere, tube
+from volume_grids import c_volume, shifted
 
 from meshonet.formats.format import Format
 from meshonet.formats.layout.write import as_text
 from meshonet.formats.registry import TABLE, format_named
+from meshonet.geometry.blocks.grid import Grid
 
 READABLE = [
     name
@@ -29,6 +32,11 @@ READABLE = [
 BLOCKS = " of blocks"
 """Behind the name of a format: files of it that hold a grid of several blocks."""
 READABLE += [name + BLOCKS for name in ("hdf5", "cgns", "plot3d", "plot3d:binary")]
+VOLUMES, SURFACE = " of volumes", " of a surface"
+"""Behind the name of a format: files of it that hold grids in space."""
+SPACIOUS = ("hdf5", "cgns", "vts", "vtk", "plot3d")
+READABLE += [name + VOLUMES for name in (*SPACIOUS, "vtk:ascii", "plot3d:binary")]
+READABLE += [name + SURFACE for name in (*SPACIOUS, "plot3d:fortran")]
 SECTION = "A SECTION\n" + "".join(
     f"{0.5 + 0.5 * np.cos(a):.6f} {0.06 * np.sin(a):.6f}\n" for a in np.linspace(0, 2 * np.pi, 41)
 )
@@ -64,13 +72,25 @@ def good(name: str) -> bytes:
     writer = record_of(name).write_grids
     assert writer is not None, f"{name} needs a good file in TEXTS"
     with TemporaryDirectory() as folder:
-        writer(Path(folder) / "g", [passage() if name.endswith(BLOCKS) else channel()])
+        writer(Path(folder) / "g", [_grid(name)])
         return (Path(folder) / "g").read_bytes()
 
 
 def record_of(name: str) -> Format:
     """Return the format of one of `READABLE`."""
-    return format_named(name.removesuffix(BLOCKS))
+    return format_named(name.partition(" ")[0])
+
+
+def _grid(name: str) -> Grid:
+    """Return the grid of a good file: of several blocks where the format holds them."""
+    if name.endswith(BLOCKS):
+        return passage()
+    several = bool(record_of(name).blocks)
+    if name.endswith(VOLUMES):
+        return shifted() if several else c_volume()
+    if name.endswith(SURFACE):
+        return sphere() if several else tube()
+    return channel()
 
 
 def corpus(name: str) -> Iterator[tuple[str, bytes]]:
@@ -138,6 +158,9 @@ def foreign() -> Iterator[tuple[str, bytes]]:
         yield f"{told}, as GeoJSON", json.dumps(feature).encode()
     for dims in (
         "1000000000 1000000000",
+        "3 3 -3",
+        "1\n3 3 2147483647",
+        "100000\n33 33 33",
         "1\n-3 4",
         "2147483647 2",
         "0 0",

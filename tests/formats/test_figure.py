@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from meshonet.formats.figure.figure import _drawn_lines, draw, write
+from meshonet.formats.figure.figure import _drawn_lines, draw
+from meshonet.formats.figure.files import write
 from meshonet.formats.figure.layers import Colouring
 from meshonet.formats.figure.picture import Picture
+from meshonet.formats.figure.view import View
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -64,7 +66,7 @@ def test_each_cell_has_the_colour_of_its_value_at_its_place(make: type[Grid], tm
     cells = (grid.ni - 1, grid.nj - 1)
     ranks = np.random.default_rng(0).permutation(cells[0] * cells[1]).astype(float)
     shade = Colouring(ranks.reshape(cells), "v")
-    write(tmp_path / "a.png", grid, "png", shade, every=1000)
+    write(tmp_path / "a.png", grid, "png", shade, View(every=1000))
     axes = draw(grid, shade, every=1000).axes[-2]  # the view of the whole; the last one is the colour bar
     nodes = grid.nodes
     middles = 0.25 * (nodes[:-1, :-1] + nodes[1:, :-1] + nodes[1:, 1:] + nodes[:-1, 1:])
@@ -91,14 +93,14 @@ def test_one_bad_cell_among_a_million_is_seen(tmp_path: Path) -> None:
     s, t = np.meshgrid(np.linspace(0, 1, 1200), np.linspace(0, 1, 900), indexing="ij")
     grid = Grid.from_nodes(np.stack([s, t], axis=-1))
     flat = np.zeros((1199, 899))
-    write(tmp_path / "good.png", grid, "png", Colouring(flat, "v", (0.0, 1.0)), every=2000)
+    write(tmp_path / "good.png", grid, "png", Colouring(flat, "v", (0.0, 1.0)), View(every=2000))
     flat[617, 411] = 1.0
-    write(tmp_path / "bad.png", grid, "png", Colouring(flat, "v", (0.0, 1.0)), every=2000)
+    write(tmp_path / "bad.png", grid, "png", Colouring(flat, "v", (0.0, 1.0)), View(every=2000))
     change = np.abs(pixels(tmp_path / "good.png") - pixels(tmp_path / "bad.png")).max(axis=-1)
     rows, columns = np.nonzero(change > 0.3)
     assert 1 <= len(rows) <= 12
     low = Colouring(1 - flat, "v", (0.0, 1.0), worst_is_low=True)
-    write(tmp_path / "low.png", grid, "png", low, every=2000)
+    write(tmp_path / "low.png", grid, "png", low, View(every=2000))
     dark = pixels(tmp_path / "low.png")[rows[0], columns[0]].sum()
     assert dark < pixels(tmp_path / "low.png")[rows[0] + 9, columns[0]].sum()
 
@@ -107,7 +109,7 @@ def test_colours_stay_in_their_cells_when_a_ring_leaves_the_view(tmp_path: Path)
     grid = wide_ring(401, 201)
     zoom = (0.9, 1.1, -0.1, 0.1)
     shade = Colouring(np.tile(np.sign(np.arange(400) - 199.5)[:, None], (1, 200)), "side", (-1.0, 1.0))
-    write(tmp_path / "a.png", grid, "png", shade, zoom, every=1000)
+    write(tmp_path / "a.png", grid, "png", shade, View(zoom, 1000))
     figure = draw(grid, shade, zoom, every=1000)
     box = figure.axes[0].get_window_extent()
     picture = pixels(tmp_path / "a.png")[::-1]
@@ -137,7 +139,7 @@ def test_so_many_lines_are_left_out_that_the_rest_can_be_told_apart() -> None:
 def test_values_that_are_not_finite_are_left_blank(tmp_path: Path) -> None:
     grid, some = channel(), np.ones((6, 4))
     some[:3] = np.nan
-    write(tmp_path / "a.png", grid, "png", Colouring(some, "v", (0.0, 1.0)), every=1000)
+    write(tmp_path / "a.png", grid, "png", Colouring(some, "v", (0.0, 1.0)), View(every=1000))
     picture = pixels(tmp_path / "a.png")[::-1]
     axes = draw(grid, Colouring(some, "v", (0.0, 1.0)), every=1000).axes[0]
     (left, row), (right, _) = axes.transData.transform([(0.5, 0.5), (1.6, 0.5)]).astype(int)

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from block_grids import butterfly, duct, o_ring
 
-from meshonet.formats.figure.figure import draw, write
+from meshonet.formats.figure.figure import draw
+from meshonet.formats.figure.files import write
 from meshonet.formats.figure.layers import Colouring
 from meshonet.formats.figure.picture import Picture
+from meshonet.formats.figure.view import View
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import per_cell_of_blocks
@@ -26,7 +28,7 @@ def test_blocks_are_drawn_twice_the_same(make: type[Grid], tmp_path: Path) -> No
 
 def test_each_block_has_the_colours_of_its_cells(tmp_path: Path) -> None:
     shade = Colouring((np.zeros((8, 4)), np.ones((4, 8))), "block", (0.0, 1.0))
-    write(tmp_path / "two.png", duct(1), "png", shade, every=100)
+    write(tmp_path / "two.png", duct(1), "png", shade, View(every=100))
     picture = np.asarray(matplotlib.image.imread(tmp_path / "two.png"))[..., :3]
     row = picture[len(picture) // 2]
     bright = row.sum(axis=1)

@@ -12,6 +12,8 @@ from hostile import BITS, READABLE, corpus, foreign, good, record_of
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from many_blocks import passage
+from surface_grids import sphere
+from volume_grids import shifted
 
 from meshonet.formats.format import Format
 from meshonet.formats.plot3d.read import read_grids as read_plot3d
@@ -88,7 +90,7 @@ def test_a_damaged_map_is_refused_or_read(
     data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     folder = tmp_path_factory.mktemp("map")
-    write_plot3d(folder / "g.p3d", [passage()])
+    write_plot3d(folder / "g.p3d", [data.draw(st.sampled_from([passage, shifted, sphere]))()])
     good_map = (folder / "g.nmf").read_bytes()
     (folder / "g.nmf").write_bytes(data.draw(mutated(good_map)))
     refused = None

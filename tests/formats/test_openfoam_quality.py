@@ -3,6 +3,8 @@
 import os
 import re
 import subprocess
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +12,22 @@ import pytest
 from format_shapes import c_grid, ring
 
 from meshonet.formats.openfoam.write import write_grids
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.extrude import extruded
+from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.checkmesh import faces
+
+sys.path.append(str(Path(__file__).parents[1] / "geometry"))
+from space_grids import lattice, pipe
+
+
+def joined(*nodes: Floats) -> Grid:
+    blocks = [Block(each) for each in nodes]
+    connections = find_connections(blocks)
+    return Grid(with_equal_nodes(blocks, connections), (), connections)
 
 
 def shaken() -> Grid:
@@ -22,11 +37,31 @@ def shaken() -> Grid:
     )
 
 
+def shaken_blocks() -> Grid:
+    """Three volumes around an edge, two of them longer than the third."""
+    nodes = [
+        lattice(x, y, (0, 3, 4))
+        for x, y in (((0, 4, 5), (0, 3, 4)), ((4, 9, 5), (0, 3, 4)), ((0, 4, 5), (3, 5, 3)))
+    ]
+    shift = np.random.default_rng(3).uniform(-0.25, 0.25, (10, 6, 4, 3))
+    for block in nodes:
+        block += shift[tuple(np.rint(np.moveaxis(block, -1, 0)).astype(int))]
+    blocks = [Block(block) for block in nodes]
+    return Grid(tuple(blocks), (), find_connections(blocks))
+
+
 @pytest.mark.client("checkMesh")
-@pytest.mark.parametrize("name", ["quad", "o", "c"])
+@pytest.mark.parametrize("name", ["quad", "o", "c", "pipe", "blocks"])
 def test_check_mesh_says_the_same(tmp_path: Path, name: str) -> None:
-    grid = {"quad": shaken, "o": lambda: ring(33, 17), "c": lambda: c_grid(33, 33, 17)}[name]()
-    write_grids(tmp_path / "case.foam", [extruded(grid, (0.0, 0.1))])
+    makes: dict[str, Callable[[], Grid]] = {
+        "quad": shaken,
+        "o": lambda: ring(33, 17),
+        "c": lambda: c_grid(33, 33, 17),
+        "pipe": lambda: joined(pipe(5, 13, 4, 0.3)),
+        "blocks": shaken_blocks,
+    }
+    grid = makes[name]()
+    write_grids(tmp_path / "case.foam", [extruded(grid, (0.0, 0.1)) if grid.form == "plane" else grid])
     done = subprocess.run(
         ["checkMesh", "-case", str(tmp_path)],
         capture_output=True,

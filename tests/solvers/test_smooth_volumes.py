@@ -10,10 +10,12 @@ from block_grids import butterfly, o_ring
 from volume_shapes import bend, joined, perturbed, shell
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.blocks.block import PLACES, Block
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.volume.hex_mesh import hex_mesh_of, with_nodes
 from meshonet.solvers.smoothing.volumes import smooth_volumes
 from meshonet.solvers.solution import Outcome
 
@@ -126,9 +128,49 @@ def test_folds_that_its_sides_have_are_left_and_reported() -> None:
     grid = box()
     nodes = grid.blocks[0].nodes.copy()
     nodes[0, 0, 3:6] = nodes[0, 0, 5:2:-1]
-    from meshonet.geometry.blocks.block import Block
-
     folded = Grid((Block(nodes), grid.blocks[1]), grid.patches, grid.connections)
     solution = smooth_volumes(folded)
     assert solution.outcome is Outcome.FOLDED
     assert 0 < figures(solution.grid)[0] <= figures(folded)[0]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nodes_in_any_order_are_put_in_order(seed: int) -> None:
+    """As a file whose inner nodes are of no use: Laplace's equation begins anew."""
+    grid = box(bump=0.0)
+    mesh = hex_mesh_of(grid)
+    inner = np.flatnonzero(~mesh.outer)
+    nodes = mesh.nodes.copy()
+    nodes[inner] = nodes[np.random.default_rng(seed).permutation(inner)]
+    solution = smooth_volumes(with_nodes(grid, mesh.with_nodes(nodes)))
+    assert figures(solution.grid)[0] == 0
+
+
+def test_blocks_with_an_axis_and_with_poles_are_unfolded() -> None:
+    spans = (0.0, 1.0, 8), (0.0, 2 * np.pi, 17), (0.0, 2.0, 7)
+    r, t, z = np.meshgrid(*(np.linspace(*span) for span in spans), indexing="ij")
+    pipe = np.stack([r * np.cos(t), r * np.sin(t), z], axis=-1)
+    angle = 0.5 * np.pi * z
+    ball = np.stack([np.cos(t) * np.sin(angle), np.sin(t) * np.sin(angle), -np.cos(angle)], axis=-1)
+    ball *= 1.0 + 2.0 * r[..., None]
+    ball[:, :, [0, -1], :2] = 0.0
+    for nodes in (pipe, ball):
+        nodes[:, -1] = nodes[:, 0]
+        grid = joined([nodes])
+        assert len(grid.connections) == 1
+        spoilt = perturbed(grid, 0.5)
+        assert figures(spoilt)[0] > 0
+        folded, mean, least = figures(smooth_volumes(spoilt).grid)
+        assert folded == 0
+        assert mean < 1.1 * figures(grid)[1]
+        assert least > 0.8
+
+
+def test_blocks_that_share_a_part_of_a_side_are_smoothed() -> None:
+    large = np.stack(np.meshgrid(*(0.25 * np.arange(n) for n in (5, 9, 5)), indexing="ij"), axis=-1)
+    small = large[:, :5] + (1.0, 0.0, 0.0)
+    joint = Connection(0, "east", ((0, 4), (0, 4)), 1, "west", ((0, 4), (0, 4)), (1, 2))
+    spoilt = perturbed(Grid((Block(large), Block(small)), (), (joint,)), 0.6)
+    folded, mean, _ = figures(smooth_volumes(spoilt).grid)
+    assert folded == 0
+    assert mean < 0.5

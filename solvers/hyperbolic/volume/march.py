@@ -108,7 +108,7 @@ def _best(
 def march_levels(
     surface: Surface, graph: MarchGraph, nodes: Floats, steps: Floats, smoothing: Smoothing
 ) -> Floats:
-    """Return the levels (made + 1, 3, n) of a march by `steps` (m,) as far as it goes, nodes as in `graph`."""
+    """Return levels (made + 1, 3, n) of a march by `steps` (m,) as far as it goes, nodes as in `graph`."""
     levels = np.empty((len(steps) + 1, 3, len(nodes)))
     levels[0] = nodes[graph.order].T
     numbers = smoothing.numbers(0.5 * surface.size)

@@ -66,8 +66,12 @@ class VolumeMarch:
             problem = f"{away} grow by more than {self.growth:g}"
             raise InputError(problem, f"give {needed} {{layers}} or a larger {{growth}}")
         cells = (needed if self.layers is None else self.layers) - 1
-        first = min(self.first_cell, far / cells)
-        return np.asarray(growing_steps(first, far, cells))
+        if cells * self.first_cell > far:
+            problem = (
+                f"{cells + 1} layers of {self.first_cell:.4g} or more reach beyond the far field at {far:.4g}"
+            )
+            raise InputError(problem, f"give at most {int(far / self.first_cell) + 1} {{layers}}")
+        return np.asarray(growing_steps(self.first_cell, far, cells))
 
 
 class Smoothing(NamedTuple):

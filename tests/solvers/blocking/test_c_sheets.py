@@ -9,9 +9,10 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.solvers.blocking.c_layered import bodies_with_layers, c_layered, skewness
 from meshonet.solvers.blocking.c_sheets import march_sheet
+from meshonet.solvers.blocking.folds import smallest_corner
 from meshonet.solvers.blocking.free_wake import free_wake
 from meshonet.solvers.blocking.layer_rows import LayerSettings
-from meshonet.solvers.blocking.layered import layered, smallest_corner
+from meshonet.solvers.blocking.layered import layered
 
 FIRST = LayerSettings(1e-5)
 

@@ -8,8 +8,9 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.blocking.even_growth import evened
+from meshonet.solvers.blocking.folds import smallest_corner
 from meshonet.solvers.blocking.layer_rows import LayerSettings
-from meshonet.solvers.blocking.layered import layered, smallest_corner
+from meshonet.solvers.blocking.layered import layered
 
 
 def cylinder(x, y, radius, points=80):

@@ -1,0 +1,118 @@
+"""Sheets in space painted from the back to the front: quadrilaterals in the light, and outlines of blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.formats.figure.layers import INK, Colouring
+from meshonet.formats.figure.slices import Sheet
+from meshonet.geometry.arrays import Floats, norms
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Mask: TypeAlias = NDArray[np.bool_]
+
+_GAP = 5.0
+"""Pixels between drawn lines, about."""
+_LIGHT = np.array([-0.36, 0.48, 0.8])
+"""Where light comes from, to the right, upwards and towards the viewer."""
+_FORWARD = 0.004
+"""How far outlines are moved towards the viewer, in sizes of the picture, to be seen on their blocks."""
+
+
+def steps_of(sheet: Sheet, axes: Floats, pixels: float, every: int | None) -> tuple[int, int]:
+    """Return how many cells along both directions are drawn as one."""
+    if every:
+        return every, every
+    flat = sheet.nodes @ axes[:2].T * pixels
+    steps = []
+    for axis in (0, 1):
+        length = norms(np.diff(flat, axis=axis))
+        typical = float(np.sqrt((length**2).mean()))
+        steps.append(int(min(max(1, np.ceil(_GAP / max(typical, 1e-12))), length.shape[axis])))
+    return steps[0], steps[1]
+
+
+@dataclass(frozen=True, eq=False)
+class Painted:
+    """Quadrilaterals (n, 4, 2) and outlines (m, 2, 2), how far in front they are, and colours (n, 4)."""
+
+    quads: Floats
+    depth: Floats
+    colours: Floats
+    outline: Floats
+    outline_depth: Floats
+
+
+def painted(
+    sheet: Sheet, mask: Mask, steps: tuple[int, int], axes: Floats, colouring: Colouring | None,
+    limits: tuple[float, float],
+) -> Painted:  # fmt: skip
+    """Return the cells of a sheet in `mask` (n-1, m-1), `steps` of them as one, as seen along `axes`."""
+    import matplotlib as mpl
+
+    marks = [_marks(count, step) for count, step in zip(sheet.nodes.shape[:2], steps, strict=True)]
+    nodes = sheet.nodes[np.ix_(*marks)]
+    starts = [mark[:-1] for mark in marks]
+    keep = np.logical_or.reduceat(np.logical_or.reduceat(mask, starts[0], axis=0), starts[1], axis=1)
+    ring = np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]], axis=2)[keep]
+    normal = np.cross(ring[:, 2] - ring[:, 0], ring[:, 3] - ring[:, 1])
+    normal /= np.maximum(norms(normal), 1e-300)[:, None]
+    facing = normal @ axes.T
+    light = 0.55 + 0.45 * np.abs(facing @ _LIGHT)
+    if colouring and sheet.values is not None:
+        worst = np.minimum if colouring.worst_is_low else np.maximum
+        values = worst.reduceat(worst.reduceat(sheet.values, starts[0], axis=0), starts[1], axis=1)[keep]
+        scale = mpl.colormaps["YlGnBu_r" if colouring.worst_is_low else "YlGnBu"]
+        colours = scale(np.clip((values - limits[0]) / (limits[1] - limits[0]), 0.0, 1.0))
+    else:
+        colours = np.tile([0.88, 0.9, 0.92, 1.0], (len(ring), 1))
+    colours[:, :3] *= np.minimum(light, 1.0)[:, None]
+    flat = ring @ axes.T
+    border = [sheet.nodes[0], sheet.nodes[-1], sheet.nodes[:, 0], sheet.nodes[:, -1]]
+    beside = [mask[0], mask[-1], mask[:, 0], mask[:, -1]]
+    edges = [np.stack([line[:-1], line[1:]], axis=1)[own] for line, own in zip(border, beside, strict=True)]
+    outline = np.concatenate(edges) @ axes.T
+    return Painted(
+        flat[..., :2], flat[..., 2].mean(axis=1), colours, outline[..., :2], outline[..., 2].mean(axis=1)
+    )
+
+
+def _marks(count: int, step: int) -> NDArray[np.intp]:
+    """Return every `step`-th of `count` nodes and the last."""
+    marks = np.arange(0, count - 1, step)
+    return np.append(marks, count - 1)
+
+
+def paint(ax: Axes, painted: Sequence[Painted]) -> None:
+    """Draw quadrilaterals and outlines of blocks from the back to the front."""
+    from matplotlib.collections import PolyCollection
+
+    quads, colours, depth, outline, front = (
+        np.concatenate([getattr(part, name) for part in painted])
+        for name in ("quads", "colours", "depth", "outline", "outline_depth")
+    )
+    lines = outline[:, [0, 1, 1, 0]]
+    size = float(np.ptp(quads.reshape(-1, 2), axis=0).max()) or 1.0
+    order = np.argsort(np.concatenate([depth, front + _FORWARD * size]), kind="stable")
+    faint, strong = faint_ink(0.45), faint_ink(1.0)
+    widths = np.concatenate([np.full(len(quads), 0.25), np.full(len(lines), 0.9)])
+    rims = np.concatenate([np.tile(faint, (len(quads), 1)), np.tile(strong, (len(lines), 1))])
+    faces = np.concatenate([colours, np.zeros((len(lines), 4))])
+    ax.add_collection(
+        PolyCollection(
+            list(np.concatenate([quads, lines])[order]), facecolors=faces[order], edgecolors=rims[order],
+            linewidths=widths[order], rasterized=True, zorder=1,
+        )
+    )  # fmt: skip
+
+
+def faint_ink(alpha: float) -> tuple[float, ...]:
+    """Return the colour of lines, so opaque."""
+    return (*(int(INK[k : k + 2], 16) / 255 for k in (1, 3, 5)), alpha)

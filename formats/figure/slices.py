@@ -1,0 +1,147 @@
+"""Slices of volumes: layers of a constant index, and cuts by a plane of a constant coordinate.
+
+::
+
+    k=0   the layer k = 0 of every block, a surface      x=.5   the polygons in which the plane
+          of quadrilaterals; k=-1 is the last one               cuts cells, 3 to 6 corners each
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+
+_SPEC = re.compile(r"\s*([ijkxyz])\s*=\s*([-+.\w]+)\s*", re.ASCII)
+_MOST = 12
+"""Edges of a cell, each of which a plane may cut."""
+
+
+@dataclass(frozen=True)
+class Slice:
+    """A slice of a volume: direction 0 to 2, and an index or a coordinate along it."""
+
+    direction: int
+    index: int | None = None
+    coordinate: float = 0.0
+
+    def __str__(self) -> str:
+        if self.index is None:
+            return f"{'xyz'[self.direction]} = {self.coordinate:g}"
+        return f"{'ijk'[self.direction]} = {self.index}"
+
+
+def parse_slice(text: str) -> Slice:
+    """Return the slice that ``i=10``, ``k=-1`` or ``x=.5`` means; InputError for what is none."""
+    match = _SPEC.fullmatch(text)
+    try:
+        if match and match[1] in "ijk":
+            return Slice("ijk".index(match[1]), index=int(match[2]))
+        coordinate = float(match[2]) if match else math.nan
+    except ValueError:
+        coordinate = math.nan
+    if match is None or not math.isfinite(coordinate):
+        remedy = "use i, j or k and an index, or x, y or z and a coordinate: k=0, i=-1, x=.5"
+        raise InputError(f"{text!r} is no slice", remedy, parameter="slice")
+    return Slice("xyz".index(match[1]), coordinate=coordinate)
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A lattice of nodes (n, m, 3) in space and the values (n-1, m-1) of its cells, if they have any."""
+
+    nodes: Floats
+    values: Floats | None
+
+
+def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[Sheet]:
+    """Return the layer of an index of every block that has it; a cell beside it gives the value.
+
+    Raises InputError: no block has the index.
+    """
+    index = at.index or 0
+    sheets = []
+    for number, block in enumerate(grid.blocks):
+        count = block.counts[at.direction]
+        if not -count <= index < count:
+            continue
+        node = index % count
+        nodes = np.moveaxis(block.nodes, at.direction, 0)[node]
+        beside = np.moveaxis(values[number], at.direction, 0)[min(node, count - 2)] if values else None
+        sheets.append(Sheet(nodes, beside))
+    if not sheets:
+        most = max(block.counts[at.direction] for block in grid.blocks)
+        remedy = f"use 0 to {most - 1}, or -1 for the last"
+        raise InputError(f"no block has {at}", remedy, parameter="slice")
+    return sheets
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """Polygons (n, 12, 2) in which a plane cuts cells, last corners repeated, and the cells' values (n,)."""
+
+    polygons: Floats
+    values: Floats | None
+
+
+def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
+    """Return where a plane of a constant coordinate cuts the cells of the blocks of a grid.
+
+    Raises InputError: it cuts none.
+    """
+    polygons, shown = [], []
+    for number, block in enumerate(grid.blocks):
+        cells = _crossed(block.nodes[..., at.direction] - at.coordinate)
+        corners = np.stack([block.nodes[tuple((cells + corner).T)] for corner in _CORNERS], axis=1)
+        polygons.append(_polygons(corners, at))
+        if values:
+            shown.append(values[number][tuple(cells.T)])
+    joined = np.concatenate(polygons)
+    if not len(joined):
+        spans = [block.nodes[..., at.direction] for block in grid.blocks]
+        low, high = min(float(x.min()) for x in spans), max(float(x.max()) for x in spans)
+        problem = f"the plane {at} cuts no cell"
+        remedy = f"the grid is from {'xyz'[at.direction]} = {low:.6g} to {high:.6g}"
+        raise InputError(problem, remedy, parameter="slice")
+    return Cut(joined, np.concatenate(shown) if values else None)
+
+
+_CORNERS = np.array(list(product((0, 1), repeat=3)))
+_EDGES = np.array([(a, b) for a in range(8) for b in range(a) if bin(a ^ b).count("1") == 1])
+"""Pairs of corners that an edge joins."""
+
+
+def _crossed(distance: Floats) -> NDArray[np.intp]:
+    """Return (n, 3) indices of the cells with nodes on both sides, of distances (ni, nj, nk) from a plane."""
+    low = high = distance >= 0
+    for axis in range(3):
+        first, last = (slice(None),) * axis + (slice(-1),), (slice(None),) * axis + (slice(1, None),)
+        low, high = low[first] & low[last], high[first] | high[last]
+    return np.argwhere(high & ~low)
+
+
+def _polygons(corners: Floats, at: Slice) -> Floats:
+    """Return the polygons (n, 12, 2) in which the plane cuts cells with corners (n, 8, 3)."""
+    distance = corners[..., at.direction] - at.coordinate
+    a, b = _EDGES.T
+    part = np.divide(
+        distance[:, a], distance[:, a] - distance[:, b],
+        out=np.full((len(corners), _MOST), np.nan), where=(distance[:, a] >= 0) != (distance[:, b] >= 0),
+    )  # fmt: skip
+    plane = np.delete(corners, at.direction, axis=2)
+    points = plane[:, a] + part[..., None] * (plane[:, b] - plane[:, a])
+    middle = np.nanmean(points, axis=1, keepdims=True) if len(points) else points[:, :1]
+    around = np.arctan2(*np.moveaxis(points - middle, -1, 0)[::-1])
+    order = np.argsort(around, axis=1, kind="stable")  # what is not cut comes last
+    points = np.take_along_axis(points, order[..., None], axis=1)
+    count = np.isfinite(part).sum(axis=1)
+    last = np.minimum(np.arange(_MOST), count[:, None] - 1)
+    return np.take_along_axis(points, last[..., None], axis=1)

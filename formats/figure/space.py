@@ -1,0 +1,218 @@
+"""Pictures of volumes and surfaces: walls and patches seen from a direction, layers, and cuts by a plane.
+
+Surfaces are projected in parallel and painted from the back to the front. Cells below a few pixels are drawn
+in blocks of several, each with the worst value in it; flat layers are drawn as grids in the plane are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from meshonet.formats.figure.figure import draw, frame, note, step_words
+from meshonet.formats.figure.layers import INK, Box, Colouring
+from meshonet.formats.figure.painting import faint_ink, paint, painted, steps_of
+from meshonet.formats.figure.slices import Cut, Sheet, cut, layers
+from meshonet.formats.figure.view import View, flat_box
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block, face_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_FLAT = 1e-9
+"""Extent of a flat layer across itself, in its size."""
+
+
+def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure:
+    """Return a figure of a volume or surface, its cells coloured by the values of `colouring`, if given.
+
+    Raises InputError: a slice of a surface, or one that the grid does not have; a zoom that shows nothing, or
+    of another kind.
+    """
+    values = [np.asarray(part) for part in colouring.parts] if colouring else None
+    where = view.slice
+    if where is None:
+        return _seen(grid, _surface(grid, values), colouring, view)
+    if grid.form != "volume":
+        raise InputError("a surface has no slices", "slice volumes", parameter="slice")
+    if where.index is None:
+        return _cut_figure(grid, cut(grid, where, values), colouring, view)
+    sheets = layers(grid, where, values)
+    flat = _flattened(sheets)
+    if flat is None:
+        return _seen(grid, sheets, colouring, view)
+    blocks = tuple(Block(nodes) for nodes in flat)
+    plane = Grid(blocks, name=f"{grid.name}   {where}".strip())
+    if colouring:
+        colouring = replace(colouring, values=tuple(sheet.values for sheet in sheets))
+    return draw(plane, colouring, flat_box(view.zoom), view.every)
+
+
+def _surface(grid: Grid, values: list[Floats] | None) -> list[Sheet]:
+    """Return the patches of a surface, or the walls of a volume, all of its outer boundary without any."""
+    if grid.form == "surface":
+        return [Sheet(block.nodes, values[k] if values else None) for k, block in enumerate(grid.blocks)]
+    return [_sheet(grid, patch, values) for patch in grid.walls() or grid.outer_patches()]
+
+
+def _sheet(grid: Grid, patch: Patch, values: list[Floats] | None) -> Sheet:
+    nodes = grid.face(patch.block, patch.side)
+    spans = patch.range(nodes.shape[:-1])
+    shown = None
+    if values:
+        cells = face_of(values[patch.block], patch.side)
+        shown = cells[tuple(slice(first, last) for first, last in spans)]
+    return Sheet(nodes[tuple(slice(first, last + 1) for first, last in spans)], shown)
+
+
+def _flattened(sheets: Sequence[Sheet]) -> list[Floats] | None:
+    """Return the nodes (n, m, 2) of sheets that are in one plane of two axes, None where they are not."""
+    every = np.concatenate([sheet.nodes.reshape(-1, 3) for sheet in sheets])
+    extent = np.ptp(every, axis=0)
+    across = int(extent.argmin())
+    if extent[across] > _FLAT * extent.max():
+        return None
+    return [np.delete(sheet.nodes, across, axis=2) for sheet in sheets]
+
+
+def _seen(grid: Grid, sheets: Sequence[Sheet], colouring: Colouring | None, view: View) -> Figure:
+    """Return a picture of sheets from a direction."""
+    axes = view.axes
+    inside = [_within(sheet, view.zoom) for sheet in sheets]
+    shown = [
+        nodes[mask]
+        for sheet, mask in zip(sheets, inside, strict=True)
+        for nodes in (sheet.nodes[:-1, :-1], sheet.nodes[1:, :-1], sheet.nodes[:-1, 1:], sheet.nodes[1:, 1:])
+    ]
+    points = np.concatenate(shown) @ axes[:2].T
+    if not len(points):
+        spans = np.concatenate([sheet.nodes.reshape(-1, 3) for sheet in sheets])
+        text = ", ".join(
+            f"{name} {low:.4g} to {high:.4g}"
+            for name, low, high in zip("xyz", spans.min(axis=0), spans.max(axis=0), strict=True)
+        )
+        raise InputError(f"zoom {view.zoom} shows none of the grid", f"it spans {text}", parameter="zoom")
+    low, high = points.min(axis=0), points.max(axis=0)
+    pad = 0.03 * float((high - low).max())
+    box = float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)
+    figure, ax, bar = _one_frame(box, colouring)
+    pixels = ax.get_window_extent().width / (box[1] - box[0])
+    steps = [steps_of(sheet, axes, pixels, view.every) for sheet in sheets]
+    limits = _limits(colouring, sheets)
+    parts = [
+        painted(sheet, mask, step, axes, colouring, limits)
+        for sheet, mask, step in zip(sheets, inside, steps, strict=True)
+    ]
+    paint(ax, parts)
+    ax.set(xlim=box[:2], ylim=box[2:])
+    ax.set_axis_off()
+    _triad(ax, axes)
+    note(ax, step_words(sorted({step for pair in steps for step in pair})))
+    _finish(figure, ax, bar, grid, colouring, limits)
+    return figure
+
+
+def _within(sheet: Sheet, zoom: tuple[float, ...] | None) -> Any:
+    """Say for each cell (n-1, m-1) whether it is in the box of `zoom`."""
+    shape = [count - 1 for count in sheet.nodes.shape[:2]]
+    if zoom is None:
+        return np.ones(shape, dtype=bool)
+    if len(zoom) != 6:
+        remedy = "use x0,x1,y0,y1,z0,z1, or a flat slice"
+        raise InputError("a picture in space is zoomed by a box in space", remedy, parameter="zoom")
+    centre = 0.25 * (
+        sheet.nodes[:-1, :-1] + sheet.nodes[1:, :-1] + sheet.nodes[:-1, 1:] + sheet.nodes[1:, 1:]
+    )
+    low, high = np.array(zoom[::2]), np.array(zoom[1::2])
+    return ((centre >= low) & (centre <= high)).all(axis=-1)
+
+
+def _cut_figure(grid: Grid, polygons: Cut, colouring: Colouring | None, view: View) -> Figure:
+    """Return a picture of the polygons in which a plane cuts cells."""
+    from matplotlib.collections import PolyCollection
+
+    points = polygons.polygons
+    low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
+    pad = 0.02 * float((high - low).max())
+    whole = float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)
+    box = flat_box(view.zoom) or whole
+    figure, ax, bar = _one_frame(box, colouring)
+    limits = _limits(colouring, [Sheet(points, polygons.values)])
+    pixels = ax.get_window_extent().width / (box[1] - box[0])
+    size = np.sqrt(_polygon_areas(points)) * pixels
+    fills: dict[str, Any] = {"facecolors": "#e1e6eb"}
+    if colouring and polygons.values is not None:
+        name = "YlGnBu_r" if colouring.worst_is_low else "YlGnBu"
+        fills = {"array": polygons.values, "cmap": name, "clim": limits}
+    widths = np.clip(0.06 * size, 0.0, 0.4)
+    collection = PolyCollection(
+        list(points), edgecolors=faint_ink(0.6), linewidths=widths, rasterized=True, zorder=1, **fills
+    )
+    ax.add_collection(collection)
+    names = [name for k, name in enumerate("xyz") if view.slice is None or k != view.slice.direction]
+    ax.set(xlim=box[:2], ylim=box[2:])
+    note(ax, f"{names[0]} to the right, {names[1]} upwards")
+    _finish(figure, ax, bar, replace(grid, name=f"{grid.name}   {view.slice}".strip()), colouring, limits)
+    return figure
+
+
+def _polygon_areas(points: Floats) -> Floats:
+    x, y = np.moveaxis(points, -1, 0)
+    ahead = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
+    return np.asarray(0.5 * np.abs((x * ahead[1] - y * ahead[0]).sum(axis=1)))
+
+
+def _one_frame(box: Box, colouring: Colouring | None) -> tuple[Figure, Axes, Axes | None]:
+    ratio = min(max((box[1] - box[0]) / (box[3] - box[2]), 0.02), 50.0)
+    figure, (ax,), bar = frame([ratio], colouring is not None)
+    return figure, ax, bar
+
+
+def _limits(colouring: Colouring | None, sheets: Sequence[Sheet]) -> tuple[float, float]:
+    shown = [sheet.values.ravel() for sheet in sheets if sheet.values is not None]
+    if colouring is None or not shown:
+        return 0.0, 1.0
+    if colouring.limits:
+        return colouring.limits
+    low, high = np.percentile(np.concatenate(shown), (1, 99))
+    return float(low), float(max(high, low + 1e-9 * abs(low) + 1e-30))
+
+
+def _finish(
+    figure: Figure, ax: Axes, bar: Axes | None, grid: Grid, colouring: Colouring | None,
+    limits: tuple[float, float],
+) -> None:  # fmt: skip
+    """Add title and scale."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    if bar is not None and colouring:
+        scale = "YlGnBu_r" if colouring.worst_is_low else "YlGnBu"
+        colours = ScalarMappable(Normalize(*limits), scale)
+        figure.colorbar(colours, cax=bar).set_label(colouring.label, color=INK, size=9)
+        bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
+    cells = sum(int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks)
+    count = len(grid.blocks)
+    size = f"{count} block{'s' * (count > 1)}, {cells} cells"
+    ax.set_title(f"{grid.name[:48]}   {size}".strip(), size=10, color=INK, loc="left", pad=4)
+
+
+def _triad(ax: Axes, axes: Floats) -> None:
+    """Draw where x, y and z point, in the lower left corner."""
+    for k, name in enumerate("xyz"):
+        right, up = axes[0, k], axes[1, k]
+        place = {"xycoords": "axes pixels", "textcoords": "axes pixels"}
+        tip = 55 + 38 * right, 55 + 38 * up
+        arrow = {"arrowstyle": "-", "color": INK, "linewidth": 0.8}
+        ax.annotate("", tip, (55, 55), arrowprops=arrow, **place)
+        ax.annotate(
+            name, tip, (55 + 50 * right, 55 + 50 * up), ha="center", va="center", size=8, color=INK, **place
+        )

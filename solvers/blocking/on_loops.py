@@ -1,0 +1,27 @@
+"""Nodes of a mesh put back on the loops of its domain."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+
+_STEPS = 3
+
+
+def on_loops(mesh: QuadMesh, which: NDArray[np.bool_]) -> QuadMesh:
+    """Return the mesh with nodes, `which` (n,) of those on loops, moved to the nearest place on their loop.
+
+    They are near it already.
+    """
+    nodes, arc = mesh.nodes.copy(), mesh.places.arc.copy()
+    for number, loop in enumerate(mesh.domain.loops):
+        on = np.flatnonzero(which & (mesh.places.loop == number))
+        if not on.size:
+            continue
+        for _ in range(_STEPS):
+            arc[on] += ((nodes[on] - loop.at(arc[on])) * loop.tangent(arc[on])).sum(axis=1)
+        arc[on] = np.mod(arc[on], loop.length)
+        nodes[on] = loop.at(arc[on])
+    return mesh.with_nodes(nodes, arc)
