@@ -158,8 +158,8 @@ def process_seconds(path: Path, march: VolumeMarch) -> float:
     with tempfile.TemporaryDirectory() as folder:
         command = [
             sys.executable, "-c", "import sys; from meshonet_cli.app import run; sys.exit(run(sys.argv[1:]))",
-            "solve-pde", str(path), "--method", "hyperbolic", "--first-cell", repr(march.first_cell), "--layers",
-            str(march.layers), "--far-field", repr(march.far_field), "--threads", "1", "-o",
+            "solve-pde", str(path), "--method", "hyperbolic", "--first-cell", repr(march.first_cell),
+            "--layers", str(march.layers), "--far-field", repr(march.far_field), "--threads", "1", "-o",
             str(Path(folder) / "volume.xyz"),
         ]  # fmt: skip
         done = subprocess.run(command, capture_output=True, text=True, check=False)

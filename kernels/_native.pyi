@@ -288,8 +288,8 @@ def tfi_volume(
     spline: tuple[Floats, tuple[Indices, ...], tuple[Floats, ...]] | None = None,
 ) -> None: ...  # fmt: skip
 def volume_energy(
-    x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float, threads: int,
-    gradient: Floats,
+    x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
+    threads: int, gradient: Floats,
 ) -> tuple[float, float]: ...  # fmt: skip
 def volume_jacobians(x: Floats, over: tuple[float, float, float], threads: int, least: Floats) -> None: ...
 

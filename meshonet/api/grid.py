@@ -27,7 +27,7 @@ from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.parameters import Counts, grid_request, sampling_of
 
 AnyShape: TypeAlias = str | Path | Floats | Shape | Grid | Domain
-"""A path, a designation ``naca:2412``, points of an outline, nodes in space, or what the library makes of these."""
+"""A path, a designation ``naca:2412``, points of an outline, nodes in space, or what is made of these."""
 
 
 def grid(
