@@ -146,7 +146,7 @@ def worst_growth(edges: Floats) -> float:
 def growth_as_marched(surface: Surface, march: VolumeMarch) -> float:
     """Return the worst growth before nodes are moved along lines."""
     planes, inside = symmetry_planes(surface, march.symmetry)
-    graph = march_graph(surface, planes, inside, Smoothing().splay)
+    graph = march_graph(surface, planes, inside, Smoothing().splay, Smoothing().boost)
     nodes = in_planes(surface, planes, inside)
     levels = march_levels(surface, graph, nodes, march.steps(surface.size), Smoothing())
     return worst_growth(np.linalg.norm(np.diff(levels, axis=0), axis=1))

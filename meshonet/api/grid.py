@@ -27,7 +27,7 @@ from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.parameters import Counts, grid_request, sampling_of
 
 AnyShape: TypeAlias = str | Path | Floats | Shape | Grid | Domain
-"""A path, a designation ``naca:2412``, points (n, 2) of an outline, nodes in space, or what the library makes."""
+"""A path, a designation ``naca:2412``, points of an outline, nodes in space, or what the library makes of these."""
 
 
 def grid(
@@ -42,9 +42,9 @@ def grid(
 
     Parameters
     ----------
-    shape : a file or designation, points (n, 2) of a closed outline, a boundary, a grid for its outer edges or
-        faces, a `meshonet.Domain`; with `assemble` a list of these. In space nodes (ni, nj, nk, 3) of a volume,
-        whose outer faces are filled, or a list of the patches (ni, nj, 3) of a surface.
+    shape : a file or designation, points (n, 2) of a closed outline, a boundary, a grid for its outer edges
+        or faces, a `meshonet.Domain`; with `assemble` a list of these. In space nodes (ni, nj, nk, 3) of a
+        volume, whose outer faces are filled, or a list of the patches (ni, nj, 3) of a surface.
     assemble : whether all of them are one domain.
     res : nodes along xi (around a body) and eta (away from it); one number for both.
     method : ``best`` for what measures best, ``auto`` for the same among equations, a name in
