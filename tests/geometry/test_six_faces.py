@@ -50,7 +50,9 @@ def test_patches_in_any_order_and_orientation_close_a_right_handed_volume(seed: 
 
 def test_nearly_equal_edges_become_equal_and_a_note_says_so() -> None:
     rng = np.random.default_rng(0)
-    faces = six_faces(patches([face + 1e-8 * rng.normal(size=face.shape) for face in SixFaces.of_block(NODES).faces]))
+    faces = six_faces(
+        patches([face + 1e-8 * rng.normal(size=face.shape) for face in SixFaces.of_block(NODES).faces])
+    )
     assert "are now equal" in faces.notes[0]
     np.testing.assert_array_equal(faces.west[0], faces.south[0])
 
@@ -87,7 +89,9 @@ def test_resampled_faces_lie_on_the_surface_to_fourth_order() -> None:
     errors = []
     for n in (9, 17):
         finer = SixFaces.of_block(mapped(bent_pipe, (n, n, n))).resampled((2 * n, 2 * n, 2 * n))
-        errors.append(max(np.abs(finer.top - mapped(bent_pipe, (2 * n, 2 * n, 2 * n))[:, :, -1]).max(), 1e-16))
+        errors.append(
+            max(np.abs(finer.top - mapped(bent_pipe, (2 * n, 2 * n, 2 * n))[:, :, -1]).max(), 1e-16)
+        )
     assert np.log2(errors[0] / errors[1]) > 3.5
     assert [side for side in FACES if getattr(finer, side).shape != (34, 34, 3)] == []
 
