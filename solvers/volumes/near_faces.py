@@ -62,7 +62,12 @@ def _closed(faces: SixFaces, sides: tuple[Side, ...], ranges: list[tuple[int, in
     total = shares.sum(axis=1)
     slack = -ROUNDING * (shares * np.abs(b)).sum(axis=1)
     closed = (shares >= 0).all(axis=1) & (total > FLAT) & ((shares * b).sum(axis=1) >= slack)
-    return np.asarray(closed.any(axis=0))
+    first, second = np.array(
+        list(combinations(range(len(normals)), 2))
+    ).T  # opposite ones, as of a plane face
+    opposite = (normals[first] * normals[second]).sum(axis=-1) < -1.0 + ROUNDING
+    facing = opposite & (bounds[first] + bounds[second] >= -ROUNDING * np.abs(bounds[first]))
+    return np.asarray(closed.any(axis=0) | facing.any(axis=0))
 
 
 def _determinant(three: Floats) -> Floats:
