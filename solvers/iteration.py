@@ -8,13 +8,18 @@ from meshonet.geometry.errors import InputError
 
 def check_settings(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
     """Raise InputError unless an iterative solver can take the settings for `boundary`."""
-    if tol is not None and not 0 < tol < 1:
-        raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-5", parameter="tol")
-    if max_cycles < 1:
-        raise InputError(f"{max_cycles} cycles are too few", "allow at least 1", parameter="max_cycles")
+    check_tolerances(tol, max_cycles)
     if initial is not None and initial.nodes.shape[:2] != (boundary.ni, boundary.nj):
         problem = f"the initial grid has {initial.ni}x{initial.nj} nodes, not {boundary.ni}x{boundary.nj}"
         raise InputError(problem, "give equal counts", parameter="initial")
+
+
+def check_tolerances(tol: float | None, max_cycles: int | None) -> None:
+    """Raise InputError unless `tol` is between 0 and 1 and there are cycles, where they are given."""
+    if tol is not None and not 0 < tol < 1:
+        raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-5", parameter="tol")
+    if max_cycles is not None and max_cycles < 1:
+        raise InputError(f"{max_cycles} cycles are too few", "allow at least 1", parameter="max_cycles")
 
 
 def initial_nodes(boundary: Boundary, initial: Grid) -> Floats:

@@ -1,94 +1,61 @@
-"""Grids of many blocks in space, made by hand and joined by the places of their nodes."""
+"""Volumes for tests: analytic maps of the unit cube, and random domains with bubbles of their own on each face."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.block import PLACES, Block
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
-from meshonet.geometry.blocks.find_connections import find_connections
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.six_faces import SixFaces
+
+Map = Callable[[Floats, Floats, Floats], tuple[Floats, ...]]
 
 
-def joined(lattices: Sequence[Floats], namer: Callable[[Floats], str] = lambda _: "wall") -> Grid:
-    """The grid of nodes (ni, nj, nk, 3) each, joined where sides touch; `namer` names whole outer sides."""
-    blocks = [Block(nodes) for nodes in lattices]
-    connections = find_connections(blocks)
-    blocks = list(with_equal_nodes(blocks, connections))
-    inside = {(each.block, each.side) for each in connections}
-    inside |= {(each.donor, each.donor_side) for each in connections}
-    patches = [
-        Patch(namer(block.face(side)), side, 0, block.face(side).shape[0] - 1, block=number)
-        for number, block in enumerate(blocks)
-        for side in PLACES
-        if (number, side) not in inside
-    ]
-    return Grid(tuple(blocks), tuple(patches), connections)
+def lattice(counts: tuple[int, int, int]) -> list[Floats]:
+    """Return the coordinates of the unit cube's nodes."""
+    return np.meshgrid(*(np.linspace(0.0, 1.0, n) for n in counts), indexing="ij")
 
 
-def shell(n: int = 9, layers: int = 12, first: float = 0.02, growth: float = 1.2) -> Grid:
-    """Six blocks between the unit sphere, their bottoms, and a larger one; three meet at eight edges."""
-    t = np.tan(np.linspace(-np.pi / 4, np.pi / 4, n))
-    radius = 1.0 + np.concatenate([[0.0], np.cumsum(first * growth ** np.arange(layers))])
-    a, b = np.meshgrid(t, t, indexing="ij")
-    lattices = []
-    for axis in range(3):
-        for sign in (1.0, -1.0):
-            point = np.empty((n, n, 3))
-            point[..., axis], point[..., (axis + 1) % 3], point[..., (axis + 2) % 3] = sign, sign * a, b
-            point /= np.linalg.norm(point, axis=-1, keepdims=True)
-            lattices.append(point[:, :, None] * radius[:, None])
-    return joined(lattices, lambda side: "body" if np.linalg.norm(side[0, 0]) < 1.01 else "farfield")
+def mapped(to: Map, counts: tuple[int, int, int]) -> Floats:
+    """Return nodes (ni, nj, nk, 3) of a map of the unit cube."""
+    return np.stack(to(*lattice(counts)), axis=-1)
 
 
-def disc(n: int = 6, m: int = 6, core: float = 0.45) -> list[Floats]:
-    """A unit disc in five lattices (n, m, 2), the four around the core with layers at the circle."""
-    t = np.linspace(-core, core, n)
-    low = np.full(n, -core)
-    sides = [np.stack(pair, axis=-1) for pair in ((t, low), (-low, t), (t[::-1], -low), (low, t[::-1]))]
-    depth = (1.0 - np.tanh(2.0 * np.linspace(1.0, 0.0, m)) / np.tanh(2.0))[None, :, None]
-    lattices = [np.stack(np.meshgrid(t, t, indexing="ij"), axis=-1)]
-    for k, side in enumerate(sides):
-        angle = -0.75 * np.pi + 0.5 * np.pi * (k + np.linspace(0.0, 1.0, n))
-        circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-        lattices.append((1.0 - depth) * circle[:, None] + depth * side[:, None])
-    return lattices
+def skewed(a: Floats, b: Floats, c: Floats) -> tuple[Floats, ...]:
+    """Edges that are not at right angles, and faces that are not plane."""
+    return a + 0.2 * b * c, 1.5 * b + 0.1 * a * c, 0.8 * c - 0.2 * a * b
 
 
-def bend(n: int = 6, m: int = 6, along: int = 13, radius: float = 2.0) -> Grid:
-    """A pipe of five blocks that turns by 90 degrees around y."""
-    angle = np.linspace(0.0, np.pi / 2, along)
-    lattices = []
-    for plane in disc(n, m):
-        away = radius + plane[..., 0, None]
-        height = np.broadcast_to(plane[..., 1, None], (*plane.shape[:2], along))
-        lattices.append(np.stack([away * np.cos(angle), height, away * np.sin(angle)], axis=-1))
-
-    def name(side: Floats) -> str:
-        flat = [label for label, axis in (("outlet", 0), ("inlet", 2)) if np.ptp(side[..., axis]) < 1e-9]
-        return flat[0] if flat else "wall"
-
-    return joined(lattices, name)
+def bent_pipe(a: Floats, b: Floats, c: Floats) -> tuple[Floats, ...]:
+    """A quarter of a ring of a thick shell."""
+    radius, angle, turn = 0.4 + 0.6 * a, 0.5 * np.pi * b, 0.5 * np.pi * c
+    arm = 2.0 + radius * np.cos(angle)
+    return arm * np.cos(turn), -arm * np.sin(turn), radius * np.sin(angle)
 
 
-def perturbed(grid: Grid, size: float, seed: int = 0) -> Grid:
-    """Each node inside moved at random by up to `size` times the shortest edge at it, alike in all blocks."""
-    from meshonet.geometry.volume.hex_mesh import hex_mesh_of, with_nodes
+def bump(a: Floats, b: Floats, c: Floats) -> tuple[Floats, ...]:
+    """A box with a steep hill on its bottom, of which the interpolation alone is distorted."""
+    hill = 0.6 * np.exp(-((a - 0.5) ** 2 + (b - 0.5) ** 2) / 0.0288) * (16 * a * (1 - a) * b * (1 - b))
+    return a, b, c + hill * (1.0 - c) ** 8
 
-    mesh = hex_mesh_of(grid)
-    shortest = np.full(len(mesh.nodes), np.inf)
-    for block in mesh.blocks:
-        for axis in range(3):
-            numbers = np.moveaxis(block, axis, 0)
-            lengths = np.linalg.norm(np.diff(mesh.nodes[numbers], axis=0), axis=-1)
-            np.minimum.at(shortest, numbers[1:], lengths)
-            np.minimum.at(shortest, numbers[:-1], lengths)
-    inner = np.flatnonzero(~mesh.outer)
-    nodes = mesh.nodes.copy()
-    way = np.random.default_rng(seed).uniform(-1.0, 1.0, (len(inner), 3))
-    nodes[inner] += size * shortest[inner, None] * way
-    return with_nodes(grid, mesh.with_nodes(nodes))
+
+def random_domain(seed: int, n: int) -> SixFaces:
+    """Return faces of n nodes a side: moved corners, a smooth warp, and independent bubbles of the faces."""
+    rng = np.random.default_rng(seed)
+    corners = np.stack(lattice((2, 2, 2)), axis=-1) + 0.08 * rng.normal(size=(2, 2, 2, 3))
+    warp, bubbles = 0.02 * rng.normal(size=(3, 3, 3, 3)), 0.05 * rng.normal(size=(3, 2, 2, 2, 3))
+    a, b, c = lattice((n, n, n))
+    nodes = np.zeros((n, n, n, 3))
+    for i, j, k in np.ndindex(2, 2, 2):
+        share = (a if i else 1 - a) * (b if j else 1 - b) * (c if k else 1 - c)
+        nodes += share[..., None] * corners[i, j, k]
+    for p, q, r in np.ndindex(3, 3, 3):
+        wave = np.cos(np.pi * (p * a + q * b + r * c)) / (1 + p + q + r)
+        nodes += wave[..., None] * warp[p, q, r]
+    for axis, (s, t) in enumerate(((b, c), (a, c), (a, b))):
+        for end, p, q in np.ndindex(2, 2, 2):
+            wave = np.sin(np.pi * (p + 1) * s) * np.sin(np.pi * (q + 1) * t) / (1 + p + q)
+            face = np.moveaxis(nodes, axis, 0)[-end]
+            face += np.moveaxis(wave, axis, 0)[-end][..., None] * bubbles[axis, end, p, q]
+    return SixFaces.of_block(nodes)

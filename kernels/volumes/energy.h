@@ -8,7 +8,7 @@ typedef struct {
     double shape;      /* w, from 0 (Winslow's functional) to 1 (angles only) */
     double smoothness; /* β */
     double epsilon;    /* of the regularisation; 0: the barrier */
-    int power;         /* p, 1 or 2 */
+    int power;         /* p, 1 or 2; 1 with a regularisation */
     int threads;
 } Functional3;
 

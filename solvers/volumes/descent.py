@@ -23,6 +23,7 @@ ROUNDS, ROUND = 14, 10
 """Rounds of unfolding at the most, and iterations of each."""
 NARROW = 8  # rounds after which ε is 0.3 of what it would be
 
+
 class Descent:
     """Descents from planes of nodes (3, ni, nj, nk), which they change in place, at inner nodes only."""
 

@@ -6,6 +6,7 @@ from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.six_faces import SixFaces, edges, place_of
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.volumes.near_faces import closed_place
 
 
 def check_corners(faces: SixFaces) -> None:
@@ -23,6 +24,11 @@ def check_corners(faces: SixFaces) -> None:
             segment, end = np.unravel_index(int(np.where(bad, scaled, 1.0).argmin()), scaled.shape)
             worst.append((float(scaled[segment, end]), side, second, int(segment + end)))
     if not worst:
+        place = closed_place(faces)
+        if place is not None:
+            at_node = ", ".join(f"{name}={number}" for name, number in zip("ijk", place, strict=True))
+            problem = f"wherever node {at_node} is, the faces next to it fold a cell"
+            raise InputError(problem, "change the faces there", place=_near(faces, place))
         return
     if negative == total:
         raise InputError("the volume is left-handed", "reverse one of its directions")
@@ -35,6 +41,15 @@ def check_corners(faces: SixFaces) -> None:
         f"{least:.3g}, {negative} such corners), whatever the nodes inside are"
     )
     raise InputError(problem, "change the faces there", place=place_of(node))
+
+
+def _near(faces: SixFaces, place: tuple[int, int, int]) -> str:
+    """Return the text of the node of a face that an inner node is next to."""
+    for side, (axis, end) in PLACES.items():
+        if place[axis] == (1 if end == 0 else faces.counts[axis] - 2):
+            first, second = (place[each] for each in range(3) if each != axis)
+            return place_of(getattr(faces, side)[first, second])
+    return ""
 
 
 def _jacobians(faces: SixFaces, side: Side, second: Side) -> Floats:

@@ -8,6 +8,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.iteration import check_tolerances
 from meshonet.solvers.solution import Outcome, Solution
 from meshonet.solvers.volumes.descent import FLAT, Descent
 from meshonet.solvers.volumes.edge_corners import check_corners
@@ -123,7 +124,6 @@ def _coarse_faces(faces: SixFaces, laws: Laws, coarse: int | Literal["auto"] | N
 
 
 def _check(max_cycles: int | None, coarse: int | Literal["auto"] | None) -> None:
-    if max_cycles is not None and max_cycles < 1:
-        raise InputError(f"{max_cycles} cycles", "use at least 1", parameter="max_cycles")
+    check_tolerances(None, max_cycles)
     if isinstance(coarse, int) and coarse < LEAST:
         raise InputError(f"{coarse} coarse nodes", f"use at least {LEAST}", parameter="coarse")

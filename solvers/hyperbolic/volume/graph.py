@@ -26,7 +26,7 @@ from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 
 _WIDTH, _FALL = 4, 0.35
-"""Rings of nodes around those where other than four faces meet that are smoothed more, and how it falls."""
+"""Rings of nodes smoothed more around those where other than four faces meet, and how that falls."""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,204 @@
+"""Full approximation scheme for Winslow's equations in a volume, with semi-coarsening.
+
+Levels are coarsened in the directions in which nodes are near each other, until cells are as long as wide: lines
+in all three directions then smooth well on every level. Counts are free: a coarser level has every second node
+where that is possible, and else its own even steps.
+
+Brandt, Math. Comp. 31 (1977) 333-390; Trottenberg, Oosterlee and Schüller, Multigrid (2001), section 5.1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.six_faces import SixFaces
+from meshonet.geometry.threads import thread_count
+from meshonet.kernels._native import combine_along, winslow_residual, winslow_room, winslow_smooth
+from meshonet.solvers.volumes.interpolate import interpolate
+from meshonet.solvers.volumes.laws import uniform_laws
+
+COARSEST = 9  # nodes along a direction that is not coarsened any more
+ALIKE = 1.6  # a direction is coarsened when its steps are at most so many times the shortest
+SOME = 3  # every third node along each direction tells how much a cycle has changed
+SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
+
+
+@dataclass(frozen=True, eq=False)
+class Transfer:
+    """Between a level's nodes along one direction and the coarser one's.
+
+    Each is a first node and weights: `up` (n, 2) linear interpolation, `down` (m, terms) its transpose over the
+    ratio of steps, `at` (m, 4) cubic interpolation at the coarse nodes.
+    """
+
+    up: tuple[NDArray[np.intp], Floats]
+    down: tuple[NDArray[np.intp], Floats]
+    at: tuple[NDArray[np.intp], Floats]
+
+
+class Level:
+    """Nodes on which the equations are solved, and the way to the next coarser ones."""
+
+    def __init__(self, faces: SixFaces, *, coarse: bool) -> None:
+        self.faces = faces
+        start = interpolate(faces, uniform_laws(faces.counts))
+        self.start = np.ascontiguousarray(np.moveaxis(start, -1, 0))
+        self.residual = np.empty_like(self.start)
+        self.right = np.zeros_like(self.start) if coarse else None
+        self.room = np.empty(winslow_room(faces.counts, thread_count()))
+        self.transfers: list[Transfer | None] = []
+
+    def smooth(self, x: Floats, sweeps: int, forced: bool, factor: float) -> None:
+        """Relax x (3, ni, nj, nk) in place."""
+        for _ in range(sweeps):
+            winslow_smooth(x, self.right if forced else None, factor, thread_count(), self.room)
+
+    def norm(self, x: Floats, forced: bool) -> float:
+        """Return the norm of the residual of x, which is kept in `residual`."""
+        right = self.right if forced else None
+        return float(np.sqrt(winslow_residual(x, right, self.residual, thread_count(), self.room)))
+
+
+class Multigrid:
+    """Cycles over the levels of a volume inside `faces`, each relaxed `sweeps` times before and after."""
+
+    def __init__(self, faces: SixFaces, sweeps: int = 1, factor: float = 1.0) -> None:
+        self.levels = [Level(faces, coarse=False)]
+        self._sweeps, self._factor = sweeps, factor
+        while (counts := _coarser(self.levels[-1].faces)) is not None:
+            level = self.levels[-1]
+            pairs = zip(level.faces.counts, counts, strict=True)
+            level.transfers = [transfer(n, m) if n != m else None for n, m in pairs]
+            self.levels.append(Level(level.faces.resampled(counts), coarse=True))
+
+    def nested(self) -> tuple[Floats, float, float]:
+        """Return x after a cycle on each level, coarsest first; how far it is from the level below; the change.
+
+        What is carried up is the difference from the interpolation. The numbers are the largest differences of
+        a coordinate: from the next coarser level, about three times the discretisation error, and by the last
+        cycle.
+        """
+        last = len(self.levels) - 1
+        x = self.levels[last].start.copy()
+        self.levels[last].smooth(x, FIRST, False, self._factor)
+        apart, change = 0.0, 0.0
+        for depth in range(last - 1, -1, -1):
+            level, coarse = self.levels[depth], x
+            x = level.start.copy()
+            self._up(depth, coarse - self.levels[depth + 1].start, x)
+            if depth > 0:
+                self._cycle(depth, x, False)
+                continue
+            change = self.cycle(x)[1]
+            apart = float(np.abs(self._at(depth, x) - coarse).max())
+        return x, apart, change
+
+    def cycle(self, x: Floats) -> tuple[float, float]:
+        """Do one V cycle in place; return the norm of the residual before it and the change of some nodes."""
+        some = x[:, ::SOME, ::SOME, ::SOME]
+        before = some.copy()
+        norm = self._cycle(0, x, False)
+        return norm, float(np.abs(some - before).max())
+
+    def norm(self, x: Floats) -> float:
+        """Return the norm of the residual of x."""
+        return self.levels[0].norm(x, False)
+
+    def _cycle(self, depth: int, x: Floats, forced: bool) -> float:
+        level = self.levels[depth]
+        if depth == len(self.levels) - 1:
+            level.smooth(x, SWEEPS, forced, self._factor)
+            return 0.0
+        level.smooth(x, self._sweeps, forced, self._factor)
+        norm = level.norm(x, forced)
+        below = self.levels[depth + 1]
+        coarse = self._at(depth, x)
+        for side in range(3):
+            ends = (slice(None),) * (side + 1)
+            for end in (0, -1):  # the coarse level's own faces
+                coarse[(*ends, end)] = below.start[(*ends, end)]
+        before = coarse.copy()
+        right = below.right
+        if right is not None:
+            below.norm(coarse, False)
+            down = self._apply(depth, "down", level.residual)
+            np.subtract(down, below.residual, out=right)
+        self._cycle(depth + 1, coarse, True)
+        self._up(depth, coarse - before, x)
+        level.smooth(x, self._sweeps, forced, self._factor)
+        return norm
+
+    def _at(self, depth: int, x: Floats) -> Floats:
+        """Return x at the nodes of the next coarser level."""
+        result = self._apply(depth, "at", x)
+        return result.copy() if result is x else result
+
+    def _up(self, depth: int, difference: Floats, x: Floats) -> None:
+        """Add a difference on the next coarser level to x."""
+        inner = self._apply(depth, "up", difference)
+        x[:, 1:-1, 1:-1, 1:-1] += inner[:, 1:-1, 1:-1, 1:-1]
+
+    def _apply(self, depth: int, way: str, values: Floats) -> Floats:
+        """Interpolate or restrict along each direction that is coarsened."""
+        fine, coarse = self.levels[depth].faces.counts, self.levels[depth + 1].faces.counts
+        to = fine if way == "up" else coarse
+        order = (2, 1, 0) if way == "up" else (0, 1, 2)  # the short arrays first
+        for axis in order:
+            step = self.levels[depth].transfers[axis]
+            if step is None:
+                continue
+            shape = (*values.shape[: axis + 1], to[axis], *values.shape[axis + 2 :])
+            result = np.empty(shape)
+            combine_along(values, axis + 1, *getattr(step, way), False, thread_count(), result)
+            values = result
+        return values
+
+
+def transfer(n: int, m: int) -> Transfer:
+    """Return the transfer between n nodes of even steps and m fewer of them over the same length."""
+    at = np.arange(n) * ((m - 1) / (n - 1))
+    first = np.minimum(at.astype(np.intp), m - 2)
+    weights = np.stack([1.0 - (at - first), at - first], axis=1)
+    weights[np.abs(weights) < 1e-12] = 0.0
+    matrix = np.zeros((n, m))
+    matrix[np.arange(n), first], matrix[np.arange(n), first + 1] = weights.T
+    down = matrix.T * ((m - 1) / (n - 1))
+    reached = down != 0
+    terms = int(max((n - row[::-1].argmax() - row.argmax()) for row in reached))
+    begin = np.minimum(reached.argmax(axis=1), n - terms)
+    kept = np.take_along_axis(down, begin[:, None] + np.arange(terms), axis=1)
+    places = np.arange(m) * ((n - 1) / (m - 1))
+    four = min(4, n)
+    low = np.clip(places.astype(np.intp) - 1, 0, n - four)
+    return Transfer((first, weights), (begin, kept), (low, _lagrange(places - low, four)))
+
+
+def _lagrange(t: Floats, terms: int) -> Floats:
+    """Return the weights (n, terms) of values at 0, 1, ... for the polynomial through them at t (n,)."""
+    weights = np.ones((len(t), terms))
+    for a in range(terms):
+        for b in range(terms):
+            if a != b:
+                weights[:, a] *= (t - b) / (a - b)
+    weights[np.abs(weights) < 1e-12] = 0.0
+    return weights
+
+
+def _coarser(faces: SixFaces) -> tuple[int, int, int] | None:
+    """Return the counts of the next coarser level: of the directions with the shortest steps. None: no more."""
+    counts = faces.counts
+    steps = []
+    for axis in range(3):
+        lengths = [np.linalg.norm(np.diff(edge, axis=0), axis=1).sum() for edge in faces.edges_along(axis)]
+        steps.append(float(np.mean(lengths)) / (counts[axis] - 1))
+    open_ = [axis for axis in range(3) if counts[axis] > COARSEST]
+    if not open_:
+        return None
+    shortest = min(steps[axis] for axis in open_)
+    halved = [axis for axis in open_ if steps[axis] <= ALIKE * shortest]
+    ni, nj, nk = (n // 2 + 1 if axis in halved else n for axis, n in enumerate(counts))
+    return ni, nj, nk

@@ -1,0 +1,66 @@
+"""Six faces in, Winslow's grid out: cycles until the equations are solved as well as the nodes resolve them."""
+
+import time
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.six_faces import SixFaces
+from meshonet.geometry.errors import SolverError
+from meshonet.solvers.iteration import check_tolerances
+from meshonet.solvers.solution import Outcome, Solution
+from meshonet.solvers.volumes.edge_corners import check_corners
+from meshonet.solvers.volumes.multigrid import Multigrid
+
+CYCLES = 100
+"""Cycles on all nodes at the most."""
+RATE = 0.4
+"""What a cycle leaves of an error, until two of them tell."""
+ENOUGH = 1.0
+"""Part of the discretisation error that may be left of the equations' own."""
+CAREFUL = ((1, 1.0), (2, 0.7))
+"""Sweeps before and after the coarser levels and their relaxation factor, tried in turn while cycles diverge."""
+
+
+def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None = None) -> Solution:
+    """Solve Winslow's equations inside `faces`: the inverse map has harmonic coordinates.
+
+    ``a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = 0``, a the adjugate of the metric, by
+    central differences and multigrid cycles. Without `tol` these end when they change nodes by less than the
+    discretisation error; with it, when the residual is `tol` times that of the interpolation. Cells can fold
+    where walls are re-entrant.
+
+    Raises InputError: faces that fold cells whatever is inside; settings not positive; SolverError: cycles
+    diverge. Winslow, J. Comput. Phys. 1 (1966) 149-172.
+    """
+    begun = time.perf_counter()
+    check_tolerances(tol, max_cycles)
+    check_corners(faces)
+    most = CYCLES if max_cycles is None else max_cycles
+    for sweeps, factor in CAREFUL:
+        x, cycles, residual, done = _solved(Multigrid(faces, sweeps, factor), tol, most)
+        if np.isfinite(x).all():
+            grid = faces.grid(np.moveaxis(x, 0, -1), {"method": "winslow", "cycles": cycles})
+            outcome = Outcome.DONE if done else Outcome.UNCONVERGED
+            spent = {"grid": time.perf_counter() - begun}
+            return Solution(grid, "winslow", residual=residual, cycles=cycles, seconds=spent, outcome=outcome)
+    raise SolverError("Winslow's equations have no solution that cycles reach: use {method} variational")
+
+
+def _solved(multigrid: Multigrid, tol: float | None, most: int) -> tuple[Floats, int, float | None, bool]:
+    """Return the nodes, cycles on all of them, the residual if `tol` is given, and whether all is done."""
+    x, apart, change = multigrid.nested()
+    cycles = 1
+    if tol is not None:
+        first = multigrid.norm(multigrid.levels[0].start) or 1.0
+        norm = multigrid.norm(x) / first
+        while norm > tol and cycles < most and np.isfinite(norm):
+            multigrid.cycle(x)
+            norm, cycles = multigrid.norm(x) / first, cycles + 1
+        return x, cycles, norm, norm <= tol
+    rate = RATE
+    while change * rate > ENOUGH * (1.0 - rate) * apart / 3.0 and cycles < most and np.isfinite(change):
+        last = change
+        change, cycles = multigrid.cycle(x)[1], cycles + 1
+        rate = min(max(change / last, 0.2), 0.95)
+    return x, cycles, None, change * rate <= ENOUGH * (1.0 - rate) * apart / 3.0

@@ -1,0 +1,167 @@
+"""Volumes inside six faces: interpolated, Winslow's, variational."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from meshonet.geometry.blocks.six_faces import SixFaces
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.measure import count_folded, measure
+from meshonet.geometry.threads import limited_to
+from meshonet.kernels._native import volume_energy
+from meshonet.solvers.solution import Outcome
+from meshonet.solvers.volumes.functional import inverse_lengths
+from meshonet.solvers.volumes.tfi import tfi
+from meshonet.solvers.volumes.variational import variational
+from meshonet.solvers.volumes.winslow import winslow
+from tests.volume_shapes import bent_pipe, bump, mapped, random_domain, skewed
+
+SOLVERS = (tfi, winslow, variational)
+
+
+def boolean_sum(nodes: np.ndarray) -> np.ndarray:
+    """Return the transfinite interpolation of the faces of `nodes`, one direction after the other."""
+    result = np.zeros_like(nodes)
+    for axis in range(3):
+        rest = np.moveaxis(nodes - result, axis, 0)
+        weight = np.linspace(0.0, 1.0, len(rest))[:, None, None, None]
+        result = result + np.moveaxis((1 - weight) * rest[0] + weight * rest[-1], 0, axis)
+    return result
+
+
+@pytest.mark.parametrize("blending", ["linear", "arclength"])
+def test_interpolation_is_the_boolean_sum_of_three_directions(blending: str) -> None:
+    nodes = mapped(bent_pipe, (7, 8, 9))  # its edges are evenly spaced
+    grid = tfi(SixFaces.of_block(nodes), blending=blending).grid
+    np.testing.assert_allclose(grid.nodes, boolean_sum(nodes), atol=1e-13)
+
+
+def test_interpolation_by_arc_length_follows_clustered_edges() -> None:
+    nodes = mapped(lambda a, b, c: (a, b, c**3), (6, 7, 8))
+    np.testing.assert_allclose(tfi(SixFaces.of_block(nodes)).grid.nodes, nodes, atol=1e-15)
+    skew = mapped(lambda a, b, c: (a, b, (1 - a) * c**3 + a * c), (6, 7, 8))
+    np.testing.assert_allclose(tfi(SixFaces.of_block(skew)).grid.nodes, skew, atol=1e-15)
+
+
+@pytest.mark.parametrize("solve", SOLVERS)
+@pytest.mark.parametrize("counts", [(5, 6, 7), (17, 12, 9), (3, 3, 3)])
+def test_faces_are_kept_bitwise_and_boxes_are_even(solve, counts) -> None:
+    faces = SixFaces.of_block(mapped(skewed, counts))
+    grid = solve(faces).grid
+    for own, other in zip(faces.faces, SixFaces.of_block(grid.nodes).faces, strict=True):
+        np.testing.assert_array_equal(own, other)
+    box = mapped(lambda a, b, c: (a, 2 * b, 3 * c), counts)
+    np.testing.assert_allclose(solve(SixFaces.of_block(box)).grid.nodes, box, atol=1e-6)
+
+
+@pytest.mark.parametrize("solve", SOLVERS)
+def test_threads_change_no_bit(solve) -> None:
+    faces = random_domain(3, 21)
+    grids = []
+    for threads in (1, 2, 3):
+        with limited_to(threads):
+            grids.append(solve(faces).grid.nodes)
+    np.testing.assert_array_equal(grids[0], grids[1])
+    np.testing.assert_array_equal(grids[0], grids[2])
+
+
+@pytest.mark.parametrize(("solve", "within"), [(partial(winslow, tol=1e-8), 1e-6), (variational, 2e-3)])
+def test_symmetric_faces_have_a_symmetric_volume(solve, within) -> None:
+    nodes = solve(SixFaces.of_block(mapped(bump, (13, 13, 13)))).grid.nodes
+    np.testing.assert_allclose(nodes[::-1, :, :, 0], 1.0 - nodes[..., 0], atol=within)
+    np.testing.assert_allclose(nodes.swapaxes(0, 1)[..., 2], nodes[..., 2], atol=within)
+
+
+def harmonic(a, b, c):
+    """A map whose inverse is harmonic: exponentials of a conformal map in the plane, times a line."""
+    size, angle = np.exp(0.9 * a), 0.9 * b
+    return size * np.cos(angle), size * np.sin(angle), c + 0.0 * a
+
+
+def test_winslow_converges_with_second_order_to_a_harmonic_map() -> None:
+    errors = []
+    for n in (9, 17, 33):
+        exact = mapped(harmonic, (n, n, 9))
+        errors.append(np.abs(winslow(SixFaces.of_block(exact), tol=1e-8).grid.nodes - exact).max())
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert (np.abs(orders - 2.0) < 0.25).all()
+
+
+def test_winslow_without_tolerance_is_below_the_discretisation_error() -> None:
+    faces = random_domain(5, 33)
+    exact = winslow(faces, tol=1e-8).grid.nodes
+    coarse = winslow(faces.resampled((17, 17, 17)), tol=1e-8).grid.nodes
+    discretisation = np.abs(exact[::2, ::2, ::2] - coarse).max() / 3
+    assert np.abs(winslow(faces).grid.nodes - exact).max() < discretisation
+
+
+def test_semi_coarsening_takes_cells_of_any_shape() -> None:
+    faces = SixFaces.of_block(mapped(lambda a, b, c: bent_pipe(a, b, 6 * c / 6), (33, 33, 9)))
+    assert winslow(faces, tol=1e-6).cycles <= 8
+
+
+def test_the_gradient_is_that_of_the_functional() -> None:
+    planes = np.ascontiguousarray(np.moveaxis(mapped(skewed, (6, 7, 8)), -1, 0))
+    planes[:, 1:-1, 1:-1, 1:-1] += 0.02 * np.random.default_rng(0).normal(size=(3, 4, 5, 6))
+    over, step = inverse_lengths(planes), np.random.default_rng(1).normal(size=planes.shape)
+    step[:, [0, -1]] = step[:, :, [0, -1]] = step[..., [0, -1]] = 0.0
+    inner = (slice(None), *[slice(1, -1)] * 3)
+    for weights, epsilon in (((0.9, 2e-3, 2), 0.0), ((0.02, 2e-3, 1), 0.3)):
+        gradient, spare = np.empty_like(planes), np.empty_like(planes)
+        volume_energy(planes, over, weights, epsilon, 1, gradient)
+        ends = [volume_energy(planes + h * step, over, weights, epsilon, 1, spare)[0] for h in (1e-6, -1e-6)]
+        slope = (gradient[inner] * step[inner]).sum()
+        assert (ends[0] - ends[1]) / 2e-6 == pytest.approx(slope, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_random_domains_are_valid_and_no_worse_than_winslows(seed: int) -> None:
+    faces = random_domain(seed, 17)
+    try:
+        solution = variational(faces)
+    except InputError as error:
+        assert "fold" in str(error)  # noqa: PT017
+        return
+    own, other = measure(solution.grid), measure(winslow(faces).grid)
+    assert own.folded == 0
+    assert own["scaled_jacobian"].min >= min(other["scaled_jacobian"].min, 0.5)
+    assert own["max_angle"].mean <= other["max_angle"].mean
+
+
+def test_a_coarse_optimum_is_evaluated_at_any_counts_and_clustering() -> None:
+    laws = [np.linspace(0, 1, n) for n in (49, 45)], np.linspace(0, 1, 43) ** 4
+    a, b, c = np.meshgrid(*laws[0], laws[1], indexing="ij")
+    faces = SixFaces.of_block(np.stack(bump(a, b, c), axis=-1))
+    solution = variational(faces)
+    assert solution.outcome is Outcome.DONE
+    assert count_folded(solution.grid.nodes) == 0
+    np.testing.assert_array_equal(solution.grid.nodes[0], faces.west)
+
+
+def test_unavoidable_folds_are_refused_with_the_node() -> None:
+    nodes = mapped(skewed, (9, 9, 9))
+    nodes[4, 0, 1, 2] -= 0.4  # below the bottom's edge
+    with pytest.raises(InputError, match=r"x=.*south and bottom fold the cells.*i=4, j=0, k=0"):
+        variational(SixFaces.of_block(nodes))
+
+
+def test_faces_that_leave_no_place_for_a_node_are_refused() -> None:
+    nodes = mapped(lambda a, b, c: (a, b, c), (9, 9, 9))
+    nodes[4, 4, 0] = nodes[4, 4, 0] + (0.2, 0.25, 0.0)  # beyond its neighbours
+    with pytest.raises(InputError, match="wherever node i=.*, k=1 is"):
+        variational(SixFaces.of_block(nodes))
+
+
+def test_left_handed_volumes_are_refused() -> None:
+    with pytest.raises(InputError, match="left-handed"):
+        variational(SixFaces.of_block(mapped(skewed, (5, 5, 5))[::-1]))
+
+
+@pytest.mark.parametrize(("settings", "name"), [({"max_cycles": 0}, "max_cycles"), ({"coarse": 2}, "coarse")])
+def test_settings_are_checked(settings, name) -> None:
+    with pytest.raises(InputError) as caught:
+        variational(SixFaces.of_block(mapped(skewed, (5, 5, 5))), **settings)
+    assert caught.value.parameter == name
+    with pytest.raises(InputError, match="blending"):
+        tfi(SixFaces.of_block(mapped(skewed, (5, 5, 5))), blending="cubic")
