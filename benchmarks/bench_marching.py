@@ -56,7 +56,8 @@ Read this page to see how good marched volumes are. How the method works is in
 
 """
 COLUMNS = (
-    "surface", "patches", "nodes", "levels", "first cell, distance", "tries", "folded", "first cell", "quality", "SJ",
+    "surface", "patches", "nodes", "levels", "first cell, distance", "tries", "folded", "first cell",
+    "quality", "SJ",
     "off the normal", "growth", "CPU", "us a node", "process",
 )  # fmt: skip
 

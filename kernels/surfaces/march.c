@@ -14,7 +14,7 @@
 
 static const double FAR_POWER = 0.15;
 static const double LEAST_YIELD = 0.3;
-enum { HALVINGS = 8 };
+enum { HALVINGS = 2 };
 
 typedef struct {
     Solver solver;

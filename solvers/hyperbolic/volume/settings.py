@@ -79,7 +79,7 @@ class Smoothing(NamedTuple):
 
     explicit: float = 0.3
     implicit: float = 1.2
-    theta: float = 1.0
+    theta: float = 0.5
     sharp: float = -0.5
     longest: float = 3.0
     weight: float = 0.25
