@@ -74,7 +74,7 @@ static double smooth_volumes(const March *m, Runner *r, double part)
             chunk_range(&r->solver, c, &first, &last);
             double *values = (double *)from, *sums = r->solver.sums + chunks;
             fill_equal_ghosts(g, values, first, last);
-            sums[c] = step_smooth(g, values, r->other, k ? set->weight : 0.0, first, last);
+            sums[c] = step_smooth(&r->solver.step, values, r->other, k ? set->weight : 0.0, first, last);
         }
         team_wait(r->member);
         swap(&r->volume, &r->other);
@@ -138,8 +138,8 @@ static void advance(Runner *r, double length)
     r->last = length;
 }
 
-/* Set up and solve a step of a length, from the displacement of the last one times `again`; returns iterations, negative
-   where they diverged. */
+/* Set up and solve a step of a length, from the displacement of the last one times `again`; returns iterations,
+   negative where they diverged. */
 static int solve_length(const March *m, Runner *r, double length, double again, double mean, ptrdiff_t level)
 {
     const SurfaceMarch *set = m->settings;
@@ -162,8 +162,8 @@ static int solve_length(const March *m, Runner *r, double length, double again, 
     return solve_step(&r->solver, r->member);
 }
 
-/* One step of the way `left` to a level, which becomes less; returns iterations, negative where it diverged. A step whose
-   linear system is not solved is tried again half as long. */
+/* One step of the way `left` to a level, which becomes less; returns iterations, negative where it diverged. A step
+   whose linear system is not solved is tried again half as long. */
 static int take_step(const March *m, Runner *r, double *left, ptrdiff_t level)
 {
     Step *step = &r->solver.step;
@@ -232,8 +232,8 @@ int surface_march(double *levels, const double *heights, ptrdiff_t count, const 
     double **long_ones[] = {&s->step.x, &s->step.change, &s->p, &s->s};
     double **short_ones[] = {&s->step.right, &s->r, &s->r0, &s->v, &s->t};
     double **single[] = {&s->step.area, &m.volume, &m.other};
-    double **plain[] = {&s->step.reach, &s->step.height, &s->step.diagonal, &s->step.tie};
-    double *room = calloc((size_t)(4 * 3 * rows + 5 * 3 * n + 3 * rows + 4 * n + 4 * n + 18 * n + SUMS * s->chunks),
+    double **plain[] = {&s->step.reach, &s->step.height};
+    double *room = calloc((size_t)(4 * 3 * rows + 5 * 3 * n + 3 * rows + 2 * n + 4 * n + 12 * n + SUMS * s->chunks),
                           sizeof(double));
     if (room == NULL)
         return -1;
@@ -244,9 +244,15 @@ int surface_march(double *levels, const double *heights, ptrdiff_t count, const 
         *short_ones[k] = next;
     for (int k = 0; k < 3; k++, next += rows)
         *single[k] = next;
-    for (int k = 0; k < 4; k++, next += n)
+    for (int k = 0; k < 2; k++, next += n)
         *plain[k] = next;
-    s->step.along = next, s->step.before = next + 2 * n, s->step.flux = next + 4 * n, s->sums = next + 22 * n;
+    s->step.along = next, s->step.before = next + 2 * n, s->sums = next + 4 * n;
+    s->step.flux = (float *)(next + 4 * n + SUMS * s->chunks);
+    s->step.diagonal = s->step.flux + 18 * n, s->step.tie = s->step.flux + 19 * n;
+    int *near = (int *)(s->step.flux + 20 * n);
+    for (ptrdiff_t k = 0; k < 4 * n; k++)
+        near[k] = (int)graph->near[k];
+    s->step.near = near;
     for (int d = 0; d < 3; d++)
         memcpy(s->step.x + d * rows, levels + d * n, (size_t)n * sizeof(double));
     team_run(threads, run, &m);

@@ -4,7 +4,7 @@
 #include "solve.h"
 #include <math.h>
 
-MESHONET_INLINE Vector flux_of(const double *flux, ptrdiff_t n, Vector a, Vector b)
+MESHONET_INLINE Vector flux_of(const float *flux, ptrdiff_t n, Vector a, Vector b)
 {
     return (Vector){flux[0] * a.x + flux[n] * a.y + flux[2 * n] * a.z + flux[9 * n] * b.x + flux[10 * n] * b.y +
                         flux[11 * n] * b.z,
@@ -18,7 +18,8 @@ MESHONET_INLINE Vector flux_of(const double *flux, ptrdiff_t n, Vector a, Vector
 MESHONET_INLINE Vector neighbours_part(const Step *s, const double *v, ptrdiff_t i)
 {
     const Graph *g = s->graph;
-    const ptrdiff_t n = g->nodes, rows = n + g->ghosts, *near = g->near;
+    const ptrdiff_t n = g->nodes, rows = n + g->ghosts;
+    const int *near = s->near;
     const Vector a = at(v, rows, near[i]), b = at(v, rows, near[n + i]);
     const Vector c = at(v, rows, near[2 * n + i]), d = at(v, rows, near[3 * n + i]);
     return minus(flux_of(s->flux + i, n, minus(a, c), minus(b, d)),

@@ -28,7 +28,8 @@ typedef struct {
 
 MESHONET_INLINE double spread(double before, double now, double power)
 {
-    return least(most(exp_double(least(most(power * log_double(before / now), -30.0), 30.0)), LEAST_SPREAD), MOST_SPREAD);
+    const double exponent = least(most(power * log_double(before / now), -30.0), 30.0);
+    return least(most(exp_double(exponent), LEAST_SPREAD), MOST_SPREAD);
 }
 
 /* How much more a direction is smoothed whose edges rise by `cosine` times their length. */
@@ -52,15 +53,17 @@ MESHONET_INLINE void put_row(const Step *s, const StepRule *rule, ptrdiff_t i, c
     const double over = (1.0 + rule->theta) * 0.5 * go / most(dot(normal, normal), 1e-300);
     const Vector p = times(over, cross(f->eta, normal)), q = times(over, cross(normal, f->xi)), r = times(over, normal);
     const Vector t = cross(f->eta, f->zeta), u = cross(f->zeta, f->xi), z = f->zeta;
-    double *flux = s->flux + i;
-    flux[0] = p.x * z.x + r.x * t.x, flux[n] = p.x * z.y + r.x * t.y, flux[2 * n] = p.x * z.z + r.x * t.z;
-    flux[3 * n] = p.y * z.x + r.y * t.x, flux[4 * n] = p.y * z.y + r.y * t.y, flux[5 * n] = p.y * z.z + r.y * t.z;
-    flux[6 * n] = p.z * z.x + r.z * t.x, flux[7 * n] = p.z * z.y + r.z * t.y, flux[8 * n] = p.z * z.z + r.z * t.z;
-    flux[9 * n] = q.x * z.x + r.x * u.x, flux[10 * n] = q.x * z.y + r.x * u.y, flux[11 * n] = q.x * z.z + r.x * u.z;
-    flux[12 * n] = q.y * z.x + r.y * u.x, flux[13 * n] = q.y * z.y + r.y * u.y, flux[14 * n] = q.y * z.z + r.y * u.z;
-    flux[15 * n] = q.z * z.x + r.z * u.x, flux[16 * n] = q.z * z.y + r.z * u.y, flux[17 * n] = q.z * z.z + r.z * u.z;
-    s->diagonal[i] = 1.0 + go * 4.0 * rule->implicit_smoothing;
-    s->tie[i] = f->averaged ? 1.0 / count : 4.0 / count * rule->implicit_smoothing;
+    const double matrices[18] = {
+        p.x * z.x + r.x * t.x, p.x * z.y + r.x * t.y, p.x * z.z + r.x * t.z, p.y * z.x + r.y * t.x,
+        p.y * z.y + r.y * t.y, p.y * z.z + r.y * t.z, p.z * z.x + r.z * t.x, p.z * z.y + r.z * t.y,
+        p.z * z.z + r.z * t.z, q.x * z.x + r.x * u.x, q.x * z.y + r.x * u.y, q.x * z.z + r.x * u.z,
+        q.y * z.x + r.y * u.x, q.y * z.y + r.y * u.y, q.y * z.z + r.y * u.z, q.z * z.x + r.z * u.x,
+        q.z * z.y + r.z * u.y, q.z * z.z + r.z * u.z};
+#pragma GCC unroll 18
+    for (int k = 0; k < 18; k++)
+        s->flux[k * n + i] = (float)matrices[k];
+    s->diagonal[i] = (float)(1.0 + go * 4.0 * rule->implicit_smoothing);
+    s->tie[i] = (float)(f->averaged ? 1.0 / count : 4.0 / count * rule->implicit_smoothing);
     s->right[i] = go * (z.x + f->smooth.x), s->right[n + i] = go * (z.y + f->smooth.y);
     s->right[2 * n + i] = go * (z.z + f->smooth.z);
 }
@@ -134,7 +137,8 @@ void step_rows(const Step *step, const StepRule *rule, ptrdiff_t first, ptrdiff_
     const Step s = *step;
     const StepRule r = *rule;
     const Graph *g = s.graph;
-    const ptrdiff_t n = g->nodes, rows = n + g->ghosts, *near = g->near;
+    const ptrdiff_t n = g->nodes, rows = n + g->ghosts;
+    const int *near = s.near;
     const double power = 2.0 / r.far;
     MESHONET_INDEPENDENT
     for (ptrdiff_t i = first; i < last; i++) {
@@ -169,7 +173,8 @@ double step_sizes(const Step *step, ptrdiff_t first, ptrdiff_t last)
 {
     const Step s = *step;
     const Graph *g = s.graph;
-    const ptrdiff_t n = g->nodes, rows = n + g->ghosts, *near = g->near;
+    const ptrdiff_t n = g->nodes, rows = n + g->ghosts;
+    const int *near = s.near;
     fill_ghosts(g, s.x, first, last, 0);
     MESHONET_INDEPENDENT
     for (ptrdiff_t i = first; i < last; i++) {
@@ -190,9 +195,11 @@ double step_sizes(const Step *step, ptrdiff_t first, ptrdiff_t last)
 }
 
 MESHONET_CLONES
-double step_smooth(const Graph *g, const double *values, double *out, double weight, ptrdiff_t first, ptrdiff_t last)
+double step_smooth(const Step *step, const double *values, double *out, double weight, ptrdiff_t first, ptrdiff_t last)
 {
-    const ptrdiff_t n = g->nodes, *near = g->near;
+    const Graph *g = step->graph;
+    const ptrdiff_t n = g->nodes;
+    const int *near = step->near;
     MESHONET_INDEPENDENT
     for (ptrdiff_t i = first; i < last; i++)
         out[i] = (1.0 - weight) * values[i] + 0.25 * weight * (values[near[i]] + values[near[n + i]] +

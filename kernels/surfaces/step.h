@@ -18,8 +18,11 @@ typedef struct {
     double *height;         /* (nodes): of the step at each node */
     double *along, *before; /* (2, nodes): lengths of opposite edges together, on this level and the one before */
     double *right;          /* (3, nodes): right side */
-    double *flux;           /* (18, nodes): two matrices, row by row, for differences along xi and eta */
-    double *diagonal, *tie; /* (nodes): the row is diagonal dr + flux (dr_xi, dr_eta) - tie (sum of neighbours' dr) */
+    /* the row is diagonal dr + flux (dr_xi, dr_eta) - tie (sum of neighbours' dr): solved to a thousandth, it is kept in
+       single precision, since the time goes into reading it */
+    float *flux;           /* (18, nodes): two matrices, row by row, for differences along xi and eta */
+    float *diagonal, *tie; /* (nodes) */
+    const int *near;       /* (4, nodes): that of the graph */
 } Step;
 
 /* Areas, lengths and reach of nodes first .. last - 1, their ghosts filled; the least reach. */
@@ -27,5 +30,5 @@ double step_sizes(const Step *step, ptrdiff_t first, ptrdiff_t last);
 /* The rows of nodes first .. last - 1, from the heights of the step. */
 void step_rows(const Step *step, const StepRule *rule, ptrdiff_t first, ptrdiff_t last);
 /* out = weight (mean of neighbours' values) + (1 - weight) values, for nodes first .. last - 1; their sum. */
-double step_smooth(const Graph *graph, const double *values, double *out, double weight, ptrdiff_t first,
+double step_smooth(const Step *step, const double *values, double *out, double weight, ptrdiff_t first,
                    ptrdiff_t last);

@@ -56,8 +56,8 @@ def surface_march(levels, heights, graph, settings, int threads):
     cdef SurfaceMarch s
     cdef SurfaceMarched made
     cdef int failed
-    (s.explicit_smoothing, s.implicit_smoothing, s.theta, s.sharp, s.size, s.longest, s.weight, s.blend, s.sweeps, s.ramp,
-     s.tolerance, s.most) = settings
+    (s.explicit_smoothing, s.implicit_smoothing, s.theta, s.sharp, s.size, s.longest, s.weight, s.blend, s.sweeps,
+     s.ramp, s.tolerance, s.most) = settings
     cdef Written px = fills(levels, (count + 1, 3, n))
     cdef Read apart = reads(heights, (count,))
     with nogil:

@@ -87,7 +87,7 @@ class Smoothing(NamedTuple):
     sweeps: int = 10
     ramp: int = 10
     tolerance: float = 1e-3
-    most: int = 40
+    most: int = 150
     splay: float = 0.0
     boost: float = 3.0
     """Of free edges, and where other than four faces meet (`meshonet.solvers.hyperbolic.volume.graph`)."""
@@ -99,8 +99,8 @@ class Smoothing(NamedTuple):
 
 ATTEMPTS = (
     Smoothing(),
-    Smoothing(explicit=1.0, implicit=2.0),
-    Smoothing(explicit=1.0, implicit=2.0, sweeps=60),
+    Smoothing(explicit=1.0, implicit=2.0, theta=1.0),
+    Smoothing(explicit=1.0, implicit=2.0, theta=1.0, sweeps=60),
     Smoothing(explicit=1.0, implicit=2.0, theta=0.0, longest=0.5, sweeps=60),
     Smoothing(explicit=2.0, implicit=4.0, theta=0.0, longest=0.5, sweeps=60),
 )
