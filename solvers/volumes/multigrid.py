@@ -1,8 +1,8 @@
 """Full approximation scheme for Winslow's equations in a volume, with semi-coarsening.
 
-Levels are coarsened in the directions in which nodes are near each other, until cells are as long as wide: lines
-in all three directions then smooth well on every level. Counts are free: a coarser level has every second node
-where that is possible, and else its own even steps.
+Levels are coarsened in the directions in which nodes are near each other, until cells are as long as wide:
+lines in all three directions then smooth well on every level. Counts are free: a coarser level has every
+second node where that is possible, and else its own even steps.
 
 Brandt, Math. Comp. 31 (1977) 333-390; Trottenberg, Oosterlee and Schüller, Multigrid (2001), section 5.1.
 """
@@ -31,8 +31,8 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 class Transfer:
     """Between a level's nodes along one direction and the coarser one's.
 
-    Each is a first node and weights: `up` (n, 2) linear interpolation, `down` (m, terms) its transpose over the
-    ratio of steps, `at` (m, 4) cubic interpolation at the coarse nodes.
+    Each is a first node and weights: `up` (n, 2) linear interpolation, `down` (m, terms) its transpose over
+    the ratio of steps, `at` (m, 4) cubic interpolation at the coarse nodes.
     """
 
     up: tuple[NDArray[np.intp], Floats]
@@ -76,11 +76,11 @@ class Multigrid:
             self.levels.append(Level(level.faces.resampled(counts), coarse=True))
 
     def nested(self) -> tuple[Floats, float, float]:
-        """Return x after a cycle on each level, coarsest first; how far it is from the level below; the change.
+        """Return x after a cycle on each level, how far it is from the level below, and the change.
 
-        What is carried up is the difference from the interpolation. The numbers are the largest differences of
-        a coordinate: from the next coarser level, about three times the discretisation error, and by the last
-        cycle.
+        What is carried up is the difference from the interpolation. The numbers are the largest differences
+        of a coordinate: from the next coarser level, about three times the discretisation error, and by the
+        last cycle.
         """
         last = len(self.levels) - 1
         x = self.levels[last].start.copy()
@@ -153,7 +153,8 @@ class Multigrid:
                 continue
             shape = (*values.shape[: axis + 1], to[axis], *values.shape[axis + 2 :])
             result = np.empty(shape)
-            combine_along(values, axis + 1, *getattr(step, way), False, thread_count(), result)
+            first, weights = getattr(step, way)
+            combine_along(values, axis + 1, first, weights, False, thread_count(), result)
             values = result
         return values
 
@@ -171,7 +172,7 @@ def transfer(n: int, m: int) -> Transfer:
     terms = int(max((n - row[::-1].argmax() - row.argmax()) for row in reached))
     begin = np.minimum(reached.argmax(axis=1), n - terms)
     kept = np.take_along_axis(down, begin[:, None] + np.arange(terms), axis=1)
-    places = np.arange(m) * ((n - 1) / (m - 1))
+    places: Floats = np.arange(m, dtype=np.float64) * ((n - 1) / (m - 1))
     four = min(4, n)
     low = np.clip(places.astype(np.intp) - 1, 0, n - four)
     return Transfer((first, weights), (begin, kept), (low, _lagrange(places - low, four)))
@@ -189,7 +190,7 @@ def _lagrange(t: Floats, terms: int) -> Floats:
 
 
 def _coarser(faces: SixFaces) -> tuple[int, int, int] | None:
-    """Return the counts of the next coarser level: of the directions with the shortest steps. None: no more."""
+    """Return the counts of the next coarser level, coarsened along the shortest steps; None: no more."""
     counts = faces.counts
     steps = []
     for axis in range(3):

@@ -1,10 +1,10 @@
 """Inner nodes next to faces: whether there is any place for them at which the corners on the faces are open.
 
-The corners of cells at a node q of a face have one edge inside, to the inner node p next to it, and two in the
-face, with the normal n; they are open where n · (p - q) > 0. So p must lie in half-spaces: four from each face
-that it is next to. By Helly's theorem these have no point in common exactly when four of them have none, and by
-Farkas' lemma four have none when λ >= 0 with Σ λ n = 0 has Σ λ n·q >= 0; for four normals λ are the determinants
-of three of them.
+The corners of cells at a node q of a face have one edge inside, to the inner node p next to it, and two in
+the face, with the normal n; they are open where n · (p - q) > 0. So p must lie in half-spaces: four from
+each face that it is next to. By Helly's theorem these have no point in common exactly when four of them
+have none, and by Farkas' lemma four have none when λ >= 0 with Σ λ n = 0 has Σ λ n·q >= 0; for four normals
+λ are the determinants of three of them.
 """
 
 from itertools import combinations, product
@@ -41,7 +41,7 @@ def closed_place(faces: SixFaces) -> Place | None:
 
 
 def _ranges(sides: tuple[Side, ...], counts: tuple[int, int, int]) -> list[tuple[int, int]]:
-    """Return the first and last (excluded) node along each direction of the inner nodes next to all of `sides`."""
+    """Return first and last (excluded) node along each direction of inner nodes next to all of `sides`."""
     ranges = [(1, n - 1) for n in counts]
     for side in sides:
         axis, end = PLACES[side]

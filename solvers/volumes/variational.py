@@ -23,7 +23,7 @@ COARSE = 33
 SPARE = 41
 """Nodes along a direction up to which the faces' own take the place of coarse ones."""
 EVEN = 1.5
-"""Ratio of steps along edges, longest to shortest of a direction, up to which nodes count as evenly spaced."""
+"""Longest to shortest step along a direction up to which nodes count as evenly spaced."""
 COARSEST = 11  # a copy of no more nodes along each direction is solved from the interpolation
 ITERATIONS = 30, 20, 40
 """At the most: on coarser levels, on the last but one, on the last."""

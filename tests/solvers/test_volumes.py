@@ -149,7 +149,7 @@ def test_unavoidable_folds_are_refused_with_the_node() -> None:
 def test_faces_that_leave_no_place_for_a_node_are_refused() -> None:
     nodes = mapped(lambda a, b, c: (a, b, c), (9, 9, 9))
     nodes[4, 4, 0] = nodes[4, 4, 0] + (0.2, 0.25, 0.0)  # beyond its neighbours
-    with pytest.raises(InputError, match="wherever node i=.*, k=1 is"):
+    with pytest.raises(InputError, match=r"wherever node i=.*, k=1 is"):
         variational(SixFaces.of_block(nodes))
 
 
