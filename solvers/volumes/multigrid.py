@@ -147,8 +147,8 @@ class Multigrid:
             shape = (*values.shape[: axis + 1], counts[axis], *values.shape[axis + 2 :])
             add = to is not None and axis == axes[-1]
             result = to if add and to is not None else self._room(depth, way, axis, shape)
-            step = getattr(self.levels[depth].transfers[axis], way)
-            combine_along(values, axis + 1, *step, add, thread_count(), result)
+            first, weights = getattr(self.levels[depth].transfers[axis], way)
+            combine_along(values, axis + 1, first, weights, add, thread_count(), result)
             values = result
         return values
 
