@@ -308,3 +308,6 @@ def winslow_residual(
 def combine_along(
     source: Floats, axis: int, first: Indices, weights: Floats, add: bool, threads: int, to: Floats
 ) -> None: ...  # fmt: skip
+def volume_lines(
+    nodes: Floats, axis: int, low: Floats | None, high: Floats | None, reach: float, threads: int
+) -> None: ...  # fmt: skip

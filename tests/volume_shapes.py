@@ -1,4 +1,4 @@
-"""Volumes for tests: analytic maps of the unit cube, and random domains with bubbles of their own on each face."""
+"""Volumes for tests: analytic maps of the unit cube, and random domains with bubbles on each face."""
 
 from __future__ import annotations
 

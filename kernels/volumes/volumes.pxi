@@ -228,3 +228,36 @@ def combine_along(source, int axis, first, weights, bint add, int threads, to):
     cdef Written result = fills(to, to.shape)
     with nogil:
         c_combine_along(values, before, n, after, m, places, w, terms, add, threads, result)
+
+
+cdef extern from "volumes/lines.h":
+    int c_volume_lines "volume_lines"(double *nodes, ptrdiff_t before, ptrdiff_t n, ptrdiff_t after, const double *low,
+                                        const double *high, double reach, int threads) nogil
+
+
+def volume_lines(nodes, int axis, low, high, double reach, int threads):
+    """Move nodes of planes (3, n1, n2, n3) along the lines of direction `axis`, in place.
+
+    `low` and `high`, of the shape without that direction, are lengths of first and last steps, 0 where a line stays as
+    it is there; or None. Steps k further on change by exp(-k / `reach`) of it.
+    """
+    cdef ptrdiff_t before = 1, after = 1, n = nodes.shape[axis + 1]
+    cdef int failed
+    cdef const double *first = NULL
+    cdef const double *last = NULL
+    for size in nodes.shape[1:axis + 1]:
+        before *= size
+    for size in nodes.shape[axis + 2:]:
+        after *= size
+    if n < 3:
+        raise ValueError("lines without inner nodes")
+    shape = (*nodes.shape[1:axis + 1], *nodes.shape[axis + 2:])
+    cdef Written x = fills(nodes, (3, *nodes.shape[1:]))
+    if low is not None:
+        first = reads(low, shape)
+    if high is not None:
+        last = reads(high, shape)
+    with nogil:
+        failed = c_volume_lines(x, before, n, after, first, last, reach, threads)
+    if failed:
+        raise MemoryError

@@ -1,8 +1,8 @@
 """Full approximation scheme for Winslow's equations in a volume, with semi-coarsening.
 
-Levels are coarsened in the directions in which nodes are near each other, until cells are as long as wide: lines
-in all three directions then smooth well on every level. Counts are free: a coarser level has every second node
-where that is possible, and else its own even steps.
+Levels are coarsened in the directions in which nodes are near each other, until cells are as long as wide:
+lines in all three directions then smooth well on every level. Counts are free: a coarser level has every
+second node where that is possible, and else its own even steps.
 
 Brandt, Math. Comp. 31 (1977) 333-390; Trottenberg, Oosterlee and Schüller, Multigrid (2001), section 5.1.
 """
@@ -31,8 +31,8 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 class Transfer:
     """Between a level's nodes along one direction and the coarser one's.
 
-    Each is a first node and weights: `up` (n, 2) linear interpolation, `down` (m, terms) its transpose over the
-    ratio of steps, `at` (m, 4) cubic interpolation at the coarse nodes.
+    Each is a first node and weights: `up` (n, 2) linear interpolation, `down` (m, terms) its transpose over
+    the ratio of steps, `at` (m, 4) cubic interpolation at the coarse nodes.
     """
 
     up: tuple[NDArray[np.intp], Floats]
@@ -69,6 +69,7 @@ class Multigrid:
     def __init__(self, faces: SixFaces, sweeps: int = 1, factor: float = 1.0) -> None:
         self.levels = [Level(faces, coarse=False)]
         self._sweeps, self._factor = sweeps, factor
+        self._rooms: dict[tuple[int, str, int], Floats] = {}
         while (counts := _coarser(self.levels[-1].faces)) is not None:
             level = self.levels[-1]
             pairs = zip(level.faces.counts, counts, strict=True)
@@ -76,11 +77,11 @@ class Multigrid:
             self.levels.append(Level(level.faces.resampled(counts), coarse=True))
 
     def nested(self) -> tuple[Floats, float, float]:
-        """Return x after a cycle on each level, coarsest first; how far it is from the level below; the change.
+        """Return x after a cycle on each level; how far it is from the level below; the change.
 
-        What is carried up is the difference from the interpolation. The numbers are the largest differences of
-        a coordinate: from the next coarser level, about three times the discretisation error, and by the last
-        cycle.
+        What is carried up is the difference from the interpolation. The numbers are the largest differences
+        of a coordinate: from the next coarser level, about three times the discretisation error, and by the
+        last cycle.
         """
         last = len(self.levels) - 1
         x = self.levels[last].start.copy()
@@ -89,12 +90,12 @@ class Multigrid:
         for depth in range(last - 1, -1, -1):
             level, coarse = self.levels[depth], x
             x = level.start.copy()
-            self._up(depth, coarse - self.levels[depth + 1].start, x)
+            self._moved(depth, "up", coarse - self.levels[depth + 1].start, x)
             if depth > 0:
                 self._cycle(depth, x, False)
                 continue
             change = self.cycle(x)[1]
-            apart = float(np.abs(self._at(depth, x) - coarse).max())
+            apart = float(np.abs(self._moved(depth, "at", x) - coarse).max())
         return x, apart, change
 
     def cycle(self, x: Floats) -> tuple[float, float]:
@@ -116,7 +117,7 @@ class Multigrid:
         level.smooth(x, self._sweeps, forced, self._factor)
         norm = level.norm(x, forced)
         below = self.levels[depth + 1]
-        coarse = self._at(depth, x)
+        coarse = self._moved(depth, "at", x)
         for side in range(3):
             ends = (slice(None),) * (side + 1)
             for end in (0, -1):  # the coarse level's own faces
@@ -125,37 +126,37 @@ class Multigrid:
         right = below.right
         if right is not None:
             below.norm(coarse, False)
-            down = self._apply(depth, "down", level.residual)
+            down = self._moved(depth, "down", level.residual)
             np.subtract(down, below.residual, out=right)
         self._cycle(depth + 1, coarse, True)
-        self._up(depth, coarse - before, x)
+        np.subtract(coarse, before, out=before)
+        self._moved(depth, "up", before, x)
         level.smooth(x, self._sweeps, forced, self._factor)
         return norm
 
-    def _at(self, depth: int, x: Floats) -> Floats:
-        """Return x at the nodes of the next coarser level."""
-        result = self._apply(depth, "at", x)
-        return result.copy() if result is x else result
+    def _moved(self, depth: int, way: str, values: Floats, to: Floats | None = None) -> Floats:
+        """Return values between a level and the next coarser one, in memory that is used again; or add `to`.
 
-    def _up(self, depth: int, difference: Floats, x: Floats) -> None:
-        """Add a difference on the next coarser level to x."""
-        inner = self._apply(depth, "up", difference)
-        x[:, 1:-1, 1:-1, 1:-1] += inner[:, 1:-1, 1:-1, 1:-1]
-
-    def _apply(self, depth: int, way: str, values: Floats) -> Floats:
-        """Interpolate or restrict along each direction that is coarsened."""
+        Differences are zero on faces, and stay so.
+        """
         fine, coarse = self.levels[depth].faces.counts, self.levels[depth + 1].faces.counts
-        to = fine if way == "up" else coarse
-        order = (2, 1, 0) if way == "up" else (0, 1, 2)  # the short arrays first
-        for axis in order:
-            step = self.levels[depth].transfers[axis]
-            if step is None:
-                continue
-            shape = (*values.shape[: axis + 1], to[axis], *values.shape[axis + 2 :])
-            result = np.empty(shape)
-            combine_along(values, axis + 1, *getattr(step, way), False, thread_count(), result)
+        counts = fine if way == "up" else coarse
+        order = (2, 1, 0) if way == "up" else (0, 1, 2)  # while arrays are short, or soon
+        axes = [axis for axis in order if self.levels[depth].transfers[axis] is not None]
+        for axis in axes:
+            shape = (*values.shape[: axis + 1], counts[axis], *values.shape[axis + 2 :])
+            add = to is not None and axis == axes[-1]
+            result = to if add and to is not None else self._room(depth, way, axis, shape)
+            first, weights = getattr(self.levels[depth].transfers[axis], way)
+            combine_along(values, axis + 1, first, weights, add, thread_count(), result)
             values = result
         return values
+
+    def _room(self, depth: int, way: str, axis: int, shape: tuple[int, ...]) -> Floats:
+        key = depth, way, axis
+        if key not in self._rooms:
+            self._rooms[key] = np.empty(shape)
+        return self._rooms[key]
 
 
 def transfer(n: int, m: int) -> Transfer:
@@ -171,7 +172,7 @@ def transfer(n: int, m: int) -> Transfer:
     terms = int(max((n - row[::-1].argmax() - row.argmax()) for row in reached))
     begin = np.minimum(reached.argmax(axis=1), n - terms)
     kept = np.take_along_axis(down, begin[:, None] + np.arange(terms), axis=1)
-    places = np.arange(m) * ((n - 1) / (m - 1))
+    places: Floats = np.arange(m, dtype=np.float64) * ((n - 1) / (m - 1))
     four = min(4, n)
     low = np.clip(places.astype(np.intp) - 1, 0, n - four)
     return Transfer((first, weights), (begin, kept), (low, _lagrange(places - low, four)))
@@ -189,7 +190,7 @@ def _lagrange(t: Floats, terms: int) -> Floats:
 
 
 def _coarser(faces: SixFaces) -> tuple[int, int, int] | None:
-    """Return the counts of the next coarser level: of the directions with the shortest steps. None: no more."""
+    """Return the counts of the next coarser level, halved where steps are short; None: there is none."""
     counts = faces.counts
     steps = []
     for axis in range(3):

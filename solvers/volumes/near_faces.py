@@ -1,15 +1,16 @@
 """Inner nodes next to faces: whether there is any place for them at which the corners on the faces are open.
 
-The corners of cells at a node q of a face have one edge inside, to the inner node p next to it, and two in the
-face, with the normal n; they are open where n · (p - q) > 0. So p must lie in half-spaces: four from each face
-that it is next to. By Helly's theorem these have no point in common exactly when four of them have none, and by
-Farkas' lemma four have none when λ >= 0 with Σ λ n = 0 has Σ λ n·q >= 0; for four normals λ are the determinants
-of three of them.
+The corners of cells at a node q of a face have one edge inside, to the inner node p next to it, and two in
+the face, with the normal n; they are open where n · (p - q) > 0. So p must lie in half-spaces: four from each
+face that it is next to. By Helly's theorem these have no point in common exactly when four of them have none,
+and by Farkas' lemma four have none when λ >= 0 with Σ λ n = 0 has Σ λ n·q >= 0; for four normals λ are the
+determinants of three of them.
 """
 
 from itertools import combinations, product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import PLACES
@@ -18,6 +19,8 @@ from meshonet.geometry.blocks.six_faces import FACES, SixFaces
 Place = tuple[int, int, int]
 
 ROUNDING = 1e-12
+OPEN = 0.05
+"""Product of the sum of four unit normals with each of them from which on they plainly have a common side."""
 FLAT = 1e-4
 """Sum of four determinants of unit normals below which these are too nearly in a plane to tell anything."""
 
@@ -41,7 +44,7 @@ def closed_place(faces: SixFaces) -> Place | None:
 
 
 def _ranges(sides: tuple[Side, ...], counts: tuple[int, int, int]) -> list[tuple[int, int]]:
-    """Return the first and last (excluded) node along each direction of the inner nodes next to all of `sides`."""
+    """Return first and last (excluded) node along each direction of the inner nodes next to all `sides`."""
     ranges = [(1, n - 1) for n in counts]
     for side in sides:
         axis, end = PLACES[side]
@@ -50,10 +53,15 @@ def _ranges(sides: tuple[Side, ...], counts: tuple[int, int, int]) -> list[tuple
     return ranges
 
 
-def _closed(faces: SixFaces, sides: tuple[Side, ...], ranges: list[tuple[int, int]]) -> Floats:
+def _closed(faces: SixFaces, sides: tuple[Side, ...], ranges: list[tuple[int, int]]) -> NDArray[np.bool_]:
     """Return for the nodes in `ranges` whether their half-spaces, of all `sides`, have nothing in common."""
     halves = [_half_spaces(faces, side, ranges) for side in sides]
     normals = np.concatenate([normal for normal, _ in halves])
+    if len(sides) == 1:  # of most nodes it is plain that all four have a direction in common
+        common = normals.sum(axis=0)
+        open_ = (normals * common).sum(axis=-1).min(axis=0) > OPEN
+        if open_.all():
+            return np.zeros(open_.shape, dtype=bool)
     bounds = np.concatenate([bound for _, bound in halves])
     fours = np.array(list(combinations(range(len(normals)), 4)))
     n, b = np.moveaxis(normals, -1, 0)[:, fours], bounds[fours]

@@ -13,6 +13,7 @@ from meshonet.solvers.solution import Outcome, Solution
 from meshonet.solvers.volumes.descent import FLAT, Descent
 from meshonet.solvers.volumes.edge_corners import check_corners
 from meshonet.solvers.volumes.evaluate import evaluate
+from meshonet.solvers.volumes.first_cells import keep_first_cells
 from meshonet.solvers.volumes.functional import OPTIMAL
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import Laws, arc_laws, mean_laws, uniform_laws
@@ -23,7 +24,7 @@ COARSE = 33
 SPARE = 41
 """Nodes along a direction up to which the faces' own take the place of coarse ones."""
 EVEN = 1.5
-"""Ratio of steps along edges, longest to shortest of a direction, up to which nodes count as evenly spaced."""
+"""Ratio of steps along edges, longest to shortest of a direction, up to which nodes are evenly spaced."""
 COARSEST = 11  # a copy of no more nodes along each direction is solved from the interpolation
 ITERATIONS = 30, 20, 40
 """At the most: on coarser levels, on the last but one, on the last."""
@@ -53,7 +54,8 @@ def variational(
     planes, iterations = optimum(optimum_faces, max_cycles)
     solved = time.perf_counter()
     if optimum_faces is not faces:
-        planes = evaluate(planes, optimum_faces, faces, laws)
+        planes = np.ascontiguousarray(evaluate(planes, optimum_faces, faces, laws))
+        keep_first_cells(planes, faces, laws)
     evaluated = time.perf_counter()
     folded = repair(planes)
     facts = {"method": "variational", "shape": OPTIMAL.shape, "smoothness": OPTIMAL.smoothness}

@@ -1,4 +1,4 @@
-"""Six faces in, Winslow's grid out: cycles until the equations are solved as well as the nodes resolve them."""
+"""Six faces in, Winslow's grid out: cycles until the equations are solved as well as nodes resolve them."""
 
 import time
 
@@ -19,16 +19,16 @@ RATE = 0.4
 ENOUGH = 1.0
 """Part of the discretisation error that may be left of the equations' own."""
 CAREFUL = ((1, 1.0), (2, 0.7))
-"""Sweeps before and after the coarser levels and their relaxation factor, tried in turn while cycles diverge."""
+"""Sweeps before and after coarser levels, and their relaxation factor: tried in turn while cycles diverge."""
 
 
 def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None = None) -> Solution:
     """Solve Winslow's equations inside `faces`: the inverse map has harmonic coordinates.
 
-    ``a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = 0``, a the adjugate of the metric, by
-    central differences and multigrid cycles. Without `tol` these end when they change nodes by less than the
-    discretisation error; with it, when the residual is `tol` times that of the interpolation. Cells can fold
-    where walls are re-entrant.
+    ``a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = 0``, a the adjugate of the
+    metric, by central differences and multigrid cycles. Without `tol` these end when they change nodes by
+    less than the discretisation error; with it, when the residual is `tol` times that of the interpolation.
+    Cells can fold where walls are re-entrant.
 
     Raises InputError: faces that fold cells whatever is inside; settings not positive; SolverError: cycles
     diverge. Winslow, J. Comput. Phys. 1 (1966) 149-172.

@@ -149,7 +149,7 @@ def test_unavoidable_folds_are_refused_with_the_node() -> None:
 def test_faces_that_leave_no_place_for_a_node_are_refused() -> None:
     nodes = mapped(lambda a, b, c: (a, b, c), (9, 9, 9))
     nodes[4, 4, 0] = nodes[4, 4, 0] + (0.2, 0.25, 0.0)  # beyond its neighbours
-    with pytest.raises(InputError, match="wherever node i=.*, k=1 is"):
+    with pytest.raises(InputError, match=r"wherever node i=.*, k=1 is"):
         variational(SixFaces.of_block(nodes))
 
 
@@ -165,3 +165,16 @@ def test_settings_are_checked(settings, name) -> None:
     assert caught.value.parameter == name
     with pytest.raises(InputError, match="blending"):
         tfi(SixFaces.of_block(mapped(skewed, (5, 5, 5))), blending="cubic")
+
+
+def test_first_cells_are_as_high_as_the_faces_say() -> None:
+    law = np.append(0.0, np.cumsum(1.3 ** np.arange(40)))
+    a, b, c = np.meshgrid(np.linspace(0, 1, 21), np.linspace(0, 1, 25), law / law[-1], indexing="ij")
+    hill = 0.4 * np.exp(-((a - 0.5) ** 2 + (b - 0.5) ** 2) / 0.05) * (16 * a * (1 - a) * b * (1 - b))
+    faces = SixFaces.of_block(np.stack([a, b, c + hill * (1 - c)], axis=-1))
+    nodes = variational(faces).grid.nodes
+    heights = np.linalg.norm(nodes[:, :, 1] - nodes[:, :, 0], axis=-1)
+    np.testing.assert_allclose(heights, law[1] / law[-1], rtol=1e-6)
+    growth = np.diff(nodes[10, 12, :, 2])
+    assert (growth[1:20] / growth[:19]).max() < 1.35  # the law's 1.3, changed over a dozen cells
+    assert count_folded(nodes) == 0

@@ -1,0 +1,60 @@
+"""Cells at a face as high as the faces beside it say: nodes of a volume moved along their lines.
+
+Splines carry the faces' laws inside as parameters; heights then follow how far lines stretch there. Where
+nodes crowd at a face, its first cells are to be what its four edges say: heights are blended between these,
+and each line is respaced, less and less away from the face.
+"""
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.blocks.six_faces import FACES, SixFaces
+from meshonet.geometry.threads import thread_count
+from meshonet.kernels._native import volume_lines
+from meshonet.solvers.volumes.laws import Laws
+
+CROWDED = 0.5
+"""First steps of a law, in its mean step, below which nodes crowd at that end."""
+REACH = 12.0
+"""Steps over which the change of a line's first one fades by e."""
+
+
+def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:
+    """Respace lines of planes (3, ni, nj, nk) in place where `faces` crowd; return the sides that do."""
+    kept: list[str] = []
+    for axis in range(3):
+        heights: list[Floats | None] = [None, None]
+        steps = np.diff(laws[axis][0])
+        for side in FACES:
+            own, end = PLACES[side]
+            if own == axis and steps[end] < CROWDED / len(steps) and len(steps) > 3:
+                heights[end] = _heights(faces, axis, end)
+                kept.append(side)
+        low, high = heights
+        if low is not None or high is not None:
+            volume_lines(planes, axis, low, high, REACH, thread_count())
+    return tuple(kept)
+
+
+def _heights(faces: SixFaces, axis: int, end: int) -> Floats:
+    """Return the lengths (n, m) of first steps at a face, blended between those of its edges; 0 on these."""
+    first, second = (each for each in range(3) if each != axis)
+    rims = {side: _steps(faces, side, axis, end) for side in FACES if PLACES[side][0] != axis}
+    west, east = (rims[side] for side in FACES if PLACES[side][0] == first)  # along the second direction
+    south, north = (rims[side] for side in FACES if PLACES[side][0] == second)
+    u = np.linspace(0.0, 1.0, faces.counts[first])[:, None]
+    v = np.linspace(0.0, 1.0, faces.counts[second])[None, :]
+    across = (1 - u) * west + u * east + (1 - v) * south[:, None] + v * north[:, None]
+    corners = (1 - u) * ((1 - v) * west[0] + v * west[-1]) + u * ((1 - v) * east[0] + v * east[-1])
+    heights = np.exp(across - corners)
+    heights[[0, -1]] = heights[:, [0, -1]] = 0.0
+    return np.ascontiguousarray(heights)
+
+
+def _steps(faces: SixFaces, side: Side, axis: int, end: int) -> Floats:
+    """Return the logarithms (n,) of the steps of a face's nodes along `axis` at one end."""
+    own = PLACES[side][0]
+    rows = np.moveaxis(getattr(faces, side), axis if axis < own else axis - 1, 0)
+    step = rows[1] - rows[0] if end == 0 else rows[-1] - rows[-2]
+    return np.asarray(np.log(np.linalg.norm(step, axis=-1)))
