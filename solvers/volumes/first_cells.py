@@ -21,7 +21,7 @@ REACH = 12.0
 
 
 def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:
-    """Respace lines of planes (3, ni, nj, nk) in place where `faces` crowd; return the sides where they do."""
+    """Respace lines of planes (3, ni, nj, nk) in place where `faces` crowd; return which sides."""
     kept: list[str] = []
     for axis in range(3):
         heights: list[Floats | None] = [None, None]

@@ -25,8 +25,8 @@ CAREFUL = ((1, 1.0), (2, 0.7))
 def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None = None) -> Solution:
     """Solve Winslow's equations inside `faces`: the inverse map has harmonic coordinates.
 
-    ``a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = 0``, a the adjugate of the metric,
-    by central differences and multigrid cycles. Without `tol` these end when they change nodes by less than the
+    ``a11 x_11 + a22 x_22 + a33 x_33 + 2 (a12 x_12 + a13 x_13 + a23 x_23) = 0``, a the metric's adjugate, by
+    central differences and multigrid cycles. Without `tol` these end when they change nodes by less than the
     discretisation error; with it, when the residual is `tol` times that of the interpolation. Cells can fold
     where walls are re-entrant.
 
