@@ -33,7 +33,7 @@ from meshonet.geometry.surface.surface import Surface, surface_of
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.hyperbolic.volume.graph import march_graph
 from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_levels, march_surface
-from meshonet.solvers.hyperbolic.volume.settings import Smoothing
+from meshonet.solvers.hyperbolic.volume.settings import ATTEMPTS
 from meshonet.solvers.hyperbolic.volume.symmetry import in_planes, symmetry_planes
 
 HEAD = """# Volumes marched from surfaces: quality and time
@@ -43,6 +43,7 @@ HEAD = """# Volumes marched from surfaces: quality and time
 Read this page to see how good marched volumes are. How the method works is in
 [marching from surfaces](../marching-surfaces.md).
 
+- *tries*: marches that were made, with more smoothing each time.
 - *folded*: cells with a corner Jacobian, or a Bezier coefficient of it, that is not positive.
 - *first cell*: largest relative error over all wall nodes.
 - *quality*: least over largest determinant of a cell's eight corners, pyHyp's measure; *SJ*: least corner
@@ -55,7 +56,8 @@ Read this page to see how good marched volumes are. How the method works is in
 
 """
 COLUMNS = (
-    "surface", "patches", "nodes", "levels", "first cell, distance", "folded", "first cell", "quality", "SJ",
+    "surface", "patches", "nodes", "levels", "first cell, distance", "tries", "folded", "first cell",
+    "quality", "SJ",
     "off the normal", "growth", "CPU", "us a node", "process",
 )  # fmt: skip
 
@@ -143,12 +145,13 @@ def worst_growth(edges: Floats) -> float:
     return float(np.maximum(ratio, 1.0 / ratio).max()) - 1.0
 
 
-def growth_as_marched(surface: Surface, march: VolumeMarch) -> float:
-    """Return the worst growth before nodes are moved along lines."""
+def growth_as_marched(surface: Surface, march: VolumeMarch, attempt: int) -> float:
+    """Return the worst growth of the march number `attempt`, before nodes are moved along lines."""
     planes, inside = symmetry_planes(surface, march.symmetry)
-    graph = march_graph(surface, planes, inside, Smoothing().splay)
-    nodes = in_planes(surface, planes, inside)
-    levels = march_levels(surface, graph, nodes, march.steps(surface.size), Smoothing())
+    nodes, steps = in_planes(surface, planes, inside), march.steps(surface.size)
+    smoothing = ATTEMPTS[attempt - 1]
+    graph = march_graph(surface, planes, inside, smoothing.splay, smoothing.boost)
+    levels = march_levels(surface, graph, nodes, steps, smoothing)
     return worst_growth(np.linalg.norm(np.diff(levels, axis=0), axis=1))
 
 
@@ -158,8 +161,8 @@ def process_seconds(path: Path, march: VolumeMarch) -> float:
     with tempfile.TemporaryDirectory() as folder:
         command = [
             sys.executable, "-c", "import sys; from meshonet_cli.app import run; sys.exit(run(sys.argv[1:]))",
-            "solve-pde", str(path), "--method", "hyperbolic", "--first-cell", repr(march.first_cell), "--layers",
-            str(march.layers), "--far-field", repr(march.far_field), "--threads", "1", "-o",
+            "solve-pde", str(path), "--method", "hyperbolic", "--first-cell", repr(march.first_cell),
+            "--layers", str(march.layers), "--far-field", repr(march.far_field), "--threads", "1", "-o",
             str(Path(folder) / "volume.xyz"),
         ]  # fmt: skip
         done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -189,14 +192,16 @@ def row_of(case: Case, process: bool) -> str:
     ]
     growth = max(worst_growth(edges) for edges in lines)
     steps = case.march.steps(surface.size)
+    tried = [note for note in solution.notes if "marches were made" in note]
+    tries = int(tried[0].split()[0]) if tried else 1
     levels = grid.blocks[0].counts[2]
     whole = f"{process_seconds(case.path, case.march):.2f}" if case.path and process else ""
     cells = [
         case.name, len(grid.blocks), len(surface.nodes), levels,
-        f"{case.march.first_cell:g}, {case.march.far_field:g}", folded,
+        f"{case.march.first_cell:g}, {case.march.far_field:g}", tries, folded,
         f"{np.abs(first / case.march.first_cell - 1).max():.0e}", f"{quality:.3f}", f"{scaled:.3f}",
         f"{lean.mean():.1f} / {np.quantile(lean, 0.99):.1f} / {lean.max():.0f}",
-        f"{steps[1] / steps[0] - 1:.3f}, {growth_as_marched(surface, case.march):.2f} / {growth:.2f}",
+        f"{steps[1] / steps[0] - 1:.3f}, {growth_as_marched(surface, case.march, tries):.2f} / {growth:.2f}",
         f"{best:.2f}", f"{1e6 * best / len(surface.nodes) / levels:.2f}", whole,
     ]  # fmt: skip
     return "| " + " | ".join(map(str, cells)) + " |"

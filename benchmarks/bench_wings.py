@@ -52,9 +52,9 @@ HEAD = """# Volumes from sections: wings, blades, pipes
 Read this page to see how many random wings get a valid grid, and how good and how fast these are. How to make
 them is in [wings](../wings.md) and [pipes](../pipes.md).
 
-Wings are {count} random pairs of {files} airfoil files, sharp and blunt, with a taper of 0.25 to 1, a twist of
--8 to 4 degrees, a sweep of -0.2 to 0.8 and a dihedral of -0.1 to 0.25 of the span. The far field is 15 chords
-away, or 12 in the first row.
+Wings are {count} random pairs of {files} airfoil files, sharp and blunt, with a taper of 0.25 to 1, a
+twist of -8 to 4 degrees, a sweep of -0.2 to 0.8 and a dihedral of -0.1 to 0.25 of the span. The far field
+is 15 chords away, or 12 in the first row.
 
 - *valid*: grids without a folded cell, by the eight corners of every cell and by the Bezier coefficients of
   its Jacobian. The others end in an error, with the place.
@@ -128,8 +128,9 @@ def pipes() -> str:
     """Return the table of pipes."""
     t = np.linspace(0.0, 1.0, 65)
     turn = 1.5 * np.pi * t
-    knot = np.stack([np.sin(2 * np.pi * t) + 2 * np.sin(4 * np.pi * t),
-                     np.cos(2 * np.pi * t) - 2 * np.cos(4 * np.pi * t), -np.sin(6 * np.pi * t)], axis=1)  # fmt: skip
+    once, twice = 2.0 * np.pi * t, 4.0 * np.pi * t
+    x, y = np.sin(once) + 2.0 * np.sin(twice), np.cos(once) - 2.0 * np.cos(twice)
+    knot = np.stack([x, y, -np.sin(once + twice)], axis=1)
     knot[-1] = knot[0]
     paths = {
         "helix": (np.stack([2 * np.cos(6 * t), 2 * np.sin(6 * t), 3 * t], axis=1), 0.6),
@@ -153,6 +154,7 @@ def pipes() -> str:
 
 
 def main() -> None:
+    """Make the page."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

@@ -52,11 +52,11 @@ Look here for the files that meshonet reads and writes. `meshonet convert IN OUT
 `--from` and `--to` name a format where the ending is ambiguous. `meshonet convert --list-formats` prints this
 table.
 
-*names*: names of patches are kept. *3D*: which grids in space it holds; where these are volumes, `--extrude H`
-(`--planes K`) makes them of plane grids. *blocks*: a grid of several blocks is written with its blocks kept, or
-merged to one mesh; other formats refuse it. *many*: one file can hold several grids or boundaries. *options*
-are written behind a colon, one of each group, for example `--to gmsh:4.1,ascii`. The first of a group is the
-default unless the ending says otherwise.
+*names*: names of patches are kept. *3D*: which grids in space it holds; where these are volumes, `--extrude
+H` (`--planes K`) makes them of plane grids. *blocks*: a grid of several blocks is written with its blocks
+kept, or merged to one mesh; other formats refuse it. *many*: one file can hold several grids or boundaries.
+*options* are written behind a colon, one of each group, for example `--to gmsh:4.1,ascii`. The first of a
+group is the default unless the ending says otherwise.
 
 """
 FORMATS_REST = """
@@ -143,21 +143,21 @@ as they are. Volumes that touch are one grid; all patches of surface of a file a
 touch or not, so that gaps can be told of. Where a file does not say what is joined, parts of faces of volumes
 and of edges of patches whose nodes coincide are, as in the plane.
 
-`--extrude` repeats blocks, patches and interfaces in z, between a `back` and a `front` that are symmetry planes.
+`--extrude` repeats blocks, patches and interfaces in z, between symmetry planes `back` and `front`.
 The same grid goes into every format, with its blocks where the format keeps blocks. It is read as plane again
 from files that hold names; Plot3D files of more than one layer of cells are volumes.
 
-**CGNS.** Zones of three indices, or of two for a surface (cell dimension 2, physical 3), each kind of grid in a
-base of its own; interfaces with `Transform` and, for periodic sides, centre, angles about x, y, z in turn, and
-shift; a family for each name. Conditions of others may be ranges or lists of points, of nodes or faces; a list
-becomes the rectangles that it fills. Cartesian coordinates only.
+**CGNS.** Zones of three indices, or of two for a surface (cell dimension 2, physical 3), each kind of grid
+in a base of its own; interfaces with `Transform` and, for periodic sides, centre, angles about x, y, z in
+turn, and shift; a family for each name. Conditions of others may be ranges or lists of points, of nodes or
+faces; a list becomes the rectangles that it fills. Cartesian coordinates only.
 
-**OpenFOAM.** One mesh of all blocks, in upper-triangular order as it is written, 129 x 129 x 129 nodes in half a
-second. Meshes of more than 65,536 nodes are binary, smaller ones text; `--to openfoam:ascii` or
-`openfoam:binary` chooses. A plane grid, or one that is one cell thick between symmetry planes, has them as a
-patch `frontAndBack` of type `empty`. Symmetry patches that are flat are `symmetryPlane`, walls `wall`, periodic
-sides `cyclic`, all others `patch`. Where the nodes of a side lie on each other, at an axis, cells are prisms or
-pyramids.
+**OpenFOAM.** One mesh of all blocks, in upper-triangular order as it is written, 129 x 129 x 129 nodes in
+half a second. Meshes of more than 65,536 nodes are binary, smaller ones text; `--to openfoam:ascii` or
+`openfoam:binary` chooses. A plane grid, or one that is one cell thick between symmetry planes, has them as
+a patch `frontAndBack` of type `empty`. Symmetry patches that are flat are `symmetryPlane`, walls `wall`,
+periodic sides `cyclic`, all others `patch`. Where the nodes of a side lie on each other, at an axis, cells
+are prisms or pyramids.
 
 **SU2, Gmsh, `.vtu`.** Hexahedra, and quadrilaterals by the names of patches. SU2 and Gmsh refuse a side whose
 nodes lie on each other.

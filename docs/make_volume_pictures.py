@@ -10,8 +10,8 @@ import matplotlib as mpl
 mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from PIL import Image, ImageChops
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from PIL import Image, ImageChops
 
 import meshonet
 from meshonet.geometry.arrays import Floats
@@ -98,8 +98,12 @@ def pipe() -> None:
         path.write_text(toml_of("pipes.md"))
         volume = meshonet.sweep("circle:0.5", path, cells=600, first_cell=0.01)
     wall = [(block.nodes[:, 0], "#9db8d9") for block in volume.blocks[1:]]
-    ends = [(block.nodes[:, :, k], colour) for block, colour in zip(volume.blocks, ("#e39a8f", *["#f2c572"] * 4), strict=True)
-            for k in (0, -1)]  # fmt: skip
+    colours = "#e39a8f", *["#f2c572"] * 4
+    ends = [
+        (block.nodes[:, :, k], colour)
+        for block, colour in zip(volume.blocks, colours, strict=True)
+        for k in (0, -1)
+    ]
     fig = plt.figure(figsize=(7.5, 7.5))
     ax = fig.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
     shown = [(patch[..., [0, 2, 1]], colour) for patch, colour in wall + ends]  # z upwards

@@ -107,7 +107,7 @@ def toml_table(source: Source) -> Table:
     """
     try:
         return Table(tomllib.loads(source.read_bytes().decode("utf-8")))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # also integers of more digits than Python reads
         raise InputError(f"is no TOML: {printable(str(error))}", "correct it, or give another file") from None
 
 

@@ -261,6 +261,7 @@ class HexDescent:
     def weigh(self, shape: float, smoothness: float, epsilon: float = 0.0, size: float = 0.0) -> None: ...
     def run(self, gain: float, most: int, renewal: int) -> tuple[float, float, int]: ...
     def evaluate(self, gradient: Floats) -> tuple[float, float]: ...
+
 # surfaces
 def surface_march(
     levels: Floats, heights: Floats, graph: Any, settings: Sequence[float], threads: int
@@ -287,8 +288,8 @@ def tfi_volume(
     spline: tuple[Floats, tuple[Indices, ...], tuple[Floats, ...]] | None = None,
 ) -> None: ...  # fmt: skip
 def volume_energy(
-    x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float, threads: int,
-    gradient: Floats,
+    x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
+    threads: int, gradient: Floats,
 ) -> tuple[float, float]: ...  # fmt: skip
 def volume_jacobians(x: Floats, over: tuple[float, float, float], threads: int, least: Floats) -> None: ...
 

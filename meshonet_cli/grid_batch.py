@@ -12,7 +12,6 @@ from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.gates import need_percentiles, parse_gates
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.shapes.spatial_shape import in_space
 from meshonet.geometry.threads import cores
 from meshonet.solvers.pipeline.make_grid import MOST_NODES, Result, make_grids
 from meshonet.solvers.pipeline.request import GridRequest
@@ -69,11 +68,11 @@ def reported(member: Item[Shape], result: Result) -> tuple[Grid, Report]:
         cycles=solution.cycles, notes=result.notes, history=result.history,
     )  # fmt: skip
     report.seconds |= result.seconds
-    if grid.topology == "blocks" and not in_space(grid):
+    if grid.topology == "blocks":
         from meshonet.geometry.quality.blocks import block_figures
 
         with report.timed("quality"):
-            report.blocks = block_figures(grid)
+            report.blocks = block_figures(grid, result.quality)
     return grid.with_provenance(**provenance()), report
 
 

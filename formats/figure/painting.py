@@ -65,7 +65,7 @@ def painted(
     normal = np.cross(ring[:, 2] - ring[:, 0], ring[:, 3] - ring[:, 1])
     normal /= np.maximum(norms(normal), 1e-300)[:, None]
     facing = normal @ axes.T
-    light = 0.55 + 0.45 * np.abs(facing @ _LIGHT)
+    light = 0.7 + 0.3 * np.abs(facing @ _LIGHT)
     if colouring and sheet.values is not None:
         worst = np.minimum if colouring.worst_is_low else np.maximum
         values = worst.reduceat(worst.reduceat(sheet.values, starts[0], axis=0), starts[1], axis=1)[keep]

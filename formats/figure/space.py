@@ -52,7 +52,8 @@ def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure
     blocks = tuple(Block(nodes) for nodes in flat)
     plane = Grid(blocks, name=f"{grid.name}   {where}".strip())
     if colouring:
-        colouring = replace(colouring, values=tuple(sheet.values for sheet in sheets))
+        shown = tuple(sheet.values for sheet in sheets if sheet.values is not None)
+        colouring = replace(colouring, values=shown)
     return draw(plane, colouring, flat_box(view.zoom), view.every)
 
 
@@ -114,7 +115,7 @@ def _seen(grid: Grid, sheets: Sequence[Sheet], colouring: Colouring | None, view
     paint(ax, parts)
     ax.set(xlim=box[:2], ylim=box[2:])
     ax.set_axis_off()
-    _triad(ax, axes)
+    _triad(ax, axes, _emptiest(points, box))
     note(ax, step_words(sorted({step for pair in steps for step in pair})))
     _finish(figure, ax, bar, grid, colouring, limits)
     return figure
@@ -205,14 +206,22 @@ def _finish(
     ax.set_title(f"{grid.name[:48]}   {size}".strip(), size=10, color=INK, loc="left", pad=4)
 
 
-def _triad(ax: Axes, axes: Floats) -> None:
-    """Draw where x, y and z point, in the lower left corner."""
+def _emptiest(points: Floats, box: Box) -> tuple[float, float]:
+    """Return the corner of the picture, but for the lower right one, with the fewest of `points` (n, 2)."""
+    part = np.stack([(points[:, k] - box[2 * k]) / (box[2 * k + 1] - box[2 * k]) for k in (0, 1)], axis=1)
+    corners = (0.0, 0.0), (0.0, 1.0), (1.0, 1.0)
+    return min(corners, key=lambda corner: int((np.abs(part - corner) < 0.2).all(axis=1).sum()))
+
+
+def _triad(ax: Axes, axes: Floats, corner: tuple[float, float]) -> None:
+    """Draw where x, y and z point, in a corner of the picture."""
+    extent = ax.get_window_extent()
+    x, y = (abs(55 - part * size) for part, size in zip(corner, (extent.width, extent.height), strict=True))
+    place: dict[str, Any] = {"xycoords": "axes pixels", "textcoords": "axes pixels"}
     for k, name in enumerate("xyz"):
         right, up = axes[0, k], axes[1, k]
-        place = {"xycoords": "axes pixels", "textcoords": "axes pixels"}
-        tip = 55 + 38 * right, 55 + 38 * up
+        tip = x + 38 * right, y + 38 * up
         arrow = {"arrowstyle": "-", "color": INK, "linewidth": 0.8}
-        ax.annotate("", tip, (55, 55), arrowprops=arrow, **place)
-        ax.annotate(
-            name, tip, (55 + 50 * right, 55 + 50 * up), ha="center", va="center", size=8, color=INK, **place
-        )
+        ax.annotate("", tip, (x, y), arrowprops=arrow, **place)
+        at = x + 50 * right, y + 50 * up
+        ax.annotate(name, tip, at, ha="center", va="center", size=8, color=INK, **place)

@@ -111,8 +111,9 @@ class Writer:
         for name, entries in held.items():
             data = self._row(name)
             data.resize(entries[-1][0] + 1, axis=0)
-            if len(entries) == 1 and not isinstance(entries[0][1], str):
-                _put(data, *entries[0])
+            last_row, last = entries[-1]
+            if len(entries) == 1 and not isinstance(last, str):
+                _put(data, last_row, last)
                 continue
             rows = [row for row, _ in entries]
             where: Any = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] + 1 == len(rows) else rows

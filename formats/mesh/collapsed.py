@@ -23,7 +23,7 @@ Indices = NDArray[np.int64]
 
 
 def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, NDArray[np.bool_]]]:
-    """Yield block, side, direction of the side, and which edges along it, (n-1, m) or (n, m-1), are points."""
+    """Yield block, side, direction of it, and which edges along that, (n-1, m) or (n, m-1), are points."""
     for number, block in enumerate(grid.blocks):
         for side in tuple(PLACES)[: 2 * len(block.counts)] if len(block.counts) == 3 else ():
             face = block.face(side)
@@ -61,7 +61,7 @@ def with_collapsed(grid: Grid, numbers: list[Indices]) -> list[Indices]:
 
 
 def refuse_collapsed(grid: Grid, what: str) -> None:
-    """Raise InputError for a grid of volumes with a side in which nodes are in one place; `what` holds it not."""
+    """Raise InputError for volumes with a side whose nodes lie on each other, which `what` cannot hold."""
     for block, side, direction, same in collapsed_edges(grid):
         place = [int(index) for index in np.argwhere(same)[0]]
         axes = [name for axis, name in enumerate("ijk") if axis != PLACES[side][0]]

@@ -12,9 +12,10 @@ from meshonet.formats.mesh.recover_topology import usable
 from meshonet.formats.mesh.slices import Lattice, lattices
 from meshonet.formats.mesh.windows import Face, Pair, Part, connection_of, part_of, patch_of
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.errors import in_place
+from meshonet.geometry.errors import InputError, in_place
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ def grids_of_file(
     if read[0].nodes.shape[-1] == 2:
         yield from grids_of(pieces, list(_joints(pairs, read)), name)
         return
-    connections = (connection_of(pair, read) for pair in pairs)
+    connections = [_connected(pair, read) for pair in pairs]
     yield from grids_in_space(pieces, [each for each in connections if each], name)
 
 
@@ -73,6 +74,15 @@ def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Gri
         return grid_with(lattice.nodes, facts, name)
     (grid,) = grids_in_space([Piece(usable(lattice.nodes))], (), name)
     return grid
+
+
+def _connected(pair: Pair, read: Sequence[Lattice]) -> Connection | None:
+    try:
+        return connection_of(pair, read)
+    except ValueError:
+        ends = " to ".join(f"block {window.block}" for window in (pair.own, pair.donor))
+        problem = f"interface {pair.name!r} of {ends} joins indices that do not lie on each other"
+        raise InputError(problem, "correct its ranges and its transform") from None
 
 
 def _joints(pairs: Sequence[Pair], read: Sequence[Lattice]) -> Iterator[Joint]:

@@ -14,6 +14,7 @@ from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import PLACES, Range
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.patches import Kind, Patch
+from meshonet.geometry.errors import InputError
 
 Triple: TypeAlias = tuple[int, int, int]
 _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.items()}
@@ -62,10 +63,11 @@ class Part(NamedTuple):
 def part_of(window: Window, lattices: Sequence[Lattice]) -> Part | None:
     """Return the part of a side that a window is, None where it is none: an edge, or all of a plane block.
 
-    Raises ValueError: there is no such block, or it does not reach so far.
+    Raises InputError: there is no such block, or it does not reach so far.
     """
     if not 0 <= window.block < len(lattices):
-        raise ValueError(f"there is no block {window.block + 1}")
+        problem = f"a face of block {window.block + 1} is named and there are {len(lattices)}"
+        raise InputError(problem, "name those that there are")
     lattice = lattices[window.block]
     fixed: list[tuple[int, int]] = []
     along: list[tuple[int, int, int]] = []
@@ -73,7 +75,8 @@ def part_of(window: Window, lattices: Sequence[Lattice]) -> Part | None:
         count = lattice.nodes.shape[direction]
         first, last = window.first[axis], window.last[axis]
         if not 0 <= min(first, last) <= max(first, last) < count:
-            raise ValueError(f"block {window.block + 1} has no node {max(first, last) + 1}")
+            problem = f"a face has nodes {first + 1} to {last + 1} of {count} of block {window.block + 1}"
+            raise InputError(problem, "keep ranges within the block")
         if lattice.reversed and direction == 0:
             first, last = count - 1 - first, count - 1 - last
         if first != last:
@@ -100,12 +103,17 @@ def patch_of(face: Face, lattices: Sequence[Lattice]) -> Patch | None:
 def connection_of(pair: Pair, lattices: Sequence[Lattice]) -> Connection | None:
     """Return the connection that a pair is, without a motion; None and raises as `part_of`.
 
-    Also raises ValueError: indices that do not lie on each other.
+    Also raises InputError: indices that do not lie on each other.
     """
     here, there = part_of(pair.own, lattices), part_of(pair.donor, lattices)
     if here is None or there is None:
         return None
     orientation = []
+    if any(pair.partner[axis] not in there.axes for axis in here.axes):
+        problem = (
+            f"an interface of blocks {pair.own.block + 1} and {pair.donor.block + 1} has faces across it"
+        )
+        raise InputError(problem, "join faces whose directions lie on each other")
     for axis, way in zip(here.axes, here.ways, strict=True):
         place = there.axes.index(pair.partner[axis])
         orientation.append((place + 1) * way * there.ways[place])

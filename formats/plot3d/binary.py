@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from meshonet.formats.format import Options
 from meshonet.formats.plot3d.layouts import MOST_INTEGERS, Candidate, Layout, layouts
-from meshonet.formats.plot3d.stream import Stream, unframed
+from meshonet.formats.plot3d.stream import Stream, broken_record, unframed
 from meshonet.geometry.errors import InputError
 
+_LONGEST = 100_000
 _ORDERS = {"<": "little", ">": "big"}
 
 
@@ -28,7 +29,7 @@ def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidat
     Raises InputError: no layout is.
     """
     fitting: list[Candidate] = []
-    tried: list[str] = []
+    tried: list[tuple[int, str]] = []
     for order in "<>":
         stream = unframed(data, order)
         if stream is not None:
@@ -38,15 +39,24 @@ def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidat
     for order in "<>":
         fitting += _fitting(Stream([data]), order, wanted, tried)
     if not fitting:
-        near = f" (a header could be dims {', '.join(tried[:3])})" if tried else ""
-        raise InputError(
-            f"has {len(data)} bytes and no binary Plot3D layout fits{near}",
-            "the file is cut short, or is something else: name its format with {from_format}",
-        )
+        raise _misfit(data, tried)
     return fitting
 
 
-def _fitting(stream: Stream, order: str, wanted: Options, tried: list[str]) -> list[Candidate]:
+def _misfit(data: memoryview, tried: list[tuple[int, str]]) -> InputError:
+    """Return what is wrong with a file that no layout fits: where its records break, or what is nearest."""
+    remedy = "the file is cut short, or is something else: name its format with {from_format}"
+    for order in "<>":
+        problem = broken_record(data, order)
+        if problem:
+            return InputError(problem, remedy)
+    near = min(tried, default=None, key=lambda each: abs(each[0] - len(data)))
+    shown = f" (nearest: {near[1]}, {near[0]} bytes)" if near else ""
+    return InputError(f"has {len(data)} bytes and no binary Plot3D layout fits{shown}", remedy)
+
+
+def _fitting(stream: Stream, order: str, wanted: Options, tried: list[tuple[int, str]]) -> list[Candidate]:
+    """Return the layouts of a stream's length; adds to `tried` lengths and names of those of its header."""
     count = min(len(stream) // 4, MOST_INTEGERS)
     integers = np.frombuffer(stream.take(0, 4 * count), np.dtype(order + "i4"))
 
@@ -55,11 +65,13 @@ def _fitting(stream: Stream, order: str, wanted: Options, tried: list[str]) -> l
 
     fitting = []
     for layout, size in itertools.product(layouts(integer), (8, 4)):
-        if layout.length(size, 4) == len(stream):
+        length = layout.length(size, 4)
+        if length == len(stream):
             forms = [_Form(stream, layout, order, size, planes) for planes in _forms(stream, layout, wanted)]
             fitting += [form.candidate() for form in forms]
-        elif 2 <= max(map(max, layout.dims)) <= 100_000 and not layout.iblank and size == 8:
-            tried.append("x".join(map(str, layout.dims[0])))
+        elif 2 <= max(map(max, layout.dims)) <= _LONGEST and not layout.iblank:
+            dims = ", ".join("x".join(map(str, each)) for each in layout.dims[:3])
+            tried.append((length, f"dims {dims}, float{8 * size}, {_ORDERS[order]} endian"))
     return fitting
 
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from itertools import accumulate
 
 _MOST_RECORDS = 400_000
+_LONGEST_HEADER = 1 << 21
 
 
 class Stream:
@@ -54,3 +55,22 @@ def unframed(data: memoryview, order: str) -> Stream | None:
         pieces.append(data[at + 4 : end])
         at = end + 4
     return Stream(pieces, records) if pieces else None
+
+
+def broken_record(data: memoryview, order: str) -> str:
+    """Return what is wrong with the first record that breaks off; nothing if the first is none of dims."""
+    word, at, count = struct.Struct(order + "i"), 0, 1
+    while at + 4 <= len(data):
+        length = abs(word.unpack_from(data, at)[0])
+        end = at + 4 + length
+        if count == 1 and (length % 4 or not 0 < length <= _LONGEST_HEADER):
+            return ""
+        if end + 4 > len(data) or abs(word.unpack_from(data, end)[0]) != length:
+            if count == 1:
+                return ""
+            left = max(len(data) - at - 8, 0)
+            if left < length:
+                return f"Fortran record {count}, at byte {at}, says {length} bytes and {left} are left"
+            return f"Fortran record {count}, at byte {at}, says {length} bytes and does not end so"
+        at, count = end + 4, count + 1
+    return ""

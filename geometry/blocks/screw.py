@@ -14,7 +14,7 @@ _NEARLY_HALF = 3.1
 
 
 class Screw(NamedTuple):
-    """A turn by `angle`, in radians, about `axis` (3,), of length 1, through `centre` (3,), then `shift` (3,).
+    """A turn by `angle` radians about `axis` (3,), of length 1, through `centre` (3,), then `shift` (3,).
 
     Without a turn the angle is 0, the axis z and the centre the origin; with one, the shift is along the axis
     and the centre is the point of the axis nearest to the origin. `angles` (3,) are those of the turn about

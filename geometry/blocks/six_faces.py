@@ -184,27 +184,6 @@ def place_of(node: Floats) -> str:
     return ", ".join(f"{name}={value:.6g}" for name, value in zip("xyz", node, strict=True))
 
 
-def six_faces(grid: Grid) -> SixFaces:
-    """Return the boundary of a volume: the outer faces of one block, or six patches in any order.
-
-    Patches are matched by position; where shared edges differ by no more than a millionth of the size, nodes
-    of the second become those of the first, and a note says so.
-
-    Raises InputError: neither of both; patches that do not close, with the edge and its gap.
-    """
-    volumes = [block for block in grid.blocks if len(block.counts) == 3]
-    if len(grid.blocks) == 1 and volumes:
-        return SixFaces.of_block(volumes[0].nodes, name=grid.name, patches=grid.patches)
-    if volumes or len(grid.blocks) != 6:
-        what = f"{len(grid.blocks)} {'blocks' if volumes else 'surface patches'}"
-        raise InputError(
-            f"{what} where the six faces of a volume are needed", "give six patches, or one block"
-        )
-    from meshonet.geometry.blocks.six_patches import matched_patches
-
-    return matched_patches(grid)
-
-
 def _sides(counts: tuple[int, ...]) -> tuple[Patch, ...]:
     """Return the sides of a block with `counts` nodes along its directions as patches of their names."""
     return tuple(Patch(side, side, 0, face_counts(counts, side)[0] - 1) for side in PLACES)

@@ -1,4 +1,4 @@
-"""Six surface patches in any order and orientation, put together to the faces of a volume by position."""
+"""The six faces of a volume: those of a block, or patches in any order put together by position."""
 
 from __future__ import annotations
 
@@ -18,6 +18,25 @@ from meshonet.geometry.polygon.corners import Indices
 TOLERANCE = 1e-6
 """How far apart nodes of a shared edge may be, in the diagonal of the box around all."""
 _NEAR = 0.2  # how far apart corners that belong together may be, in the shortest side of a patch
+
+
+def six_faces(grid: Grid) -> SixFaces:
+    """Return the boundary of a volume: the outer faces of one block, or six patches in any order.
+
+    Patches are matched by position; where shared edges differ by no more than a millionth of the size, nodes
+    of the second become those of the first, and a note says so.
+
+    Raises InputError: neither of both; patches that do not close, with the edge and its gap.
+    """
+    volumes = [block for block in grid.blocks if len(block.counts) == 3]
+    if len(grid.blocks) == 1 and volumes:
+        return SixFaces.of_block(volumes[0].nodes, name=grid.name, patches=grid.patches)
+    if volumes or len(grid.blocks) != 6:
+        what = f"{len(grid.blocks)} {'blocks' if volumes else 'surface patches'}"
+        raise InputError(
+            f"{what} where the six faces of a volume are needed", "give six patches, or one block"
+        )
+    return matched_patches(grid)
 
 
 def matched_patches(grid: Grid) -> SixFaces:

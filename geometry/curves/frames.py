@@ -14,20 +14,22 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.path import Path
 from meshonet.geometry.errors import InputError
 
-_FINER = 4
-"""Steps between two places that frames are wanted at."""
+STEPS = 4
+"""Steps from one place that a frame is wanted at to the next, unless these are close together."""
 
 
-def frames_along(path: Path, s: Floats, up: Floats | None = None) -> tuple[Floats, Floats]:
+def frames_along(
+    path: Path, s: Floats, up: Floats | None = None, *, steps: int = STEPS
+) -> tuple[Floats, Floats]:
     """Return the x and y axes (n, 3) of sections across a path, at increasing arc lengths `s` (n,) from 0.
 
     They and the tangent are right-handed. At the start the y axis is as near to `up` as it can be: to z
     unless given, to y where the path starts along z. Along a closed path the frames turn evenly, by what
-    brings the last one back to the first.
+    brings the last one back to the first. There are so many `steps` from a place to the next.
 
     Raises InputError: `up` along the path.
     """
-    fine = np.concatenate([np.linspace(a, b, _FINER, endpoint=False) for a, b in pairwise(s)])
+    fine = np.concatenate([np.linspace(a, b, steps, endpoint=False) for a, b in pairwise(s)])
     fine = np.append(fine, s[-1])
     points, tangents, _ = path.at(fine)
     first = tangents[0]
@@ -42,7 +44,7 @@ def frames_along(path: Path, s: Floats, up: Floats | None = None) -> tuple[Float
         x = np.cross(y_axes[-1], tangents[-1])
         angle = np.arctan2(y_axes[0] @ x, y_axes[0] @ y_axes[-1])
         y_axes = turned(y_axes, tangents, -angle * fine / path.length)
-    y_axes, tangents = y_axes[::_FINER], tangents[::_FINER]
+    y_axes, tangents = y_axes[::steps], tangents[::steps]
     return np.cross(y_axes, tangents), y_axes
 
 

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side, norms
+from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.across import rows_beside
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.connection import cells_at
@@ -42,7 +42,7 @@ class Measures(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Centres (ni-1, nj-1, nk-1, 3) and aspect ratios (ni-1, nj-1, nk-1) of the cells of a block."""
+    """Centres (3, ni-1, nj-1, nk-1) and aspect ratios (ni-1, nj-1, nk-1) of the cells of a block."""
 
     centres: Floats
     aspect: Floats
@@ -51,8 +51,9 @@ class Cells:
 def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Measures]:
     """Yield the measures of the faces of blocks of volume with those `cells`, a layer at a time."""
     for number, (block, own) in enumerate(zip(grid.blocks, cells, strict=True)):
+        nodes = np.moveaxis(block.nodes, -1, 0)
         for axis in range(3):
-            layers, centres = np.moveaxis(block.nodes, axis, 0), np.moveaxis(own.centres, axis, 0)
+            layers, centres = (np.moveaxis(values, axis + 1, 0) for values in (nodes, own.centres))
             for m in range(1, len(layers) - 1):
                 angle, skew = _between(layers[m], centres[m - 1], centres[m], _turn(axis))
                 yield Measures(_place(number, axis, m - 1, (0, 0)), axis, angle, skew)
@@ -62,8 +63,8 @@ def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Measures]:
         counts = grid.blocks[patch.block].counts
         spans = patch.range(counts[:axis] + counts[axis + 1 :])
         (nodes,) = rows_beside(grid, patch.block, patch.side, spans, 1)
-        at = tuple(slice(first, last) for first, last in spans)
-        skew = _at_boundary(nodes, np.moveaxis(cells[patch.block].centres, axis, 0)[end][at])
+        at = (slice(None), *(slice(first, last) for first, last in spans))
+        skew = _at_boundary(np.moveaxis(nodes, -1, 0), np.take(cells[patch.block].centres, end, axis + 1)[at])
         first = (spans[0][0], spans[1][0])
         yield Measures(
             _place(patch.block, axis, 0 if end == 0 else counts[axis] - 2, first), axis, None, skew
@@ -73,7 +74,7 @@ def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Measures]:
 def _across(grid: Grid, cells: Sequence[Cells]) -> Iterator[Measures]:
     def face(block: int, side: Side) -> Floats:
         axis, end = PLACES[side]
-        return np.asarray(np.moveaxis(cells[block].centres, axis, 0)[end])
+        return np.moveaxis(np.take(cells[block].centres, end, axis + 1), 0, -1)
 
     for each in grid.connections:
         (nodes,) = rows_beside(grid, each.block, each.side, each.range, 1)
@@ -81,7 +82,8 @@ def _across(grid: Grid, cells: Sequence[Cells]) -> Iterator[Measures]:
         if each.transform:
             nodes, own = each.transform(nodes), each.transform(own)
         axis, end = PLACES[each.side]
-        angle, skew = _between(nodes, own, donor, _turn(axis) * (1 if end else -1))
+        planes = [np.moveaxis(values, -1, 0) for values in (nodes, own, donor)]
+        angle, skew = _between(planes[0], planes[1], planes[2], _turn(axis) * (1 if end else -1))
         index = 0 if end == 0 else grid.blocks[each.block].counts[axis] - 2
         first = (each.range[0][0], each.range[1][0])
         yield Measures(_place(each.block, axis, index, first), axis, angle, skew)
@@ -89,30 +91,40 @@ def _across(grid: Grid, cells: Sequence[Cells]) -> Iterator[Measures]:
 
 def cells_of(nodes: Floats) -> Cells:
     """Return the cells of a block of nodes (ni, nj, nk, 3)."""
-    faces = [_faces_along(nodes, axis) for axis in range(3)]
-    estimate = sum(np.asarray(centre[0] + centre[1]) for centre, _ in faces) / 6.0
-    volume, moment = np.zeros(estimate.shape[:-1]), np.zeros(estimate.shape)
-    extent = np.zeros(estimate.shape)
-    for centres, areas in faces:
-        for end, sign in enumerate((-1.0, 1.0)):
-            pyramid = sign * (areas[end] * (centres[end] - estimate)).sum(axis=-1)  # three times its volume
+    planes = np.moveaxis(nodes, -1, 0)
+    shape = [count - 1 for count in nodes.shape[:3]]
+    centres, aspect = np.empty((3, *shape)), np.empty(shape)
+    before = _layer(planes[:, 0])
+    for i in range(shape[0]):
+        low, high = planes[:, i], planes[:, i + 1]
+        after = _layer(high)
+        along_j = _faces((low[..., :-1], high[..., :-1], high[..., 1:], low[..., 1:]), -1)
+        along_k = _faces((low[:, :-1], high[:, :-1], high[:, 1:], low[:, 1:]), 1)
+        pairs = [
+            (before, after),
+            tuple(tuple(part[:, ends] for part in along_j) for ends in (slice(-1), slice(1, None))),
+            tuple(tuple(part[..., ends] for part in along_k) for ends in (slice(-1), slice(1, None))),
+        ]
+        centres[:, i], aspect[i] = _cells(pairs)
+        before = after
+    return Cells(centres, aspect)
+
+
+def _cells(pairs: Sequence[Sequence[Sequence[Floats]]]) -> tuple[Floats, Floats]:
+    """Return centres (3, n, m) and aspect ratios (n, m) of cells between three pairs of faces."""
+    estimate = np.asarray(sum(centre for pair in pairs for centre, _ in pair)) / 6.0
+    volume, moment, extent = np.zeros(estimate.shape[1:]), np.zeros(estimate.shape), np.zeros(estimate.shape)
+    for pair in pairs:
+        for sign, (centre, area) in zip((-1.0, 1.0), pair, strict=True):
+            pyramid = sign * _dot(area, centre - estimate)  # three times its volume
             volume += pyramid
-            moment += pyramid[..., None] * (0.75 * centres[end] + 0.25 * estimate)
-            extent += np.abs(areas[end])
+            moment += pyramid * (0.75 * centre + 0.25 * estimate)
+            extent += np.abs(area)
     solid = np.abs(volume) > _TINY
-    centre = np.where(solid[..., None], moment / np.where(solid, volume, 1.0)[..., None], estimate)
-    box = extent.max(axis=-1) / np.maximum(extent.min(axis=-1), _TINY)
-    bulk = extent.sum(axis=-1) / (6.0 * np.maximum(volume / 3.0, _TINY) ** (2.0 / 3.0))
-    return Cells(centre, np.maximum(box, bulk))
-
-
-def _faces_along(nodes: Floats, axis: int) -> tuple[list[Floats], list[Floats]]:
-    """Return centres and area vectors of both faces of every cell across an axis."""
-    layers = np.moveaxis(nodes, axis, 0)
-    made = [_geometry(layer, _turn(axis)) for layer in layers]
-    centres, areas = (np.moveaxis(np.stack([pair[k] for pair in made]), 0, axis) for k in (0, 1))
-    first, last = (slice(None),) * axis + (slice(-1),), (slice(None),) * axis + (slice(1, None),)
-    return [centres[first], centres[last]], [areas[first], areas[last]]
+    middle = np.where(solid, moment / np.where(solid, volume, 1.0), estimate)
+    box = extent.max(axis=0) / np.maximum(extent.min(axis=0), _TINY)
+    bulk = extent.sum(axis=0) / (6.0 * np.cbrt(np.maximum(volume / 3.0, _TINY)) ** 2)
+    return middle, np.maximum(box, bulk)
 
 
 def _turn(axis: int) -> int:
@@ -120,49 +132,67 @@ def _turn(axis: int) -> int:
     return -1 if axis == 1 else 1
 
 
-def _geometry(nodes: Floats, turn: int) -> tuple[Floats, Floats]:
-    """Return the centres and area vectors (n-1, m-1, 3) of the faces of a layer of nodes (n, m, 3)."""
-    ring = [nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]]
+def _layer(nodes: Floats, turn: int = 1) -> tuple[Floats, Floats]:
+    """Return centres and area vectors of the faces of a layer of nodes (3, n, m)."""
+    ring = nodes[:, :-1, :-1], nodes[:, 1:, :-1], nodes[:, 1:, 1:], nodes[:, :-1, 1:]
+    return _faces(ring, turn)
+
+
+def _faces(ring: Sequence[Floats], turn: int) -> tuple[Floats, Floats]:
+    """Return centres and area vectors (3, n, m) of faces with those four corners, in order."""
     middle = 0.25 * (ring[0] + ring[1] + ring[2] + ring[3])
-    normals = [np.cross(ring[k] - middle, ring[(k + 1) % 4] - middle) for k in range(4)]
-    area = normals[0] + normals[1] + normals[2] + normals[3]
-    moment, total = np.zeros_like(middle), np.zeros(middle.shape[:-1])
-    for k, normal in enumerate(normals):
-        weight = norms(normal)
-        moment += weight[..., None] * (ring[k] + ring[(k + 1) % 4] + middle)
+    spokes = [corner - middle for corner in ring]
+    area, moment, total = np.zeros_like(middle), np.zeros_like(middle), np.zeros(middle.shape[1:])
+    for k, spoke in enumerate(spokes):
+        normal = _cross(spoke, spokes[(k + 1) % 4])
+        weight = np.sqrt(_dot(normal, normal))
+        area += normal
+        moment += weight * (spoke + spokes[(k + 1) % 4])
         total += weight
-    flat = total > _TINY
-    centre = np.where(flat[..., None], moment / (3.0 * np.where(flat, total, 1.0))[..., None], middle)
-    return centre, 0.5 * turn * area
+    return middle + moment / (3.0 * np.maximum(total, _TINY)), 0.5 * turn * area
 
 
 def _between(nodes: Floats, own: Floats, neighbour: Floats, turn: int) -> tuple[Floats, Floats]:
-    """Return angle and skewness of the faces of a layer (n, m, 3) between cells with those centres."""
-    centre, area = _geometry(nodes, turn)
+    """Return angle and skewness of the faces of a layer (3, n, m) between cells with those centres."""
+    centre, area = _layer(nodes, turn)
     way = neighbour - own
-    along = (area * way).sum(axis=-1)
-    angle = np.degrees(np.arctan2(norms(np.cross(area, way)), along))
+    along = _dot(area, way)
+    across = _cross(area, way)
+    angle = np.degrees(np.arctan2(np.sqrt(_dot(across, across)), along))
     middle = centre - own
-    part = (area * middle).sum(axis=-1) / np.where(along == 0, _TINY, along)
-    return angle, _skewness(middle - part[..., None] * way, nodes, centre, 0.2 * norms(way))
+    part = _dot(area, middle) / np.where(along == 0, _TINY, along)
+    return angle, _skewness(middle - part * way, nodes, centre, 0.2 * np.sqrt(_dot(way, way)))
 
 
 def _at_boundary(nodes: Floats, own: Floats) -> Floats:
-    """Return the skewness of the faces of a layer (n, m, 3) at the boundary."""
-    centre, area = _geometry(nodes, 1)
-    unit = area / np.maximum(norms(area), _TINY)[..., None]
+    """Return the skewness of the faces of a layer (3, n, m) at the boundary."""
+    centre, area = _layer(nodes)
+    unit = area / np.maximum(np.sqrt(_dot(area, area)), _TINY)
     middle = centre - own
-    height = (unit * middle).sum(axis=-1)
-    return _skewness(middle - height[..., None] * unit, nodes, centre, 0.4 * np.abs(height))
+    height = _dot(unit, middle)
+    return _skewness(middle - height * unit, nodes, centre, 0.4 * np.abs(height))
 
 
 def _skewness(off: Floats, nodes: Floats, centre: Floats, least: Floats) -> Floats:
     """Return abs(off) over the larger of `least` and the face's reach from its centre along it."""
-    size = norms(off)
-    unit = off / np.maximum(size, _TINY)[..., None]
-    corners = (nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:])
-    reach = np.max([np.abs((unit * (corner - centre)).sum(axis=-1)) for corner in corners], axis=0)
-    return np.asarray(size / np.maximum(np.maximum(least, reach), _TINY))
+    size = np.sqrt(_dot(off, off))
+    unit = off / np.maximum(size, _TINY)
+    reach = least
+    for corner in (nodes[:, :-1, :-1], nodes[:, 1:, :-1], nodes[:, 1:, 1:], nodes[:, :-1, 1:]):
+        reach = np.maximum(reach, np.abs(_dot(unit, corner - centre)))
+    return np.asarray(size / np.maximum(reach, _TINY))
+
+
+def _dot(u: Floats, v: Floats) -> Floats:
+    return np.asarray(u[0] * v[0] + u[1] * v[1] + u[2] * v[2])
+
+
+def _cross(u: Floats, v: Floats) -> Floats:
+    result = np.empty(np.broadcast_shapes(u.shape, v.shape))
+    for k in range(3):
+        a, b = (k + 1) % 3, (k + 2) % 3
+        np.subtract(u[a] * v[b], u[b] * v[a], out=result[k])
+    return result
 
 
 def _place(block: int, axis: int, index: int, first: tuple[int, int]) -> tuple[int, ...]:

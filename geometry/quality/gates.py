@@ -75,7 +75,7 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
         )
     metric, statistic, compare = match[1], match[2], match[3]
     if metric not in (*ALL_NAMES, *COUNTS, *more):
-        known = "use one of " + ", ".join((*COUNTS, *ALL_NAMES, *more))
+        known = "use one of " + ", ".join(("folded", *ALL_NAMES, "bezier_folded", *more))
         raise InputError(f"metric {metric!r} is not known", known, parameter="fail_on")
     if statistic and (statistic not in _STATISTICS or metric not in ALL_NAMES):
         known = "one of " + ", ".join(_STATISTICS) if metric in ALL_NAMES else f"no statistic with {metric}"

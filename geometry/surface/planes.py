@@ -28,19 +28,26 @@ class Plane:
 def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
     """Return the planes normal to an axis that open edges lie in, with all of the surface on one side.
 
-    `sides` (k, 4) are the faces at open edges, the edge's nodes first. A plane has at least `FEWEST` edges.
+    `sides` (k, 4) are the faces at open edges, the edge's nodes first. A plane has at least `FEWEST` edges
+    that are in no plane of more edges: the blunt edge of a root is straight, but in the plane of the root.
     """
-    planes: list[Plane] = []
     if not len(sides):
         return ()
     size = size_of(nodes)
-    for axis in range(3):
-        for value in (float(nodes[:, axis].min()), float(nodes[:, axis].max())):
-            inside = edges_in(nodes, sides, Plane(axis, value), FLAT * size)
-            if inside.sum() >= FEWEST:
-                exact = float(np.median(nodes[sides[inside, :2], axis]))
-                planes.append(Plane(axis, 0.0 if abs(exact) <= 1e-12 * size else exact))
-    return tuple(planes)
+    left = np.ones(len(sides), dtype=bool)
+    ends = [
+        Plane(axis, float(end)) for axis in range(3) for end in (nodes[:, axis].min(), nodes[:, axis].max())
+    ]
+    planes: list[Plane] = []
+    while True:
+        inside = [edges_in(nodes, sides, plane, FLAT * size) & left for plane in ends]
+        most = max(inside, key=lambda flags: int(flags.sum()))
+        if most.sum() < FEWEST:
+            return tuple(planes)
+        axis = ends[next(k for k, flags in enumerate(inside) if flags is most)].axis
+        exact = float(np.median(nodes[sides[most, :2], axis]))
+        planes.append(Plane(axis, 0.0 if abs(exact) <= 1e-12 * size else exact))
+        left &= ~most
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:

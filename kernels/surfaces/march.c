@@ -14,6 +14,7 @@
 
 static const double FAR_POWER = 0.15;
 static const double LEAST_YIELD = 0.3;
+enum { HALVINGS = 2 };
 
 typedef struct {
     Solver solver;
@@ -54,6 +55,12 @@ static void swap(double **a, double **b)
     *a = *b, *b = held;
 }
 
+/* How far the smoothing of volumes has set in. */
+static double part_of(const SurfaceMarch *set, ptrdiff_t level)
+{
+    return set->ramp > 0 ? fmin(1.0, (double)(level - 1) / (double)set->ramp) : 1.0;
+}
+
 /* Volumes of a unit step in r->volume, and their mean. */
 static double smooth_volumes(const March *m, Runner *r, double part)
 {
@@ -92,7 +99,7 @@ static void heights_chunk(const Step *step, const double *volume, double length,
     }
     for (int d = 0; d < 3; d++)
         for (ptrdiff_t i = first; i < last; i++)
-            step->change[d * rows + i] *= again;
+            step->change[d * rows + i] = again == 0.0 ? 0.0 : again * step->change[d * rows + i]; /* not NaN */
 }
 
 /* Move to the next level; returns the distances times the areas, which are added to `areas`. */
@@ -131,38 +138,49 @@ static void advance(Runner *r, double length)
     r->last = length;
 }
 
-/* One step of the way `left` to a level, which becomes less; returns iterations, negative where it diverged. */
-static int take_step(const March *m, Runner *r, double *left, ptrdiff_t level)
+/* Set up and solve a step of a length, from the displacement of the last one times `again`; returns iterations, negative
+   where they diverged. */
+static int solve_length(const March *m, Runner *r, double length, double again, double mean, ptrdiff_t level)
 {
     const SurfaceMarch *set = m->settings;
-    Solver *solver = &r->solver;
-    Step *step = &solver->step;
-    measure(r);
-    const double whole = *left / r->yield;
-    double length = fmin(whole, set->longest * r->shortest);
-    if (whole > length && whole - length < 0.3 * length)
-        length = 0.5 * whole;
-    *left = whole > length ? *left - length * r->yield : 0.0;
-    if (!(length > 0.0) || !(length < INFINITY))
-        return -1;
-    const double part = set->ramp > 0 ? fmin(1.0, (double)(level - 1) / (double)set->ramp) : 1.0;
-    const double keep = 0.5 * (1.0 + pow(1.0 - set->blend, (double)(level - 1)));
-    const double mean = smooth_volumes(m, r, part);
+    Step *step = &r->solver.step;
+    const double part = part_of(set, level), keep = 0.5 * (1.0 + pow(1.0 - set->blend, (double)(level - 1)));
     const double far = fmin(1.0, pow((r->gone + length) / set->size, FAR_POWER));
     const StepRule rule = {set->explicit_smoothing, set->implicit_smoothing, set->theta, far, set->sharp,
                            r->gone == 0.0};
+    double *before = step->before;
     if (rule.first)
         step->before = step->along;
     for (ptrdiff_t c = r->first; c < r->end; c++) {
         ptrdiff_t first, last;
-        chunk_range(solver, c, &first, &last);
-        heights_chunk(step, r->volume, length, part, keep, mean, r->last > 0.0 ? length / r->last : 1.0, first, last);
+        chunk_range(&r->solver, c, &first, &last);
+        heights_chunk(step, r->volume, length, part, keep, mean, again, first, last);
         step_rows(step, &rule, first, last);
     }
+    step->before = before;
     team_wait(r->member);
-    const int iterations = solve_step(solver, r->member);
-    if (rule.first)
-        step->before = m->solver.step.before;
+    return solve_step(&r->solver, r->member);
+}
+
+/* One step of the way `left` to a level, which becomes less; returns iterations, negative where it diverged. A step whose
+   linear system is not solved is tried again half as long. */
+static int take_step(const March *m, Runner *r, double *left, ptrdiff_t level)
+{
+    Step *step = &r->solver.step;
+    measure(r);
+    const double whole = *left / r->yield;
+    double length = fmin(whole, m->settings->longest * r->shortest);
+    if (whole > length && whole - length < 0.3 * length)
+        length = 0.5 * whole;
+    if (!(length > 0.0) || !(length < INFINITY))
+        return -1;
+    const double mean = smooth_volumes(m, r, part_of(m->settings, level));
+    int iterations = solve_length(m, r, length, r->last > 0.0 ? length / r->last : 1.0, mean, level);
+    for (int halved = 0; iterations < 0 && halved < HALVINGS; halved++) {
+        length *= 0.5;
+        iterations = solve_length(m, r, length, 0.0, mean, level);
+    }
+    *left = whole > length ? *left - length * r->yield : 0.0;
     swap(&step->along, &step->before);
     advance(r, length);
     return iterations;
@@ -188,10 +206,11 @@ static void run(void *data, Member member)
     team_share(r.solver.chunks, member, &r.first, &r.end);
     ptrdiff_t steps = 0, iterations = 0, level = 1;
     for (int fine = 1; fine && level <= m->count; level++) {
+        ptrdiff_t here = 0;
         for (double left = m->heights[level - 1] - (level > 1 ? m->heights[level - 2] : 0.0); fine && left > 0.0;) {
             const int taken = take_step(m, &r, &left, level);
-            steps++, iterations += taken < 0 ? -taken : taken;
-            fine = taken >= 0 && steps < m->settings->most * m->count;
+            steps++, here++, iterations += taken < 0 ? -taken : taken;
+            fine = taken >= 0 && (here < m->settings->most || left == 0.0);
         }
         if (!fine)
             break;

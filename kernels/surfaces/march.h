@@ -9,7 +9,7 @@ typedef struct {
     double weight, blend; /* of one smoothing sweep of the volumes; how fast volumes become equal */
     ptrdiff_t sweeps, ramp; /* such sweeps; levels over which they set in */
     double tolerance;     /* of linear systems */
-    ptrdiff_t most;       /* iterations of one, and steps a level on average */
+    ptrdiff_t most;       /* steps to a level: more are needed where cells collapse */
 } SurfaceMarch;
 
 typedef struct {

@@ -90,7 +90,7 @@ MESHONET_INLINE void regular_row(const Step *s, const StepRule *rule, double pow
     f.zeta = times(plain & (size > 1e-300) ? h / size : 1.0, plain ? lean : f.zeta);
     const double first = rule->first ? 0.0 : 0.5;
     const double di = spread(s->before[i], l0 + l2, power), dj = spread(s->before[n + i], l1 + l3, power);
-    const double strength = rule->explicit_smoothing * far * h;
+    const double strength = rule->explicit_smoothing * s->graph->boost[i] * far * h;
     const double si = first * least(strength * di * ai / sqrt(dot(f.xi, f.xi)), MOST_SMOOTHING);
     const double sj = first * least(strength * dj * aj / sqrt(dot(f.eta, f.eta)), MOST_SMOOTHING);
     f.smooth = plus(times(si, plus(e[0], e[2])), times(sj, plus(e[1], e[3])));
@@ -122,7 +122,8 @@ static void odd_row(const Step *s, const StepRule *rule, double power, ptrdiff_t
     const Vector normal = cross(f.xi, f.eta);
     f.zeta = times(h / sqrt(dot(normal, normal)), normal);
     const double d = spread(s->before[i], length, power);
-    const double strength = least(rule->explicit_smoothing * rule->far * d * h * count / length, MOST_SMOOTHING);
+    const double wanted = rule->explicit_smoothing * s->graph->boost[i] * rule->far * d * h * count / length;
+    const double strength = least(wanted, MOST_SMOOTHING);
     f.smooth = times(rule->first ? 0.0 : 2.0 / count * strength, f.smooth);
     put_row(s, rule, i, &f, count);
 }

@@ -13,6 +13,7 @@ cdef extern from "surfaces/graph.h":
         const double *sign
         const double *shift
         const ptrdiff_t *fixed_nodes
+        const double *boost
         const double *moves
 
 cdef extern from "surfaces/march.h":
@@ -51,7 +52,7 @@ def surface_march(levels, heights, graph, settings, int threads):
         reads_indices(graph.odd_start, (odd + 1,)), reads_indices(graph.odd_near, graph.odd_near.shape),
         reads_indices(graph.owner, (ghosts,)), reads_indices(graph.base, (ghosts,)), reads(graph.own, (ghosts,)),
         reads(graph.sign, (3, ghosts)), reads(graph.shift, (3, ghosts)), reads_indices(graph.fixed_nodes, (fixed,)),
-        reads(graph.moves, (3, fixed)))
+        reads(graph.boost, (n,)), reads(graph.moves, (3, fixed)))
     cdef SurfaceMarch s
     cdef SurfaceMarched made
     cdef int failed

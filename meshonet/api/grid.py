@@ -10,6 +10,7 @@ from meshonet.api.files import read
 from meshonet.formats.layout.read import layout_of
 from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
@@ -20,12 +21,13 @@ from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.polygon_shape import domain_or_body
 from meshonet.geometry.shapes.shape import Shape, edges_of
+from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.parameters import Counts, grid_request, sampling_of
 
 AnyShape: TypeAlias = str | Path | Floats | Shape | Grid | Domain
-"""A path, a designation ``naca:2412``, points (n, 2) of an outline, or what the library makes of these."""
+"""A path, a designation ``naca:2412``, points of an outline, nodes in space, or what is made of these."""
 
 
 def grid(
@@ -36,12 +38,13 @@ def grid(
     assemble: bool = False,
     **parameters: Any,
 ) -> Grid:
-    """Return a valid grid inside a boundary, around a body, or of the blocks of a domain.
+    """Return a valid grid inside a boundary, around a body, of the blocks of a domain, or of a volume.
 
     Parameters
     ----------
-    shape : a file or designation, points (n, 2) of a closed outline, a boundary, a grid for its outer edges,
-        a `meshonet.Domain`; with `assemble` a list of these.
+    shape : a file or designation, points (n, 2) of a closed outline, a boundary, a grid for its outer edges
+        or faces, a `meshonet.Domain`; with `assemble` a list of these. In space nodes (ni, nj, nk, 3) of a
+        volume, whose outer faces are filled, or a list of the patches (ni, nj, 3) of a surface.
     assemble : whether all of them are one domain.
     res : nodes along xi (around a body) and eta (away from it); one number for both.
     method : ``best`` for what measures best, ``auto`` for the same among equations, a name in
@@ -165,7 +168,11 @@ def shape_of(
         return boundary_of(shape)
     if hasattr(shape, "boundary"):
         return cast(Shape, shape)
+    if isinstance(shape, list | tuple) and all(np.ndim(each) == 3 for each in shape):
+        return SpatialShape(Grid(tuple(Block(np.asarray(each)) for each in shape)))
     points = np.asarray(cast(Floats, shape), dtype=np.float64)
+    if points.ndim == 4:
+        return SpatialShape(Grid((Block(points),)))
     if points.ndim != 2 or points.shape[1] != 2:
         raise InputError(f"points of shape {points.shape}", "give (n, 2)", parameter="shape")
     return domain_or_body(Outline(points))

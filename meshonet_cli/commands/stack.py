@@ -68,7 +68,7 @@ def stack(
     jobs: o.Jobs = 1,
     threads: o.Threads = None,
 ) -> int:
-    """Make the volume around a wing or blade from sections placed in space."""
+    """Make volumes around wings and blades, and in ducts, from sections."""
     from meshonet_cli.volume_batch import write_stacks
 
     chosen = {

@@ -74,7 +74,7 @@ def sweep(
     jobs: o.Jobs = 1,
     threads: o.Threads = None,
 ) -> int:
-    """Make the volume of a pipe or duct: a cross-section carried along a curve."""
+    """Make volumes of pipes and ducts, cross-sections carried along curves."""
     from meshonet_cli.volume_batch import vector, write_sweeps
 
     section = {

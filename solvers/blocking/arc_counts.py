@@ -77,8 +77,8 @@ def nearest_whole(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices
     if not len(wanted):
         return np.zeros(0, dtype=np.intp)
     steps = _steps(wanted, least)
-    found = _solved(_model(steps, rows), steps[2])
-    moved = steps[1] @ found
+    solution = _solved(_model(steps, rows), steps[2])
+    moved = steps[1] @ solution
     whole = np.round(steps[0] + moved).astype(np.intp)
     for row, low, high in rows:
         total = sum(value * whole[k] for k, value in row.items())
@@ -98,11 +98,11 @@ def _solved(programme: Any, lengths: Floats) -> Floats:
         programme.integrality_ = [HighsVarType.kInteger] * lengths.size if whole else []
         solver.passModel(programme)
         solver.run()
-        found = np.array(solver.getSolution().col_value)
-        if len(found) != lengths.size or solver.getInfo().primal_solution_status != 2:
+        solution = np.array(solver.getSolution().col_value)
+        if len(solution) != lengths.size or solver.getInfo().primal_solution_status != 2:
             break
-        if np.abs(found - np.round(found)).max() < 1e-6:
-            return np.round(found).reshape(lengths.shape)
+        if np.abs(solution - np.round(solution)).max() < 1e-6:
+            return np.round(solution).reshape(lengths.shape)
     raise BlockingError("no whole numbers of cells keep opposite sides alike")
 
 

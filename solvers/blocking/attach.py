@@ -90,13 +90,13 @@ def _places(rows: Rows, domain: Domain) -> Places:
 
 def beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Indices]:
     """Return positions (n,) along the loop, ascending by one, of every side of a block that lies on it."""
-    found = []
+    along = []
     for block in blocks:
         for side in (block[:, 0], block[-1], block[::-1, -1], block[0, ::-1]):
             at = position[side]  # counter-clockwise around the block: the domain is on the left, as of a loop
             if (at >= 0).all() and ((at[1:] - at[:-1]) % count == 1).all():
-                found.append(at)
-    return found
+                along.append(at)
+    return along
 
 
 def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:

@@ -89,12 +89,12 @@ def base_complex(mesh: QuadMesh, lines: NDArray[np.bool_] | None = None) -> Base
     bounds[closed.edge_of[mesh.twin < 0]] = True
     if lines is not None and closed is mesh:
         bounds |= lines
-    found = None
+    parts = None
     if closed.manifold:
-        found = split_quads(quads, named, closed.edge_of, closed.twin, closed.irregular, bounds)
-    if found is None:
+        parts = split_quads(quads, named, closed.edge_of, closed.twin, closed.irregular, bounds)
+    if parts is None:
         raise BlockingError("the lines of the quad mesh do not bound lattices")
-    _, blocks, chord, chords = found
+    _, blocks, chord, chords = parts
     if closed is not mesh:  # an edge along periodic sides is two of the mesh
         edge = np.empty(len(mesh.edges), dtype=np.intp)
         edge[mesh.edge_of] = closed.edge_of

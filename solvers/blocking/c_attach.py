@@ -32,8 +32,8 @@ def attach_sheets(
     nodes = mesh.nodes.copy()
     heights = _heights(layout)
     on_fronts = np.zeros(len(nodes), dtype=bool)
-    found = [cut.front_nodes(mesh, 0, k) for k in range(len(cut.layers))]
-    for order, _ in found:
+    fronts = [cut.front_nodes(mesh, 0, k) for k in range(len(cut.layers))]
+    for order, _ in fronts:
         on_fronts[order] = True
     rest = np.flatnonzero((old.loop == 0) & ~on_fronts)
     arc[rest] = cut.outer_arcs(old.arc[rest])
@@ -42,7 +42,7 @@ def attach_sheets(
     coordinates = [nodes]
     count = len(nodes)
     blocks, layers = list(layout.blocks), dict(layout.layers)
-    for k, (order, index) in enumerate(found):
+    for k, (order, index) in enumerate(fronts):
         sheet = cut.layers[k]
         loop[order], cells[order], arc[order] = -1, 0, 0.0
         loop[order[[0, -1]]], arc[order[[0, -1]]] = 0, np.mod(sheet.ends, cut.outer.length)

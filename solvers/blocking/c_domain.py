@@ -45,7 +45,7 @@ class Sheets(WallLayers):
             loop = domain.loops[number]
             sizes = THICKNESS * loop.length, loop.length / COLUMNS
             sheet = march_sheet(domain, number, wake, outer, settings.first, *sizes)
-            if sheet is not None and not any(_close(sheet, other) for other in sheets):
+            if sheet is not None and not any(_close(sheet, earlier) for earlier in sheets):
                 sheets.append(sheet)
         if not sheets:
             return None

@@ -50,24 +50,24 @@ def bodies_with_layers(
 
     Raises InputError: no room for layers; BlockingError, NoValidGridError: rings failed too.
     """
-    found = None
+    sheeted = None
     notes: tuple[str, ...] = ()
     try:
-        found = c_layered(domain, loops, settings, cells=cells, timings=timings)
-        if found is not None and skewness(found[0].mesh) < SKEW_DEG:
-            return found
+        sheeted = c_layered(domain, loops, settings, cells=cells, timings=timings)
+        if sheeted is not None and skewness(sheeted[0].mesh) < SKEW_DEG:
+            return sheeted
     except (SolverError, NoValidGridError) as error:
         notes = (f"rings of layers in place of C sheets: {error}",)
     try:
         rings = layered.layered(domain, loops, settings, cells=cells, timings=timings)
     except (SolverError, NoValidGridError):
-        if found is None:
+        if sheeted is None:
             raise
-        return found
-    if found is not None and skewness(found[0].mesh) <= skewness(rings.mesh):
-        return found
+        return sheeted
+    if sheeted is not None and skewness(sheeted[0].mesh) <= skewness(rings.mesh):
+        return sheeted
     return rings, notes or (
-        ("rings of layers, whose cells are less skew than those of C sheets",) if found else ()
+        ("rings of layers, whose cells are less skew than those of C sheets",) if sheeted else ()
     )
 
 
@@ -91,12 +91,12 @@ def c_layered(
         try:
             fine = _outside(sheets, layout, cells, timings, even)
             with timings.stage("layers"):
-                found = _whole(sheets, fine)
+                whole = _whole(sheets, fine)
         except NoValidGridError as error:
             problem = error
             continue
-        if best is None or skewness(found.mesh) < skewness(best.mesh):
-            best = found
+        if best is None or skewness(whole.mesh) < skewness(best.mesh):
+            best = whole
         if skewness(best.mesh) < SKEW_DEG:
             break
     if best is None:
@@ -212,7 +212,7 @@ def _whole(sheets: Sheets, outside: Layout) -> Layout:
     layout = replace(layout, mesh=on_loops(layout.mesh, sliding))
     if near is not None:
         layout = attach(layout, domain, [near.rows(layout.mesh, heights_inside(layout, 0))])
-    return _exact(finished(_conforming(layout), sheets.settings), sheets.settings.first)
+    return _exact(finished([_conforming(layout)], sheets.settings), sheets.settings.first)
 
 
 def _conforming(layout: Layout) -> Layout:
@@ -225,8 +225,8 @@ def _conforming(layout: Layout) -> Layout:
         within[layout.blocks[number][:, :-1]] = True
     blocks: list[Indices] = []
     layers: dict[int, int] = {}
-    found = base_complex(mesh, front[mesh.edges].all(axis=1) & ~mesh.on_wall)
-    for block in found.blocks:
+    split = base_complex(mesh, front[mesh.edges].all(axis=1) & ~mesh.on_wall)
+    for block in split.blocks:
         turned = block
         if within[block[1:-1, 1:-1]].all() and within[block].sum() > front[block].sum():
             sides = (block, block.T[::-1], block[::-1, ::-1], block.T[:, ::-1])

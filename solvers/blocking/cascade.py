@@ -126,11 +126,11 @@ class Cascade:
         around = self._axial(self.ring.front)
         before = self.inlet * chord - float(axial.min() - around.min())
         behind = self.outlet * chord - float(around.max() - axial.max())
-        for length, name, given in ((before, "inlet", self.inlet), (behind, "outlet", self.outlet)):
+        for length, name, chords in ((before, "inlet", self.inlet), (behind, "outlet", self.outlet)):
             least = SHORTEST * abs(self.left)
             if length < least:
-                enough = given + 1.01 * (least - length) / chord
-                problem = f"{given:g} axial chords leave no room for blocks beside the blade"
+                enough = chords + 1.01 * (least - length) / chord
+                problem = f"{chords:g} axial chords leave no room for blocks beside the blade"
                 raise InputError(problem, f"use {enough:.2g} or more", parameter=name)
         return before, behind
 

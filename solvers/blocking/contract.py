@@ -59,7 +59,7 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
     members = np.bincount(of, minlength=count)
     first, arc = np.zeros(count), np.zeros(count)
     first[of[::-1]] = places.arc[wall[::-1]]
-    lengths = np.array([one.length for one in mesh.domain.loops])
+    lengths = np.array([loop.length for loop in mesh.domain.loops])
     length = lengths[places.loop[wall]]
     off = np.mod(places.arc[wall] - first[of] + 0.5 * length, length) - 0.5 * length
     mean = first + np.bincount(of, off, minlength=count) / np.maximum(members, 1)

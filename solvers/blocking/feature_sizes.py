@@ -8,6 +8,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.grading import graded
 from meshonet.solvers.blocking.size_metric import SizeMetric
+from meshonet.solvers.blocking.wall_bend import wall_bend
 
 TURN = np.radians(20.0)
 """How much of a wall's turning one cell takes."""
@@ -20,7 +21,7 @@ INSIDE = 0.2
 """Growth of sizes with the distance from walls."""
 CELLS_ACROSS = 30.0
 """Cells across a domain at the least, where nothing is near."""
-_SAMPLES = 400
+_SAMPLES, _WINDOW = 400, 3
 
 
 def feature_sizes(domain: Domain) -> SizeMetric:
@@ -28,15 +29,7 @@ def feature_sizes(domain: Domain) -> SizeMetric:
     points, normals, sizes = [], [], []
     for loop in domain.loops:
         arcs = np.unique(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
-        along = loop.tangent(arcs)
-        direction = np.arctan2(along[:, 1], along[:, 0])
-        turn = np.diff(direction, append=direction[:1])
-        turn = np.abs((turn + np.pi) % (2.0 * np.pi) - np.pi)
-        turn[np.searchsorted(arcs, loop.corner_arcs) - 1] = 0.0
-        step = np.diff(arcs, append=arcs[0] + loop.length)
-        window = np.arange(-3, len(arcs) + 3) % len(arcs)
-        kernel = np.ones(7)
-        bend = np.convolve(turn[window], kernel, "valid") / np.convolve(step[window], kernel, "valid")
+        along, bend = loop.tangent(arcs), wall_bend(loop, arcs, _WINDOW)
         size = np.minimum(loop.length / CELLS_AROUND, TURN / np.maximum(bend, 1e-300))
         size = np.minimum(size, wall_gaps(domain, loop, arcs) / CELLS_IN_GAP)
         points.append(loop.at(arcs))

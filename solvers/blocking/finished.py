@@ -2,22 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.even_rows import evened_rows, guarded
-from meshonet.solvers.blocking.folds import corner_jacobians, unfolded
+from meshonet.solvers.blocking.folds import corner_jacobians, smallest_corner, unfolded
+from meshonet.solvers.blocking.grid_lines import rows_of
 from meshonet.solvers.blocking.layer_rows import LayerSettings
 from meshonet.solvers.blocking.respace import respaced
+from meshonet.solvers.blocking.score import deviations
 
 RESPACED_SINE = 0.1
 """Of angles, that no node that is placed anew across layers may make smaller."""
 MARGIN = 1.21
 """By how much cells may differ in the end, in logarithms, over the growth of layers."""
+
+MOST_GROWTH, UNEVEN = 1.25, 4.0
+"""Ratio of neighbouring cells beyond which they are uneven, and degrees that a percent of these costs."""
+
+
+def best_of(layouts: Sequence[Layout]) -> Layout:
+    """Return the layout of several, with the same blocks, whose cells are best in angles and growth.
+
+    That is the least of the mean deviation of corners from 90 degrees, a twentieth of what one cell in a
+    hundred exceeds, and `UNEVEN` for each percent of ratios of neighbouring cells beyond `MOST_GROWTH`.
+    """
+    return min(layouts, key=lambda layout: _price(layout))
+
+
+def _price(layout: Layout) -> float:
+    if smallest_corner(layout.mesh) <= 0.0:
+        return np.inf
+    off = deviations(layout.mesh)
+    return float(off.mean() + 0.05 * np.quantile(off.max(axis=1), 0.99) + UNEVEN * uneven_percent(layout))
+
+
+def uneven_percent(layout: Layout) -> float:
+    """Return the percentage of ratios of neighbouring cells, along grid lines, beyond `MOST_GROWTH`."""
+    count = beyond = 0
+    for row in rows_of(Chords.of(layout)):
+        step = np.diff(layout.mesh.nodes[row.nodes], axis=1)
+        change = np.abs(np.diff(np.log(np.hypot(step[..., 0], step[..., 1])), axis=1))
+        count, beyond = count + change.size, beyond + int((change > np.log(MOST_GROWTH)).sum())
+    return 100.0 * beyond / max(count, 1)
 
 
 def respaced_layers(layout: Layout, settings: LayerSettings, joints: Collection[int] = ()) -> Layout:
@@ -30,13 +62,14 @@ def respaced_layers(layout: Layout, settings: LayerSettings, joints: Collection[
     return replace(layout, mesh=mesh.with_nodes(guarded(mesh.nodes, change, mesh, RESPACED_SINE)))
 
 
-def finished(layout: Layout, settings: LayerSettings, corners: Collection[int] = ()) -> Layout:
-    """Return the layout with cells that grow evenly along its lines, and first cells exactly as high.
+def finished(ways: Sequence[Layout], settings: LayerSettings, corners: Collection[int] = ()) -> Layout:
+    """Return the best of several ways to place the nodes of a layout, its cells evened or as they are.
 
     `corners` are the numbers of blocks between the layers of two walls. Raises NoValidGridError: cells are
     folded; with the place.
     """
-    layout = evened_rows(layout, MARGIN * float(np.log(settings.growth)), settings.constant)
+    limit = MARGIN * float(np.log(settings.growth))
+    layout = best_of([*ways, *(evened_rows(layout, limit, settings.constant) for layout in ways)])
     held = np.zeros(len(layout.mesh.nodes), dtype=bool)
     for number in layout.layers:
         block = layout.blocks[number]

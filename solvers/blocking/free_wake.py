@@ -44,22 +44,22 @@ def free_wake(domain: Domain, number: int, outer: Loop) -> Wake | None:
     chord = float(np.hypot(*(loop.curve.points - begin).T).max())
     sides = loop.tangent(np.array([edge[0] - 1e-4 * loop.length, edge[0] + 1e-4 * loop.length]))
     leaving = float(np.angle(complex(*(sides[0] - sides[1]))))
-    found, turn = None, 0.0
+    landing, turn = None, 0.0
     for _ in range(4):
-        found = _reach(begin, leaving, turn, chord, outer)
-        if found is None:
+        landing = _reach(begin, leaving, turn, chord, outer)
+        if landing is None:
             return None
-        along = outer.tangent(np.array([found.arc]))[0]
+        along = outer.tangent(np.array([landing.arc]))[0]
         turn = float(np.angle(complex(along[1], -along[0]) * np.exp(-1j * leaving)))
         if abs(turn) > MOST_BENT:
             return None
     others = [each for k, each in enumerate(domain.loops) if k not in (0, number)]
-    if others and found is not None:
+    if others and landing is not None:
         walls = wall_points(others)
-        apart = found.points[:, None] - walls[None]
+        apart = landing.points[:, None] - walls[None]
         if np.hypot(apart[..., 0], apart[..., 1]).min() < FREE * chord:
             return None
-    return found
+    return landing
 
 
 def _reach(begin: Floats, leaving: float, turn: float, chord: float, outer: Loop) -> Wake | None:

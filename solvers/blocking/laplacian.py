@@ -29,10 +29,10 @@ class Laplacian:
         """Return the factored matrix with `mass` (free,) added to its diagonal."""
         return self.pattern.factor(np.append(self._edges, self._diagonal + mass))
 
-    def flow(self, given: Complexes) -> Complexes:
+    def flow(self, values: Complexes) -> Complexes:
         """Return what values (n,) at vertices that are not free, 0 at all others, give on the right."""
         surface, weight = self.surface, self.surface.edge_weights
-        corner = given[surface.vertices]
+        corner = values[surface.vertices]
         flow = -weight * corner[:, NEXT] - weight[:, PREVIOUS] * corner[:, PREVIOUS]
         return np.asarray((surface.gather(flow.real) + 1j * surface.gather(flow.imag))[self.free])
 

@@ -1,10 +1,13 @@
 """Heights of layers from a wall, of which the first and about the last are given."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 
 _STEPS = 60
+_MOST = 60.0  # of the logarithm of the last cell over the first
 STEEPER = 0.2
 """By how much more than with a constant ratio, as a part of its logarithm, neighbouring cells may differ."""
 
@@ -23,21 +26,17 @@ def layer_arcs(
     rest = length - (constant - 1) * first
     k = np.arange(rows) / max(rows - 1, 1)
     plain = _plain(rest, first, rows)
-    slope = np.minimum(np.log(np.maximum(last, first) / first), 60.0)
+    slope = np.minimum(np.log(np.maximum(last, first) / first), _MOST)
     slope = np.where(np.isfinite(last), slope, plain)
-    bend = np.zeros_like(length)
-    low, high = np.full_like(length, -4.0 * 60.0), np.full_like(length, 4.0 * 60.0)
-    for _ in range(_STEPS):  # ln d = ln first + slope k + bend k (1 - k): bisection for the sum
-        bend = 0.5 * (low + high)
-        total = first * np.exp(slope[:, None] * k + bend[:, None] * k * (1 - k)).sum(axis=1)
-        low, high = np.where(total < rest, bend, low), np.where(total < rest, high, bend)
+    bend = _solved(lambda b: _total(slope, b, k), rest / first, -4.0 * _MOST, 4.0 * _MOST)
     most = np.maximum((1.0 + STEEPER) * plain, (rows - 1) * np.log(growth))
     room = np.minimum(most - plain, plain)
     steep = (slope + np.abs(bend) > most) | (slope < np.abs(bend))  # the last cell gives way
     bound = np.where(steep, np.clip(bend, -room, room), bend)
-    if (bound != bend).any():
-        slope, bend = _with_bend(rest, first, bound, slope, bend, k)
-    steps = first * np.exp(slope[:, None] * k + bend[:, None] * k * (1 - k))
+    changed = bound != bend
+    if changed.any():
+        slope = np.where(changed, _solved(lambda s: _total(s, bound, k), rest / first, -_MOST, _MOST), slope)
+    steps = first * _growths(slope, bound, k)
     steps[:, 1:] *= ((rest - first) / steps[:, 1:].sum(axis=1))[:, None]  # the last digits
     steps = np.concatenate([np.full((len(length), constant - 1), first), steps], axis=1)
     arcs = np.concatenate([np.zeros((len(length), 1)), np.cumsum(steps, axis=1)], axis=1)
@@ -48,22 +47,23 @@ def layer_arcs(
 def _plain(rest: Floats, first: float, rows: int) -> Floats:
     """Return the logarithm (k,) of the last cell over the first of a constant ratio."""
     k = np.arange(rows) / max(rows - 1, 1)
-    low, high = np.zeros_like(rest), np.full_like(rest, 60.0)
-    for _ in range(_STEPS):
-        middle = 0.5 * (low + high)
-        total = first * np.exp(middle[:, None] * k).sum(axis=1)
-        low, high = np.where(total < rest, middle, low), np.where(total < rest, high, middle)
-    return np.asarray(0.5 * (low + high))
+    return _solved(lambda slope: _total(slope, np.zeros_like(slope), k), rest / first, 0.0, _MOST)
 
 
-def _with_bend(
-    rest: Floats, first: float, bound: Floats, slope: Floats, bend: Floats, k: Floats
-) -> tuple[Floats, Floats]:
-    """Return slope and bend (k,) where bends are bounded and slopes make up for it."""
-    low, high = np.full_like(rest, -60.0), np.full_like(rest, 60.0)
+def _growths(slope: Floats, bend: Floats, k: Floats) -> Floats:
+    """Return cells (n, m) over the first, of which the logarithm is slope k + bend k (1 - k)."""
+    return np.exp(slope[:, None] * k + bend[:, None] * k * (1 - k))
+
+
+def _total(slope: Floats, bend: Floats, k: Floats) -> Floats:
+    return np.asarray(_growths(slope, bend, k).sum(axis=1))
+
+
+def _solved(total: Callable[[Floats], Floats], wanted: Floats, low: float, high: float) -> Floats:
+    """Return where in a range a rising function is as wanted (n,), by bisection; an end of it if nowhere."""
+    least, most = np.full_like(wanted, low), np.full_like(wanted, high)
     for _ in range(_STEPS):
-        middle = 0.5 * (low + high)
-        total = first * np.exp(middle[:, None] * k + bound[:, None] * k * (1 - k)).sum(axis=1)
-        low, high = np.where(total < rest, middle, low), np.where(total < rest, high, middle)
-    changed = bound != bend
-    return np.where(changed, 0.5 * (low + high), slope), bound
+        middle = 0.5 * (least + most)
+        less = total(middle) < wanted
+        least, most = np.where(less, middle, least), np.where(less, most, middle)
+    return np.asarray(0.5 * (least + most))

@@ -135,7 +135,7 @@ def _joined(walls: WallLayers, outside: Layout) -> Layout:
         rows.append(walls.near.rows(mesh, heights_inside(layout, 0), multiple=settings.multiple))
     whole = attach(layout, walls.domain, rows)
     joints = [int(whole.blocks[number][-1, -1]) for number in corners]
-    whole = with_corners(respaced_layers(whole, settings, joints), corners, settings)
+    respaced = with_corners(respaced_layers(whole, settings, joints), corners, settings)
     sliding = np.isin(whole.mesh.places.loop, list(walls.cuts)) & (whole.mesh.places.cells == 0)
-    whole = replace(whole, mesh=on_loops(whole.mesh, sliding))
-    return finished(whole, settings, corners)
+    respaced = replace(respaced, mesh=on_loops(respaced.mesh, sliding))
+    return finished([respaced, whole], settings, corners)

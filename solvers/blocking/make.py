@@ -200,5 +200,5 @@ def _folded_coarser(grid: Grid, halvings: int) -> list[str]:
 def _stages(timings: Timings, spent: float) -> dict[str, float]:
     """Return seconds for finding blocks, and for the grid."""
     stages = timings.seconds
-    found = sum(seconds for stage, seconds in stages.items() if stage not in ("refine", "optimum", "layers"))
-    return {"layout": found, "grid": max(spent - found, 0.0)}
+    layout = sum(seconds for stage, seconds in stages.items() if stage not in ("refine", "optimum", "layers"))
+    return {"layout": layout, "grid": max(spent - layout, 0.0)}

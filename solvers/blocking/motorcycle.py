@@ -93,13 +93,13 @@ def _trace(seamless: SeamlessMap, joined: Indices) -> _Traced:
     for ray in starts:
         late = ray[0] >= count - len(joined)
         ray[5] = 2 if late else int((int(ray[0]), int(ray[1])) not in chosen)
-    room, found = 40 * len(seamless.vertices) + 1000, None
-    while found is None:
-        found = trace_rays(*common, starts, 4 * len(seamless.vertices), room)
+    room, rays_traced = 40 * len(seamless.vertices) + 1000, None
+    while rays_traced is None:
+        rays_traced = trace_rays(*common, starts, 4 * len(seamless.vertices), room)
         room *= 4
-    if np.any(found[0][:, 0] == TOO_LONG):
+    if np.any(rays_traced[0][:, 0] == TOO_LONG):
         raise BlockingError("a line of the map does not end")
-    return _Traced(ports, *found)
+    return _Traced(ports, *rays_traced)
 
 
 def _graph(seamless: SeamlessMap, traced: _Traced, walls: Trails) -> MotorcycleGraph:
@@ -135,18 +135,18 @@ def _graph(seamless: SeamlessMap, traced: _Traced, walls: Trails) -> MotorcycleG
 def _along_rays(stations: list[list[tuple[float, int, int, int]]], traced: _Traced, number: Indices) -> None:
     """Add the nodes on each ray: its start, those where others ended on it, its end."""
     for ray, (end, at) in enumerate(zip(traced.ends.tolist(), traced.at.tolist(), strict=True)):
-        kind, other, place = end
+        kind, crossed, place = end
         if kind == CANCELLED:
             continue
         node, port = traced.ports.starts[ray, :2].tolist()
         stations[ray].append((0.0, node, -1, port))
         if kind == AT_NODE:
-            stations[ray].append((at[1], other, place, -1))
+            stations[ray].append((at[1], crossed, place, -1))
         elif kind == AT_WALL:
             stations[ray].append((at[1], int(number[ray]), 1, -1))
         else:
             stations[ray].append((at[1], int(number[ray]), place, -1))
-            stations[other].append((at[0], int(number[ray]), 2, 0))
+            stations[crossed].append((at[0], int(number[ray]), 2, 0))
 
 
 def _not_joined(graph: MotorcycleGraph, rays: int) -> int:

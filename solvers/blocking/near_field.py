@@ -12,6 +12,7 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.solvers.blocking.attach import Rows, loop_nodes
 from meshonet.solvers.blocking.even_growth import evened
 
@@ -104,10 +105,6 @@ class NearField:
 
 def _shares(first: float, cells: int) -> Floats:
     """Return (cells + 1,) parts of a length, from 0 to 1, in cells that grow from `first` by one ratio."""
-    low, high = 0.0, 3.0
-    for _ in range(80):
-        rate = 0.5 * (low + high)
-        total = first * float(np.exp(rate * np.arange(cells)).sum())
-        low, high = (rate, high) if total < 1.0 else (low, rate)
-    steps = np.exp(rate * np.arange(cells))
+    equal = first * cells >= 1.0
+    steps = np.full(cells, 1.0 / cells) if equal else growing_steps(first, 1.0, cells)
     return np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])

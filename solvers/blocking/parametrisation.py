@@ -87,18 +87,18 @@ class Parametrisation:
         """Return row, column and value of the conditions across the cut, two for each edge."""
         surface = self.surface
         triangle, edge = np.nonzero(frames.cut)
-        other, back = surface.neighbours[triangle, edge], surface.neighbour_edge[triangle, edge]
-        once = triangle < other
-        triangle, edge, other, back = (a[once] for a in (triangle, edge, other, back))
+        neighbour, back = surface.neighbours[triangle, edge], surface.neighbour_edge[triangle, edge]
+        once = triangle < neighbour
+        triangle, edge, neighbour, back = (a[once] for a in (triangle, edge, neighbour, back))
         turn = frames.turns[triangle, edge]
-        real, imaginary, one = _REAL[turn], _IMAGINARY[turn], np.ones(len(turn))
+        real, imaginary, unit = _REAL[turn], _IMAGINARY[turn], np.ones(len(turn))
         here = self._number[:, triangle, edge], self._number[:, triangle, NEXT[edge]]
-        there = self._number[:, other, NEXT[back]], self._number[:, other, back]
+        there = self._number[:, neighbour, NEXT[back]], self._number[:, neighbour, back]
         # u' = real u - imaginary v, v' = imaginary u + real v
         columns, values = [], []
         for part, (of_u, of_v) in enumerate(((real, -imaginary), (imaginary, real))):
             columns.append([there[0][part], there[1][part], here[0][0], here[1][0], here[0][1], here[1][1]])
-            values.append([one, -one, -of_u, of_u, -of_v, of_v])
+            values.append([unit, -unit, -of_u, of_u, -of_v, of_v])
         column, value = np.array(columns), np.array(values)
         rows = np.arange(2 * len(turn)).reshape(2, 1, -1) + np.zeros((1, 6, 1), dtype=np.intp)
         kept = (column >= 0) & (value != 0.0)
@@ -112,16 +112,16 @@ class Parametrisation:
         exact = self._pattern.matrix(np.append(values, np.zeros(self._conditions_number)))
         factor = self._pattern.factor(np.append(values, np.full(self._conditions_number, -_SOFT * scale)))
         right = np.zeros(self._size + self._conditions_number)
-        given = self._number >= 0
-        pull = (weights[:, None] * self._right)[given]
-        right[: self._size] = np.bincount(self._number[given], pull, self._size)
+        numbered = self._number >= 0
+        pull = (weights[:, None] * self._right)[numbered]
+        right[: self._size] = np.bincount(self._number[numbered], pull, self._size)
         solution = factor.solve(right)
         for _ in range(_REFINEMENTS):
             rest = right - exact.times(solution)
             solution += factor.solve(rest)
             if np.abs(rest).max() < _EXACT * np.abs(solution[: self._size]).max():
                 break
-        coords = np.where(given, solution[self._number], 0.0)
+        coords = np.where(numbered, solution[self._number], 0.0)
         return np.asarray(coords[0] + 1j * coords[1])
 
     def jacobians(self, coords: Complexes) -> Floats:

@@ -191,6 +191,6 @@ def turned_round(layout: Layout) -> Layout:
     names = tuple(loops[0].names[k] for k in (2, 1, 0, 3))
     outer = Loop(loops[0].curve, loops[0].corners, names)
     shift = (-periodic.shift[0], -periodic.shift[1])
-    other = Periodic(periodic.second, periodic.first, shift)
-    domain = replace(mesh.domain, loops=(outer, *loops[1:]), periodic=other)
+    swapped = Periodic(periodic.second, periodic.first, shift)
+    domain = replace(mesh.domain, loops=(outer, *loops[1:]), periodic=swapped)
     return replace(layout, mesh=replace(mesh, domain=domain, places=replace(places, partner=partner)))

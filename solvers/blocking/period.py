@@ -141,11 +141,11 @@ def _copies(quads: Indices, off: Indices, path: list[int], loop: Indices, ends: 
     for q in queue:
         for i in range(4):
             side = frozenset((rows[q][i], rows[q][(i + 1) % 4]))
-            for other, _ in sides[side]:
-                if other not in moved and side not in shut:
-                    j = rows[other].index(rows[q][i])
-                    moved[other] = moved[q] + offs[q][i] - offs[other][j]
-                    queue.append(other)
+            for neighbour, _ in sides[side]:
+                if neighbour not in moved and side not in shut:
+                    j = rows[neighbour].index(rows[q][i])
+                    moved[neighbour] = moved[q] + offs[q][i] - offs[neighbour][j]
+                    queue.append(neighbour)
     return np.array([moved.get(q, 0) for q in range(len(rows))], dtype=np.intp)
 
 

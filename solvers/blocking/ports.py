@@ -67,11 +67,11 @@ def stretch_ends(seamless: SeamlessMap) -> tuple[int, ...]:
     if triangulation.domain.periodic is None:
         return ()
     length = triangulation.domain.loops[0].length
-    found = []
+    nearest_vertices = []
     for end in triangulation.domain.periodic.first:
         apart = np.abs(np.mod(triangulation.arc - end + length / 2, length) - length / 2)
-        found.append(int(np.argmin(np.where(triangulation.loop == 0, apart, np.inf))))
-    return tuple(found)
+        nearest_vertices.append(int(np.argmin(np.where(triangulation.loop == 0, apart, np.inf))))
+    return tuple(nearest_vertices)
 
 
 def _fans(seamless: SeamlessMap, vertex: Indices) -> tuple[Indices, Indices]:

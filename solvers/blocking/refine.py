@@ -105,12 +105,12 @@ class _Refined:
         has = of[kept] >= 0
         self.places.partner[np.flatnonzero(has)] = self.number[of[kept[has]]]
         for k in np.flatnonzero(self.chords.partner >= 0):
-            other = self.edges[self.chords.partner[k]]
+            beyond = self.edges[self.chords.partner[k]]
             same = (
                 of[self.chords.edges[k][:2]].tolist()
                 == self.chords.edges[self.chords.partner[k]][:2].tolist()
             )
-            self.places.partner[self.edges[k]] = other if same else other[::-1]
+            self.places.partner[self.edges[k]] = beyond if same else beyond[::-1]
         moved = np.flatnonzero(self.places.partner >= 0)
         self.nodes[moved] = self.nodes[self.places.partner[moved]] + np.array(domain.periodic.shift)
 

@@ -56,10 +56,10 @@ def _pairs(old: tuple[Loop, ...], new: tuple[Loop, ...]) -> dict[int, int]:
         pairs = {0: 0} | {k: named[1][name] for name, k in named[0].items()}
     else:
         pairs = {k: k for k in range(len(old))}
-    for k, other in pairs.items():
-        own, others = len(old[k].corners), len(new[other].corners)
+    for k, new_loop in pairs.items():
+        own, others = len(old[k].corners), len(new[new_loop].corners)
         if own != others:
-            what = f"loop {other} ({', '.join(dict.fromkeys(new[other].names))})"
+            what = f"loop {new_loop} ({', '.join(dict.fromkeys(new[new_loop].names))})"
             problem = f"{what} has {others} corner{'' if others == 1 else 's'}, in the layout it has {own}"
             raise InputError(problem, "give a layout of the same kind", parameter="layout")
     return pairs
@@ -111,13 +111,13 @@ def _corner_shift(old: Loop, new: Loop) -> int:
     Named stretches belong together first of all, then corners of equal angles at equal places in their boxes.
     """
     ours, theirs = (_in_box(loop.curve.points[list(loop.corners)], loop) for loop in (old, new))
-    own, other = (np.array(loop.names) for loop in (old, new))
-    named = len(own) > 1 and sorted(own) == sorted(other)
+    our_names, their_names = (np.array(loop.names) for loop in (old, new))
+    named = len(our_names) > 1 and sorted(our_names) == sorted(their_names)
     costs = []
     for k in range(len(theirs)):
         cost = float(((np.roll(theirs, -k, axis=0) - ours) ** 2).sum())
         cost += float(np.abs(np.roll(new.corner_angles, -k) - old.corner_angles).sum()) / 180.0
-        differ = int((np.roll(other, -k) != own).sum()) if named else 0
+        differ = int((np.roll(their_names, -k) != our_names).sum()) if named else 0
         costs.append(cost + 1e3 * differ)
     return int(np.argmin(costs))
 

@@ -27,27 +27,27 @@ def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:
         )
         if not len(triangle):
             return triangulation
-        other = neighbours[triangle, edge]
+        neighbour = neighbours[triangle, edge]
         # one edge of a triangle at a time
         least = np.full(len(triangles), len(triangle))
         number = np.arange(len(triangle))
         np.minimum.at(least, triangle, number)
-        np.minimum.at(least, other, number)
-        now = (least[triangle] == number) & (least[other] == number)
+        np.minimum.at(least, neighbour, number)
+        now = (least[triangle] == number) & (least[neighbour] == number)
         triangulation = _split(triangulation, triangle[now], edge[now])
 
 
 def _split(triangulation: Triangulation, triangle: Indices, edge: Indices) -> Triangulation:
     """Return the triangulation with edges split that no two of have a triangle in common."""
     triangles, points = triangulation.triangles, triangulation.points
-    other = triangulation.neighbours[triangle, edge]
+    neighbour = triangulation.neighbours[triangle, edge]
     back = triangulation.neighbour_edge[triangle, edge]
     start, stop = triangles[triangle, edge], triangles[triangle, _NEXT[edge]]
-    left, right = triangles[triangle, _LAST[edge]], triangles[other, _LAST[back]]
+    left, right = triangles[triangle, _LAST[edge]], triangles[neighbour, _LAST[back]]
     middle = len(points) + np.arange(len(triangle))
     new = triangles.copy()
     new[triangle] = np.stack([start, middle, left], axis=1)
-    new[other] = np.stack([stop, middle, right], axis=1)
+    new[neighbour] = np.stack([stop, middle, right], axis=1)
     halves = [np.stack([middle, stop, left], axis=1), np.stack([middle, start, right], axis=1)]
     new = np.concatenate([new, *halves])
     neighbours, neighbour_edge = join_triangles(new)

@@ -7,6 +7,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
+from meshonet.solvers.blocking.wall_bend import wall_bend
 
 TURN = np.radians(4.0)
 """How much of the wall's turning one cell takes."""
@@ -50,16 +51,7 @@ def _counted(arc: float, closed: Floats, count: Floats, length: float) -> float:
 def _sizes(loop: Loop, arcs: Floats, largest: float) -> Floats:
     """Return the length (n,) of cells at arc lengths (n,)."""
     length = loop.length
-    along = loop.tangent(arcs)
-    direction = np.arctan2(along[:, 1], along[:, 0])
-    turn = np.diff(direction, append=direction[:1])
-    turn = np.abs((turn + np.pi) % (2.0 * np.pi) - np.pi)
-    turn[np.searchsorted(arcs, loop.corner_arcs) - 1] = 0.0  # a corner is no curvature
-    step = np.diff(arcs, append=arcs[0] + length)
-    window = max(3, round(0.004 * len(arcs)))
-    kernel = np.ones(2 * window + 1)
-    around = np.arange(-window, len(arcs) + window) % len(arcs)
-    bend = np.convolve(turn[around], kernel, "valid") / np.convolve(step[around], kernel, "valid")
+    bend = wall_bend(loop, arcs, max(3, round(0.004 * len(arcs))))
     size = np.minimum(largest, TURN / np.maximum(bend, 1e-300))
     size = np.maximum(size, _CORNER_PART * largest)
     corners = loop.corner_arcs

@@ -117,7 +117,7 @@ def _height(request: GridRequest) -> tuple[float, str]:
 
 
 def _fill(shape: SpatialShape, request: GridRequest) -> Solution:
-    from meshonet.geometry.blocks.six_faces import six_faces
+    from meshonet.geometry.blocks.six_patches import six_faces
 
     faces = six_faces(shape.grid)
     counts = _counts(request.sampling)

@@ -46,5 +46,5 @@ def measures(grid: Grid) -> Measures:
     angles, across = figures.deviation, figures.lines.growth_across
     jump = math.log(across.max) if across else 0.0
     folded = sum(count_folded(block.nodes) for block in grid.blocks)
-    score = angle / 30.0 + skew + angles.mean / 5.0 + angles.p99 / 30.0 + jump
+    score = angle / 30.0 + skew + angles.mean / 5.0 + (angles.p99 or 0.0) / 30.0 + jump
     return Measures(folded, angle, skew, angles.mean, math.inf if folded else score)

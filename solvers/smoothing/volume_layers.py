@@ -39,10 +39,9 @@ class Layers:
     rows: Indices
     heights: Floats
 
-    @property
-    def first(self) -> Indices:
-        """(m, 2) nodes of the first edges of lines with layers."""
-        return self.lines[self.rows > 0, :2]
+    def only_first(self) -> Layers:
+        """Return layers of one row."""
+        return replace(self, rows=np.minimum(self.rows, 1))
 
 
 def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[Layers]:

@@ -10,6 +10,8 @@ the least scaled Jacobian nor the mean deviation from 90 degrees becomes worse
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
@@ -75,8 +77,8 @@ def _best(
         start, valid, targets = _unfolded(given, before, moves, targets, slides)
         if valid.folded:
             return (start, valid) if valid.folded < before.folded else (given, before)
-    for made in _optima(start, moves, targets, layers, slides, iterations):
-        best = _held_back(start, made, valid, layers)
+    for made, kept in _optima(start, moves, targets, layers, slides, iterations):
+        best = _held_back(start, made, valid, layers) if kept or start is not given else None
         if best is not None:
             return best
     return start, valid
@@ -137,23 +139,21 @@ def _dilated(nodes: Bools, mesh: HexMesh) -> Bools:
 
 def _optima(
     start: HexMesh, moves: Bools, targets: Targets, layers: list[Layers], slides: Slides, iterations: int
-) -> list[HexMesh]:
-    """Return what there is of optima, the better first: with layers at their heights, and without."""
-    optimum = optimise(start, moves, targets, slides=slides, iterations=iterations, tolerance=TOLERANCE)
+) -> Iterator[tuple[HexMesh, bool]]:
+    """Yield what there is of optima, the better first: all layers at their heights, or only first cells.
+
+    The optimum itself comes last; whether layers, if there are any, have their heights comes with each.
+    """
+    towards = partial(optimise, targets=targets, slides=slides, iterations=iterations, tolerance=TOLERANCE)
+    optimum = towards(start, moves)
     if not optimum.valid:
-        return []
-    if not layers:
-        return [start.with_nodes(optimum.nodes)]
-    nodes, held = with_layers(optimum.nodes, layers)
-    rest = optimise(
-        start.with_nodes(nodes),
-        moves & ~held,
-        targets,
-        slides=slides,
-        iterations=iterations,
-        tolerance=TOLERANCE,
-    )
-    return [start.with_nodes(rest.nodes if rest.valid else nodes)]
+        return
+    for some in (layers, [each.only_first() for each in layers]) if layers else ():
+        nodes, held = with_layers(optimum.nodes, some)
+        rest = towards(start.with_nodes(nodes), moves & ~held)
+        if rest.valid:
+            yield start.with_nodes(rest.nodes), True
+    yield start.with_nodes(optimum.nodes), not layers
 
 
 def _held_back(

@@ -32,7 +32,7 @@ GAP = 0.005
 """Least height of a base in chords."""
 _NOSE_CELL = 0.35
 _EDGE_CELL = 1.2
-LEAST_AROUND = 33
+LEAST_AROUND, MOST_AROUND = 33, 10_001
 
 
 @dataclass(frozen=True)
@@ -66,9 +66,10 @@ def around(sections: tuple[Section, ...], nodes: int, *, gap: float = GAP, base:
 
     Raises InputError: too few nodes, or an even number.
     """
-    if nodes < LEAST_AROUND or nodes % 2 == 0:
+    if not LEAST_AROUND <= nodes <= MOST_AROUND or nodes % 2 == 0:
         problem = f"{nodes} nodes around a section"
-        raise InputError(problem, f"use an odd number from {LEAST_AROUND} on", parameter="around")
+        remedy = f"use an odd number from {LEAST_AROUND} to {MOST_AROUND}"
+        raise InputError(problem, remedy, parameter="around")
     if not 0 < gap < 0.2:
         raise InputError(f"a base of {gap:g} chords", "use more than 0 and less than 0.2", parameter="base")
     cells = (nodes - 1 - base) // 2

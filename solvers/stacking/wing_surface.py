@@ -19,7 +19,7 @@ from meshonet.solvers.stacking.section_nodes import BASE_CELLS, GAP, around, uni
 from meshonet.solvers.stacking.tip import Cap
 
 DEFAULT_AROUND, DEFAULT_SPAN = 129, 49
-LEAST_SPAN = 5
+LEAST_SPAN, MOST_SPAN = 5, 10_001
 _ROOT_CELL = 1.4
 """Cell at the root, in mean cells along the span."""
 
@@ -40,8 +40,9 @@ class WingSurface:
     base: float = GAP
 
     def __post_init__(self) -> None:
-        if not LEAST_SPAN <= self.span <= 100_000:
-            raise InputError(f"{self.span} nodes", f"use {LEAST_SPAN} to 100000", parameter="span")
+        if not LEAST_SPAN <= self.span <= MOST_SPAN:
+            remedy = f"use {LEAST_SPAN} to {MOST_SPAN}"
+            raise InputError(f"{self.span} nodes", remedy, parameter="span")
 
 
 def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Grid, tuple[str, ...]]:

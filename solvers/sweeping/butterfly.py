@@ -77,7 +77,7 @@ class Disc:
 
 
 def ring_rows(width: float, edge: float, first: float | None, growth: float | None) -> int:
-    """Return the rows of a ring `width` wide whose cells are `edge` long, and may begin with a first height."""
+    """Return the rows of a ring so wide, of cells as long as `edge`; they may begin with a height `first`."""
     even = max(_LEAST, round(width / edge))
     return even if first is None else max(even, cells_for_growth(first, width, growth or _GROWTH))
 

@@ -21,7 +21,7 @@ from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.extrude import thickened
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.curves.frames import frames_along, turned
+from meshonet.geometry.curves.frames import STEPS, frames_along, turned
 from meshonet.geometry.curves.path import Path
 from meshonet.geometry.errors import InputError
 
@@ -77,7 +77,7 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     s = np.linspace(0.0, path.length, settings.planes or _planes(section, path))
     looked = np.linspace(0.0, path.length, max(_LOOKED_AT, len(s)))
     outline = np.concatenate([section.face(p.block, p.side)[p.start : p.stop + 1] for p in section.patches])
-    _check_bends(outline, path, looked, _axes(path, looked, settings), settings)
+    _check_bends(outline, path, looked, _axes(path, looked, settings, 1), settings)
     size = _sizes(path, s, settings)[:, None]
     x, y = (size * axis for axis in _axes(path, s, settings))
     points = path.at(s).points
@@ -99,10 +99,10 @@ def _carried(plane: Floats, points: Floats, x: Floats, y: Floats) -> Floats:
     return np.moveaxis(nodes, 0, -1)
 
 
-def _axes(path: Path, s: Floats, settings: Sweep) -> tuple[Floats, Floats]:
+def _axes(path: Path, s: Floats, settings: Sweep, steps: int = STEPS) -> tuple[Floats, Floats]:
     """Return x and y axes (n, 3) of the section at arc lengths, its twist included."""
     up = None if settings.up is None else np.array(settings.up, dtype=np.float64)
-    x, y = frames_along(path, s, up)
+    x, y = frames_along(path, s, up, steps=steps)
     if settings.twist:
         tangents = path.at(s).tangents
         y = turned(y, tangents, math.radians(settings.twist) * s / path.length)

@@ -172,7 +172,7 @@ def transfer(n: int, m: int) -> Transfer:
     terms = int(max((n - row[::-1].argmax() - row.argmax()) for row in reached))
     begin = np.minimum(reached.argmax(axis=1), n - terms)
     kept = np.take_along_axis(down, begin[:, None] + np.arange(terms), axis=1)
-    places = np.arange(m) * ((n - 1) / (m - 1))
+    places: Floats = np.arange(m, dtype=np.float64) * ((n - 1) / (m - 1))
     four = min(4, n)
     low = np.clip(places.astype(np.intp) - 1, 0, n - four)
     return Transfer((first, weights), (begin, kept), (low, _lagrange(places - low, four)))

@@ -9,16 +9,18 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from volume_grids import VOLUMES, pipe, shifted, turned_sector
+from volume_grids import VOLUMES, box, pipe, shifted, turned_sector
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
 
+from meshonet.formats.cgns.nodes import child
 from meshonet.formats.cgns.read import read_grids
 from meshonet.formats.cgns.write import write_grids
 from meshonet.formats.source import open_source
 from meshonet.geometry.blocks.block import PLACES, Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.errors import InputError
 
 Make = Callable[[], Grid]
 
@@ -185,3 +187,117 @@ def test_a_file_of_others_comes_in_with_interfaces_and_names(make: Make, tmp_pat
         np.testing.assert_allclose(mine.nodes, other.nodes, atol=1e-12 if periodic else 0)
     outer = [(p.name.replace(" ", "_"), p.side, p.start, p.stop, p.across) for p in grid.outer_patches()]
     assert [(p.name, p.side, p.start, p.stop, p.across) for p in found.outer_patches()] == outer
+
+
+def edited(path: Path, grid: Grid, change: Callable[[h5py.Group], None]) -> Path:
+    """A file of others, after a change to its first zone."""
+    write_grids(path, [grid])
+    without(path, *FACTS)
+    with h5py.File(path, "r+") as file:
+        change(next(node for node in file["Base"].values() if node.attrs.get("label") == b"Zone_t"))
+    return path
+
+
+def replaced(node: h5py.Group, values: np.ndarray) -> None:
+    del node["\x20data"]
+    node["\x20data"] = values
+
+
+def points(zone: h5py.Group) -> None:
+    """Say the plate and the inlet by lists of nodes and of faces, which have no names of families."""
+    group = zone["ZoneBC"]
+    for name in list(group):
+        del group[name]
+    i, j = np.meshgrid(np.arange(2, 6), np.arange(1, 4), indexing="ij")
+    plate = child(group, "BC1", "BC_t", "BCWall")
+    listed = np.stack([i.ravel(), j.ravel(), np.ones(12)], axis=-1).astype(np.int32)
+    child(plate, "PointList", "IndexArray_t", np.random.default_rng(0).permutation(listed))
+    inlet = child(group, "BC2", "BC_t", "BCInflow")
+    child(inlet, "PointRange", "IndexRange_t", np.array([[1, 1, 1], [1, 3, 5]], np.int32))
+    child(inlet, "GridLocation", "GridLocation_t", "IFaceCenter")
+
+
+def test_conditions_by_points_and_faces_without_families(tmp_path: Path) -> None:
+    (grid,) = back(edited(tmp_path / "g.cgns", box(), points))
+    assert set(grid.patches) == {
+        Patch("BC1", "bottom", 1, 4, (0, 2), kind="wall"), Patch("BC2", "west", 0, 3, (0, 5), kind="inlet"),
+    }  # fmt: skip
+
+
+def corner(zone: h5py.Group) -> None:
+    """Say a condition of the shape of an L by a list of nodes."""
+    group = zone["ZoneBC"]
+    for name in list(group):
+        del group[name]
+    marked = [(i, j) for i in range(1, 6) for j in range(1, 5) if i <= 2 or j <= 2]
+    node = child(group, "L", "BC_t", "BCWall")
+    child(node, "PointList", "IndexArray_t", np.array([[i, j, 6] for i, j in marked], np.int32))
+
+
+def test_a_list_of_nodes_that_is_no_rectangle_is_several(tmp_path: Path) -> None:
+    (grid,) = back(edited(tmp_path / "g.cgns", box(), corner))
+    cells = np.zeros((4, 3), int)
+    for patch in grid.patches:
+        assert (patch.name, patch.side) == ("L", "top")
+        assert patch.across is not None
+        cells[patch.start : patch.stop, slice(*patch.across)] += 1
+    assert cells.tolist() == [[1, 1, 1], [1, 0, 0], [1, 0, 0], [1, 0, 0]]
+
+
+def test_a_left_handed_zone_is_turned_with_what_it_says(tmp_path: Path) -> None:
+    def mirror(zone: h5py.Group) -> None:
+        for name in "XYZ":
+            node = zone[f"GridCoordinates/Coordinate{name}"]
+            replaced(node, node["\x20data"][()][..., ::-1])
+        for condition in zone["ZoneBC"].values():
+            span = condition["PointRange/ data"][()]
+            span[:, 0] = 6 - span[:, 0]
+            condition["PointRange/ data"][...] = span
+
+    (grid,) = back(edited(tmp_path / "g.cgns", box(), mirror))
+    np.testing.assert_array_equal(grid.nodes, box().nodes)
+    assert {p.name: (p.side, p.start, p.stop) for p in grid.patches}["plate"] == ("bottom", 1, 4)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (lambda z: z.pop("GridCoordinates"), "zone 'pipe-1': has no CoordinateX and CoordinateY; write Cart"),
+        (
+            lambda z: [
+                z["GridCoordinates"].move(f"Coordinate{a}", f"Coordinate{b}") for a, b in ("XR", "YT")
+            ],
+            "zone 'pipe-1': has no CoordinateX and CoordinateY, only CoordinateR, CoordinateT, CoordinateZ; ",
+        ),
+        (
+            lambda z: replaced(joint(z)["PointRange"], np.array([[1, 1, 1], [1, 9, 9]], np.int32)),
+            "zone 'pipe-1': interface '.*' leaves its zone; correct its PointRange",
+        ),
+        (
+            lambda z: replaced(joint(z)["PointRangeDonor"], np.array([[1, 1, 1], [1, 9, 9]], np.int32)),
+            "zone 'pipe-1': interface '.*' leaves its donor; correct its PointRangeDonor",
+        ),
+        (
+            lambda z: replaced(joint(z)["Transform"], np.array([1, 1, 3], np.int32)),
+            r"interface '.*' has transform \[1, 1, 3\]; give each index once",
+        ),
+        (
+            lambda z: replaced(joint(z)["PointRangeDonor"], np.array([[1, 1, 1], [2, 5, 1]], np.int32)),
+            "interface .* of block 0 to block . joins indices that do not lie on each other; correct its ran",
+        ),
+        (
+            lambda z: replaced(z, np.full((3, 3), 1 << 30, np.int64)),
+            "zone 'pipe-1': its size .* is not plaus",
+        ),
+    ],
+)
+def test_what_does_not_fit_is_refused_with_its_place(
+    change: Callable[[h5py.Group], None], told: str, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=told):
+        back(edited(tmp_path / "g.cgns", pipe(), change))
+
+
+def joint(zone: h5py.Group) -> h5py.Group:
+    """The first interface of a zone."""
+    return next(iter(zone["ZoneGridConnectivity"].values()))

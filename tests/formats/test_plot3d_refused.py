@@ -26,6 +26,8 @@ def binary(*dims: int, order: str = "<", size: int = 8) -> bytes:
     )
 
 
+CURVED = [np.arange(3.0) ** (1 + k / 9) for k in range(3)]
+SOLID = np.stack(np.meshgrid(*CURVED)).swapaxes(1, 2).ravel()
 CASES = {
     "cut text": (
         text()[:-40],
@@ -33,7 +35,7 @@ CASES = {
     ),
     "cut binary": (
         binary(1, 9, 6)[:-1],
-        r"has 875 bytes and no binary Plot3D layout fits \(a header could be dims",
+        r"has 875 bytes and no binary Plot3D layout fits \(nearest: dims 9x6, float64, little endian, 876",
     ),
     "garbage": (
         bytes(range(256)) * 9,
@@ -66,8 +68,25 @@ CASES = {
     "pickle": (b"\x80\x04\x95" + bytes(99), "no binary Plot3D layout fits"),
     "Fortran cut": (
         struct.pack("<i2ii", 8, 9, 6, 8) + struct.pack("<i", 864) + bytes(800),
-        "no binary Plot3D",
+        "Fortran record 2, at byte 16, says 864 bytes and 796 are left; the file is cut short",
     ),
+    "Fortran end": (
+        struct.pack("<i3ii", 12, 3, 3, 3, 12)
+        + struct.pack("<i", 648)
+        + SOLID.tobytes()
+        + struct.pack("<i", 640),
+        "Fortran record 2, at byte 20, says 648 bytes and does not end so",
+    ),
+    "solid cut": (
+        struct.pack("<3i", 3, 3, 3) + SOLID.tobytes()[:-9],
+        "no binary Plot3D layout fits .nearest: dims 3x3x3, float64, little endian, 660 bytes.",
+    ),
+    "solid nan": (
+        struct.pack("<3i", 3, 3, 3) + np.where(np.arange(81) == 40, np.nan, SOLID).tobytes(),
+        "block 1, read as C binary, little endian, float64: node i=1, j=1, k=1 has y = nan; check the file",
+    ),
+    "solid negative": (text("3 3 -3", " ".join(map(str, SOLID))), "no Plot3D layout fits"),
+    "solid huge": (struct.pack("<3i", 2**31 - 1, 3, 3) + SOLID.tobytes(), "no binary Plot3D layout fits"),
 }
 
 

@@ -31,7 +31,7 @@ def test_axes_and_tangent_are_right_handed_and_orthonormal(path):
 
 
 def test_along_a_helix_they_turn_against_the_normal_by_the_torsion():
-    """The angle between the principal normal and a frame without turning grows by the torsion (Bishop 1975)."""
+    """The angle between the normal and a frame without turning grows by the torsion (Bishop 1975)."""
     path = helix()
     s = np.linspace(0.0, path.length, 201)
     x, y = frames_along(path, s)

@@ -34,7 +34,7 @@ def joined(nodes: list[Floats], patches: tuple[Patch, ...] = ()) -> Grid:
 
 
 def shell(n: int = 9, layers: int = 8, first: float = 0.01, split: int = 0) -> Grid:
-    """A cubed sphere of radius 1 and its layers, as two rings of six blocks where it is `split` at a layer."""
+    """A cubed sphere of radius 1 and its layers, two rings of six blocks where it is `split` at a layer."""
     radius = 1 + first * np.concatenate([[0], np.cumsum(GROWTH ** np.arange(layers))])
     cuts = [(0, layers)] if not split else [(0, split), (split, layers)]
     nodes = [patch[:, :, None] * radius[a : b + 1, None] for a, b in cuts for patch in sphere_patches(n)]

@@ -5,7 +5,8 @@ import pytest
 
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.six_faces import FACES, SixFaces, six_faces
+from meshonet.geometry.blocks.six_faces import FACES, SixFaces
+from meshonet.geometry.blocks.six_patches import six_faces
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.errors import InputError
 from tests.volume_shapes import bent_pipe, mapped, skewed

@@ -70,8 +70,9 @@ def test_half_a_body_on_a_plane_faces_outwards_and_shows_its_plane() -> None:
     assert enclosed(surface) > 0.0
 
 
-def test_a_wing_shows_the_plane_of_its_root() -> None:
-    surface = surface_of(grid_of(wing()))
+@pytest.mark.parametrize("sweep", [0.5, 0.0, -0.2])
+def test_a_wing_shows_the_plane_of_its_root_and_not_that_of_its_blunt_edge(sweep: float) -> None:
+    surface = surface_of(grid_of(wing(sweep=sweep)))
     assert [str(plane) for plane in surface.planes] == ["z = 0"]
     assert set(np.bincount(surface.valence).nonzero()[0]) <= {2, 3, 4, 5}
 

@@ -16,7 +16,7 @@ Nodes of the first group (red) are no neighbours of each other; ``kernels/surfac
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,7 +25,8 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 
-MOST_NEIGHBOURS = 24  # as in graph.h
+_WIDTH, _FALL = 4, 0.35
+"""Rings of nodes smoothed more around those where other than four faces meet, and how that falls."""
 
 
 @dataclass(frozen=True)
@@ -79,10 +80,17 @@ class MarchGraph:
     shift: Floats
     fixed_nodes: Indices
     moves: Floats
+    boost: Floats
 
 
-def march_graph(surface: Surface, planes: Sequence[Plane], in_plane: Indices, splay: float) -> MarchGraph:
-    """Return the graph of a surface, whose open edges lie in `planes` as far as `in_plane` (p, k) says."""
+def march_graph(
+    surface: Surface, planes: Sequence[Plane], in_plane: Indices, splay: float, boost: float
+) -> MarchGraph:
+    """Return the graph of a surface, whose open edges lie in `planes` as far as `in_plane` (p, k) says.
+
+    `splay` is how much farther than their opposites ghosts at free edges lie, `boost` how much more than
+    elsewhere nodes are smoothed where other than four faces meet.
+    """
     n = len(surface.nodes)
     regular = surface.valence == 4
     edges = surface.open_edges
@@ -104,7 +112,8 @@ def march_graph(surface: Surface, planes: Sequence[Plane], in_plane: Indices, sp
             rings[node], coupled[node] = _with_diagonals(surface, node, rings[node]), True
         coupled[node] |= any(seen.own != 0.0 for seen in rings[node])
     red = _independent(surface, coupled)
-    return _sorted(surface, red, rings, held)
+    graph = _sorted(surface, red, rings, held)
+    return replace(graph, boost=1.0 + boost * _oddness(surface)[graph.order])
 
 
 def _closed(arc: list[Seen], before: list[Plane], after: list[Plane], splay: float) -> list[Seen]:
@@ -134,6 +143,16 @@ def _with_diagonals(surface: Surface, node: int, pair: list[Seen]) -> list[Seen]
             if quad[(k + 1) % 4] == a.base and quad[(k + 3) % 4] == b.base:
                 opposite.append(Seen(quad[(k + 2) % 4]))
     return [pair[0], opposite[0], pair[1], opposite[1]]
+
+
+def _oddness(surface: Surface) -> Floats:
+    """Return 1 at nodes (n,) inside the surface where other than four faces meet, less around them."""
+    odd = (surface.valence != 4).astype(float)
+    odd[surface.open_edges.ravel()] = 0.0
+    for _ in range(_WIDTH):
+        around = np.where(surface.ring >= 0, odd[surface.ring], 0.0).max(axis=1)
+        odd = np.maximum(odd, _FALL * around)
+    return odd
 
 
 def _independent(surface: Surface, coupled: Indices) -> Indices:
@@ -209,4 +228,5 @@ def _sorted(
         shift,
         np.array([k for k, _ in fixed], dtype=np.intp),
         moves,
+        np.ones(n),
     )

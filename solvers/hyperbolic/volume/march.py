@@ -91,7 +91,7 @@ def _best(
     """Return the first volume without folded cells, or that which comes closest, and how many were tried."""
     best: _Volume | None = None
     for tries, smoothing in enumerate(ATTEMPTS, start=1):
-        graph = march_graph(surface, planes, inside, smoothing.splay)
+        graph = march_graph(surface, planes, inside, smoothing.splay, smoothing.boost)
         lines = _respaced(march_levels(surface, graph, nodes, steps, smoothing), graph, steps)
         _keep_planes(lines, surface, planes, inside)
         made = lines.shape[2] - 1

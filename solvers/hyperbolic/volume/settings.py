@@ -77,9 +77,9 @@ class VolumeMarch:
 class Smoothing(NamedTuple):
     """Numbers of ``kernels/surfaces/march.h`` in its order, but for the size, which stands between them."""
 
-    explicit: float = 0.4
-    implicit: float = 1.5
-    theta: float = 1.0
+    explicit: float = 0.3
+    implicit: float = 1.2
+    theta: float = 0.5
     sharp: float = -0.5
     longest: float = 3.0
     weight: float = 0.25
@@ -89,7 +89,8 @@ class Smoothing(NamedTuple):
     tolerance: float = 1e-3
     most: int = 40
     splay: float = 0.0
-    """Of free edges (`meshonet.solvers.hyperbolic.volume.graph`)."""
+    boost: float = 3.0
+    """Of free edges, and where other than four faces meet (`meshonet.solvers.hyperbolic.volume.graph`)."""
 
     def numbers(self, size: float) -> tuple[float, ...]:
         """Return the numbers of a march over a surface of half that size."""

@@ -1,4 +1,4 @@
-"""Volumes swept along paths: their sizes by formula, their frames, their patches, bends that are too tight."""
+"""Volumes swept along paths: sizes by formula, frames, patches, bends that are too tight."""
 
 import numpy as np
 import pytest

@@ -1,0 +1,81 @@
+"""Folded grids of many blocks in space, smoothed: what becomes of them, and what an iteration costs.
+
+    python benchmarks/bench_smooth_volumes.py [--size 0.6]
+
+Nodes inside of a shell of six blocks, a bent pipe of five, and extruded blocks of the plane are moved at
+random by up to `size` times the shortest edge at them. Printed are folded cells, the mean deviation from 90
+degrees and the least scaled Jacobian of the grid, of what was made of it, and of that smoothed; processor
+seconds; and nanoseconds of one thread for a node and an iteration of the descent.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
+from block_grids import butterfly, o_ring
+from volume_shapes import bend, perturbed, shell
+
+from meshonet.geometry.blocks.extrude import extruded
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.threads import limited_to
+from meshonet.geometry.volume.hex_mesh import hex_mesh_of
+from meshonet.solvers.energy.hexes import SHAPE, SMOOTHNESS, HexProblem
+from meshonet.solvers.smoothing.volume_spacing import wanted_edges
+from meshonet.solvers.smoothing.volumes import smooth_volumes
+
+ITERATIONS = 20
+SHAPES: dict[str, Callable[[], Grid]] = {
+    "shell, 6 blocks": lambda: shell(n=25, layers=32, first=0.01),
+    "pipe bend, 5 blocks": lambda: bend(n=15, m=13, along=65),
+    "extruded butterfly": lambda: extruded(butterfly(17, 13), np.linspace(0.0, 3.0, 49)),
+    "extruded O ring": lambda: extruded(o_ring(n=17, m=25), np.linspace(0.0, 3.0, 49)),
+}
+
+
+def figures(grid: Grid) -> str:
+    """Return folded cells, mean deviation and least scaled Jacobian."""
+    quality = measure(grid)
+    return f"{quality.folded:6} {quality['deviation'].mean:5.2f} {quality['scaled_jacobian'].min:6.3f}"
+
+
+def cost(grid: Grid) -> float:
+    """Return nanoseconds for a node and an iteration."""
+    mesh = hex_mesh_of(grid)
+    with limited_to(1):
+        problem = HexProblem(mesh, ~mesh.outer, wanted_edges(mesh, ~mesh.outer))
+    problem.descent.weigh(SHAPE, SMOOTHNESS)
+    begun = time.process_time()
+    done = problem.descent.run(0.0, ITERATIONS, ITERATIONS + 1)[2]
+    return 1e9 * (time.process_time() - begun) / (done * len(mesh.nodes))
+
+
+def main() -> None:
+    """Print a line for each shape."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--size", type=float, default=0.6)
+    size = parser.parse_args().size
+    print(f"{'folded, mean, least of':24} {'grid':>19}  {'spoilt':>19}  {'smoothed':>19}  nodes       s  ns")
+    for name, make in SHAPES.items():
+        grid = make()
+        spoilt = perturbed(grid, size)
+        begun = time.process_time()
+        with limited_to(1):
+            smoothed = smooth_volumes(spoilt).grid
+        seconds = time.process_time() - begun
+        nodes = sum(block.nodes[..., 0].size for block in grid.blocks)
+        best = min(cost(perturbed(grid, 0.1)) for _ in range(3))
+        became = "  ".join(figures(each) for each in (grid, spoilt, smoothed))
+        print(f"{name:24} {became} {nodes:6} {seconds:7.2f} {best:3.0f}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,115 @@
+"""Blades and ducts: their walls are those of the sections, their ends planes, their volumes by formula."""
+
+import numpy as np
+import pytest
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.sections.section import Section
+from meshonet.geometry.sections.stack import Stack
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.shapes.circle import Circle
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.solvers.pipeline.lofts import blade_volume, duct_volume
+from meshonet.solvers.stacking.request import StackRequest
+from meshonet.solvers.stacking.section_nodes import around, unit_nodes
+
+BOX = Outline(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]), "box")
+
+
+def blade(twist: float = -30.0) -> Stack:
+    root = Section(naca("2412"), 1.0, 0.0)
+    return Stack((root, Section(naca("0009"), 0.5, 2.0, x=0.1, twist=twist)), kind="blade")
+
+
+def duct(*shapes, chords=(1.0, 2.0)) -> Stack:
+    placed = [
+        Section(shape, chord, 3.0 * k) for k, (shape, chord) in enumerate(zip(shapes, chords, strict=True))
+    ]
+    return Stack(tuple(placed), kind="duct")
+
+
+def volume(grid) -> float:
+    """What the walls and ends enclose, by Gauss's theorem over triangles."""
+    total = 0.0
+    for block in grid.blocks:
+        x = block.nodes
+        for side, sign in (
+            (x[0], -1),
+            (x[-1], 1),
+            (x[:, 0], 1),
+            (x[:, -1], -1),
+            (x[..., 0, :], -1),
+            (x[..., -1, :], 1),
+        ):
+            a, b, c, d = side[:-1, :-1], side[1:, :-1], side[1:, 1:], side[:-1, 1:]
+            total += sign * float((a * np.cross(b, c)).sum() + (a * np.cross(c, d)).sum()) / 6.0
+    return total
+
+
+@pytest.mark.parametrize("twist", [-30.0, 90.0])
+def test_a_blade_has_its_sections_walls_and_a_far_field_that_is_a_cylinder(twist):
+    stack, request = blade(twist), StackRequest(around=65, span=9, far_field=10.0)
+    grid, _ = blade_volume(stack, request)
+    assert measure(grid).folded == 0
+    (block,) = grid.blocks
+    plan = around(stack.sections, 65)
+    root = unit_nodes(stack.sections[0], plan)[0][::-1]
+    assert block.nodes[:, 0, 0, :2] == pytest.approx(root)
+    far = block.nodes[:, -1, :, :2]
+    shift = np.linspace(0.0, 0.1, 9)[:, None] * np.array([1.0, 0.0])  # x of the leading edge
+    assert np.abs(far - shift - far[:, :1]).max() < 0.7  # of a radius of 10, at half the chord
+    assert {(p.name, p.kind, p.side) for p in grid.patches} == {
+        ("blade", "wall", "south"), ("farfield", "farfield", "north"),
+        ("hub", "wall", "bottom"), ("shroud", "wall", "top"),
+    }  # fmt: skip
+
+
+def test_first_cells_of_a_blade_are_as_high_as_asked_at_its_sections():
+    grid, _ = blade_volume(blade(), StackRequest(around=65, span=9, first_cell=1e-4))
+    nodes = grid.blocks[0].nodes
+    first = np.linalg.norm(nodes[:, 1] - nodes[:, 0], axis=-1)
+    assert first[:, [0, -1]] == pytest.approx(1e-4, rel=1e-4)
+    assert first == pytest.approx(1e-4, rel=0.3)
+
+
+def test_a_cone_has_the_volume_of_one():
+    grid, _ = duct_volume(duct(Circle(1.0), Circle(3.0)), StackRequest(around=129, span=17))
+    assert len(grid.blocks) == 5
+    assert measure(grid).folded == 0
+    r, s = 0.5, 1.0
+    assert volume(grid) == pytest.approx(np.pi * 3.0 / 3.0 * (r * r + r * s + s * s), rel=2e-3)
+
+
+def test_boxes_are_one_block_with_walls_all_around():
+    grid, _ = duct_volume(duct(BOX, BOX), StackRequest(around=65, span=9, first_cell=0.002))
+    assert len(grid.blocks) == 1
+    a, b = 0.5, 2.0  # areas of the ends: half the chord squared
+    assert volume(grid) == pytest.approx(3.0 / 3.0 * (a + np.sqrt(a * b) + b), rel=1e-9)
+    nodes = grid.blocks[0].nodes
+    for first in (nodes[1] - nodes[0], nodes[:, 1] - nodes[:, 0]):
+        assert np.linalg.norm(first, axis=-1)[:, [0, -1]] == pytest.approx(0.004, rel=1e-3)
+    assert {(p.name, p.kind) for p in grid.patches} == {
+        ("wall", "wall"), ("inlet", "inlet"), ("outlet", "outlet"),
+    }  # fmt: skip
+
+
+def test_a_box_becomes_a_circle_in_five_blocks():
+    grid, _ = duct_volume(duct(BOX, Circle(0.5), chords=(1.0, 1.0)), StackRequest(around=65, span=17))
+    assert len(grid.blocks) == 5
+    assert measure(grid).folded == 0
+    corners = {tuple(np.round(block.nodes[0, 0, 0], 9)) for block in grid.blocks[1:]}
+    assert corners == {(0.0, -0.25, 0.0), (1.0, -0.25, 0.0), (1.0, 0.25, 0.0), (0.0, 0.25, 0.0)}
+
+
+@pytest.mark.parametrize(
+    ("stack", "request_", "problem"),
+    [
+        (duct(naca("0012"), Circle(1.0)), StackRequest(), "sections[0]: an airfoil is no section of a duct"),
+        (duct(Circle(1.0), Circle(1.0)), StackRequest(around=67), "67 nodes around the four sides of a duct"),
+    ],
+)
+def test_what_is_no_duct_is_refused(stack, request_, problem):
+    with pytest.raises(InputError) as refusal:
+        duct_volume(stack, request_)
+    assert problem in str(refusal.value)
