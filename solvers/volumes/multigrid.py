@@ -147,8 +147,8 @@ class Multigrid:
             shape = (*values.shape[: axis + 1], counts[axis], *values.shape[axis + 2 :])
             add = to is not None and axis == axes[-1]
             result = to if add and to is not None else self._room(depth, way, axis, shape)
-            step = getattr(self.levels[depth].transfers[axis], way)
-            combine_along(values, axis + 1, *step, add, thread_count(), result)
+            first, weights = getattr(self.levels[depth].transfers[axis], way)
+            combine_along(values, axis + 1, first, weights, add, thread_count(), result)
             values = result
         return values
 
@@ -175,7 +175,9 @@ def transfer(n: int, m: int) -> Transfer:
     places: Floats = np.arange(m, dtype=np.float64) * ((n - 1) / (m - 1))
     four = min(4, n)
     low = np.clip(places.astype(np.intp) - 1, 0, n - four)
-    return Transfer((first, weights), (begin, kept), (low, _lagrange(places - low, four)))
+    return Transfer(
+        (first, weights), (begin, kept), (low, _lagrange(np.asarray(places - low, dtype=np.float64), four))
+    )
 
 
 def _lagrange(t: Floats, terms: int) -> Floats:
