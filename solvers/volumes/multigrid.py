@@ -175,7 +175,9 @@ def transfer(n: int, m: int) -> Transfer:
     places: Floats = np.arange(m, dtype=np.float64) * ((n - 1) / (m - 1))
     four = min(4, n)
     low = np.clip(places.astype(np.intp) - 1, 0, n - four)
-    return Transfer((first, weights), (begin, kept), (low, _lagrange(places - low, four)))
+    return Transfer(
+        (first, weights), (begin, kept), (low, _lagrange(np.asarray(places - low, dtype=np.float64), four))
+    )
 
 
 def _lagrange(t: Floats, terms: int) -> Floats:
