@@ -19,6 +19,13 @@ def cubed_sphere(n: int = 9, radius: float = 1.0) -> Grid:
     return Grid(tuple(Block(radius * p / np.linalg.norm(p, axis=-1, keepdims=True)) for p in patches))
 
 
+def half_sphere(n: int = 9) -> Grid:
+    """Five patches of the part of the unit sphere above z = 0."""
+    sides, half = [block.nodes for block in cubed_sphere(n).blocks], n // 2
+    cut = sides[0][:, half:], sides[1][half:], sides[2][half:], sides[3][:, half:], sides[4]
+    return Grid(tuple(Block(patch) for patch in cut))
+
+
 def box(ni: int = 9, nj: int = 8, nk: int = 7, bump: float = 0.2) -> Floats:
     """Nodes (ni, nj, nk, 3) of a box 2 x 1 x 1 whose bottom has a bump, interpolated linearly in between."""
     x, y, z = np.meshgrid(np.linspace(0, 2, ni), np.linspace(0, 1, nj), np.linspace(0, 1, nk), indexing="ij")

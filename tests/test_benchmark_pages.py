@@ -17,6 +17,9 @@ SCRIPTS = {
     "quad-operator": "quads",
     "body-operator": "bodies",
     "training-speed": "training",
+    "marching-surfaces": "marching",
+    "wings": "wings",
+    "volumes": "volumes",
 }
 """Page to script, benchmarks/bench_NAME.py."""
 

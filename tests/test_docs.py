@@ -14,7 +14,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from spatial_shapes import box, cubed_sphere, half_sphere
 
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.solvers.neural.registry import described
 
 ROOT = Path(__file__).parents[1]
@@ -120,6 +123,10 @@ def all_inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.copy(ROOT / "examples" / "grid-convergence" / "ellipse.csv", tmp_path)
     for name, loop in domains(tmp_path).items():
         (tmp_path / name).write_text("\n".join(f"{x:.8f} {y:.8f}" for x, y in loop) + "\n")
+    cubed_sphere().write(tmp_path / "wing.xyz")
+    half_sphere().write(tmp_path / "m6.fmt")
+    for name in ("duct.xyz", "box.xyz", "wing.cgns"):
+        Grid((Block(box()),)).write(tmp_path / name)
     for page in GUIDES:
         for text in blocks(page, "toml"):
             name = re.match(r"# (\w+\.toml)\n", text)

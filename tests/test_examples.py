@@ -10,8 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from spatial_shapes import box
 
 from meshonet.formats.registry import read_grids
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.grid import Grid
 from meshonet_cli.commands import COMMANDS
 
 ROOT = Path(__file__).parents[1]
@@ -46,6 +49,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     outer, hole = [[0, 0], [3, 0], [3, 2], [0, 2], [0, 0]], [[1, 1], [1, 1.4], [1.4, 1.4], [1.4, 1], [1, 1]]
     plate = {"type": "Polygon", "coordinates": [outer, hole]}
     (made / "plate.geojson").write_text(json.dumps(plate))
+    Grid((Block(box()),)).write(made / "wing.cgns")
     section = '[[sections]]\nairfoil = "airfoil.dat"\nchord = {}\nz = {}\n'
     (made / "wing.toml").write_text(section.format(1, 0) + section.format(0.5, 2) + "sweep = 20\n")
     bend = "[[pieces]]\nline = 2\n[[pieces]]\narc = 90\nradius = 2\ntowards = [0, 1, 0]\n"

@@ -46,7 +46,7 @@ class SplinePath:
     open one the last intervals are parabolas. Raises InputError: fewer than two points (closed: four with the
     repeated one), a point twice in a row, values that are not finite.
 
-    >>> SplinePath(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]])).length
+    >>> round(SplinePath(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]])).length, 9)
     3.0
     """
 

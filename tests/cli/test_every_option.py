@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import Meshonet, dataset, duct, wave
+from spatial_shapes import cubed_sphere, half_sphere
 
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
@@ -63,6 +64,7 @@ SHAPES = PRINTING | FILES | {
     "--normalise": (f"large.dat --res 41x15 {MADE}", "OPTION", "nodes"),
 }  # fmt: skip
 GRIDS = SHAPES | {
+    "--threads": ("three.h5 -o {name}.h5 -q", "OPTION 0", "code"),
     "--first-cell": (f"naca:2412 --res 41x41 {MADE}", "OPTION 1e-3", "nodes"),
     "--y-plus": (PLATE, "OPTION 200", "nodes"),
     "--reynolds": (PLATE, "OPTION 2e5", "nodes"),
@@ -89,6 +91,11 @@ BLOCKS = DOMAINS | {
     "--blocks": (f"step.wkt --res 21 {MADE}", "OPTION single", "nodes"),
     "--walls": (f"hole.wkt --cells 900 --first-cell .02 {MADE}", "OPTION bolt", "error"),
 }
+BALL = f"ball.xyz --first-cell .01 --far-field 3 {MADE}"
+MARCHED = {
+    "--layers": (BALL, "OPTION 9", "nodes"),
+    "--symmetry": (f"cap.xyz --first-cell .01 --layers 9 --far-field 3 {MADE}", "OPTION none", "nodes"),
+}
 TRAINING = "arches.h5 --epochs 4 --points 60 --batch 4 -o new.safetensors"
 
 WING, PIPE = "short.toml --around 49 --span 9 --layers 18", "circle:.5 path.csv --cells 40"
@@ -107,7 +114,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--repair": (f"wave.h5 {MADE}", "OPTION", "code"),
         "--no-repair": (f"wave.h5 --repair {MADE}", "OPTION", "code"),
     },
-    "solve-pde": GRIDS | SIDES | BLOCKS | {
+    "solve-pde": GRIDS | SIDES | BLOCKS | MARCHED | {
+        "--layers": (f"{BALL} --method hyperbolic", "OPTION 9", "nodes"),
         "--method": (f"{GRID} {MADE}", "OPTION variational", "nodes"),
         "--tol": (f"wrench.h5 {MADE}", "OPTION .1", "nodes"),
         "--max-cycles": (f"wrench.h5 {MADE}", "OPTION 1", "nodes"),
@@ -122,7 +130,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--no-repair": (f"wrench.h5 --tol 1e-6 {MADE}", "OPTION", "code"),
         "--repair-margin": (f"wrench.h5 --tol 1e-6 {MADE}", "OPTION 12", "nodes"),
     },
-    "infer": GRIDS | BLOCKS | {
+    "infer": GRIDS | BLOCKS | MARCHED | {
         "--model": (f"{BODY} {MADE}", "OPTION airfoil-o", "nodes"),
         "--polish": (f"{BODY} {MADE}", "OPTION 1", "nodes"),
         "--refine": (f"step.wkt --cells 400 {MADE}", "OPTION 1", "nodes"),
@@ -324,6 +332,8 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "path.csv").write_text("0 0 0\n9 0 0\n18 3 0\n")
     cube = np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1)
     Grid.from_nodes(cube).write(folder / "cube.vts")
+    cubed_sphere().write(folder / "ball.xyz")
+    half_sphere().write(folder / "cap.xyz")
     shape = np.loadtxt(Path(__file__).parents[2] / "examples" / "naca2412.dat", skiprows=1) * 40
     (folder / "large.dat").write_text("large\n" + "\n".join(f"{x} {y}" for x, y in shape))
     for name in THERE:

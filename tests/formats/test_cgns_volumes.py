@@ -283,7 +283,7 @@ def test_a_left_handed_zone_is_turned_with_what_it_says(tmp_path: Path) -> None:
         ),
         (
             lambda z: replaced(joint(z)["PointRangeDonor"], np.array([[1, 1, 1], [2, 5, 1]], np.int32)),
-            "interface .* of block 0 to block . joins indices that do not lie on each other; correct its ran",
+            "blocks . and . has faces across it; join faces whose directions lie on each other",
         ),
         (
             lambda z: replaced(z, np.full((3, 3), 1 << 30, np.int64)),

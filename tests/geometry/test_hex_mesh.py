@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from volume_shapes import bend, joined, shell
+from joined_volumes import bend, joined, shell
 
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion

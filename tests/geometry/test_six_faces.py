@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from volume_shapes import bent_pipe, mapped, skewed
 
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
@@ -9,7 +10,6 @@ from meshonet.geometry.blocks.six_faces import FACES, SixFaces
 from meshonet.geometry.blocks.six_patches import six_faces
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.errors import InputError
-from tests.volume_shapes import bent_pipe, mapped, skewed
 
 NODES = mapped(skewed, (5, 6, 7))
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from volume_shapes import joined, perturbed, shell
+from joined_volumes import joined, perturbed, shell
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from block_grids import butterfly, o_ring
-from volume_shapes import bend, joined, perturbed, shell
+from joined_volumes import bend, joined, perturbed, shell
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import PLACES, Block

@@ -4,6 +4,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from volume_shapes import bent_pipe, bump, mapped, random_domain, skewed
 
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import InputError
@@ -15,7 +16,6 @@ from meshonet.solvers.volumes.functional import inverse_lengths
 from meshonet.solvers.volumes.tfi import tfi
 from meshonet.solvers.volumes.variational import variational
 from meshonet.solvers.volumes.winslow import winslow
-from tests.volume_shapes import bent_pipe, bump, mapped, random_domain, skewed
 
 SOLVERS = (tfi, winslow, variational)
 
