@@ -100,7 +100,7 @@ def grids_of(pieces: Sequence[Piece], joints: Sequence[Joint], name: str) -> Ite
     for count, group in enumerate(groups, start=1):
         title = name if len(groups) == 1 else (len(group) == 1 and turned[group[0]].name) or f"{name}-{count}"
         own = [each for each in connections if each.block in group]
-        several = _several([turned[k] for k in group], [blocks[k] for k in group], own, group, title)
+        several = joined_grid([turned[k] for k in group], [blocks[k] for k in group], own, group, title)
         yield _alone(several, turned[group[0]]) if len(group) == 1 else with_loop_names(several)
 
 
@@ -182,13 +182,14 @@ def _alone(grid: Grid, piece: Piece) -> Grid:
     return found
 
 
-def _several(
+def joined_grid(
     pieces: Sequence[Piece],
     blocks: Sequence[Block],
     connections: Sequence[Connection],
     group: Sequence[int],
     name: str,
 ) -> Grid:
+    """Return the grid of the pieces that are `group` of a file's `blocks`, with their connections, named."""
     number = {block: k for k, block in enumerate(group)}
     own = tuple(replace(each, block=number[each.block], donor=number[each.donor]) for each in connections)
     patches = tuple(replace(patch, block=k) for k, piece in enumerate(pieces) for patch in piece.patches)

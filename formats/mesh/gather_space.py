@@ -6,13 +6,11 @@ A file may say where blocks are joined and what is a boundary. What it does not 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
-from meshonet.formats.mesh.gather import Piece, facts_of_pieces, groups_of
+from meshonet.formats.mesh.gather import Piece, groups_of, joined_grid
 from meshonet.formats.mesh.motions import like_others, matched
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion, check_connections
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections, order
 from meshonet.geometry.blocks.grid import Grid
 
@@ -43,7 +41,7 @@ def grids_in_space(pieces: Sequence[Piece], joined: Sequence[Connection], name: 
         own_name = pieces[group[0]].name if len(group) == 1 else ""
         title = name if len(groups) == 1 else own_name or f"{name}-{count}"
         own = [each for each in connections if each.block in group]
-        yield _grid([pieces[k] for k in group], [blocks[k] for k in group], own, group, title)
+        yield joined_grid([pieces[k] for k in group], [blocks[k] for k in group], own, group, title)
 
 
 def _stated(joined: Sequence[Connection], blocks: Sequence[Block]) -> list[Connection]:
@@ -65,17 +63,3 @@ def _groups(blocks: Sequence[Block], connections: Sequence[Connection]) -> list[
     surface = [k for k, block in enumerate(blocks) if len(block.counts) == 2]
     volumes = [group for group in groups_of(len(blocks), connections) if group[0] not in surface]
     return sorted([*volumes, *([surface] if surface else [])])
-
-
-def _grid(
-    pieces: Sequence[Piece],
-    blocks: Sequence[Block],
-    connections: Sequence[Connection],
-    group: Sequence[int],
-    name: str,
-) -> Grid:
-    number = {block: k for k, block in enumerate(group)}
-    own = tuple(replace(each, block=number[each.block], donor=number[each.donor]) for each in connections)
-    patches = tuple(replace(patch, block=k) for k, piece in enumerate(pieces) for patch in piece.patches)
-    facts = facts_of_pieces([(piece.name, piece.iblank) for piece in pieces])
-    return Grid(with_equal_nodes(blocks, own), patches, own, name, facts)
