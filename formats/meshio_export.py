@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from meshonet.formats.format import Options, only_one
-from meshonet.formats.mesh.unstructured import Indices, Unstructured, in_space, unstructured
+from meshonet.formats.mesh.unstructured import Indices, Unstructured, unstructured, with_z
 from meshonet.geometry.blocks.grid import Grid
 
 _TRIANGLES = {"stl", "off"}
@@ -28,7 +28,7 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     (kind,) = options or {"stl"}
     mesh = unstructured(only_one(grids, f"a file of {kind}"))
     cells, nodes = ("triangle", _triangles(mesh)) if kind in _TRIANGLES else ("quad", mesh.cells)
-    made = meshio.Mesh(in_space(mesh.points), [(cells, nodes.astype(np.int32))])
+    made = meshio.Mesh(with_z(mesh.points), [(cells, nodes.astype(np.int32))])
     getattr(meshio, kind).write(str(path), made, **_SETTINGS.get(kind, {}))
 
 

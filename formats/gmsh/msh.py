@@ -13,7 +13,7 @@ import numpy as np
 
 from meshonet.formats.format import Options, only_one
 from meshonet.formats.mesh.collapsed import refuse_collapsed
-from meshonet.formats.mesh.unstructured import CELLS, Indices, in_space, unstructured
+from meshonet.formats.mesh.unstructured import CELLS, Indices, unstructured, with_z
 from meshonet.formats.source import printable
 from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
@@ -55,7 +55,7 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     inside = INTERIOR if INTERIOR not in mesh.faces else f"{INTERIOR}-cells"
     write = _write_41 if "4.1" in options else _write_22
     blocks = [*mesh.faces.items(), (inside, mesh.cells)]
-    write(path, in_space(mesh.points), blocks, links, text="ascii" in options)
+    write(path, with_z(mesh.points), blocks, links, text="ascii" in options)
 
 
 def _affine(motion: Motion) -> list[float]:

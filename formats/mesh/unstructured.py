@@ -65,7 +65,7 @@ def points_of(grid: Grid, numbers: Sequence[Indices]) -> Floats:
     return points
 
 
-def in_space(points: Floats) -> Floats:
+def with_z(points: Floats) -> Floats:
     """Return points (n, 2) in the plane z = 0, those of (n, 3) as they are."""
     return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from meshonet.formats.format import only_one
-from meshonet.formats.mesh.unstructured import CELLS, in_space, unstructured
+from meshonet.formats.mesh.unstructured import CELLS, unstructured, with_z
 from meshonet.geometry.blocks.grid import Grid
 
 
@@ -21,4 +21,4 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     mesh = unstructured(only_one(grids, "a .vtu file"))
     cells = [(CELLS[nodes.shape[1]], nodes) for nodes in (mesh.cells, *mesh.faces.values())]
     numbers = [np.full(len(nodes), k) for k, (_, nodes) in enumerate(cells)]
-    meshio.vtu.write(str(path), meshio.Mesh(in_space(mesh.points), cells, cell_data={"part": numbers}))
+    meshio.vtu.write(str(path), meshio.Mesh(with_z(mesh.points), cells, cell_data={"part": numbers}))

@@ -33,3 +33,10 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
         raise InputError(f"a Reynolds number of {local:g} at {part}", remedy, parameter="chord_fraction")
     friction = (2.0 * math.log10(local) - 0.65) ** -2.3
     return y_plus / (reynolds * math.sqrt(0.5 * friction))
+
+
+def height_note(y_plus: float | None, reynolds: float | None, where: str, height: str) -> str:
+    """Return the sentence that says where the `height` of a first cell comes from; none without a y+."""
+    if y_plus is None:
+        return ""
+    return f"y+ {y_plus:g} at Re {reynolds:g} {where} is {height}: {FORMULA} ({SOURCE})"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
+from meshonet.geometry.spacing.y_plus import first_cell, height_note
 
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
@@ -111,9 +111,5 @@ class BlockRequest:
 
     def note(self, unit: float) -> str:
         """Return where the height comes from, when it was computed."""
-        if self.y_plus is None:
-            return ""
-        return (
-            f"y+ {self.y_plus:g} at Re {self.reynolds:g} on a length of {unit:.6g} is "
-            f"{self.height(unit):.6g}: {FORMULA} ({SOURCE})"
-        )
+        where = f"on a length of {unit:.6g}"
+        return height_note(self.y_plus, self.reynolds, where, f"{self.height(unit) or 0.0:.6g}")

@@ -11,7 +11,7 @@ from meshonet.geometry.arrays import SIDES, TOPOLOGIES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
+from meshonet.geometry.spacing.y_plus import first_cell, height_note
 from meshonet.solvers.method import METHODS, Method, method_named
 from meshonet.solvers.pipeline.coarse import Coarse
 from meshonet.solvers.pipeline.select import best, elliptic, fewer_on_quads
@@ -195,12 +195,9 @@ class GridRequest:
         """Return the heights of first cells and the layers that begin with them."""
         from meshonet.solvers.pipeline.layered import FirstCells
 
-        height, note = self._height(), ""
-        if self.y_plus is not None:
-            note = (
-                f"y+ {self.y_plus:g} at Re {self.reynolds:g} and x/c {self.chord_fraction:g} is "
-                f"{height:.6g} chords: {FORMULA} ({SOURCE})"
-            )
+        height = self._height()
+        where = f"and x/c {self.chord_fraction:g}"
+        note = height_note(self.y_plus, self.reynolds, where, f"{height or 0.0:.6g} chords")
         free_rows = self.growth is not None and self.sampling.nj is None
         layers = self.constant_layers or 1, self.growth, free_rows
         return FirstCells(height, self._sides(), *layers, in_chords=bool(note), note=note)

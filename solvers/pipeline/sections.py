@@ -19,7 +19,7 @@ from meshonet.geometry.shapes.circle import Circle
 from meshonet.geometry.shapes.domain_shape import DomainShape, four_sided
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
+from meshonet.geometry.spacing.y_plus import first_cell, height_note
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.sweeping.butterfly import DEFAULT_CELLS, Disc, butterfly
@@ -84,10 +84,7 @@ def _with_height(shape: Shape, request: GridRequest) -> tuple[GridRequest, str]:
         return request, ""
     unit = extent(shape)
     height = first_cell(request.y_plus, request.reynolds, request.chord_fraction) * unit
-    note = (
-        f"y+ {request.y_plus:g} at Re {request.reynolds:g} on a length of {unit:.6g} is {height:.6g}: "
-        f"{FORMULA} ({SOURCE})"
-    )
+    note = height_note(request.y_plus, request.reynolds, f"on a length of {unit:.6g}", f"{height:.6g}")
     return replace(request, y_plus=None, reynolds=None, chord_fraction=0.5, first_cell=height), note
 
 

@@ -9,7 +9,7 @@ from importlib import import_module
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
+from meshonet.geometry.spacing.y_plus import first_cell, height_note
 from meshonet.solvers.pipeline.parameters import COUNTED
 from meshonet.solvers.pipeline.request import OF_VOLUMES, GridRequest
 from meshonet.solvers.solution import Solution
@@ -109,11 +109,7 @@ def _height(request: GridRequest) -> tuple[float, str]:
     if request.y_plus is None or request.reynolds is None:
         raise InputError("{method} hyperbolic without a first cell", "give {first_cell} or {y_plus} as well")
     height = first_cell(request.y_plus, request.reynolds, request.chord_fraction)
-    note = (
-        f"y+ {request.y_plus:g} at Re {request.reynolds:g}, of a length of 1, is {height:.6g}: {FORMULA} "
-        f"({SOURCE})"
-    )
-    return height, note
+    return height, height_note(request.y_plus, request.reynolds, "on a length of 1", f"{height:.6g}")
 
 
 def _fill(shape: SpatialShape, request: GridRequest) -> Solution:

@@ -7,7 +7,7 @@ from typing import Any
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import LARGEST
-from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
+from meshonet.geometry.spacing.y_plus import first_cell, height_note
 from meshonet.solvers.stacking.section_nodes import GAP
 from meshonet.solvers.stacking.wing_surface import DEFAULT_AROUND, DEFAULT_SPAN, WingSurface
 
@@ -86,12 +86,8 @@ class StackRequest:
 
     def note(self, chord: float) -> str:
         """Return where the height comes from, when it was computed."""
-        if self.y_plus is None:
-            return ""
-        return (
-            f"y+ {self.y_plus:g} at Re {self.reynolds:g} on a chord of {chord:.6g} is "
-            f"{self.height() * chord:.6g}: {FORMULA} ({SOURCE})"
-        )
+        where = f"on a chord of {chord:.6g}"
+        return height_note(self.y_plus, self.reynolds, where, f"{self.height() * chord:.6g}")
 
 
 def stack_request(**parameters: Any) -> StackRequest:
