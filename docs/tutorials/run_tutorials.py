@@ -4,8 +4,8 @@
     python docs/tutorials/run_tutorials.py --pictures [PAGE...]  and draw its pictures again
 
 A page may hold blocks of `bash` and `python`, which are run; blocks of `text` behind them, which are what is
-printed (a line `...` stands for any lines); blocks of `toml` that begin with `# NAME.toml`, which are files. A
-comment `<!-- needs: PROGRAM -->` in front of a block names a program or Python package that may be absent.
+printed (a line `...` stands for any lines); blocks of `toml` that begin with `# NAME.toml`, which are files.
+A comment `<!-- needs: PROGRAM -->` in front of a block names a program or Python package that may be absent.
 """
 
 from __future__ import annotations
