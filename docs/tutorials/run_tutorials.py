@@ -26,7 +26,7 @@ ROOT = Path(__file__).parents[2]
 FOLDER = Path(__file__).parent
 PAGES = sorted(set(FOLDER.glob("*.md")) - {FOLDER / "index.md"})
 TOLERANCE = 0.02
-WIDTH, COLOURS = 800, 48
+WIDTH, COLOURS = 800, 64
 _BLOCK = re.compile(
     r"(?:^<!-- needs: (\S+) -->\n)?^```(bash|python|text|toml)\n(.*?)^```$", re.DOTALL | re.MULTILINE
 )
@@ -173,7 +173,7 @@ def fill(page: Path, results: list[Result]) -> None:
         nonlocal last
         if block[2] != "text":
             last = next(printed, "")
-        elif not block[3]:
+        elif not block[3] and last.strip():
             return f"```text\n{last.strip(chr(10))}\n```"
         return block[0]
 
@@ -190,7 +190,8 @@ def keep_pictures(page: Path, folder: Path) -> None:
             size = (WIDTH, round(picture.height * WIDTH / picture.width))
             picture = picture.resize(size, Image.Resampling.LANCZOS)
         (FOLDER / "img").mkdir(exist_ok=True)
-        picture.quantize(COLOURS, dither=Image.Dither.NONE).save(FOLDER / "img" / name, optimize=True)
+        few = picture.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+        few.save(FOLDER / "img" / name, optimize=True)
 
 
 def main() -> int:
