@@ -2,7 +2,7 @@
 
     python docs/tutorials/run_tutorials.py [PAGE...]             say where a page and its commands differ
     python docs/tutorials/run_tutorials.py --pictures [PAGE...]  and draw its pictures again
-    python docs/tutorials/run_tutorials.py --fill [PAGE...]      and write what is printed into empty blocks of text
+    python docs/tutorials/run_tutorials.py --fill [PAGE...]      and write what is printed into empty blocks
 
 A page may hold blocks of `bash` and `python`, which are run; blocks of `text` behind them, which are what is
 printed (a line `...` stands for any lines); blocks of `toml` that begin with `# NAME.toml`, which are files.
