@@ -33,7 +33,8 @@ class Drawing:
         """Draw an open line."""
         dashed = f' stroke-dasharray="{dash}"' if dash else ""
         self.parts.append(
-            f'<polyline points="{self.place(points)}" fill="none" stroke="{colour}" stroke-width="{width}"{dashed}/>'
+            f'<polyline points="{self.place(points)}" fill="none" stroke="{colour}" '
+            f'stroke-width="{width}"{dashed}/>'
         )
 
     def area(self, points: Points, colour: str = GOOD, ink: str = INK) -> None:
@@ -110,7 +111,7 @@ def main() -> None:
 def pair(good: Points, bad: Points) -> tuple[Drawing, NDArray[np.float64], NDArray[np.float64]]:
     """Return a drawing of two cells, and their corners."""
     drawing = Drawing((-0.25, 3.35), (-0.45, 1.3), 360)
-    left, right = np.asarray(good, dtype=float), np.asarray(bad, dtype=float) + [1.9, 0.0]
+    left, right = np.asarray(good, dtype=float), np.add(bad, [1.9, 0.0])
     drawing.area(left, GOOD)
     drawing.area(right, BAD)
     return drawing, left, right
@@ -133,7 +134,7 @@ def angles() -> None:
 
 def skewness() -> None:
     """Draw the deviation of the worst angle from 90 degrees."""
-    drawing, left, right = pair(SQUARE, SLANTED)
+    drawing, _, right = pair(SQUARE, SLANTED)
     drawing.text((0.55, -0.3), "skewness 0")
     along = (right[2] - right[3]) / np.linalg.norm(right[2] - right[3])
     normal = right[3] + 0.6 * np.array([along[1], -along[0]])
@@ -146,7 +147,7 @@ def skewness() -> None:
 
 def jacobian() -> None:
     """Draw the Jacobian at the worst corner."""
-    drawing, left, right = pair(SQUARE, SLANTED)
+    drawing, _, right = pair(SQUARE, SLANTED)
     drawing.text((0.55, -0.3), "u × v / (|u| |v|) = 1")
     for k, name, shift in ((0, "u", (-0.14, 0.05)), (2, "v", (0, 0.1))):
         drawing.line([right[3], right[k]], BAD, 3)

@@ -2,8 +2,8 @@
 An O grid around an airfoil
 ===========================
 
-Use this for inviscid flow around an airfoil, or for a first look at its shape. Without further parameters the grid
-is made by a conformal map.
+Use this for inviscid flow around an airfoil, or for a first look at its shape. Without further parameters the
+grid is made by a conformal map.
 """
 
 import meshonet

@@ -2,8 +2,8 @@
 A boundary layer with y+ 1
 ==========================
 
-Use this for viscous flow around an airfoil. The height of the first cell follows from y+ and the Reynolds number by
-the skin friction of a flat plate; the grid is marched from the wall.
+Use this for viscous flow around an airfoil. The height of the first cell follows from y+ and the Reynolds
+number by the skin friction of a flat plate; the grid is marched from the wall.
 """
 
 import meshonet

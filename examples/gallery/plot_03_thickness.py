@@ -2,8 +2,8 @@
 Quality against thickness
 =========================
 
-Use this as a pattern for studies in which a parameter of the shape varies: twelve airfoils, the worst angle of the
-grid around each.
+Use this as a pattern for studies in which a parameter of the shape varies: twelve airfoils, the worst angle
+of the grid around each.
 """
 
 import matplotlib.pyplot as plt

@@ -2,9 +2,9 @@
 One duct, four methods
 ======================
 
-Use this to see what the methods do to a shape with four sides. Interpolation copies the walls into the duct; Winslow's
-equations smooth; Thomas and Middlecoff's control functions keep the spacing of the walls; the variational method
-minimises angles.
+Use this to see what the methods do to a shape with four sides. Interpolation copies the walls into the duct;
+Winslow's equations smooth; Thomas and Middlecoff's control functions keep the spacing of the walls; the
+variational method minimises angles.
 """
 
 import matplotlib.pyplot as plt

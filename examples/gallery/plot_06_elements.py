@@ -2,7 +2,8 @@
 Two elements in one far field
 =============================
 
-Use this for a wing section with a flap, or for bodies beside each other. ``assemble`` makes one domain of the shapes.
+Use this for a wing section with a flap, or for bodies beside each other. ``assemble`` makes one domain of the
+shapes.
 """
 
 import numpy as np

@@ -2,8 +2,8 @@
 The passage of a cascade
 ========================
 
-Use this for a row of blades. The periodic sides match node by node, so that a flow solver needs no interpolation
-there.
+Use this for a row of blades. The periodic sides match node by node, so that a flow solver needs no
+interpolation there.
 """
 
 import numpy as np

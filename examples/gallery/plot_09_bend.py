@@ -2,8 +2,8 @@
 A pipe bend
 ===========
 
-Use this to carry a cross-section along a curve: a pipe, a coil, a duct. A circle becomes five blocks, without an axis
-on which cells lose a side.
+Use this to carry a cross-section along a curve: a pipe, a coil, a duct. A circle becomes five blocks, without
+an axis on which cells lose a side.
 """
 
 import numpy as np
