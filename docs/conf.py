@@ -11,7 +11,7 @@ os.environ.setdefault("MPLBACKEND", "agg")
 
 project = "meshonet"
 author = "the meshonet authors"
-copyright = "MIT licence"  # noqa: A001 - Sphinx's name
+copyright = "the meshonet authors, MIT licence"  # noqa: A001 - Sphinx's name
 version = release = meshonet.__version__
 
 extensions = [
