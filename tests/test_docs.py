@@ -48,6 +48,11 @@ def test_the_models_page_is_current() -> None:
     assert (REFERENCE / "models.md").read_text() == pages().models_page(), "run make docs"  # type: ignore[attr-defined]
 
 
+def test_the_page_of_held_out_errors_is_current() -> None:
+    page = (ROOT / "docs" / "benchmarks" / "models.md").read_text()
+    assert page == pages().errors_page(), "run make docs"  # type: ignore[attr-defined]
+
+
 def test_the_formats_page_is_current() -> None:
     assert (REFERENCE / "formats.md").read_text() == pages().formats_page(), "run make docs"  # type: ignore[attr-defined]
 
@@ -196,10 +201,11 @@ def test_the_example_makefile_grids_a_folder_and_judges_it(tmp_path: Path) -> No
     assert (tmp_path / "quality.json").read_text().count('"folded"') >= 2
 
 
-def test_every_path_of_the_architecture_page_is_there() -> None:
+@pytest.mark.parametrize("name", ["architecture", "changes", "stages"])
+def test_every_path_of_the_pages_for_developers_is_there(name: str) -> None:
     """Paths in backticks, from the root or from a package; NAME stands for what is added."""
-    page = (ROOT / "docs" / "development" / "architecture.md").read_text()
+    page = (ROOT / "docs" / "development" / f"{name}.md").read_text()
     words = re.findall(r"`([a-z_/]+(?:/|\.py|\.md|\.pyi|\.pyx))`", page)
-    assert len(words) > 30
+    assert len(words) > 15
     roots = (ROOT, ROOT / "docs", ROOT / "tests" / "formats", ROOT / "meshonet_cli")
     assert not [word for word in words if not any((root / word).exists() for root in roots)]
