@@ -175,7 +175,7 @@ $(VENV)/.documenting: $(VENV)/.installed
 	@touch $@
 
 site: $(VENV)/.documenting
-	$(BIN)/codespell
+	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md docs examples meshonet_cli meshonet/api
 	$(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going -q docs $(SITE)
 	@echo '$(SITE)/index.html'
 
