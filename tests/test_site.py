@@ -13,7 +13,7 @@ DOCS = ROOT / "docs"
 MADE = DOCS / "reference" / "api", DOCS / "gallery" / "python"
 PAGES = sorted(page for page in DOCS.rglob("*.md") if not any(folder in page.parents for folder in MADE))
 MEASURED = DOCS / "benchmarks"
-WHEN = r"\b([Uu]se|[Rr]ead|[Ll]ook|[Cc]ome|[Ff]ind|[Ss]tart|[Ww]ork|[Ww]hen|default)\b"
+WHEN = r"\b([Uu]se|[Rr]ead|[Ll]ook|[Cc]ome|[Ff]ind|[Ss]tart|[Ww]ork|[Ww]hen|default|minutes)\b"
 
 
 def path_of(page: Path) -> str:
