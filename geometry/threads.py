@@ -10,6 +10,9 @@ from contextlib import contextmanager
 MOST = 64
 """Threads that a kernel starts at the most (``TEAM_MOST`` of ``team.h``)."""
 
+NODES_EACH = 1 << 16
+"""Nodes of a planar grid that are worth a thread: starting it costs what the quickest kernel takes for 5,000."""
+
 _limit: int | None = None
 
 
@@ -23,6 +26,11 @@ def cores() -> int:
 def thread_count() -> int:
     """Return the number of threads to work with: as many as there are cores, unless limited."""
     return min(cores() if _limit is None else _limit, MOST)
+
+
+def threads_for(nodes: int) -> int:
+    """Return the number of threads to work with on so many nodes of a planar grid: one where they are few."""
+    return 1 if nodes < 2 * NODES_EACH else min(thread_count(), nodes // NODES_EACH)
 
 
 @contextmanager
