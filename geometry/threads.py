@@ -7,6 +7,8 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from meshonet.geometry.errors import InputError
+
 MOST = 64
 """Threads that a kernel starts at the most (``TEAM_MOST`` of ``team.h``)."""
 
@@ -35,10 +37,15 @@ def threads_for(nodes: int) -> int:
 
 @contextmanager
 def limited_to(threads: int | None) -> Iterator[None]:
-    """Have kernels work with so many threads inside; None leaves the number as it is."""
+    """Have kernels work with so many threads inside; None leaves the number as it is.
+
+    Raises InputError: fewer than one.
+    """
     global _limit
+    if threads is not None and threads < 1:
+        raise InputError(f"{threads} threads", "use 1 or more", parameter="threads")
     before = _limit
-    _limit = before if threads is None else max(threads, 1)
+    _limit = before if threads is None else threads
     try:
         yield
     finally:

@@ -101,9 +101,9 @@ def hyperbolic_march(
 # layers
 def layer_steps(steps: Floats, length: float, first: float, last: float, constant: int) -> float: ...
 def layer_lines(
-    x: Floats, y: Floats, X: Floats, Y: Floats, first: float, last: float, constant: int
+    x: Floats, y: Floats, X: Floats, Y: Floats, first: float, last: float, constant: int, threads: int = 1
 ) -> float: ...
-def redistribute(x: Floats, y: Floats, first: Floats, fade: Floats) -> None: ...
+def redistribute(x: Floats, y: Floats, first: Floats, fade: Floats, threads: int = 1) -> None: ...
 
 # conformal: `maps` are a geometry.lift.Lift
 Removed: TypeAlias = tuple[complex, complex, complex, complex, float]
@@ -122,7 +122,7 @@ def picard_step(c: Floats, height: float, matrices: Floats, eigenvalues: Floats,
 def strip_rows(
     x: Floats, y: Floats, order: Indices, lift: Any, sums: Sequence[tuple[int, int, Floats]],
     sharpness: float, along: Floats, across: Floats, matrix: Floats, cuts: Indices, begin: int,
-    axis: tuple[complex, complex] | None,
+    axis: tuple[complex, complex] | None, threads: int = 1,
 ) -> bool: ...  # fmt: skip
 
 # neural

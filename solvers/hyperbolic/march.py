@@ -22,6 +22,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import hyperbolic_march, redistribute
 from meshonet.solvers.hyperbolic.front import Front, distance_to_march
 from meshonet.solvers.hyperbolic.level_spacing import level_steps
@@ -158,7 +159,7 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
     rate = math.log(steps[-1] / steps[-2]) if rows > 2 else 1.0
     fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(FADE_ROWS, 1.5 / max(rate, 1e-3)))
     if rows > 2:
-        redistribute(nodes[..., 0], nodes[..., 1], heights, fade)
+        redistribute(nodes[..., 0], nodes[..., 1], heights, fade, threads_for(nodes[..., 0].size))
 
 
 def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:

@@ -151,6 +151,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--compare": ("grid.h5", "OPTION smooth.h5", "out"),
         "--pair": ("bc.h5 --compare cb.h5 --summary", "OPTION order", "out"),
         "--summary": ("grid.h5 smooth.h5", "OPTION", "out"),
+        "--threads": ("grid.h5", "OPTION 0", "code"),
     },
     "convert": PRINTING | FILES | {
         "--extrude": ("grid.h5 -o made.p3d", "OPTION 1", "bytes"),
