@@ -95,7 +95,7 @@ class VariationalDescent:
 def hyperbolic_march(
     x: Floats, y: Floats, steps: Floats, dissipation: float, even: float, tolerated: float, bend: float,
     implicit: float, volume: float, sweeps: int, rise: int, ends: Floats | None = None,
-    widening: Floats | None = None, ratios: Floats | None = None,
+    widening: Floats | None = None, ratios: Floats | None = None, threads: int = 1,
 ) -> None: ...  # fmt: skip
 
 # layers

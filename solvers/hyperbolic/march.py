@@ -139,7 +139,9 @@ def _marched(
     distance = distance_to_march(front, first, cells, settings, constant, edge)
     for _ in range(4):
         steps = level_steps(first, distance, cells, constant, edge)
-        hyperbolic_march(levels[0], levels[1], steps, *knobs, front.ends, front.widening)
+        hyperbolic_march(
+            levels[0], levels[1], steps, *knobs, front.ends, front.widening, threads=threads_for(levels[0].size)
+        )
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None
