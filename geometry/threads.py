@@ -13,7 +13,7 @@ MOST = 64
 """Threads that a kernel starts at the most (``TEAM_MOST`` of ``team.h``)."""
 
 NODES_EACH = 1 << 16
-"""Nodes of a planar grid that are worth a thread: starting it costs what the quickest kernel takes for 5,000."""
+"""Nodes of a planar grid that are worth a thread, which costs as much as the quickest kernel on 5,000."""
 
 _limit: int | None = None
 

@@ -57,9 +57,8 @@ class Multigrid:
                 nodes = planar_nodes(xi.cells + 1, eta.cells + 1)
             planes = nodes[..., 0], nodes[..., 1]
             coarse = bool(self.levels)
-            level = MultigridLevel(
-                *planes, xi.differences, eta.differences, periodic, scratch, coarse, threads_for(planes[0].size)
-            )
+            weights, threads = (xi.differences, eta.differences), threads_for(planes[0].size)
+            level = MultigridLevel(*planes, *weights, periodic, scratch, coarse, threads)
             self.levels.append(level)
             self._patches.append(patches(level, xi, eta, corners, scratch))
             self._edges.append(edges)

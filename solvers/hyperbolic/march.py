@@ -135,13 +135,12 @@ def _marched(
         settings.sweeps,
         round(RISING * cells),
     )
+    threads = threads_for(levels[0].size)
     edge = front.edge if even else None
     distance = distance_to_march(front, first, cells, settings, constant, edge)
     for _ in range(4):
         steps = level_steps(first, distance, cells, constant, edge)
-        hyperbolic_march(
-            levels[0], levels[1], steps, *knobs, front.ends, front.widening, threads=threads_for(levels[0].size)
-        )
+        hyperbolic_march(levels[0], levels[1], steps, *knobs, front.ends, front.widening, None, threads)
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None
