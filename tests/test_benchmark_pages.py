@@ -20,6 +20,7 @@ SCRIPTS = {
     "marching-surfaces": "marching",
     "wings": "wings",
     "volumes": "volumes",
+    "kershaw": "kershaw",
 }
 """Page to script, benchmarks/bench_NAME.py."""
 

@@ -98,7 +98,8 @@ def test_links_lead_to_files_and_headings(page: Path) -> None:
 
 
 def blocks(page: Path, language: str = "") -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), flags=re.DOTALL | re.MULTILINE)
+    fences = re.findall(r"^```([^\n]*)\n(.*?)^```$", page.read_text(), flags=re.DOTALL | re.MULTILINE)
+    return [text for word, text in fences if word == language]
 
 
 def commands(page: Path) -> list[str]:

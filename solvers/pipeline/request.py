@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
     from meshonet.solvers.pipeline.layered import FirstCells
 
-OF_VOLUMES = ("layers", "symmetry")
+OF_VOLUMES = ("layers", "symmetry", "energy")
 """Parameters that only grids in space have a use for."""
 
 OPERATOR_SETTINGS = ("model", "polish", "device")  # settings any of which asks for a network
@@ -101,6 +101,8 @@ class GridRequest:
         Nodes along the lines of a volume marched from a surface, the wall's included.
     symmetry : {'x', 'y', 'z', 'none'}, optional
         Axis that the open edges of a surface lie across.
+    energy : {'angles', 'shape'}, optional
+        What is minimised inside six faces; None: angles.
     threads : int, optional
         Threads that kernels work with; None: all there are.
 
@@ -143,6 +145,7 @@ class GridRequest:
     layout: Layout | None = None
     layers: int | None = None
     symmetry: Literal["x", "y", "z", "none"] | None = None
+    energy: Literal["angles", "shape"] | None = None
     threads: int | None = None
 
     def __post_init__(self) -> None:
