@@ -103,10 +103,11 @@ def blocks(page: Path, language: str = "") -> list[str]:
 
 
 def commands(page: Path) -> list[str]:
-    """Every `meshonet ...` line of the blocks of a page; tutorials have a test of their own."""
+    """Every `meshonet ...` line of the blocks of a page, and scripts of a line; tutorials have a test of their own."""
     if page.parent.name == "tutorials":
         return []
-    return [line for block in blocks(page) for line in block.splitlines() if line.startswith("meshonet ")]
+    begun = ("meshonet ", "python -c ")
+    return [line for block in blocks(page) for line in block.splitlines() if line.startswith(begun)]
 
 
 @pytest.fixture
@@ -155,6 +156,7 @@ def domains(folder: Path) -> dict[str, Any]:
 def run(line: str, folder: Path) -> None:
     program = f"{shlex.quote(sys.executable)} -m meshonet_cli"
     shell = re.sub(r"\bmeshonet (?=[a-z])", f"{program} ", line)
+    shell = re.sub("^python ", f"{shlex.quote(sys.executable)} ", shell)
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(  # noqa: S602
         shell, shell=True, cwd=folder, env=environment, capture_output=True, text=True, timeout=120
