@@ -103,7 +103,7 @@ def blocks(page: Path, language: str = "") -> list[str]:
 
 
 def commands(page: Path) -> list[str]:
-    """Every `meshonet ...` line of the blocks of a page, and scripts of a line; tutorials have their own test."""
+    """Commands in the blocks of a page, and Python of a line; tutorials have a test of their own."""
     if page.parent.name == "tutorials":
         return []
     begun = ("meshonet ", "python -c ")
