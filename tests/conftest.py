@@ -1,4 +1,4 @@
-"""Fixtures of all tests, and the mark of those that run Debian's programs: ``make test-clients`` installs them."""
+"""Fixtures of all tests; the mark of those that run Debian's programs, from ``make test-clients``."""
 
 from __future__ import annotations
 
