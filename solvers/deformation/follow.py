@@ -1,0 +1,107 @@
+"""How nodes follow their boundary: one smooth map of the plane or of space, and its derivative.
+
+Nodes of moved walls are sources of the field (`meshonet.solvers.deformation.field`), with what they move and
+turn by; those of the rest of the outer boundary are sources that stay. Straight sides, and flat ones of
+volumes, that touch a moved wall slide along themselves first, and are sources then.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.deformation.field import Field
+from meshonet.solvers.deformation.motions import Turning, affine, turns_in_plane, turns_in_space
+from meshonet.solvers.deformation.outer import NodeTable, Piece
+from meshonet.solvers.deformation.sources import Bools, Sources, sources_of
+from meshonet.solvers.deformation.targets import Targets
+
+NEAR = 0.1
+"""Distance inside which the nearest wall nodes prevail, in extents of what is moved."""
+FLAT = 1e-9
+"""Part of its extent by which a side is off a straight line or plane at the most, to slide in it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Follow:
+    """The map of a table's nodes that nodes of its boundary make when they move."""
+
+    table: NodeTable
+    sources: Sources
+    turning: Turning | None
+    """In the plane."""
+    slide: Field | None
+    """At the nodes that slide, where there are any."""
+    field: Field
+    inner: Indices
+
+    @classmethod
+    def of(cls, table: NodeTable, moved: Bools) -> Follow:
+        """Return that of `table` whose nodes `moved` (n,) go to places of their own."""
+        nodes, sources = table.nodes, sources_of(table, moved)
+        near = NEAR * float(np.ptp(nodes[moved], axis=0).max())
+        held = np.union1d(np.flatnonzero(moved), sources.fixed)
+        slides = np.flatnonzero(sources.slides)
+        slide = Field.of(nodes, held, sources.areas, near, slides) if len(slides) else None
+        inner = np.flatnonzero(~table.outer)
+        every = np.union1d(held, slides) if len(slides) else held
+        field = Field.of(nodes, every, sources.areas, near, inner)
+        turning = Turning.of(nodes, sources.elements) if nodes.shape[1] == 2 else None
+        return cls(table, sources, turning, slide, field, inner)
+
+    def nodes_to(self, to: Floats) -> Floats:
+        """Return all nodes (n, d) when the moved ones go where they are in `to` (n, d)."""
+        nodes, moved = self.table.nodes, self.sources.moved
+        there = np.where(moved[:, None], to, nodes)
+        turns = self._turns(there)
+        if self.slide is not None:
+            motions = self._motions(self.slide, there, turns)
+            move = np.zeros_like(nodes)
+            move[self.sources.slides] = self.slide.blended(motions)
+            there = there + self._along_sides(move, there)
+        there[self.inner] += self.field.blended(self._motions(self.field, there, turns))
+        return there
+
+    def _turns(self, there: Floats) -> Floats:
+        old = self.table.nodes
+        if self.turning is not None:
+            return turns_in_plane(self.turning.angles(old, there))
+        return turns_in_space(self.sources.elements, old, there)
+
+    def _motions(self, field: Field, there: Floats, turns: Floats) -> Floats:
+        at = field.sources
+        return affine(self.table.nodes[at], there[at], turns[at])
+
+    def _along_sides(self, move: Floats, there: Floats) -> Floats:
+        """Return displacements (n, d) of sliding nodes without what leads out of their straight sides."""
+        for piece in self.sources.sliding:
+            normal = normal_of(self.table, piece, there)
+            if normal is not None:
+                at = piece.numbers.ravel()
+                move[at] -= (move[at] @ normal)[:, None] * normal
+        return move
+
+
+def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
+    """Return the unit normal (d,) of a straight or flat side, None where it is bent, or its ends leave it."""
+    nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
+    middle = nodes.mean(axis=0)
+    _, size, ways = np.linalg.svd(nodes - middle, full_matrices=False)
+    normal = np.asarray(ways[-1])
+    off = np.abs((np.concatenate([nodes, after]) - middle) @ normal).max()
+    return normal if off <= FLAT * size[0] else None
+
+
+def sliding_notes(table: NodeTable, targets: Targets) -> tuple[str, ...]:
+    """Return what is to be said of sides that touch moved walls and are not moved themselves."""
+    notes = []
+    for piece in sources_of(table, targets.moved).sliding:
+        if (targets.nodes[piece.numbers] == table.nodes[piece.numbers]).all():
+            continue  # the moved nodes that it touches stay where they are
+        flat = normal_of(table, piece, targets.nodes) is not None
+        what = "slide along it" if flat else "follow: it is bent"
+        notes.append(f"nodes of {piece.patch.name} {what}")
+    return tuple(dict.fromkeys(notes))
