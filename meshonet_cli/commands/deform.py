@@ -23,7 +23,7 @@ def deform(
     wall: Annotated[list[str] | None, _option(
         "--wall", metavar="[NAME=]FILE",
         help="New shape of a wall: an outline, naca:2412, or a grid with as many nodes there, taken node by "
-        "node. NAME is needed where there are several walls, and may be any part of the boundary. Repeatable.",
+        "node. NAME is needed where there are several walls; it may be any part of the boundary. Repeatable.",
     )] = None,
     rotate: Annotated[list[str] | None, _option(
         "--rotate", metavar="NAME=DEGREES@X,Y",

@@ -18,8 +18,8 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet.geometry.quality.measure import count_folded, worst_cells_of
 from meshonet.solvers.deformation.follow import Follow, sliding_notes
-from meshonet.solvers.deformation.outer import NodeTable
-from meshonet.solvers.deformation.targets import NewWall, Targets, first_heights, targets_of
+from meshonet.solvers.deformation.outer import NodeTable, first_heights
+from meshonet.solvers.deformation.targets import NewWall, Targets, targets_of
 from meshonet.solvers.solution import Outcome, Solution
 
 METHOD = "deformation"
@@ -40,9 +40,10 @@ def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
         where = worst_cells_of(grid, 1)[0]
         raise InputError(f"{folded} cells of the starting grid are folded, ({where})", "give a valid grid")
     targets = targets_of(table, walls)
-    made, path = _made(table, targets)
+    follow = Follow.of(table, targets.moved)
+    made, path = _made(follow, targets)
     outcome = Outcome.FOLDED if _folded(made) else Outcome.DONE
-    notes = (*targets.notes, *sliding_notes(table, targets), _layers(grid, made, targets))
+    notes = (*targets.notes, *sliding_notes(follow, targets.nodes), *_layers(table, made, targets))
     made = made.with_provenance(method=METHOD, walls=",".join(targets.names))
     seconds = {"grid": time.perf_counter() - begun}
     return Solution(made, METHOD, path=path, notes=notes, outcome=outcome, seconds=seconds)
@@ -52,33 +53,32 @@ def _folded(grid: Grid) -> int:
     return sum(count_folded(block.nodes) for block in grid.blocks)
 
 
-def _made(table: NodeTable, targets: Targets) -> tuple[Grid, tuple[str, ...]]:
+def _made(follow: Follow, targets: Targets) -> tuple[Grid, tuple[str, ...]]:
     """Return the first grid without folded cells, or that with the fewest, and the stages it took."""
-    best: tuple[int, Grid, tuple[str, ...]] | None = None
-    for made, path in _ways(table, targets):
-        left = _folded(made)
-        if best is None or left < best[0]:
-            best = left, made, path
-        if not left:
+    tried: list[tuple[int, Grid, tuple[str, ...]]] = []
+    for made, path in _ways(follow, targets):
+        tried.append((_folded(made), made, path))
+        if not tried[-1][0]:
             break
-    assert best is not None
-    return best[1:]
+    return min(tried, key=lambda each: each[0])[1:]
 
 
-def _ways(table: NodeTable, targets: Targets) -> Iterator[tuple[Grid, tuple[str, ...]]]:
-    made = table.grid
+def _ways(follow: Follow, targets: Targets) -> Iterator[tuple[Grid, tuple[str, ...]]]:
+    made = follow.table.grid
     for steps in STEPS:
-        made = _in_steps(table, targets, steps)
+        made = _in_steps(follow, targets, steps)
         yield made, (f"{steps} steps",) if steps > 1 else ()
     yield from _mended(made)
 
 
-def _in_steps(table: NodeTable, targets: Targets, steps: int) -> Grid:
+def _in_steps(follow: Follow, targets: Targets, steps: int) -> Grid:
     """Return the grid after so many equal steps."""
-    way, now = targets.nodes - table.nodes, table
+    table = now = follow.table
     for number in range(1, steps + 1):
-        to = targets.nodes if number == steps else table.nodes + way * (number / steps)
-        nodes = Follow.of(now, targets.moved).nodes_to(to)
+        part = number / steps
+        to = targets.nodes if part == 1.0 else table.nodes + part * (targets.nodes - table.nodes)
+        step = follow if number == 1 else Follow.of(now, targets.moved)
+        nodes = step.nodes_to(to)
         now = replace(now, nodes=nodes, grid=replace(table.grid, blocks=now.with_nodes(nodes)))
     return now.grid
 
@@ -102,8 +102,11 @@ def _mended(grid: Grid) -> Iterator[tuple[Grid, tuple[str, ...]]]:
             yield smooth_volumes(grid).grid, ("smoothing",)
 
 
-def _layers(before: Grid, after: Grid, targets: Targets) -> str:
+def _layers(table: NodeTable, after: Grid, targets: Targets) -> tuple[str, ...]:
     """Return a note of the largest change of a first cell's height at the moved walls."""
-    old, new = (first_heights(grid, targets.names) for grid in (before, after))
+    pieces = [piece for piece in table.pieces if piece.patch.name in targets.names]
+    walls = [piece for piece in pieces if piece.patch.kind == "wall"] or pieces
+    old, new = (first_heights(grid, walls) for grid in (table.grid, after))
     change = float(np.abs(new / old - 1.0).max())
-    return f"first cells at {', '.join(targets.names)}: heights changed by at most {100 * change:.2g} %"
+    names = ", ".join(dict.fromkeys(piece.patch.name for piece in walls))
+    return (f"first cells at {names}: heights changed by at most {100 * change:.2g} %",)

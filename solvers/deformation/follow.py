@@ -17,7 +17,6 @@ from meshonet.solvers.deformation.field import Field
 from meshonet.solvers.deformation.motions import Turning, affine, turns_in_plane, turns_in_space
 from meshonet.solvers.deformation.outer import NodeTable, Piece
 from meshonet.solvers.deformation.sources import Bools, Sources, sources_of
-from meshonet.solvers.deformation.targets import Targets
 
 NEAR = 0.1
 """Distance inside which the nearest wall nodes prevail, in extents of what is moved."""
@@ -56,24 +55,22 @@ class Follow:
         """Return all nodes (n, d) when the moved ones go where they are in `to` (n, d)."""
         nodes, moved = self.table.nodes, self.sources.moved
         there = np.where(moved[:, None], to, nodes)
-        turns = self._turns(there)
         if self.slide is not None:
-            motions = self._motions(self.slide, there, turns)
+            motions = self._motions(self.slide, there)
             move = np.zeros_like(nodes)
             move[self.sources.slides] = self.slide.blended(motions)
             there = there + self._along_sides(move, there)
-        there[self.inner] += self.field.blended(self._motions(self.field, there, turns))
+        there[self.inner] += self.field.blended(self._motions(self.field, there))
         return there
 
-    def _turns(self, there: Floats) -> Floats:
-        old = self.table.nodes
+    def _motions(self, field: Field, there: Floats) -> Floats:
+        """Return the motions (d + d², k) of the sources of a field."""
+        old, at = self.table.nodes, field.sources
         if self.turning is not None:
-            return turns_in_plane(self.turning.angles(old, there))
-        return turns_in_space(self.sources.elements, old, there)
-
-    def _motions(self, field: Field, there: Floats, turns: Floats) -> Floats:
-        at = field.sources
-        return affine(self.table.nodes[at], there[at], turns[at])
+            turns = turns_in_plane(self.turning.angles(old, there)[at])
+        else:
+            turns = turns_in_space(self.sources.elements, old, there)[at]
+        return affine(old[at], there[at], turns)
 
     def _along_sides(self, move: Floats, there: Floats) -> Floats:
         """Return displacements (n, d) of sliding nodes without what leads out of their straight sides."""
@@ -95,13 +92,13 @@ def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
     return normal if off <= FLAT * size[0] else None
 
 
-def sliding_notes(table: NodeTable, targets: Targets) -> tuple[str, ...]:
-    """Return what is to be said of sides that touch moved walls and are not moved themselves."""
-    notes = []
-    for piece in sources_of(table, targets.moved).sliding:
-        if (targets.nodes[piece.numbers] == table.nodes[piece.numbers]).all():
+def sliding_notes(follow: Follow, to: Floats) -> tuple[str, ...]:
+    """Return what is to be said of sides that touch moved walls, whose nodes go to `to` (n, d), and stay."""
+    notes, table = [], follow.table
+    for piece in follow.sources.sliding:
+        if (to[piece.numbers] == table.nodes[piece.numbers]).all():
             continue  # the moved nodes that it touches stay where they are
-        flat = normal_of(table, piece, targets.nodes) is not None
+        flat = normal_of(table, piece, to) is not None
         what = "slide along it" if flat else "follow: it is bent"
         notes.append(f"nodes of {piece.patch.name} {what}")
     return tuple(dict.fromkeys(notes))

@@ -2,7 +2,7 @@
 
 ::
 
-         |  n'          In the plane R is the angle between old and new wall, from the two edges at a node, the
+         |  n'          In the plane R is the angle between old and new wall, from both edges at a node, the
       ___|___ w'        nearer one counting more. In space it is the rotation of the wall's quadrilaterals
       n | R             there, the polar factor of the map from the old to the new ones.
     ____|____ w
@@ -35,7 +35,7 @@ class Turning:
         return cls(edges, nearness[:, None] / total[edges])
 
     def angles(self, old: Floats, new: Floats) -> Floats:
-        """Return the angles (n,) in radians by which the wall turns at its nodes, from `old` to `new` (n, 2)."""
+        """Return the angles (n,) in radians by which the wall turns at nodes, from `old` to `new` (n, 2)."""
         before, after = (nodes[self.edges[:, 1]] - nodes[self.edges[:, 0]] for nodes in (old, new))
         cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
         turn = np.arctan2(cross, (before * after).sum(axis=1))

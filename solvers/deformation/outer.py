@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.block import Block, face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
@@ -122,3 +122,15 @@ def elements_of(pieces: Sequence[Piece], dimension: int) -> Indices:
             for n in (p.numbers for p in pieces)
         ]
     return np.concatenate(parts) if parts else np.empty((0, 2 * (dimension - 1)), dtype=np.intp)
+
+
+def first_heights(grid: Grid, pieces: Sequence[Piece]) -> Floats:
+    """Return the distances (n,) of the first nodes off pieces of the boundary from the piece's own."""
+    heights = []
+    for piece in pieces:
+        patch, (axis, end) = piece.patch, piece.patch.place
+        nodes = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
+        at = tuple(slice(first, last + 1) for first, last in patch.range(nodes.shape[1:-1]))
+        own, beside = (nodes[-1], nodes[-2]) if end else (nodes[0], nodes[1])
+        heights.append(norms(beside[at] - own[at]).ravel())
+    return np.concatenate(heights)

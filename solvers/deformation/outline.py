@@ -15,13 +15,14 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.polygon.corners import find_corners
+from meshonet.geometry.polygon.corners import find_corners, turning
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.section_curve import farthest_arc
-from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.shapes.outline import Outline
 
 Notes = tuple[str, ...]
+_SHARP = np.radians(60.0)
+"""By which a wall turns at the edges of airfoils, and less where they are rounded."""
 
 
 def on_outline(wall: Floats, outline: Airfoil | Outline) -> tuple[Floats, Notes]:
@@ -30,32 +31,42 @@ def on_outline(wall: Floats, outline: Airfoil | Outline) -> tuple[Floats, Notes]
     Raises InputError: a blunt trailing edge whose outline becomes sharp.
     """
     if isinstance(outline, Airfoil):
-        old = closed_curve(wall, "the wall")
-        if isinstance(old, Airfoil):
-            return _on_airfoil(wall, old, outline)
+        try:
+            old = Airfoil(wall[:-1])
+        except InputError:  # a wall that is no airfoil
+            return _on_curve(wall, outline.curve)
+        return _on_airfoil(wall, old, outline)
     return _on_curve(wall, outline.curve)
 
 
 def _on_airfoil(wall: Floats, old: Airfoil, new: Airfoil) -> tuple[Floats, Notes]:
-    notes = new.notes
-    if new.blunt and not old.blunt:
-        new = new.wedged()
-        notes += ("the base of the new outline is closed by a wedge, since the wall's trailing edge is sharp",)
-    if old.blunt and not new.blunt:
-        problem = f"the wall has a blunt trailing edge, {old.gap:.3g} wide, and its new outline a sharp one"
-        raise InputError(problem, "give an outline with a base, or make the grid anew")
     ring = wall[:-1]
-    first = _nearest(ring, old.curve.points[1] if old.blunt else old.trailing_edge)
+    rounded = float(np.abs(turning(ring, closed=True)).max()) < _SHARP
+    blunt = old.blunt and not rounded
+    new, notes = _with_edge(new, old.gap, blunt=blunt, rounded=rounded)
+    edge = old.curve.points[1] if blunt else old.trailing_edge
+    first = int(np.argmax(norms(ring - old.leading_edge))) if rounded else _nearest(ring, edge)
     ring = np.roll(ring, -first, axis=0)
-    last = _nearest(ring, old.curve.points[-1]) if old.blunt else 0
-    curve = Curve(ring, closed=True, corners=sorted({0, last}))
+    last = _nearest(ring, old.curve.points[-1]) if blunt else 0
+    curve = Curve(ring, closed=True, corners=None if rounded else sorted({0, last}))
     middle = farthest_arc(curve, old.trailing_edge)
-    upper = curve.knots[last] if old.blunt else curve.length
-    stations = new.stations
-    before = [0.0, middle, upper, curve.length]
-    after = [stations.half_base, stations.nose, stations.upper, new.curve.length + stations.half_base]
+    begin, end = (0.0, new.curve.length) if rounded else (new.stations.half_base, new.stations.upper)
+    before = [0.0, middle, curve.knots[last] if blunt else curve.length, curve.length]
+    after = [begin, new.stations.nose, end, new.curve.length + begin]
     arcs = np.interp(curve.knots, before, after)
     return _closed(new.curve.at(arcs % new.curve.length), first), notes
+
+
+def _with_edge(new: Airfoil, gap: float, *, blunt: bool, rounded: bool) -> tuple[Airfoil, Notes]:
+    """Return the new outline with a trailing edge as the wall has it: a base, round, or sharp; and notes."""
+    if blunt and not new.blunt:
+        problem = f"the wall has a blunt trailing edge, {gap:.3g} wide, and its new outline a sharp one"
+        raise InputError(problem, "give an outline with a base, or make the grid anew", parameter="wall")
+    if blunt or not new.blunt:
+        return new, new.notes
+    how = "rounded, as the wall's is" if rounded else "closed by a wedge, as the wall ends in an edge"
+    notes = (*new.notes, f"the base of the new outline is {how}")
+    return new.rounded() if rounded else new.wedged(), notes
 
 
 def _nearest(points: Floats, place: Floats) -> int:
@@ -113,8 +124,8 @@ def on_line(wall: Floats, points: Floats) -> tuple[Floats, Notes]:
     notes: Notes = ()
     if len(before) != len(after):
         notes = (
-            f"the wall has {len(before) - 2} corners and the new one {len(after) - 2}: nodes keep their share "
-            "of the whole length",
+            f"the wall has {len(before) - 2} corners and the new one {len(after) - 2}: "
+            "nodes keep their share of the whole length",
         )
         before, after = before[[0, -1]], after[[0, -1]]
     nodes = new.at(np.interp(old.knots, before, after))
@@ -125,5 +136,3 @@ def on_line(wall: Floats, points: Floats) -> tuple[Floats, Notes]:
 def _stations(curve: Curve) -> Floats:
     inner = curve.corners[(curve.corners > 0) & (curve.corners < curve.length)]
     return np.concatenate([[0.0], inner, [curve.length]])
-
-

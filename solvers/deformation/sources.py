@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.deformation.outer import NodeTable, Piece, elements_of
+from meshonet.solvers.deformation.outer import NodeTable, Piece, elements_of, first_heights
 
-REACH = 0.05
+REACH = 0.1
 """Length of a group, in distances from what moves."""
 CELLS = 2.0
 """The same, in heights of the thinnest cell at the piece."""
@@ -47,7 +47,7 @@ class Sources:
 def sources_of(table: NodeTable, moved: Bools) -> Sources:
     """Return what the nodes `moved` (n,) make of the outer boundary of `table`."""
     elements = elements_of(table.pieces, table.nodes.shape[1])
-    areas = _areas(table.nodes, elements)
+    areas = areas_of(table.nodes, elements)
     stays = [piece for piece in table.pieces if not moved[piece.numbers].all()]
     touching = [piece for piece in stays if moved[piece.numbers].any()]
     slides, still = np.zeros(len(moved), dtype=bool), np.zeros(len(moved), dtype=bool)
@@ -61,7 +61,7 @@ def sources_of(table: NodeTable, moved: Bools) -> Sources:
     return Sources(moved, areas, elements[moved[elements].all(axis=1)], tuple(touching), slides)
 
 
-def _areas(nodes: Floats, elements: Indices) -> Floats:
+def areas_of(nodes: Floats, elements: Indices) -> Floats:
     """Return the share (n,) of edges or quadrilaterals that their nodes have, in equal parts."""
     corners = nodes[elements]
     if elements.shape[1] == 2:
@@ -79,7 +79,7 @@ def _group(table: NodeTable, piece: Piece, moved: Bools, areas: Floats) -> None:
     nodes = table.nodes[piece.numbers]
     box = np.stack([table.nodes[moved].min(axis=0), table.nodes[moved].max(axis=0)])
     away = norms(nodes - np.clip(nodes, *box)).min()
-    size = min(REACH * float(away), CELLS * _height(table, piece))
+    size = min(REACH * float(away), CELLS * float(first_heights(table.grid, [piece]).min()))
     labels: Indices = np.zeros(nodes.shape[:-1], dtype=np.intp)
     for axis in range(nodes.ndim - 1):
         steps = norms(np.diff(nodes, axis=axis))
@@ -93,13 +93,3 @@ def _group(table: NodeTable, piece: Piece, moved: Bools, areas: Floats) -> None:
     total = np.bincount(own.ravel(), areas[numbers])
     areas[numbers] = 0.0
     areas[numbers[leading]] = total
-
-
-def _height(table: NodeTable, piece: Piece) -> float:
-    """Return the least distance of a piece from the next row of nodes."""
-    patch, (axis, end) = piece.patch, piece.patch.place
-    nodes = np.moveaxis(table.grid.blocks[patch.block].nodes, axis, 0)
-    span = patch.range(nodes.shape[1:-1])
-    at = tuple(slice(first, last + 1) for first, last in span)
-    own, beside = (nodes[-1], nodes[-2]) if end else (nodes[0], nodes[1])
-    return float(norms(beside[at] - own[at]).min())

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
@@ -224,18 +223,3 @@ def _check_outline(nodes: Floats, name: str) -> None:
     if crossings:
         at = f"({crossings[0].x:.6g}, {crossings[0].y:.6g})"
         raise InputError(f"the new {name!r} crosses itself at {at}", "correct it", parameter="wall")
-
-
-def first_heights(grid: Grid, names: Sequence[str]) -> Floats:
-    """Return the distances (n,) of the first nodes off the walls of these names from the wall's."""
-    heights = []
-    for patch in grid.outer_patches():
-        if patch.name in names:
-            nodes = grid.blocks[patch.block].nodes
-            axis, end = patch.place
-            beside = np.moveaxis(nodes, axis, 0)[1 if end == 0 else -2]
-            span = patch.range(face_of(nodes, patch.side).shape[:-1])
-            at = tuple(slice(first, last + 1) for first, last in span)
-            way = beside[at] - face_of(nodes, patch.side)[at]
-            heights.append(np.sqrt((way**2).sum(axis=-1)).ravel())
-    return np.concatenate(heights)

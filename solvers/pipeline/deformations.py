@@ -25,6 +25,4 @@ def make_deformed(
     with limited_to(threads):
         solution = deform(grid, walls)
         seconds = dict(solution.seconds)
-        return judged(
-            solution, seconds, percentiles=percentiles, allow_invalid=allow_invalid, remedy=_REMEDY
-        )
+        return judged(solution, seconds, percentiles=percentiles, allow_invalid=allow_invalid, remedy=_REMEDY)
