@@ -17,21 +17,22 @@ import numpy as np
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet.geometry.quality.measure import count_folded, worst_cells_of
+from meshonet.solvers.deformation.crossings import check_apart
 from meshonet.solvers.deformation.follow import Follow, sliding_notes
 from meshonet.solvers.deformation.outer import NodeTable, first_heights
 from meshonet.solvers.deformation.targets import NewWall, Targets, targets_of
 from meshonet.solvers.solution import Outcome, Solution
 
 METHOD = "deformation"
-STEPS = 1, 2, 4, 8
+STEPS = 2, 4, 8
 """In how many steps the way is gone, tried in turn while cells are folded."""
 
 
 def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
     """Return `grid` with `walls` in their new places, and notes of what was done.
 
-    Raises InputError: a surface, a starting grid with folded cells, a wall that the grid does not have or
-    what cannot be its new shape.
+    Raises InputError: a surface, a starting grid with folded cells, a wall that the grid does not have, what
+    cannot be its new shape, walls that cross.
     """
     begun = time.perf_counter()
     table = NodeTable.of(grid)
@@ -64,10 +65,13 @@ def _made(follow: Follow, targets: Targets) -> tuple[Grid, tuple[str, ...]]:
 
 
 def _ways(follow: Follow, targets: Targets) -> Iterator[tuple[Grid, tuple[str, ...]]]:
-    made = follow.table.grid
+    made = _in_steps(follow, targets, 1)
+    yield made, ()
+    if made.form == "plane":
+        check_apart(follow.table, targets)
     for steps in STEPS:
         made = _in_steps(follow, targets, steps)
-        yield made, (f"{steps} steps",) if steps > 1 else ()
+        yield made, (f"{steps} steps",)
     yield from _mended(made)
 
 

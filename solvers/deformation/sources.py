@@ -80,11 +80,13 @@ def _group(table: NodeTable, piece: Piece, moved: Bools, areas: Floats) -> None:
     box = np.stack([table.nodes[moved].min(axis=0), table.nodes[moved].max(axis=0)])
     away = norms(nodes - np.clip(nodes, *box)).min()
     size = min(REACH * float(away), CELLS * float(first_heights(table.grid, [piece]).min()))
+    if size <= 1e-9 * float(np.ptp(nodes.reshape(-1, nodes.shape[-1]), axis=0).max()):
+        return
     labels: Indices = np.zeros(nodes.shape[:-1], dtype=np.intp)
     for axis in range(nodes.ndim - 1):
         steps = norms(np.diff(nodes, axis=axis))
         longest = steps.max(axis=tuple(k for k in range(steps.ndim) if k != axis))
-        group = np.floor(np.concatenate([[0.0], np.cumsum(longest)]) / max(size, 1e-300)).astype(np.intp)
+        group = np.floor(np.concatenate([[0.0], np.cumsum(longest)]) / size).astype(np.intp)
         first = np.cumsum(np.append(True, np.diff(group) > 0)) - 1
         shape = [-1 if k == axis else 1 for k in range(labels.ndim)]
         labels = labels * (int(first[-1]) + 1) + first.reshape(shape)

@@ -15,6 +15,7 @@ from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.self_intersection import find_crossings
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.domain_shape import DomainShape
@@ -26,8 +27,8 @@ from meshonet.solvers.deformation.outline import on_line, on_outline
 NewWall: TypeAlias = Shape | Grid | Motion | Floats | Sequence[Floats]
 """An outline, another grid whose boundary is taken node by node, a rigid motion, or nodes.
 
-Nodes are one array (n, d) for each line of the wall in the plane, in the grid's order with the domain on the
-left, or (m, n, d) for each of its patches in space; fewer or more points (n, 2) are an outline.
+Nodes are one array (n, 2) for each line of the wall in the plane, from the grid's first node on or back to it,
+or (m, n, d) for each of its patches in space; fewer or more points (n, 2) are an outline.
 """
 
 SAME = 1e-9
@@ -49,32 +50,41 @@ def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> Targ
 
     Raises InputError: a wall that the grid does not have, or what cannot be its new shape.
     """
-    named = walls if isinstance(walls, Mapping) else _named(table, walls)
     moved, nodes = np.zeros(len(table.nodes), dtype=bool), table.nodes.copy()
     notes: list[str] = []
-    for name, new in named.items():
-        pieces = _pieces(table, name)
+    named = list(_named(table, walls))
+    for name, new, pieces in named:
         for numbers, places in _placed(table, pieces, name, new, notes):
             at, to = numbers.ravel(), places.reshape(-1, nodes.shape[1])
             _check(name, table.nodes[at], nodes[at], to, moved[at])
             moved[at], nodes[at] = True, to
-    return Targets(moved, nodes, tuple(named), tuple(dict.fromkeys(notes)))
+        names = dict.fromkeys(piece.patch.name for _, _, pieces in named for piece in pieces)
+    return Targets(moved, nodes, tuple(names), tuple(dict.fromkeys(notes)))
 
 
-def _named(table: NodeTable, new: NewWall) -> dict[str, NewWall]:
-    """Return the walls by name that an unnamed new wall is for."""
-    if isinstance(new, Grid | Boundary) and not (isinstance(new, Boundary) and new.around_body):
-        own = {piece.patch.name for piece in table.pieces}
-        theirs = {patch.name for patch in _patches(new)}
-        return dict.fromkeys(sorted(own & theirs), new)
-    names = list(dict.fromkeys(patch.name for patch in table.grid.walls()))
-    if len(names) == 1:
-        return {names[0]: new}
-    if not names:
-        problem = "no part of the boundary is a wall"
-    else:
-        problem = f"the grid has {len(names)} walls: {', '.join(names)}"
-    raise InputError(problem, "name one: {wall} NAME=FILE", parameter="wall")
+def _named(
+    table: NodeTable, walls: Mapping[str, NewWall] | NewWall
+) -> Iterator[tuple[str, NewWall, list[Piece]]]:
+    """Yield names, new shapes and pieces of the walls that are meant."""
+    if isinstance(walls, Mapping):
+        if not walls:
+            raise InputError("no wall is named", "give the new shape of one", parameter="wall")
+        for name, new in walls.items():
+            yield name, new, _pieces(table, name)
+        return
+    own = list(dict.fromkeys(patch.name for patch in table.grid.walls()))
+    whole = isinstance(walls, Boundary) and not walls.around_body
+    if whole or (isinstance(walls, Grid) and walls.form != "surface"):
+        theirs = {patch.name for patch in _patches(walls)}  # type: ignore[arg-type]
+        for name in dict.fromkeys(piece.patch.name for piece in table.pieces):
+            if name in theirs:
+                yield name, walls, _pieces(table, name)
+        return
+    if len(own) == 1 or (own and isinstance(walls, Grid)):
+        yield own[0], walls, [piece for piece in table.pieces if piece.patch.name in own]
+        return
+    count = f"the grid has {len(own)} walls: {', '.join(own)}" if own else "no part of the boundary is a wall"
+    raise InputError(count, "name one: {wall} NAME=FILE", parameter="wall")
 
 
 def _patches(new: Grid | Boundary) -> Sequence[Any]:
@@ -162,7 +172,7 @@ def _on(wall: Floats, shape: Any, name: str) -> tuple[Floats, tuple[str, ...]]:
             problem = f"nodes of shape {shape.shape} for {name!r}"
             raise InputError(problem, "give (n, 2) points", parameter="wall")
         if len(shape) == len(wall):
-            return (_shut(shape) if closed else shape), ()
+            return _in_order(wall, shape, closed=closed), ()
         if not closed:
             return on_line(wall, shape)
         from meshonet.geometry.shapes.closed_curve import closed_curve
@@ -177,10 +187,15 @@ def _on(wall: Floats, shape: Any, name: str) -> tuple[Floats, tuple[str, ...]]:
     return on_outline(wall, shape) if closed else on_line(wall, shape.curve.points)
 
 
-def _shut(nodes: Floats) -> Floats:
-    nodes = nodes.copy()
-    nodes[-1] = nodes[0]
-    return nodes
+def _in_order(wall: Floats, nodes: Floats, *, closed: bool) -> Floats:
+    """Return new `nodes` (n, 2) of either direction in the wall's; a closed one repeats its first."""
+    if closed:
+        nodes = np.concatenate([nodes[:-1], nodes[:1]])
+        backwards = (polygon_area(wall[:-1]) > 0) != (polygon_area(nodes[:-1]) > 0)
+    else:
+        apart = [float(np.abs(wall[[0, -1]] - ends).sum()) for ends in (nodes[[0, -1]], nodes[[-1, 0]])]
+        backwards = apart[1] < apart[0]
+    return np.ascontiguousarray(nodes[::-1]) if backwards else nodes
 
 
 def _on_loops(wall: Floats, shape: DomainShape, name: str, *, closed: bool) -> tuple[Floats, tuple[str, ...]]:
