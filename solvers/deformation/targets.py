@@ -27,7 +27,7 @@ from meshonet.solvers.deformation.outline import on_line, on_outline
 NewWall: TypeAlias = Shape | Grid | Motion | Floats | Sequence[Floats]
 """An outline, another grid whose boundary is taken node by node, a rigid motion, or nodes.
 
-Nodes are one array (n, 2) for each line of the wall in the plane, from the grid's first node on or back to it,
+Nodes are one array (n, 2) for each line of the wall in the plane, from the grid's first node on or to it,
 or (m, n, d) for each of its patches in space; fewer or more points (n, 2) are an outline.
 """
 
