@@ -26,6 +26,7 @@ from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.threads import limited_to
+from meshonet.kernels._native import blend_motions
 from meshonet.solvers.deformation.deform import deform
 from meshonet.solvers.deformation.motions import Turning, affine, turns_in_plane
 from meshonet.solvers.deformation.outer import NodeTable, elements_of, first_heights
@@ -51,8 +52,8 @@ cells in blocks, first cells of 1e-5.
 - *CPU ms*: processor time from grid and outline in memory to grid in memory, median / 90th percentile, one
   thread of {machine}, while other programs used the machine.
 - *IDW*: displacements alone, weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996). *IDW, rotations*: with
-  rotations and the weights of Luke, Collins and Blades (J. Comput. Phys. 231 (2012) 586-601). Both in NumPy,
-  all boundary nodes, without anything done about folds.
+  rotations and the weights of Luke, Collins and Blades (J. Comput. Phys. 231 (2012) 586-601). Both by
+  the same kernel, all boundary nodes, without anything done about folds.
 
 """
 TAIL = """
@@ -168,15 +169,25 @@ def weighted(move: Move, *, rotations: bool) -> tuple[Grid, bool]:
     shifts = targets.nodes[outer] - nodes[outer]
     size = float(np.sqrt(((nodes - nodes.mean(axis=0)) ** 2).sum(axis=1).max()))
     stiff = max(0.1, 5.0 * float(np.abs(shifts - shifts.mean(axis=0)).max()) / size)
-    made = targets.nodes.copy()
     inner = np.flatnonzero(~table.outer)
-    for part in np.array_split(inner, len(inner) // 2000 + 1):
-        x = nodes[part]
-        inverse = size / np.hypot(*(x[:, None] - nodes[outer]).transpose(2, 0, 1))
-        weight = area * inverse**3 * (1.0 + stiff**5 * inverse**2 if rotations else 1.0)
-        a, b, xx, xy, yx, yy = (weight @ motion.T / weight.sum(axis=1)[:, None]).T
-        made[part] += np.stack([a + xx * x[:, 0] + xy * x[:, 1], b + yx * x[:, 0] + yy * x[:, 1]], axis=1)
+    moved = np.empty((3, len(inner)))
+    near = size * stiff**2.5 if rotations else 0.0
+    blend_motions(_in_space(nodes[outer]), area, _lifted(motion), near, _in_space(nodes[inner]), 1, moved)
+    made = targets.nodes.copy()
+    made[inner] += moved[:2].T
     return Grid(table.with_nodes(made), move.grid.patches, move.grid.connections), False
+
+
+def _in_space(points: Floats) -> Floats:
+    """Return points (n, 2) of the plane as (3, n): the kernel for space has the exponents 3 and 5."""
+    return np.stack([*points.T, np.zeros(len(points))])
+
+
+def _lifted(motion: Floats) -> Floats:
+    """Return motions (6, n) of the plane as (12, n) of space."""
+    space = np.zeros((12, motion.shape[1]))
+    space[[0, 1, 3, 4, 6, 7]] = motion
+    return space
 
 
 METHODS: dict[str, Callable[[Move], tuple[Grid, bool]]] = {

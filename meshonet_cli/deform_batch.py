@@ -13,6 +13,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.gates import need_percentiles, parse_gates
 from meshonet.geometry.threads import cores
+from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.deformations import make_deformed
 from meshonet_cli.batch.destination import Destination
@@ -35,7 +36,8 @@ def write_deformed(
     walls = walls_of(wall, rotate, shift)
     if jobs > 1 and threads is None:
         threads = max(cores() // jobs, 1)
-    make = _Deformed(walls, allow_invalid, need_percentiles(parse_gates(fail_on)), threads)
+    percentiles = need_percentiles(parse_gates(fail_on))
+    make = _Deformed(walls, DeformRequest(allow_invalid, percentiles, threads))
     destination = Destination(output, to_format, "grids")
     prepare(sources, destination, session)
     members = items(sources, lambda source: read_grids(source, from_format), session)
@@ -49,16 +51,10 @@ class _Deformed:
     """Makes the deformed grids."""
 
     walls: Mapping[str, NewWall] | NewWall
-    allow_invalid: bool
-    percentiles: bool
-    threads: int | None
+    request: DeformRequest
 
     def __call__(self, item: Item[Grid]) -> tuple[Grid, Report]:
-        result = make_deformed(
-            item.what, self.walls, allow_invalid=self.allow_invalid, percentiles=self.percentiles,
-            threads=self.threads,
-        )  # fmt: skip
-        return reported(item, result)  # type: ignore[arg-type]
+        return reported(item, make_deformed(item.what, self.walls, self.request))  # type: ignore[arg-type]
 
 
 def walls_of(

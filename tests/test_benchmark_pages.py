@@ -20,6 +20,7 @@ SCRIPTS = {
     "marching-surfaces": "marching",
     "wings": "wings",
     "volumes": "volumes",
+    "deform": "deform",
 }
 """Page to script, benchmarks/bench_NAME.py."""
 

@@ -11,6 +11,7 @@ from meshonet.api.quality import single_grid
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.deformations import make_deformed
 
@@ -46,7 +47,8 @@ def deform(
     0
     """
     walls = {name: _read(new) for name, new in wall.items()} if isinstance(wall, Mapping) else _read(wall)
-    return make_deformed(single_grid(grid), walls, allow_invalid=allow_invalid, threads=threads).grid
+    request = DeformRequest(allow_invalid, threads=threads)
+    return make_deformed(single_grid(grid), walls, request).grid
 
 
 def _read(wall: AnyWall) -> NewWall:

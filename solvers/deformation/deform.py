@@ -101,7 +101,7 @@ def _mended(grid: Grid) -> Iterator[tuple[Grid, tuple[str, ...]]]:
 
             yield smooth(grid).grid, ("smoothing",)
         else:
-            from meshonet.solvers.smoothing.volumes import smooth as smooth_volumes
+            from meshonet.solvers.smoothing.volumes import smooth_volumes
 
             yield smooth_volumes(grid).grid, ("smoothing",)
 

@@ -11,15 +11,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, middle
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.deformation.field import Field
 from meshonet.solvers.deformation.motions import Turning, affine, turns_in_plane, turns_in_space
 from meshonet.solvers.deformation.outer import NodeTable, Piece
 from meshonet.solvers.deformation.sources import Bools, Sources, sources_of
 
-NEAR = 0.1
-"""Distance inside which the nearest wall nodes prevail, in extents of what is moved."""
+NEAR = 0.3
+"""Distance inside which the nearest wall nodes prevail, in extents of what is moved, at the most."""
+ROOM = 0.1
+"""The same, in distances between what is moved and what stays: gaps need a softer field."""
+_SOME = 100
+"""Moved nodes whose distances are looked at."""
 FLAT = 1e-9
 """Part of its extent by which a side is off a straight line or plane at the most, to slide in it."""
 
@@ -41,7 +45,7 @@ class Follow:
     def of(cls, table: NodeTable, moved: Bools) -> Follow:
         """Return that of `table` whose nodes `moved` (n,) go to places of their own."""
         nodes, sources = table.nodes, sources_of(table, moved)
-        near = NEAR * float(np.ptp(nodes[moved], axis=0).max())
+        near = _near(nodes[moved], nodes[sources.fixed])
         held = np.union1d(np.flatnonzero(moved), sources.fixed)
         slides = np.flatnonzero(sources.slides)
         slide = Field.of(nodes, held, sources.areas, near, slides) if len(slides) else None
@@ -80,6 +84,16 @@ class Follow:
                 at = piece.numbers.ravel()
                 move[at] -= (move[at] @ normal)[:, None] * normal
         return move
+
+
+def _near(moved: Floats, fixed: Floats) -> float:
+    """Return the distance inside which the nearest of the sources (n, d) prevail."""
+    extent = NEAR * float(np.ptp(moved, axis=0).max())
+    if not len(fixed):
+        return extent
+    some = moved[:: len(moved) // _SOME + 1]
+    square = sum((some[:, None, axis] - fixed[:, axis]) ** 2 for axis in range(moved.shape[1]))
+    return min(extent, ROOM * middle(np.sqrt(np.min(square, axis=1))))
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:

@@ -42,7 +42,8 @@ class Turning:
         return self._at_nodes(turn, len(old))
 
     def _at_nodes(self, turn: Floats, n: int) -> Floats:
-        return np.bincount(self.edges.ravel(), (self.share * turn[:, None]).ravel(), n)
+        shares = (self.share * turn[:, None]).ravel()
+        return np.bincount(self.edges.ravel(), shares, n).astype(np.float64, copy=False)
 
     def angles_along(self, new: Floats, moves: Floats) -> Floats:
         """Return the derivatives (n,) of the angles at `new` along `moves` (n, 2)."""

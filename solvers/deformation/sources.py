@@ -69,7 +69,7 @@ def areas_of(nodes: Floats, elements: Indices) -> Floats:
     else:
         size = 0.5 * norms(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]))
     each = np.repeat(size / elements.shape[1], elements.shape[1])
-    return np.bincount(elements.ravel(), each, len(nodes))
+    return np.bincount(elements.ravel(), each, len(nodes)).astype(np.float64, copy=False)
 
 
 def _group(table: NodeTable, piece: Piece, moved: Bools, areas: Floats) -> None:

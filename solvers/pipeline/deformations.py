@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.deformation.deform import deform
+from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.make_grid import Result, judged
 
@@ -14,15 +15,14 @@ _REMEDY = "go part of the way first, or make the grid of the new shape anew"
 
 
 def make_deformed(
-    grid: Grid, walls: Mapping[str, NewWall] | NewWall, *, allow_invalid: bool = False,
-    percentiles: bool = False, threads: int | None = None,
-) -> Result:  # fmt: skip
+    grid: Grid, walls: Mapping[str, NewWall] | NewWall, request: DeformRequest | None = None
+) -> Result:
     """Return `grid` with its walls in their new places, measured.
 
     Raises InputError: see `meshonet.solvers.deformation.deform.deform`; NoValidGridError: cells are folded,
     which is not allowed.
     """
-    with limited_to(threads):
+    request = request or DeformRequest()
+    with limited_to(request.threads):
         solution = deform(grid, walls)
-        seconds = dict(solution.seconds)
-        return judged(solution, seconds, percentiles=percentiles, allow_invalid=allow_invalid, remedy=_REMEDY)
+        return judged(solution, dict(solution.seconds), request, remedy=_REMEDY)
