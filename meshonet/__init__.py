@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from meshonet.api.convert import convert as convert
     from meshonet.api.deform import deform as deform
     from meshonet.api.deform import rotation as rotation
+    from meshonet.api.derivatives import deform_derivative as deform_derivative
+    from meshonet.api.derivatives import optimum_derivative as optimum_derivative
     from meshonet.api.files import read as read
     from meshonet.api.files import read_all as read_all
     from meshonet.api.files import write as write
@@ -59,6 +61,7 @@ __version__ = "0.1.0"
 _MODULES = {
     "meshonet.api.convert": ("convert",),
     "meshonet.api.deform": ("deform", "rotation"),
+    "meshonet.api.derivatives": ("deform_derivative", "optimum_derivative"),
     "meshonet.api.files": ("read", "read_all", "write"),
     "meshonet.api.grid": ("grid", "infer", "sample_boundary", "sample_family", "solve_pde", "tfi"),
     "meshonet.api.layout": ("layout",),

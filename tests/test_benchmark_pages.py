@@ -21,6 +21,8 @@ SCRIPTS = {
     "wings": "wings",
     "volumes": "volumes",
     "deform": "deform",
+    "kershaw": "kershaw",
+    "blocks": "blocks",
 }
 """Page to script, benchmarks/bench_NAME.py."""
 

@@ -46,9 +46,13 @@ def deform(
     >>> moved.quality().folded
     0
     """
-    walls = {name: _read(new) for name, new in wall.items()} if isinstance(wall, Mapping) else _read(wall)
     request = DeformRequest(allow_invalid, threads=threads)
-    return make_deformed(single_grid(grid), walls, request).grid
+    return make_deformed(single_grid(grid), read_walls(wall), request).grid
+
+
+def read_walls(wall: AnyWall | Mapping[str, AnyWall]) -> NewWall | dict[str, NewWall]:
+    """Return new walls with those read that are files."""
+    return {name: _read(new) for name, new in wall.items()} if isinstance(wall, Mapping) else _read(wall)
 
 
 def _read(wall: AnyWall) -> NewWall:

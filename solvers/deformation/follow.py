@@ -57,14 +57,18 @@ class Follow:
 
     def nodes_to(self, to: Floats) -> Floats:
         """Return all nodes (n, d) when the moved ones go where they are in `to` (n, d)."""
-        nodes, moved = self.table.nodes, self.sources.moved
-        there = np.where(moved[:, None], to, nodes)
-        if self.slide is not None:
-            motions = self._motions(self.slide, there)
-            move = np.zeros_like(nodes)
-            move[self.sources.slides] = self.slide.blended(motions)
-            there = there + self._along_sides(move, there)
+        there = self.boundary_to(to)
         there[self.inner] += self.field.blended(self._motions(self.field, there))
+        return there
+
+    def boundary_to(self, to: Floats) -> Floats:
+        """Return all nodes (n, d) where they were, but for those that are moved and those that slide."""
+        nodes = self.table.nodes
+        there = np.where(self.sources.moved[:, None], to, nodes)
+        if self.slide is not None:
+            move = np.zeros_like(nodes)
+            move[self.sources.slides] = self.slide.blended(self._motions(self.slide, there))
+            there += self.along_sides(move, there)
         return there
 
     def _motions(self, field: Field, there: Floats) -> Floats:
@@ -76,7 +80,7 @@ class Follow:
             turns = turns_in_space(self.sources.elements, old, there)[at]
         return affine(old[at], there[at], turns)
 
-    def _along_sides(self, move: Floats, there: Floats) -> Floats:
+    def along_sides(self, move: Floats, there: Floats) -> Floats:
         """Return displacements (n, d) of sliding nodes without what leads out of their straight sides."""
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
@@ -99,10 +103,10 @@ def _near(moved: Floats, fixed: Floats) -> float:
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
     """Return the unit normal (d,) of a straight or flat side, None where it is bent, or its ends leave it."""
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
-    middle = nodes.mean(axis=0)
-    _, size, ways = np.linalg.svd(nodes - middle, full_matrices=False)
+    centre = nodes.mean(axis=0)
+    _, size, ways = np.linalg.svd(nodes - centre, full_matrices=False)
     normal = np.asarray(ways[-1])
-    off = np.abs((np.concatenate([nodes, after]) - middle) @ normal).max()
+    off = np.abs((np.concatenate([nodes, after]) - centre) @ normal).max()
     return normal if off <= FLAT * size[0] else None
 
 

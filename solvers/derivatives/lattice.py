@@ -51,29 +51,29 @@ def jacobian(equations: Equations, nodes: Floats, reach: int) -> Jacobian:
     """Return the Jacobian at `nodes` (2, ni, nj) of equations that see `reach` nodes each way."""
     _, ni, nj = nodes.shape
     step, period = STEP * shortest_edges(nodes), 2 * reach + 1
-    inner = np.ix_(np.arange(1, ni - 1), np.arange(1, nj - 1))
     number = np.arange(nodes.size).reshape(nodes.shape)
+    equation = number[:, 1:-1, 1:-1]
     parts: list[tuple[Indices, Indices, Floats]] = []
     for a in range(period):
         for b in range(period):
-            i, j = _seen(a, period, ni), _seen(b, period, nj)
-            there = ((i >= 0) & (i < ni))[inner[0]] & ((j >= 0) & (j < nj))[inner[1]]
-            at = np.broadcast_to(i[inner[0]], there.shape)[there], np.broadcast_to(j[inner[1]], there.shape)[there]
+            i, j = np.meshgrid(_seen(a, period, ni), _seen(b, period, nj), indexing="ij")
+            there = (i >= 0) & (i < ni) & (j >= 0) & (j < nj)
+            i, j = i[there], j[there]
             for axis in (0, 1):
                 ahead, back = nodes.copy(), nodes.copy()
                 ahead[axis, a::period, b::period] += step[a::period, b::period]
                 back[axis, a::period, b::period] -= step[a::period, b::period]
-                change = (equations(ahead) - equations(back))[(slice(None), *inner)]
+                change = (equations(ahead) - equations(back))[:, 1:-1, 1:-1]
                 for row in (0, 1):
-                    values = change[row][there] / (2.0 * step[at])
-                    parts.append((number[row][inner][there], number[axis][at], values))
+                    values = change[row][there] / (2.0 * step[i, j])
+                    parts.append((equation[row][there], number[axis, i, j], values))
     rows, columns, values = (np.concatenate(each) for each in zip(*parts, strict=True))
     return Jacobian(rows, columns, values, nodes.size)
 
 
 def _seen(first: int, period: int, n: int) -> Indices:
-    """Return which of the nodes `first`, `first` + `period` ... each of n nodes sees."""
-    return first + period * np.round((np.arange(n) - first) / period).astype(np.intp)
+    """Return which of the nodes `first`, `first` + `period` ... each inner one of n nodes sees."""
+    return first + period * np.round((np.arange(1, n - 1) - first) / period).astype(np.intp)
 
 
 def shortest_edges(nodes: Floats) -> Floats:

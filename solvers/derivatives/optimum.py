@@ -1,9 +1,9 @@
 """Derivatives of a grid that solves equations, by its boundary, without solving them again.
 
-With F(x, b) = 0 at the inner nodes x, b the boundary, dx = -F_x⁻¹ F_b db; and what a functional pulls x by, p,
-pulls b by -F_bᵀ F_x⁻ᵀ p: one solve for a functional, whatever the number of boundary nodes. F is the gradient
-of the variational functional (`meshonet.solvers.energy.functional`), whose F_x is symmetric, or Winslow's
-equations, whose is not: its factors are those of ((1, F_x), (F_xᵀ, 0)).
+With F(x, b) = 0 at the inner nodes x, b the boundary, dx = -F_x⁻¹ F_b db; and what a functional pulls x by,
+p, pulls b by -F_bᵀ F_x⁻ᵀ p: one solve for a functional, whatever the number of boundary nodes. F is the
+gradient of the variational functional (`meshonet.solvers.energy.functional`), whose F_x is symmetric, or
+Winslow's equations, whose is not: its factors are those of ((1, F_x), (F_xᵀ, 0)).
 
 The ratio a of the functional follows from the boundary, and is differentiated too.
 """
@@ -105,7 +105,9 @@ class OptimumDerivative:
             move[self._inner] = -self._solve(residual)
             size = float((np.abs(move.reshape(nodes.shape)) / edges).max())
             if not size < _NEAR:
-                problem = f"the grid is no solution by {self._method}: nodes move by {size:.2g} of their cells"
+                problem = (
+                    f"the grid is no solution by {self._method}: nodes move by {size:.2g} of their cells"
+                )
                 raise SolverError(problem)
             nodes += move.reshape(nodes.shape)
             if size < STILL:
@@ -178,7 +180,12 @@ def winslow_residual(nodes: Floats) -> Floats:
     α x_ξξ - 2β x_ξη + γ x_ηη with α = x_η·x_η, β = x_ξ·x_η, γ = x_ξ·x_ξ; Winslow, J. Comput. Phys. 1 (1966).
     """
     residual = np.zeros_like(nodes)
-    west, east, south, north = nodes[:, :-2, 1:-1], nodes[:, 2:, 1:-1], nodes[:, 1:-1, :-2], nodes[:, 1:-1, 2:]
+    west, east, south, north = (
+        nodes[:, :-2, 1:-1],
+        nodes[:, 2:, 1:-1],
+        nodes[:, 1:-1, :-2],
+        nodes[:, 1:-1, 2:],
+    )
     middle = nodes[:, 1:-1, 1:-1]
     xi, eta = 0.5 * (east - west), 0.5 * (north - south)
     mixed = 0.25 * (nodes[:, 2:, 2:] - nodes[:, 2:, :-2] - nodes[:, :-2, 2:] + nodes[:, :-2, :-2])
