@@ -5,10 +5,11 @@ from typing import Annotated
 from meshonet_cli import options as o
 
 EXAMPLES = (
-    "meshonet deform grid.cgns --wall new.dat -o moved.cgns",
-    "meshonet deform wing.cgns --wall flap=new-flap.dat --wall slat=new-slat.dat -o moved.cgns",
-    "meshonet deform wing.cgns --rotate flap=-5@0.9,0.02 -o flap5.cgns",
-    "meshonet deform volume.cgns --wall wall=moved-surface.cgns -o moved.cgns",
+    "meshonet deform grid.vts --wall naca:0014 -o moved.vts",
+    "meshonet deform grid.vts --rotate wall=-5@0.25,0 --shift wall=0,0.01 -o turned.cgns",
+    "meshonet infer main.dat flap.dat --assemble --cells 2000 -o two.cgns && meshonet deform two.cgns "
+    "--wall main=airfoil.dat --rotate flap=-5@1.1,-0.1 -o moved.cgns",
+    "meshonet deform wing.cgns --shift bottom=0,0,-0.1 -o deeper.cgns",
 )
 _option = o.option_of(o.METHOD)
 

@@ -1,8 +1,8 @@
 """The derivative of a deformed grid by the nodes of its moved walls.
 
-In one step (`meshonet.solvers.deformation.follow`) the weights depend on the old grid alone: the new nodes are
-linear in the motions of the wall's nodes, and these smooth in their places, so that the derivative is exact,
-at the cost of about one more deformation. Sides that slide follow, and so does what is inside them.
+In one step (`meshonet.solvers.deformation.follow`) the weights depend on the old grid alone: the new nodes
+are linear in the motions of the wall's nodes, and these smooth in their places, so that the derivative is
+exact, at the cost of about one more deformation. Sides that slide follow, and so does what is inside them.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.deformation.field import Field
-from meshonet.solvers.deformation.follow import Follow, normal_of
+from meshonet.solvers.deformation.follow import Follow
 from meshonet.solvers.deformation.motions import Turning, turns_in_plane
 from meshonet.solvers.deformation.outer import NodeTable, lines_of
 from meshonet.solvers.deformation.targets import NewWall, targets_of
 
 Lines = dict[str, Floats]
-"""Values (n, 2) at the nodes of each moved wall, in its order; several lines of one name one after another."""
+"""Values (n, 2) at the nodes of each moved wall, in order; several lines of a name one after the other."""
 
 
 class DeformationDerivative:
@@ -54,7 +54,7 @@ class DeformationDerivative:
         self._there = self._follow.boundary_to(targets.nodes)
 
     def along(self, moves: Mapping[str, Floats]) -> list[Floats]:
-        """Return moves (ni, nj, 2) of the nodes of each block when walls' nodes make `moves` (n, 2) by name."""
+        """Return moves (ni, nj, 2) of the nodes of each block by `moves` (n, 2) of the walls' nodes."""
         move = np.zeros_like(self._to)
         for name, values in moves.items():
             move[self.walls[name]] = self._checked(name, values)
