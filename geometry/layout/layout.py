@@ -18,6 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
+from meshonet.geometry.arrays import distinct
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 
@@ -44,7 +45,7 @@ class Layout:
     def vertices(self) -> Indices:
         """(v,) nodes that are corners of blocks, ascending."""
         corners = [block[[0, -1, -1, 0], [0, 0, -1, -1]] for block in self.blocks]
-        return np.asarray(np.unique(np.concatenate(corners)))
+        return np.asarray(distinct(np.concatenate(corners)))
 
     @property
     def cells(self) -> int:
