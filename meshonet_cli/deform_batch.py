@@ -12,11 +12,11 @@ from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.gates import need_percentiles, parse_gates
-from meshonet.geometry.threads import cores
 from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.deformations import make_deformed
 from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import deliver, one_by_one, prepare
 from meshonet_cli.batch.sources import items
@@ -30,19 +30,19 @@ def write_deformed(
     sources: Sequence[str], output: str, session: Session, *, wall: Sequence[str] = (),
     rotate: Sequence[str] = (), shift: Sequence[str] = (), allow_invalid: bool = False,
     fail_on: Sequence[str] | None = None, from_format: str | None = None, to_format: str | None = None,
-    skip_existing: bool = False, jobs: int = 1, threads: int | None = None,
+    skip_existing: bool = False, engine: Engine = HERE, threads: int | None = None,
 ) -> int:  # fmt: skip
     """Write the grids of `sources` with walls in their new places and return the exit code."""
     walls = walls_of(wall, rotate, shift)
-    if jobs > 1 and threads is None:
-        threads = max(cores() // jobs, 1)
     percentiles = need_percentiles(parse_gates(fail_on))
-    make = _Deformed(walls, DeformRequest(allow_invalid, percentiles, threads))
+    make = _Deformed(walls, DeformRequest(allow_invalid, percentiles, engine.threads(threads)))
     destination = Destination(output, to_format, "grids")
     prepare(sources, destination, session)
     members = items(sources, lambda source: read_grids(source, from_format), session)
     written = judging(session, fail_on)
-    deliver(members, one_by_one(make), destination, session, written, skip_existing=skip_existing, jobs=jobs)
+    deliver(
+        members, one_by_one(make), destination, session, written, skip_existing=skip_existing, engine=engine
+    )
     return session.finish()
 
 

@@ -21,6 +21,7 @@ def deform(
     output: o.Output,
     files: o.FileOptions,
     printing: o.PrintOptions,
+    workers: o.EngineOptions,
     wall: Annotated[list[str] | None, _option(
         "--wall", metavar="[NAME=]FILE",
         help="New shape of a wall: an outline, naca:2412, or a grid with as many nodes there, taken node by "
@@ -36,7 +37,6 @@ def deform(
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     fail_on: o.FailOn = None,
-    jobs: o.Jobs = 1,
     threads: o.Threads = None,
 ) -> int:
     """Make grids follow a changed boundary, their layers as they were."""
@@ -45,6 +45,7 @@ def deform(
     return write_deformed(
         grid, output, printing.session(), wall=wall or (), rotate=rotate or (), shift=shift or (),
         allow_invalid=allow_invalid, fail_on=fail_on, from_format=files.from_format,
-        to_format=files.to_format, skip_existing=files.skip_existing, jobs=jobs, threads=threads,
+        to_format=files.to_format, skip_existing=files.skip_existing, engine=workers.chosen(),
+        threads=threads,
     )
 # fmt: on

@@ -264,6 +264,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--to": (f"{SUNK} -o made.name", "OPTION hdf5", "code"),
         "--skip-existing": (f"{SUNK} -o there.h5 -q", "OPTION", "layout"),
         "--jobs": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION 2", "workers"),
+        "--engine": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION mpi", "code"),
+        "--scheduler": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION tcp://a:1", "code"),
         "--threads": (f"{SUNK} {MADE} --threads 2", "OPTION 0", "code"),
         "--wall": (f"grid.h5 --shift north=0,.1 {MADE}", "OPTION south=c.vts", "nodes"),
         "--rotate": (f"{SUNK} {MADE}", "OPTION north=2@0,1", "nodes"),
