@@ -8,10 +8,9 @@ from pathlib import Path
 from meshonet.formats.figure.figure import DOTS, draw
 from meshonet.formats.figure.layers import Colouring
 from meshonet.formats.figure.space import draw_in_space
-from meshonet.formats.figure.view import View, flat_box
+from meshonet.formats.figure.view import View, check_flat, flat_box
 from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
 
 _WHOLE = View()
 
@@ -28,10 +27,7 @@ def write(
     dates: dict[str, dict[str, str | None]] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
     with mpl.rc_context({"svg.hashsalt": "meshonet", "svg.fonttype": "none"}):
         if grid.form == "plane":
-            for name, value in (("slice", view.slice), ("seen_from", view.seen_from)):
-                if value is not None:
-                    remedy = f"leave {{{name}}} out"
-                    raise InputError("the grid is in the plane", remedy, parameter=name)
+            check_flat(view)
             figure = draw(grid, colouring, flat_box(view.zoom), view.every)
         else:
             figure = draw_in_space(grid, colouring, view)

@@ -13,7 +13,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import ALL_NAMES, metric_of
 
-KINDS = ("png", "svg", "pdf")
+KINDS = ("png", "svg", "pdf", "html")
 
 
 @dataclass(frozen=True)
@@ -57,20 +57,25 @@ class Picture:
             raise InputError(problem, "use 1 or more", parameter="every")
 
     def draw(self, kind: str, path: Path, grids: Iterable[Grid]) -> None:
-        """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``."""
+        """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``, or as an ``html`` page."""
         from meshonet.formats.figure.files import write
         from meshonet.formats.figure.layers import Colouring
+        from meshonet.formats.figure.page.page import write_page
         from meshonet.formats.figure.view import View
 
         grid = only_one(grids, "a picture")
+        part = None if self.slice is None else parse_slice(self.slice)
+        view = View(self.zoom, self.every, part, self.seen_from)
+        if kind == "html":
+            write_page(path, grid, self.metric, view)
+            return
         colouring = None
         if self.metric is not None:
             metric = metric_of(grid, self.metric)
             label = f"{metric.name} ({metric.unit})" if metric.unit else metric.name
             values = tuple(per_cell_of_blocks(grid, metric.name))
             colouring = Colouring(values, label, worst_is_low=metric.worst == "min")
-        part = None if self.slice is None else parse_slice(self.slice)
-        write(path, grid, kind, colouring, View(self.zoom, self.every, part, self.seen_from))
+        write(path, grid, kind, colouring, view)
 
 
 def picture_format(output: str, to_format: str | None = None) -> Format:
@@ -80,5 +85,5 @@ def picture_format(output: str, to_format: str | None = None) -> Format:
     """
     record = format_for_output(output, to_format or ("png" if output == "-" else None))
     if record.name not in KINDS:
-        raise InputError(f"{record.name} is no picture", "use .png, .svg or .pdf", source=output)
+        raise InputError(f"{record.name} is no picture", "use .png, .svg, .pdf or .html", source=output)
     return record

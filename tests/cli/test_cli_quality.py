@@ -138,7 +138,7 @@ def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
     ("words", "told"),
     [
         (("--per-cell", "cells.h5"), "only .vts and .vtm files hold metrics; name it FILE.vts"),
-        (("--plot", "grid.vts"), "vts is no picture; use .png, .svg or .pdf"),
+        (("--plot", "grid.vts"), "vts is no picture; use .png, .svg, .pdf or .html"),
         (("--compare", "missing.vts"), "missing.vts: no such file"),
         (("--pair", "name"), "--pair without --compare; give --compare as well, or drop --pair"),
         (("--profile",), "option '--profile' requires an argument; see meshonet quality --help"),
