@@ -24,7 +24,7 @@ def quality(
     profile: Annotated[Literal["openfoam", "pointwise", "verdict", "viscous"] | None, _check(
         "--profile", metavar="openfoam|pointwise|verdict|viscous",
         help="Judge by the thresholds of other programs: prints each with its figure and pass, warning or "
-        "FAIL, and exits with 1 when one fails. See docs/quality.md.",
+        "FAIL, and exits with 1 when one fails. See docs/reference/quality.md.",
     )] = None,
     plot: Annotated[str | None, _output(
         "--plot", metavar="F.png", help="Draw the grid, coloured by max_angle.",
