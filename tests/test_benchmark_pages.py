@@ -20,6 +20,7 @@ SCRIPTS = {
     "marching-surfaces": "marching",
     "wings": "wings",
     "volumes": "volumes",
+    "pages": "pages",
 }
 """Page to script, benchmarks/bench_NAME.py."""
 

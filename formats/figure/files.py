@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import BinaryIO
 
-from meshonet.formats.figure.figure import DOTS, draw
-from meshonet.formats.figure.layers import Colouring
+from meshonet.formats.figure.figure import draw
+from meshonet.formats.figure.layers import DOTS, Colouring
 from meshonet.formats.figure.space import draw_in_space
 from meshonet.formats.figure.view import View, check_flat, flat_box
 from meshonet.formats.format import only_one
@@ -16,7 +17,12 @@ _WHOLE = View()
 
 
 def write(
-    path: Path, grid: Grid, kind: str = "png", colouring: Colouring | None = None, view: View = _WHOLE
+    path: Path | BinaryIO,
+    grid: Grid,
+    kind: str = "png",
+    colouring: Colouring | None = None,
+    view: View = _WHOLE,
+    dots: int = DOTS,
 ) -> None:
     """Draw `grid` into a file of `kind` ``png``, ``svg`` or ``pdf``; the same input gives the same bytes.
 
@@ -31,7 +37,7 @@ def write(
             figure = draw(grid, colouring, flat_box(view.zoom), view.every)
         else:
             figure = draw_in_space(grid, colouring, view)
-        figure.savefig(path, format=kind, dpi=DOTS, metadata=dates.get(kind))
+        figure.savefig(path, format=kind, dpi=dots, metadata=dates.get(kind))
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, kind: str) -> None:

@@ -4,7 +4,9 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
+from meshonet.formats.figure.layers import DOTS
 from meshonet.formats.figure.slices import parse_slice
 from meshonet.formats.format import Format, only_one
 from meshonet.formats.registry import format_for_output
@@ -56,8 +58,11 @@ class Picture:
             problem = f"every {self.every}-th line cannot be drawn"
             raise InputError(problem, "use 1 or more", parameter="every")
 
-    def draw(self, kind: str, path: Path, grids: Iterable[Grid]) -> None:
-        """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``, or as an ``html`` page."""
+    def draw(self, kind: str, path: Path | BinaryIO, grids: Iterable[Grid], dots: int = DOTS) -> None:
+        """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``, or as an ``html`` page.
+
+        Pages go to a path only, pictures also to an open file; `dots` are those an inch of a ``png``.
+        """
         from meshonet.formats.figure.files import write
         from meshonet.formats.figure.layers import Colouring
         from meshonet.formats.figure.page.page import write_page
@@ -66,7 +71,7 @@ class Picture:
         grid = only_one(grids, "a picture")
         part = None if self.slice is None else parse_slice(self.slice)
         view = View(self.zoom, self.every, part, self.seen_from)
-        if kind == "html":
+        if kind == "html" and isinstance(path, Path):
             write_page(path, grid, self.metric, view)
             return
         colouring = None
@@ -75,7 +80,7 @@ class Picture:
             label = f"{metric.name} ({metric.unit})" if metric.unit else metric.name
             values = tuple(per_cell_of_blocks(grid, metric.name))
             colouring = Colouring(values, label, worst_is_low=metric.worst == "min")
-        write(path, grid, kind, colouring, view)
+        write(path, grid, kind, colouring, view, dots)
 
 
 def picture_format(output: str, to_format: str | None = None) -> Format:

@@ -148,6 +148,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--profile": ("grid.h5", "OPTION viscous", "out"),
         "--plot": ("grid.h5", "OPTION grid.png", "files"),
         "--per-cell": ("grid.h5", "OPTION cells.vts", "files"),
+        "--html": ("grid.h5", "OPTION report.html", "files"),
         "--compare": ("grid.h5", "OPTION smooth.h5", "out"),
         "--pair": ("bc.h5 --compare cb.h5 --summary", "OPTION order", "out"),
         "--summary": ("grid.h5 smooth.h5", "OPTION", "out"),

@@ -54,12 +54,16 @@ class Browser:
 
     def open(self, page: Path) -> None:
         """Open a page, and wait for it to be drawn."""
-        self._call("POST", f"{self._session}/url", {"url": page.resolve().as_uri()})
+        self.load(page.resolve().as_uri())
         self.wait("return document.body.dataset.ready")
         assert self.run("return document.body.dataset.ready") == "yes", self.run(
             "return document.querySelector('#trouble').textContent"
         )
         self.settle()
+
+    def load(self, address: str) -> None:
+        """Open an address."""
+        self._call("POST", f"{self._session}/url", {"url": address})
 
     def run(self, script: str, *arguments: Any) -> Any:
         """Run a script in the page and return what it does."""
@@ -74,6 +78,7 @@ class Browser:
 
     def settle(self) -> None:
         """Wait until no more frames are drawn."""
+        self.wait("return meshonet.camera.flight === null")
         frames = None
         while (now := self.run("return document.body.dataset.frames")) != frames:
             frames = now

@@ -12,6 +12,7 @@ class Camera {
     [this.azimuth, this.elevation] = seenFrom;
     this.target = [0, 0, 0];
     this.scale = 1;
+    this.flight = null;
   }
 
   /** Unit vectors to the right, upwards and towards the viewer. */
@@ -85,8 +86,9 @@ class Camera {
       // the way on the screen is even: fast while the scale is small
       const way = Math.abs(ratio) < 1e-6 ? part : (1 - Math.exp(-ratio * part)) / (1 - Math.exp(-ratio));
       this.target = t === 1 ? to.target : from.target.map((value, k) => value + (to.target[k] - value) * way);
+      if (t === 1) this.flight = null;
+      else requestAnimationFrame(step);
       draw();
-      if (t < 1) requestAnimationFrame(step);
     };
     requestAnimationFrame(step);
   }

@@ -36,7 +36,7 @@ def packed(numbers: NDArray[np.integer]) -> Packed:
     >>> packed(np.array([5, 6, 7])).width
     1
     """
-    steps = np.diff(numbers.astype(np.int64), prepend=0)
+    steps: NDArray[np.int64] = np.diff(numbers.astype(np.int64), prepend=np.int64(0)).astype(np.int64)
     plain = ((steps << 1) ^ (steps >> 63)).astype("<u8")
     most = int(plain.max(initial=0))
     width = max(1, (most.bit_length() + 7) // 8)
@@ -46,7 +46,7 @@ def packed(numbers: NDArray[np.integer]) -> Packed:
 
 
 def rounding_step(shortest: float, extent: float) -> float:
-    """Return the step that coordinates of a grid of `extent` are rounded to: a part of its `shortest` edge."""
+    """Return what coordinates of a grid of `extent` are rounded to: a part of its `shortest` edge."""
     smallest = extent / _MOST
     return max(2.0 ** np.floor(np.log2(max(shortest / _PARTS, smallest, 1e-300))), smallest)
 

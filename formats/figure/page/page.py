@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import html
 import json
 from collections.abc import Iterable
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from meshonet.formats.figure.page.document import document, file_text
 from meshonet.formats.figure.page.packing import Packed
 from meshonet.formats.figure.page.scene import Scene, scene_of
 from meshonet.formats.figure.slices import Slice, cut, layers
@@ -31,26 +30,12 @@ _PROGRAM = (
     "main.js",
 )
 """Files of the program, in this order."""
-_PAGE = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}</title>
-<style>
-{style}
-</style>
-</head>
-<body>
-{body}
+_BODY = """{body}
 <script type="application/json" id="facts">{facts}</script>
 {numbers}
 <script type="module">
 {program}
-</script>
-</body>
-</html>
-"""
+</script>"""
 
 
 def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: View | None = None) -> None:
@@ -72,19 +57,18 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 def page_text(name: str, scene: Scene, start: dict[str, Any]) -> str:
     """Return the page of a scene; `start` is what it shows first."""
     facts = scene.facts | {"name": name, "start": start, "colours": _colours()}
-    return _PAGE.format(
-        title=html.escape(name or "grid"),
-        style=own_file("page.css"),
+    body = _BODY.format(
         body=own_file("body.html"),
         facts=_json(facts),
         numbers="\n".join(_data(key, value) for key, value in scene.numbers.items()),
         program="\n".join(own_file(part) for part in _PROGRAM),
     )
+    return document(name or "grid", own_file("page.css"), body)
 
 
 def own_file(name: str) -> str:
     """Return a file of this folder."""
-    return (files("meshonet.formats.figure.page") / name).read_text(encoding="utf-8")
+    return file_text("meshonet.formats.figure.page", name)
 
 
 def _start(grid: Grid, metric: str | None, view: View) -> dict[str, Any]:
