@@ -21,6 +21,8 @@ SCRIPTS = {
     "wings": "wings",
     "volumes": "volumes",
     "pages": "pages",
+    "kershaw": "kershaw",
+    "blocks": "blocks",
 }
 """Page to script, benchmarks/bench_NAME.py."""
 

@@ -11,7 +11,7 @@ from meshonet.formats.figure.slices import parse_slice
 from meshonet.formats.format import Format, only_one
 from meshonet.formats.registry import format_for_output
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import ALL_NAMES, metric_of
 
@@ -41,7 +41,7 @@ class Picture:
 
     def __post_init__(self) -> None:
         if self.metric not in (*ALL_NAMES, None):
-            known = "use none or one of " + ", ".join(ALL_NAMES)
+            known = meant(str(self.metric), ALL_NAMES) + "use none or one of " + ", ".join(ALL_NAMES)
             raise InputError(f"metric {self.metric!r} is not known", known, parameter="metric")
         zoom = self.zoom or (0, 1, 0, 1)
         pairs = list(zip(zoom[::2], zoom[1::2], strict=False))

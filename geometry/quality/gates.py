@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.quality.metrics import ALL_NAMES
 from meshonet.geometry.quality.summary import Quality
 
@@ -87,7 +87,8 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
         )
     metric, statistic, compare = match[1], match[2], match[3]
     if metric not in (*ALL_NAMES, *COUNTS, *more):
-        known = "use one of " + ", ".join(("folded", *ALL_NAMES, "bezier_folded", *more))
+        names = ("folded", *ALL_NAMES, "bezier_folded", *more)
+        known = meant(metric, names) + "use one of " + ", ".join(names)
         raise InputError(f"metric {metric!r} is not known", known, parameter="fail_on")
     if statistic and (statistic not in _STATISTICS or metric not in ALL_NAMES):
         known = "one of " + ", ".join(_STATISTICS) if metric in ALL_NAMES else f"no statistic with {metric}"

@@ -12,11 +12,13 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.blocks import BLOCK_FIGURES
 from meshonet.geometry.quality.gates import parse_gates
 from meshonet.geometry.quality.report import QualityReport, quality_report
+from meshonet.geometry.threads import limited_to
 
 
 def quality(
-    grid: Grid | str | Path, *, profile: str | None = None, compare: Grid | str | Path | None = None
-) -> QualityReport:
+    grid: Grid | str | Path, *, profile: str | None = None, compare: Grid | str | Path | None = None,
+    threads: int | None = None,
+) -> QualityReport:  # fmt: skip
     """Measure a grid: folded cells, angles, skewness, walls, growth.
 
     Parameters
@@ -24,9 +26,10 @@ def quality(
     grid : a grid, or a file that holds one.
     profile : thresholds to judge by: ``openfoam``, ``pointwise``, ``verdict`` or ``viscous``.
     compare : reference grid of the same size, or a file that holds one.
+    threads : that work on it, with the same result for any number; None: as many as there are cores.
 
     Raises InputError: a file that cannot be read or holds several grids, a reference of another size, an
-    unknown profile.
+    unknown profile, no threads.
 
     >>> import numpy as np
     >>> x, y = np.meshgrid(np.linspace(0, 2, 5), np.linspace(0, 1, 3), indexing="ij")
@@ -36,7 +39,8 @@ def quality(
     """
     grid = single_grid(grid)
     reference = None if compare is None else single_grid(compare)
-    return quality_report(grid, profile, reference)
+    with limited_to(threads):
+        return quality_report(grid, profile, reference)
 
 
 def quality_page(

@@ -92,7 +92,8 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     method = request.solver()
     shapes = iter(shapes)
     while group := _group(shapes, request, MOST_TOGETHER if method.together else 1):
-        _solve_together(group, method)
+        with limited_to(request.threads):
+            _solve_together(group, method)
         while group:
             yield _finished_or_error(group.popleft(), method, request)
 

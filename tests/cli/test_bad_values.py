@@ -16,6 +16,7 @@ INPUTS = {
     "convert": ("grid.vts", "made.vts"),
     "plot": ("grid.vts", "-o", "made.png"),
     "models": (),
+    "doctor": (),
     "layout": ("step.wkt", "-o", "made.json"),
     "stack": ("wing.toml", "--around", "49", "--span", "9", "--layers", "18", "-o", "made.h5"),
     "sweep": ("circle:0.5", "path.csv", "--cells", "40", "-o", "made.h5"),

@@ -1,4 +1,4 @@
-"""The mark of tests that run programs of Debian's: ``make test-clients`` installs them."""
+"""Fixtures of all tests, and the marks of those that run programs: ``make test-clients`` installs them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,14 @@ import shutil
 from collections.abc import Iterator
 
 import pytest
+
+from meshonet.geometry import threads
+
+
+@pytest.fixture
+def eager_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have threads work on grids of any size."""
+    monkeypatch.setattr(threads, "NODES_EACH", 16)
 
 
 @pytest.fixture
@@ -37,7 +45,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
                 pytest.fail(missing)
             pytest.skip(missing)
     if any(item.iter_markers("browser")) and not (shutil.which("chromedriver") and shutil.which("chromium")):
-        pytest.skip("chromium and chromedriver are not installed: apt-get install chromium chromium-driver")
+        pytest.skip("no browser: apt-get install chromium chromium-driver")
     for mark in item.iter_markers("solver"):
         if shutil.which(str(mark.args[0])) is None:
             pytest.skip(f"{mark.args[0]} is not installed")
