@@ -14,7 +14,7 @@ EXAMPLES = ("meshonet doctor", "meshonet doctor --json")
 _SIGNS = {True: "ok", False: "NO", None: "-"}
 
 
-def doctor(as_json: o.AsJson = False, debug: o.Debug = False) -> int:
+def doctor(as_json: o.AsJson = False) -> int:
     """Say what is installed, whether it works, and what could be added.
 
     The exit code is 1 when something is missing or does not work.
@@ -22,7 +22,7 @@ def doctor(as_json: o.AsJson = False, debug: o.Debug = False) -> int:
     from meshonet.api.doctor import doctor as examined
     from meshonet_cli.session import Session
 
-    session, findings = Session(as_json=as_json, debug=debug), examined()
+    session, findings = Session(as_json=as_json), examined()
     if as_json:
         session.result({"well": _well(findings), "findings": [vars(finding) for finding in findings]})
     else:
