@@ -20,6 +20,7 @@ import os
 import re
 import sys
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Annotated, Any, NoReturn
 
 import typer
@@ -127,12 +128,23 @@ def main() -> NoReturn:
     install()
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # names from files, on a terminal that lacks them
-    code = run(sys.argv[1:])
+    code = _on_ranks(sys.argv[1:]) if _names_mpi(sys.argv) else run(sys.argv[1:])
     with contextlib.suppress(BrokenPipeError):
         sys.stdout.flush()
         sys.exit(code)
     _silence_stdout()
     sys.exit(code)
+
+
+def _names_mpi(words: Sequence[str]) -> bool:
+    """Say whether ``--engine mpi`` is among the words."""
+    return "--engine=mpi" in words or ("--engine", "mpi") in pairwise(words)
+
+
+def _on_ranks(arguments: Sequence[str]) -> int:
+    from meshonet_cli.batch.executors.mpi_engine import on_ranks
+
+    return on_ranks(lambda: run(arguments))
 
 
 def _explained(error: Exception, name: str) -> str:
@@ -151,9 +163,9 @@ def _nearest(error: Exception, message: str) -> str:
     """Return the parser's message with the nearest option or choice."""
     from meshonet.geometry.errors import meant
 
-    option = getattr(error, "option_name", None)
-    if option:
-        near = meant(option, getattr(error, "possibilities", None) or ())
+    if hasattr(error, "possibilities"):  # of those that there are, for an option that there is not
+        option: str = getattr(error, "option_name", "")
+        near = meant(option, error.possibilities or ())
         return f"no such option {option}{'; ' + near.rstrip() if near else ''}"
     choice = re.search(r"'([^']*)' is not one of (.*)", message)
     near = meant(choice[1], re.findall(r"'([^']*)'", choice[2])) if choice else ""

@@ -48,6 +48,14 @@ class Finding:
 def doctor() -> list[Finding]:
     """Return what is installed, whether it works, and what each extra adds and how to get it.
 
+    Returns
+    -------
+    list of Finding
+        Each with a group, a name, a value, whether it is well (None where it is neither well nor ill) and a
+        remedy.
+
+    Examples
+    --------
     >>> [finding.value for finding in doctor() if finding.name == "a grid"][0].startswith("41 x 11 nodes")
     True
     """

@@ -26,8 +26,23 @@ _FIRST_HEAD = ("hole-o", "quad-general")
 def models(name: str | None = None) -> list[dict[str, Any]]:
     """Return what each shipped operator says of itself: name, use, topology, training, held-out figures.
 
-    `name` is of one that is wanted alone. Raises InputError: no operator of this name.
+    Parameters
+    ----------
+    name : str, optional
+        The operator that is wanted alone; None gives all.
 
+    Returns
+    -------
+    list of dict
+        What each shipped operator says of itself: name, topology, training, held-out figures.
+
+    Raises
+    ------
+    InputError
+        No operator of this name.
+
+    Examples
+    --------
     >>> sorted(model["name"] for model in models())
     ['airfoil-o', 'hole-o', 'hole-winslow', 'quad-general', 'quad-winslow']
     >>> models("quad-general")[0]["use"]

@@ -23,14 +23,28 @@ def quality(
 
     Parameters
     ----------
-    grid : a grid, or a file that holds one.
-    profile : thresholds to judge by: ``openfoam``, ``pointwise``, ``verdict`` or ``viscous``.
-    compare : reference grid of the same size, or a file that holds one.
-    threads : that work on it, with the same result for any number; None: as many as there are cores.
+    grid : Grid, str or Path
+        A grid, or a file that holds one.
+    profile : str, optional
+        Thresholds to judge by: ``openfoam``, ``pointwise``, ``verdict`` or ``viscous``.
+    compare : Grid, str or Path, optional
+        Reference grid of the same size, or a file that holds one.
+    threads : int, optional
+        Threads that work on it, with the same result for any number; None: as many as there are cores.
 
-    Raises InputError: a file that cannot be read or holds several grids, a reference of another size, an
-    unknown profile, no threads.
+    Returns
+    -------
+    QualityReport
+        Every metric with its percentiles, the worst cells, walls and growth; the verdict of the profile.
 
+    Raises
+    ------
+    InputError
+        A file that cannot be read or holds several grids, a reference of another size, an unknown profile,
+        no threads.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> x, y = np.meshgrid(np.linspace(0, 2, 5), np.linspace(0, 1, 3), indexing="ij")
     >>> report = quality(Grid.from_nodes(np.stack([x, y], axis=-1)))
@@ -51,12 +65,24 @@ def quality_page(
 
     Parameters
     ----------
-    grids : grids, or files that hold one each.
-    output : page to write, ``.html``.
-    profile : thresholds to judge by, as for `quality`.
-    fail_on : gates, ``max_angle>170`` for instance.
+    grids : iterable of Grid, str or Path
+        Grids, or files that hold one each.
+    output : str or Path
+        Page to write, ``.html``.
+    profile : str, optional
+        Thresholds to judge by, as for `quality`.
+    fail_on : sequence of str
+        Gates, ``max_angle>170`` for instance.
 
-    Raises InputError: as `quality`; something that is no gate; an output that cannot be written.
+    Returns
+    -------
+    bool
+        Whether no cell is folded, no gate broken and no check of the profile failed.
+
+    Raises
+    ------
+    InputError
+        As `quality`; something that is no gate; an output that cannot be written.
     """
     gates = parse_gates(fail_on, BLOCK_FIGURES)
     if format_for_output(str(output)).name != "html":
