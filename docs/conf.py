@@ -26,6 +26,8 @@ extensions = [
 ]
 exclude_patterns = ["**/README*"]
 nitpicky = True
+nitpick_ignore_regex = [("py:obj", ".*")]  # `names` in docstrings: links where there is a page
+default_role = "autolink"
 suppress_warnings = ["config.cache"]  # the scraper below is a function
 
 # --- pages
