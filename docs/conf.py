@@ -81,6 +81,7 @@ sphinx_gallery_conf = {
     "image_scrapers": (written_pictures,),
     "within_subsection_order": "FileNameSortKey",
     "show_memory": False,
+    "write_computation_times": False,
     "show_signature": False,
     "download_all_examples": False,
     "copyfile_regex": r".*\.(toml|dat|csv)",
