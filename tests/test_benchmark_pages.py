@@ -20,6 +20,7 @@ SCRIPTS = {
     "marching-surfaces": "marching",
     "wings": "wings",
     "volumes": "volumes",
+    "deform": "deform",
     "kershaw": "kershaw",
     "blocks": "blocks",
 }
