@@ -74,11 +74,10 @@ MESHONET_INLINE void measure_row(const double *restrict x, const double *restric
     }
 }
 
-/* Push the nodes at both ends of each edge of a row by its force over l², times the edge; `force` has room for 3 n,
-   the gradients at the ends are gx, gy and end_x, end_y. */
+/* Push the two nodes of each edge of a row by its force over l², times the edge; `force` has room for 3 n. */
 MESHONET_INLINE void push_row(const double *restrict x, const double *restrict y, ptrdiff_t next, ptrdiff_t n,
-                              double *restrict force, const double *restrict inverse, double *gx, double *gy,
-                              double *end_x, double *end_y)
+                              double *restrict force, const double *restrict inverse, double *restrict gx,
+                              double *restrict gy)
 {
     double *restrict fx = force + n, *restrict fy = force + 2 * n;
     MESHONET_INDEPENDENT
@@ -91,7 +90,7 @@ MESHONET_INLINE void push_row(const double *restrict x, const double *restrict y
         gx[j] -= fx[j], gy[j] -= fy[j];
     MESHONET_INDEPENDENT
     for (ptrdiff_t j = 0; j < n; j++)
-        end_x[j] += fx[j], end_y[j] += fy[j];
+        gx[j + next] += fx[j], gy[j + next] += fy[j];
 }
 
 /* One family of edges, (rows, n) of them; those along xi (`next` > 1) wrap around when periodic. `length` and
@@ -103,40 +102,46 @@ typedef struct {
     double *length, *inverse;
 } Family;
 
-/* The edge length term of row i of a family; the forces on its edges go into `force`. */
-MESHONET_INLINE double length_row(const Family *f, ptrdiff_t i, double *restrict force)
+/* The edge length terms of rows `first` to before `last` of a family, to the gradient of the nodes from row `first` on.
+   `length` and `inverse` hold the measures of all rows, `force` room for 3 n. */
+MESHONET_INLINE void length_rows(const double *x, const double *y, const Family *f, const int next, ptrdiff_t first,
+                                 ptrdiff_t last, double *gx, double *gy, double *energies, double *restrict force)
 {
-    const ptrdiff_t n = f->n, rows = f->rows;
+    const ptrdiff_t n = f->n, nj = f->nj, rows = f->rows;
     const double by_i = f->by_i, by_j = f->by_j;
-    const int along_i = f->next > 1;
-    const double *restrict l = f->length + i * n;
-    const double *restrict west = i > 0 ? l - n : along_i && f->periodic ? f->length + (rows - 1) * n : l;
-    const double *restrict east = i < rows - 1 ? l + n : along_i && f->periodic ? f->length : l;
-    const double on_rim = !along_i && (i == 0 || i == rows - 1) ? 0.5 * by_j : by_j;
-    double sum_i = 0.0, sum_j = 0.0;
-    MESHONET_INDEPENDENT
-    for (ptrdiff_t j = 0; j < n; j++) {
-        const double d = east[j] - l[j];
-        sum_i += d * d;
-        force[j] = 2.0 * by_i * ((l[j] - west[j]) - d);
+    const double *length = f->length, *inverse = f->inverse;
+    const int along_i = next != 1, periodic = f->periodic;
+    for (ptrdiff_t i = first; i < last; i++, gx += nj, gy += nj) {
+        const double *restrict l = length + i * n;
+        const double *restrict west = i > 0 ? l - n : along_i && periodic ? length + (rows - 1) * n : l;
+        const double *restrict east = i < rows - 1 ? l + n : along_i && periodic ? length : l;
+        const double on_rim = !along_i && (i == 0 || i == rows - 1) ? 0.5 * by_j : by_j;
+        double sum_i = 0.0, sum_j = 0.0;
+        MESHONET_INDEPENDENT
+        for (ptrdiff_t j = 0; j < n; j++) {
+            const double d = east[j] - l[j];
+            sum_i += d * d;
+            force[j] = 2.0 * by_i * ((l[j] - west[j]) - d);
+        }
+        if (along_i) {
+            const double start = east[0] - l[0], end = east[n - 1] - l[n - 1];
+            sum_i -= 0.5 * (start * start + end * end);
+        }
+        MESHONET_INDEPENDENT
+        for (ptrdiff_t j = 0; j < n - 1; j++) {
+            const double d = l[j + 1] - l[j];
+            sum_j += d * d;
+        }
+        MESHONET_INDEPENDENT
+        for (ptrdiff_t j = 1; j < n - 1; j++)
+            force[j] += 2.0 * on_rim * (2.0 * l[j] - l[j - 1] - l[j + 1]);
+        if (n > 1) {
+            force[0] -= 2.0 * on_rim * (l[1] - l[0]);
+            force[n - 1] += 2.0 * on_rim * (l[n - 1] - l[n - 2]);
+        }
+        energies[i] = by_i * sum_i + on_rim * sum_j;
+        push_row(x + i * nj, y + i * nj, along_i ? nj : 1, n, force, inverse + i * n, gx, gy);
     }
-    if (along_i) {
-        const double first = east[0] - l[0], last = east[n - 1] - l[n - 1];
-        sum_i -= 0.5 * (first * first + last * last);
-    }
-    MESHONET_INDEPENDENT
-    for (ptrdiff_t j = 0; j < n - 1; j++) {
-        const double d = l[j + 1] - l[j];
-        sum_j += d * d;
-    }
-    MESHONET_INDEPENDENT
-    for (ptrdiff_t j = 1; j < n - 1; j++)
-        force[j] += 2.0 * on_rim * (2.0 * l[j] - l[j - 1] - l[j + 1]);
-    if (n > 1) {
-        force[0] -= 2.0 * on_rim * (l[1] - l[0]);
-        force[n - 1] += 2.0 * on_rim * (l[n - 1] - l[n - 2]);
-    }
-    return by_i * sum_i + on_rim * sum_j;
 }
 
 /* Take away from the energy what the corners at nodes (i, 0) do not keep of their angle terms, w over the number of

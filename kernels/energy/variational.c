@@ -9,15 +9,14 @@
 #define TRIES 25  /* lengths of a step of Newton's method that are tried */
 #define GAIN 1e-4 /* part of the value that such a change wins at the most */
 
-#define ROWS_EACH 10 /* rows of a member of the team: nine of forces, and one for what is another's */
+#define ROWS_EACH 13 /* rows of a member of the team: nine of forces, two pairs of gradients */
 
 size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj, int threads)
 {
-    return (size_t)(2 * ni * nj + 4 * ni) + (size_t)threads * (size_t)(ROWS_EACH * nj);
+    return (size_t)(2 * ni * nj + 6 * ni) + (size_t)threads * (size_t)(ROWS_EACH * nj);
 }
 
-/* What a team works on. Members have rows of nodes of their own: the cells, or edges, between those of two members
-   are looked at by both. */
+/* What a team works on. */
 typedef struct {
     const double *x, *y;
     ptrdiff_t ni, nj;
@@ -25,43 +24,81 @@ typedef struct {
     Factors at_corner, at_centre;
     Family along, across; /* edges along xi and along eta, in the same room */
     int regular;
-    double *cells, *least, *lengths[2]; /* of each row */
+    double *cells, *least, *lengths, *spare; /* of each row, (ni); twice that in spare */
     double *rows;
 } Task;
+
+/* Terms of rows `first` to before `last`, of cells or of edges, to the gradient of the nodes from row `first` on, and
+   the energy and the smallest Jacobian of each row. */
+typedef void (*Terms)(const Task *t, ptrdiff_t first, ptrdiff_t last, double *gx, double *gy, double *energies,
+                      double *least, double *rows);
+
+MESHONET_CLONES
+static void corner_terms(const Task *t, ptrdiff_t first, ptrdiff_t last, double *gx, double *gy, double *energies,
+                         double *least, double *rows)
+{
+    const ptrdiff_t nj = t->nj;
+    const Factors at_corner = t->at_corner, at_centre = t->at_centre;
+    const CellRow r = {rows,          rows + nj,     rows + 2 * nj, rows + 3 * nj, rows + 4 * nj,
+                       rows + 5 * nj, rows + 6 * nj, rows + 7 * nj, rows + 8 * nj};
+    for (ptrdiff_t i = first; i < last; i++, gx += nj, gy += nj) {
+        const double *xa = t->x + i * nj, *ya = t->y + i * nj;
+        double low = INFINITY;
+        if (t->regular)
+            energies[i] = cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &at_corner, &at_centre, 1, &r);
+        else
+            energies[i] = cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &at_corner, &at_centre, 0, &r);
+        for (ptrdiff_t j = 0; j < nj - 1; j++)
+            low = r.least[j] < low ? r.least[j] : low;
+        least[i] = low;
+        scatter(r.sx, r.nx, r.wx, r.ex, gx, gx + nj, nj - 1);
+        scatter(r.sy, r.ny, r.wy, r.ey, gy, gy + nj, nj - 1);
+    }
+}
+
+MESHONET_CLONES
+static void along_terms(const Task *t, ptrdiff_t first, ptrdiff_t last, double *gx, double *gy, double *energies,
+                        double *least, double *rows)
+{
+    (void)least;
+    length_rows(t->x, t->y, &t->along, 2, first, last, gx, gy, energies, rows);
+}
+
+MESHONET_CLONES
+static void across_terms(const Task *t, ptrdiff_t first, ptrdiff_t last, double *gx, double *gy, double *energies,
+                         double *rows)
+{
+    length_rows(t->x, t->y, &t->across, 1, first, last, gx, gy, energies, rows);
+}
+
+/* Terms of rows between two rows of nodes, to the nodes in rows `first` to before `last`, which are this member's. Rows
+   between two members' nodes are looked at by both, for the sake of their own. */
+static void to_own_nodes(const Task *t, Terms terms, ptrdiff_t first, ptrdiff_t last, double *energies, double *rows)
+{
+    const ptrdiff_t nj = t->nj;
+    const size_t line = (size_t)nj * sizeof(double);
+    double *px = rows + 9 * nj, *py = px + 2 * nj, *least = t->least; /* pairs of rows */
+    double *spare = t->spare, *spare_least = spare + t->ni;
+    if (first > 0 && first < last) {
+        memset(px, 0, 4 * line);
+        terms(t, first - 1, first, px, py, spare, spare_least, rows);
+        for (ptrdiff_t j = 0; j < nj; j++)
+            t->gx[first * nj + j] += px[nj + j], t->gy[first * nj + j] += py[nj + j];
+    }
+    const ptrdiff_t whole = last < t->ni ? last - 1 : last == t->ni && first < last ? t->ni - 1 : first;
+    if (first < whole)
+        terms(t, first, whole, t->gx + first * nj, t->gy + first * nj, energies, least, rows);
+    if (first < last && last < t->ni) {
+        memcpy(px, t->gx + whole * nj, line), memcpy(py, t->gy + whole * nj, line);
+        memset(px + nj, 0, line), memset(py + nj, 0, line);
+        terms(t, whole, last, px, py, energies, least, rows);
+        memcpy(t->gx + whole * nj, px, line), memcpy(t->gy + whole * nj, py, line);
+    }
+}
 
 static double *member_rows(const Task *t, Member member)
 {
     return t->rows + (size_t)member.rank * (size_t)(ROWS_EACH * t->nj);
-}
-
-/* Terms of the corners and centres of cells, to nodes in rows `first` to before `last`. */
-MESHONET_CLONES
-static void corner_rows(const Task *t, ptrdiff_t first, ptrdiff_t last, double *rows)
-{
-    const ptrdiff_t nj = t->nj, end = last < t->ni ? last : t->ni - 1;
-    double *lost = rows + 9 * nj;
-    const CellRow r = {rows,          rows + nj,     rows + 2 * nj, rows + 3 * nj, rows + 4 * nj,
-                       rows + 5 * nj, rows + 6 * nj, rows + 7 * nj, rows + 8 * nj};
-    memset(lost, 0, (size_t)nj * sizeof *lost);
-    if (first < last) {
-        memset(t->gx + first * nj, 0, (size_t)((last - first) * nj) * sizeof *t->gx);
-        memset(t->gy + first * nj, 0, (size_t)((last - first) * nj) * sizeof *t->gy);
-    }
-    for (ptrdiff_t i = first > 0 && first < last ? first - 1 : first; i < end; i++) {
-        const double *xa = t->x + i * nj, *ya = t->y + i * nj;
-        const int own = i >= first, next = i + 1 < last;
-        double energy, low = INFINITY;
-        if (t->regular)
-            energy = cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &t->at_corner, &t->at_centre, 1, &r);
-        else
-            energy = cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &t->at_corner, &t->at_centre, 0, &r);
-        for (ptrdiff_t j = 0; j < nj - 1; j++)
-            low = r.least[j] < low ? r.least[j] : low;
-        if (own)
-            t->cells[i] = energy, t->least[i] = low;
-        scatter(r.sx, r.nx, r.wx, r.ex, own ? t->gx + i * nj : lost, next ? t->gx + (i + 1) * nj : lost, nj - 1);
-        scatter(r.sy, r.ny, r.wy, r.ey, own ? t->gy + i * nj : lost, next ? t->gy + (i + 1) * nj : lost, nj - 1);
-    }
 }
 
 static void corner_share(void *data, Member member)
@@ -69,7 +106,9 @@ static void corner_share(void *data, Member member)
     const Task *t = data;
     ptrdiff_t first, last;
     team_share(t->ni, member, &first, &last);
-    corner_rows(t, first, last, member_rows(t, member));
+    memset(t->gx + first * t->nj, 0, (size_t)((last - first) * t->nj) * sizeof *t->gx);
+    memset(t->gy + first * t->nj, 0, (size_t)((last - first) * t->nj) * sizeof *t->gy);
+    to_own_nodes(t, corner_terms, first, last, t->cells, member_rows(t, member));
 }
 
 MESHONET_CLONES
@@ -79,49 +118,25 @@ static void measure_rows(const Task *t, const Family *f, ptrdiff_t first, ptrdif
         measure_row(t->x + i * t->nj, t->y + i * t->nj, f->next, f->n, f->length + i * f->n, f->inverse + i * f->n);
 }
 
-/* Edges along xi, to nodes in rows `first` to before `last`. */
-MESHONET_CLONES
-static void along_rows_of(const Task *t, ptrdiff_t first, ptrdiff_t last, double *rows)
-{
-    const Family *f = &t->along;
-    const ptrdiff_t nj = t->nj;
-    double *lost = rows + 9 * nj;
-    for (ptrdiff_t i = first > 0 && first < last ? first - 1 : first; i < last && i < f->rows; i++) {
-        const int own = i >= first, next = i + 1 < last;
-        const double energy = length_row(f, i, rows);
-        double *gx = t->gx + i * nj, *gy = t->gy + i * nj;
-        if (own)
-            t->lengths[0][i] = energy;
-        push_row(t->x + i * nj, t->y + i * nj, f->next, f->n, rows, f->inverse + i * f->n, own ? gx : lost,
-                 own ? gy : lost, next ? gx + nj : lost, next ? gy + nj : lost);
-    }
-}
-
-MESHONET_CLONES
-static void across_rows(const Task *t, ptrdiff_t first, ptrdiff_t last, double *rows)
-{
-    const Family *f = &t->across;
-    const ptrdiff_t nj = t->nj;
-    for (ptrdiff_t i = first; i < last; i++) {
-        double *gx = t->gx + i * nj, *gy = t->gy + i * nj;
-        t->lengths[1][i] = length_row(f, i, rows);
-        push_row(t->x + i * nj, t->y + i * nj, f->next, f->n, rows, f->inverse + i * f->n, gx, gy, gx + 1, gy + 1);
-    }
-}
-
-static void length_share(void *data, Member member)
+static void along_share(void *data, Member member)
 {
     const Task *t = data;
-    double *rows = member_rows(t, member);
     ptrdiff_t first, last;
     team_share(t->ni, member, &first, &last);
     measure_rows(t, &t->along, first, last);
     team_wait(member);
-    along_rows_of(t, first, last, rows);
-    team_wait(member);
+    to_own_nodes(t, along_terms, first, last, t->lengths, member_rows(t, member));
+}
+
+static void across_share(void *data, Member member)
+{
+    const Task *t = data;
+    const ptrdiff_t nj = t->nj;
+    ptrdiff_t first, last;
+    team_share(t->ni, member, &first, &last);
     measure_rows(t, &t->across, first, last);
     team_wait(member);
-    across_rows(t, first, last, rows);
+    across_terms(t, first, last, t->gx + first * nj, t->gy + first * nj, t->lengths, member_rows(t, member));
 }
 
 /* The sum of n values, one after another; volatile, or the compiler would take several at a time. */
@@ -148,7 +163,7 @@ double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdif
         {two * along, two * across, two * weights->shape, 16.0 * eps * eps},
         {nj, ni - 1, nj, nj, weights->periodic, by_i, by_j, work, work + ni * nj},
         {nj, ni, nj - 1, 1, weights->periodic, by_i, by_j, work, work + ni * nj},
-        eps > 0.0, sums, sums + ni, {sums + 2 * ni, sums + 3 * ni}, sums + 4 * ni,
+        eps > 0.0, sums, sums + ni, sums + 2 * ni, sums + 3 * ni, sums + 6 * ni,
     };
     team_run(threads, corner_share, &t);
     double energy = in_order(t.cells, ni - 1);
@@ -158,9 +173,10 @@ double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdif
     if (!(eps > 0.0) && !(low > 0.0))
         return INFINITY;
     if (weights->smoothness > 0.0) {
-        team_run(threads, length_share, &t);
-        energy += in_order(t.lengths[0], ni - 1);
-        energy += in_order(t.lengths[1], ni);
+        team_run(threads, along_share, &t);
+        energy += in_order(t.lengths, ni - 1);
+        team_run(threads, across_share, &t);
+        energy += in_order(t.lengths, ni);
     }
     if (weights->relief && !(eps > 0.0))
         energy -= relieve(x, y, ni, nj, weights, one * weights->shape, gx, gy);
