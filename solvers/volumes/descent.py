@@ -3,14 +3,14 @@
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import MANY_VISITS, threads_for
 from meshonet.kernels._native import VolumeDescent, volume_jacobians
 from meshonet.solvers.volumes.functional import OPENING, UNFOLDING, Weights, inverse_lengths
 
 RENEWED = 10
 """Iterations after which the preconditioner follows the nodes."""
-STILL, GAIN = 0.3, 5e-4
-"""Moves, in cells, and parts of the value: two steps on end below both end a descent."""
+STILL = 0.3
+"""Moves, in cells: two steps on end below it that also gain little end a descent."""
 REACH = 0.5
 """The farthest that a node may move in a first step, in cells."""
 FLAT = 0.05
@@ -30,12 +30,12 @@ class Descent:
     def __init__(self, planes: Floats) -> None:
         self.planes, self.iterations = planes, 0
         self._over = inverse_lengths(planes)
-        self._run = VolumeDescent(planes.shape[1:], thread_count())
+        self._run = VolumeDescent(planes.shape[1:], threads_for(planes[0].size, MANY_VISITS))
 
     def jacobians(self) -> Floats:
         """Return the smallest corner Jacobian of each cell (ni-1, nj-1, nk-1), 1 in one of mean edges."""
         least = np.empty([n - 1 for n in self.planes.shape[1:]])
-        volume_jacobians(self.planes, self._over, thread_count(), least)
+        volume_jacobians(self.planes, self._over, threads_for(least.size), least)
         return least
 
     @property
@@ -46,8 +46,9 @@ class Descent:
     def run(self, weights: Weights, most: int, epsilon: float = 0.0) -> float:
         """Take `most` iterations, fewer where nothing moves any more; return the smallest Jacobian."""
         terms = weights.shape, weights.smoothness, weights.power
-        limits = STILL, REACH, GAIN
-        _, smallest, done = self._run.run(self.planes, self._over, terms, epsilon, most, RENEWED, *limits)
+        over = (float(np.prod(self._over) ** (1 / 3)),) * 3 if weights.of_cubes else self._over
+        limits = STILL, REACH, weights.gain
+        _, smallest, done = self._run.run(self.planes, over, terms, epsilon, most, RENEWED, *limits)
         self.iterations += done
         return smallest
 

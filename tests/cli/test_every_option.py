@@ -51,6 +51,8 @@ FILES = {
 }
 SHAPES = PRINTING | FILES | {
     "--jobs": ("three.h5 -o {name}.h5 -q", "OPTION 2", "workers"),
+    "--engine": ("three.h5 -o {name}.h5 -q", "OPTION mpi", "code"),
+    "--scheduler": ("three.h5 -o {name}.h5 -q", "OPTION tcp://a:1", "code"),
     "--res": (f"naca:2412 {MADE}", "OPTION 31x9", "nodes"),
     "--topology": (f"{BODY} {MADE}", "OPTION c", "nodes"),
     "--spacing": (f"{BODY} {MADE}", "OPTION cosine", "nodes"),
@@ -94,6 +96,7 @@ BLOCKS = DOMAINS | {
 BALL = f"ball.xyz --first-cell .01 --far-field 3 {MADE}"
 MARCHED = {
     "--layers": (BALL, "OPTION 9", "nodes"),
+    "--energy": (f"bent.vts --res 5 {MADE}", "OPTION shape", "nodes"),
     "--symmetry": (f"cap.xyz --first-cell .01 --layers 9 --far-field 3 {MADE}", "OPTION none", "nodes"),
 }
 TRAINING = "arches.h5 --epochs 4 --points 60 --batch 4 -o new.safetensors"
@@ -184,6 +187,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--from": ("odd.name -o made.json -q", "OPTION vts", "code"),
         "--skip-existing": ("step.wkt -o there.json -q", "OPTION", "layout"),
         "--jobs": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION 2", "workers"),
+        "--engine": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION mpi", "code"),
+        "--scheduler": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION tcp://a:1", "code"),
         "--far-field": ("naca:0012 -o made.json -q", "OPTION 7", "bytes"),
         "--first-cell": ("hole.wkt -o made.json -q", "OPTION .002", "bytes"),
         "--y-plus": ("hole.wkt --y-plus 2 --reynolds 1e4 -o made.json -q", "OPTION 1", "bytes"),
@@ -204,6 +209,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--to": (f"{WING} -o made.name", "OPTION hdf5", "code"),
         "--skip-existing": (f"{WING} -o there.h5 -q", "OPTION", "layout"),
         "--jobs": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION 2", "workers"),
+        "--engine": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION mpi", "code"),
+        "--scheduler": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION tcp://a:1", "code"),
         "--threads": (f"{WING} {MADE} --threads 2", "OPTION 0", "code"),
         "--around": (f"{WING} {MADE}", "OPTION 61", "nodes"),
         "--span": (f"{WING} {MADE}", "OPTION 11", "nodes"),
@@ -228,6 +235,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--to": (f"{PIPE} -o made.name", "OPTION hdf5", "code"),
         "--skip-existing": (f"{PIPE} -o there.h5 -q", "OPTION", "layout"),
         "--jobs": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION 2", "workers"),
+        "--engine": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION mpi", "code"),
+        "--scheduler": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION tcp://a:1", "code"),
         "--threads": (f"{PIPE} {MADE} --threads 2", "OPTION 0", "code"),
         "--res": (f"box.csv path.csv {MADE}", "OPTION 11x9", "nodes"),
         "--planes": (f"{PIPE} {MADE}", "OPTION 7", "nodes"),
@@ -333,6 +342,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "path.csv").write_text("0 0 0\n9 0 0\n18 3 0\n")
     cube = np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1)
     Grid.from_nodes(cube).write(folder / "cube.vts")
+    Grid.from_nodes(cube + 0.03 * cube[..., ::-1] ** 2).write(folder / "bent.vts")
     cubed_sphere().write(folder / "ball.xyz")
     half_sphere().write(folder / "cap.xyz")
     shape = np.loadtxt(Path(__file__).parents[2] / "examples" / "naca2412.dat", skiprows=1) * 40
