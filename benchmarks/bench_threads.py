@@ -53,7 +53,11 @@ HEAD = """# Threads
 
 Read this page to see what a second thread wins on one large grid. How to ask for threads is in
 [threads and GPUs](../guide/threads-and-gpu.md). Times are wall-clock seconds, with each count of threads in turn
-and the least of several rounds. The bits of every result are the same for any count.
+and the least of several rounds; the ratio is of these. Processor seconds are those of all threads together, waiting
+among them. The bits of every result are the same for any count.
+
+A ratio says something where as many cores were free as there were threads. Where other programs had the cores, read
+the processor seconds: with none lost to waiting, free cores make as many times the speed as there are threads.
 """
 
 WHY = """
@@ -165,7 +169,9 @@ def planar_cases(n: int) -> Iterator[Case]:
     yield Case("`infer` of a duct, all but files", nodes, whole(sides))
     yield Case("`infer` of an airfoil, all but files", nodes, whole(shape))
     yield Case("`infer --first-cell`, all but files", nodes, whole(shape, first_cell=1e-5))
-    yield Case("Winslow with first cells, all but files", nodes, whole(sides, method="winslow", first_cell=1e-5))
+    yield Case(
+        "Winslow with first cells, all but files", nodes, whole(sides, method="winslow", first_cell=1e-5)
+    )
 
 
 def solid_cases(side: int) -> Iterator[Case]:
@@ -199,8 +205,9 @@ def solid_cases(side: int) -> Iterator[Case]:
 
 
 def row(case: Case, threads: int) -> str:
-    """Return the line of a table: seconds with one thread and with more, ratio, equality."""
+    """Return the line of a table: seconds with one thread and with more, ratio, processor seconds, equality."""
     least: dict[int, float] = {}
+    processor: dict[int, float] = {}
     bits: dict[int, list[str]] = {1: [], threads: []}
     acts = {}
     for count in bits:
@@ -209,20 +216,22 @@ def row(case: Case, threads: int) -> str:
     for _ in range(case.rounds):
         for count, act in acts.items():
             with limited_to(count):
-                begun = time.perf_counter()
+                begun, used = time.perf_counter(), time.process_time()
                 result = act()
-                spent = time.perf_counter() - begun
+                used, spent = time.process_time() - used, time.perf_counter() - begun
             least[count] = min(spent, least.get(count, np.inf))
+            processor[count] = min(used, processor.get(count, np.inf))
             bits[count].append(digest(result))
     same = "the same" if bits[1] == bits[threads] else "NOT THE SAME"
     line = f"| {case.name} | {case.nodes} | {least[1]:.3f} | {least[threads]:.3f} "
-    return f"{line}| {least[1] / least[threads]:.2f} | {same} |"
+    line += f"| {least[1] / least[threads]:.2f} | {processor[1]:.3f} / {processor[threads]:.3f} "
+    return f"{line}| {same} |"
 
 
 def table(cases: Iterator[Case], threads: int) -> str:
     """Return the table of some cases, each printed as soon as it is there."""
-    lines = [f"| what | nodes | 1 thread, s | {threads} threads, s | ratio | bits |"]
-    lines.append("| --- | --- | --- | --- | --- | --- |")
+    lines = [f"| what | nodes | 1 thread, s | {threads} threads, s | ratio | processor seconds | bits |"]
+    lines.append("| --- | --- | --- | --- | --- | --- | --- |")
     for case in cases:
         lines.append(row(case, threads))
         print(lines[-1], flush=True)
@@ -240,7 +249,7 @@ def main() -> None:
     load = os.getloadavg()[0]
     plane = table(planar_cases(chosen.size), chosen.threads)
     space = table(solid_cases(chosen.side), chosen.threads)
-    busy = f"\n{os.cpu_count()} cores; {load:.1f} other programs were at work when it began.\n"
+    busy = f"\n{os.cpu_count()} cores; {load:.1f} programs were at work when it began.\n"
     text = f"{HEAD}{busy}\n## In the plane\n\n{plane}\n\n## In space\n\n{space}\n{WHY}"
     if chosen.page:
         chosen.page.write_text(text, encoding="utf-8")
