@@ -22,6 +22,7 @@ SCRIPTS = {
     "volumes": "volumes",
     "threads": "threads",
     "gpu": "gpu",
+    "deform": "deform",
     "kershaw": "kershaw",
     "blocks": "blocks",
 }

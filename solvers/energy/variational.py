@@ -55,7 +55,7 @@ ROUGH = 3.0
 
 MOST = 1000  # iterations on a coarser level at the most
 WEAKER = 3  # how often the edge length term may be made weaker, to a fourth each time
-SPARE_DEGREES = 0.5  # by which a weaker term has to better Winslow's angles there: finer levels take some back
+SPARE_DEGREES = 0.5  # by which a weaker term has to better Winslow's angles: finer levels take some back
 EASY = 1.7  # value of the functional, 1 on squares, up to which a minimum is the only one
 WEIGHTS = {"quad": Weights(), "o": AROUND, "c": WAKE}  # of the functional, by topology
 
