@@ -2,8 +2,8 @@
 
     python benchmarks/bench_gpu.py [--device cuda] [--quick] [--page docs/benchmarks/gpu.md]
 
-One command under eight minutes. Without a CUDA device it says so on the page; `--device cpu --quick` runs all of
-it in seconds on a CPU, to see that it works.
+One command under eight minutes. Without a CUDA device it says so on the page; `--device cpu --quick` runs
+all of it in seconds on a CPU, to see that it works.
 """
 
 from __future__ import annotations
@@ -34,15 +34,15 @@ HEAD = """# GPU
 <!-- made by python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md -->
 
 Read this page to see what a GPU wins in training and in making many grids at once. How to use one is in
-[threads and GPUs](../guide/threads-and-gpu.md). `python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md`
-fills it in, in less than eight minutes:
+[threads and GPUs](../guide/threads-and-gpu.md). `python benchmarks/bench_gpu.py --page
+docs/benchmarks/gpu.md` fills it in, in less than eight minutes:
 
-- training: shapes a second of `meshonet`, `fno2d` and `quad`, at two batch sizes, with and without `--amp` and
-  `--compile`, without the first epochs, and the most memory in use;
+- training: shapes a second of `meshonet`, `fno2d` and `quad`, at two batch sizes, with and without
+  `--amp` and `--compile`, without the first epochs, and the most memory in use;
 - operators: grids a second of `airfoil-o`, `quad-general` and `hole-o` in batches, at 65 x 65 and 200 x 200
   nodes, from boundaries in memory to nodes in memory, and the most memory in use;
-- equality: the largest distance of a node from that of the same operator on the CPU in double precision. It has
-  to be below 1e-10 of the domain.
+- equality: the largest distance of a node from that of the same operator on the CPU in double precision.
+  It has to be below 1e-10 of the domain.
 """
 
 NONE = "No GPU was available when this page was made: there are no figures yet."

@@ -1,9 +1,9 @@
 """One thread beside two (or more) on single large grids, of the plane and in space: time, and the same bits.
 
-    python benchmarks/bench_threads.py [--threads 2] [--size 3200] [--side 129] [--page docs/benchmarks/threads.md]
+    python benchmarks/bench_threads.py [--threads 2] [--size 3200] [--side 129] [--page threads.md]
 
-Wall-clock seconds, the counts of threads in turn and the least of several rounds, so that a busy machine slows
-them alike. The machine should be idle otherwise: a thread that has no core of its own only costs time.
+Wall-clock seconds, the counts of threads in turn and the least of several rounds, so that a busy machine
+slows them alike. The machine should be idle otherwise: a thread without a core of its own only costs time.
 """
 
 from __future__ import annotations
@@ -51,18 +51,20 @@ HEAD = """# Threads
 
 <!-- made by python benchmarks/bench_threads.py --page docs/benchmarks/threads.md -->
 
-Read this page to see what a second thread wins on one large grid. How to ask for threads is in
-[threads and GPUs](../guide/threads-and-gpu.md). Times are wall-clock seconds, with each count of threads in turn
-and the least of several rounds; the ratio is of these. Processor seconds are those of all threads together, waiting
-among them. The bits of every result are the same for any count.
+Read this page to see what a second thread wins on one large grid. How to ask for threads is in [threads
+and GPUs](../guide/threads-and-gpu.md). Times are wall-clock seconds, with each count of threads in turn
+and the least of several rounds; the ratio is of these. Processor seconds are those of all threads
+together, waiting among them. The bits of every result are the same for any count.
 
-A ratio says something where as many cores were free as there were threads. Where other programs had the cores, read
-the processor seconds: with none lost to waiting, free cores make as many times the speed as there are threads.
+A ratio says something where as many cores were free as there were threads. Where other programs had the
+cores, read the processor seconds: with none lost to waiting, free cores make as many times the speed as
+there are threads.
 """
 
 WHY = """
-What stays behind twice the speed is what one thread does alone: reading and writing files, the fronts of a march
-where both eliminations meet, percentiles. Kernels that only move memory win less where cores share its speed.
+What stays behind twice the speed is what one thread does alone: reading and writing files, the fronts of
+a march where both eliminations meet, percentiles. Kernels that only move memory win less where cores
+share its speed.
 """
 
 Work = Callable[[], Callable[[], object]]

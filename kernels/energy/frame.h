@@ -296,8 +296,13 @@ static void largest_share(void *data, Member member)
 {
     Largest *l = data;
     ptrdiff_t first, last;
-    team_share(l->d->spectrum.mi * l->d->spectrum.mj, member, &first, &last);
-    l->most[member.rank] = largest_of(l->d, first, last);
+    team_share(l->d->spectrum.mi, member, &first, &last);
+    float most = 0.0f;
+    for (ptrdiff_t i = first; i < last; i++) { /* row by row: whatever the share, they are rounded alike */
+        const float row = largest_of(l->d, i * l->d->spectrum.mj, (i + 1) * l->d->spectrum.mj);
+        most = row > most ? row : most;
+    }
+    l->most[member.rank] = most;
 }
 
 static double largest_move(void *problem)

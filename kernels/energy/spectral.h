@@ -170,8 +170,9 @@ static void divide(const Spectrum *s, float *restrict w, float *restrict spare, 
     const ptrdiff_t start = first * nodes, end = last * nodes;
     if (s->rest > 0.0f) { /* some modes are left out: rest (w - Q Qᵀ w), the second part in the scale already */
         along_rows(right + first * width, &s->eta, both + start, last - first, 1, packed);
-        for (ptrdiff_t k = start; k < end; k++)
-            w[k] = s->rest * w[k] + both[k];
+        for (ptrdiff_t r = start; r < end; r += nodes)
+            for (ptrdiff_t k = r; k < r + nodes; k++)
+                w[k] = s->rest * w[k] + both[k];
     } else {
         along_rows(right + first * width, &s->eta, w + start, last - first, 1, packed);
     }
