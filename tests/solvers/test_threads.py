@@ -67,7 +67,7 @@ def test_threads_change_no_bit_around_a_body(
 
 @pytest.mark.parametrize("ni", [1200, 1447])
 def test_threads_change_no_bit_of_a_march_whose_levels_are_eliminated_from_both_ends(
-    eager: None, ni: int
+    eager_threads: None, ni: int
 ) -> None:
     single, *several = (made(naca(ni, 61), "hyperbolic", count, first_cell=1e-4) for count in (1, 2, 3))
     assert several == [single, single]
