@@ -23,6 +23,7 @@ SCRIPTS = {
     "threads": "threads",
     "gpu": "gpu",
     "deform": "deform",
+    "pages": "pages",
     "kershaw": "kershaw",
     "blocks": "blocks",
 }
