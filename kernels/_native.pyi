@@ -68,7 +68,7 @@ class MultigridLevel:
 # energy
 def variational_energy(
     z: Floats, aspect: float, shape: float, smoothness: float, epsilon: float, periodic: bool,
-    relief: Floats | None, gradient: Floats,
+    relief: Floats | None, gradient: Floats, threads: int = 1,
 ) -> tuple[float, float]: ...  # fmt: skip
 def newton(z: Floats, aspect: float, shape: float, smoothness: float, most: int, won: float = 0.0) -> int: ...
 
@@ -82,7 +82,7 @@ class Stiffness:
 class VariationalDescent:
     def __init__(
         self, ni: int, nj: int, periodic: bool, rows: tuple[Modes, Modes], columns: tuple[Modes, Modes],
-        scale: Floats, rest: float,
+        scale: Floats, rest: float, threads: int = 1,
     ) -> None: ...  # fmt: skip
     def steer(self, stiffness: Stiffness, along: Floats, across: Floats) -> None: ...
     def run(

@@ -20,6 +20,8 @@ SCRIPTS = {
     "marching-surfaces": "marching",
     "wings": "wings",
     "volumes": "volumes",
+    "threads": "threads",
+    "gpu": "gpu",
     "deform": "deform",
     "pages": "pages",
     "kershaw": "kershaw",
