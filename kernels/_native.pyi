@@ -291,6 +291,9 @@ def volume_energy(
     x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
     threads: int, gradient: Floats,
 ) -> tuple[float, float]: ...  # fmt: skip
+def closed_node(
+    walls: tuple[tuple[Floats, int, int], ...], ranges: tuple[tuple[int, int], ...], threads: int
+) -> int: ...
 def volume_jacobians(x: Floats, over: tuple[float, float, float], threads: int, least: Floats) -> None: ...
 
 class VolumeDescent:

@@ -2,6 +2,7 @@
 
 from functools import partial
 
+import near_faces_reference
 import numpy as np
 import pytest
 from volume_shapes import bent_pipe, bump, mapped, random_domain, skewed
@@ -13,6 +14,7 @@ from meshonet.geometry.threads import limited_to
 from meshonet.kernels._native import volume_energy
 from meshonet.solvers.solution import Outcome
 from meshonet.solvers.volumes.functional import inverse_lengths
+from meshonet.solvers.volumes.near_faces import closed_place
 from meshonet.solvers.volumes.tfi import tfi
 from meshonet.solvers.volumes.variational import variational
 from meshonet.solvers.volumes.winslow import winslow
@@ -179,6 +181,18 @@ def test_faces_that_leave_no_place_for_a_node_are_refused() -> None:
     nodes[4, 4, 0] = nodes[4, 4, 0] + (0.2, 0.25, 0.0)  # beyond its neighbours
     with pytest.raises(InputError, match=r"wherever node i=.*, k=1 is"):
         variational(SixFaces.of_block(nodes))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_places_next_to_faces_are_those_of_the_reference(seed: int) -> None:
+    nodes = mapped(skewed, (7, 8, 9))
+    nodes += np.random.default_rng(seed).normal(scale=0.02, size=nodes.shape)
+    faces = SixFaces.of_block(nodes)
+    places = [closed_place(faces)]
+    for threads in (1, 3):
+        with limited_to(threads):
+            places.append(closed_place(faces))
+    assert places == [near_faces_reference.closed_place(faces)] * 3
 
 
 def test_left_handed_volumes_are_refused() -> None:
