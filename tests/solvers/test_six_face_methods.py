@@ -195,9 +195,10 @@ def test_places_next_to_faces_are_those_of_the_reference(seed: int) -> None:
     assert places == [near_faces_reference.closed_place(faces)] * 3
 
 
-def test_left_handed_volumes_are_refused() -> None:
+@pytest.mark.parametrize("solve", SOLVERS)
+def test_left_handed_volumes_are_refused(solve) -> None:
     with pytest.raises(InputError, match="left-handed"):
-        variational(SixFaces.of_block(mapped(skewed, (5, 5, 5))[::-1]))
+        solve(SixFaces.of_block(mapped(skewed, (5, 5, 5))[::-1]))
 
 
 @pytest.mark.parametrize(
