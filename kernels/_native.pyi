@@ -279,7 +279,9 @@ def solids_run(
     nodes: Floats, volumes: Floats, summary: Floats, where: Whole, keep: int, kept: Floats, brackets: Floats,
     counts: Whole, caught: Floats, held: Whole, threads: int,
 ) -> None: ...  # fmt: skip
-def solids_lines(nodes: Floats, threads: int, summary: Floats, where: Whole) -> None: ...
+def solids_lines(
+    nodes: Floats, threads: int, summary: Floats, where: Whole, values: NDArray[np.float32] | None = None,
+) -> None: ...  # fmt: skip
 def solids_rows(nodes: Floats, volumes: Floats, rows: Whole, values: Floats) -> None: ...
 
 # volumes
