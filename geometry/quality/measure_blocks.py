@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, percentiles_of
 from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
@@ -15,6 +15,7 @@ from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric
 from meshonet.geometry.quality.percentiles import PERCENTS, no_run
 from meshonet.geometry.quality.summary import Quality, Summary
 from meshonet.geometry.quality.surfaces import areas, folded_quads, quad_metrics
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
 
 _TINY, _LARGE = 1e-300, 1e30
@@ -67,7 +68,7 @@ def _area_ratios_across(grid: Grid, ratios: Sequence[Floats]) -> None:
 
 def _folded(nodes: Floats) -> int:
     if nodes.shape[-1] == 2:
-        return _native.count_folded(nodes[..., 0], nodes[..., 1])
+        return _native.count_folded(nodes[..., 0], nodes[..., 1], threads_for(nodes[..., 0].size))
     return len(folded_quads(nodes))
 
 
@@ -78,9 +79,5 @@ def _summary(metric: Metric, blocks: Sequence[Floats], percentiles: bool) -> Sum
     at = int(np.argmin(cells) if metric.worst == "min" else np.argmax(cells))
     every = np.concatenate([cells.ravel() for cells in blocks])
     low, mean, high = float(every.min()), float(every.mean()), float(every.max())
-    part = (
-        [float(v) for v in np.percentile(every, PERCENTS, overwrite_input=True)]
-        if percentiles
-        else [None, None]
-    )
+    part = percentiles_of(every, PERCENTS) if percentiles else [None, None]
     return Summary(low, mean, high, (block, *divmod(at, cells.shape[1])), *part)

@@ -15,7 +15,7 @@ from meshonet.geometry.blocks.families import families
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.growth import Extreme, Growth, Tally, ratios
 from meshonet.geometry.quality.lines import Lines, bends
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
 
 
@@ -70,7 +70,7 @@ def _inside(grid: Grid, kept: bool) -> Iterator[_Part]:
         ni = block.counts[0]
         summary, where = np.empty((ni, 3, 2, 2)), np.empty((ni, 3, 2, 3), dtype=np.int64)
         values = np.empty((3, 2, *block.counts), dtype=np.float32) if kept else None
-        _native.solids_lines(block.nodes, thread_count(), summary, where, values)
+        _native.solids_lines(block.nodes, threads_for(block.nodes[..., 0].size), summary, where, values)
         for axis, count in enumerate(block.counts):
             size = int(np.prod(block.counts)) // count * (count - 2)
             measures = [Tally(kept=kept), Tally(kept=kept)]

@@ -46,14 +46,17 @@ def quality(
         "--summary", help="One table (or JSON object) over all grids, a row each.",
     )] = False,
     from_format: o.From = None,
+    threads: o.Threads = None,
 ) -> int:
     """Measure grids: folded cells, angles, skewness."""
+    from meshonet.geometry.threads import limited_to
     from meshonet_cli.quality_batch import measure_grids
 
     o.only_with("compare", compare is not None, pair=pair)
-    return measure_grids(
-        grid, printing.session(),
-        fmt=from_format, fail_on=fail_on, profile=profile, compare=compare, pairing=pair or "auto",
-        summary=summary, plot=plot, per_cell=per_cell,
-    )
+    with limited_to(threads):
+        return measure_grids(
+            grid, printing.session(),
+            fmt=from_format, fail_on=fail_on, profile=profile, compare=compare, pairing=pair or "auto",
+            summary=summary, plot=plot, per_cell=per_cell,
+        )
 # fmt: on

@@ -37,8 +37,10 @@ To = Annotated[str | None, _option(
 SkipExisting = Annotated[bool, _option(
     "--skip-existing", help="Skip inputs whose output file exists already.",
 )]
-Jobs = Annotated[int, _option(
-    "--jobs", metavar="N", min=1, max=1024, show_default=True, help="Processes for a batch.",
+Threads = Annotated[int | None, _option(
+    "--threads", metavar="N", min=1, max=64,
+    help="Threads that work on one large grid; the result is the same for any number. [default: all cores, "
+    "divided among --jobs]",
 )]
 AsJson = Annotated[bool, _option("--json", help="Print one JSON object on standard output for each result.")]
 Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")]

@@ -3,16 +3,11 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from meshonet_cli.options.groups import IO, VOLUME, option_of
+from meshonet_cli.options.groups import VOLUME, option_of
 
 _option = option_of(VOLUME)
 
 # fmt: off
-Threads = Annotated[int | None, option_of(IO)(
-    "--threads", metavar="N", min=1, max=64,
-    help="Threads that work on one large grid; the grid is the same for any number. [default: all cores, "
-    "divided among --jobs]",
-)]
 Layers = Annotated[int | None, _option(
     "--layers", metavar="N", min=3,
     help="Nodes along the lines of a volume marched from a surface, the wall's included. [default: what "

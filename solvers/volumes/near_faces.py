@@ -14,7 +14,7 @@ import numpy as np
 from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.six_faces import FACES, SixFaces
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import closed_node
 
 Place = tuple[int, int, int]
@@ -31,9 +31,10 @@ def closed_place(faces: SixFaces) -> Place | None:
                 continue
             ranges = _ranges(sides, counts)
             walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)
-            number = closed_node(walls, tuple(ranges), thread_count())
+            sizes = [last - low for low, last in ranges]
+            number = closed_node(walls, tuple(ranges), threads_for(int(np.prod(sizes))))
             if number >= 0:
-                at = np.unravel_index(number, [last - low for low, last in ranges])
+                at = np.unravel_index(number, sizes)
                 i, j, k = (int(low + step) for (low, _), step in zip(ranges, at, strict=True))
                 return i, j, k
     return None

@@ -36,6 +36,7 @@ Effect = tuple[str, str, str]
 THERE = ("there.h5", "there.png", "there.json")
 BODY, GRID, LAYERS = "naca:2412 --res 41x15", "grid.h5", "naca:2412 --res 61x41 --first-cell 1e-3"
 MADE = "-o made.h5 -q"
+SUNK = "grid.h5 --shift south=0,-.1"
 PLATE = f"naca:2412 --res 61x41 --y-plus 100 --reynolds 1e5 {MADE}"
 
 PRINTING = {
@@ -51,6 +52,8 @@ FILES = {
 }
 SHAPES = PRINTING | FILES | {
     "--jobs": ("three.h5 -o {name}.h5 -q", "OPTION 2", "workers"),
+    "--engine": ("three.h5 -o {name}.h5 -q", "OPTION mpi", "code"),
+    "--scheduler": ("three.h5 -o {name}.h5 -q", "OPTION tcp://a:1", "code"),
     "--res": (f"naca:2412 {MADE}", "OPTION 31x9", "nodes"),
     "--topology": (f"{BODY} {MADE}", "OPTION c", "nodes"),
     "--spacing": (f"{BODY} {MADE}", "OPTION cosine", "nodes"),
@@ -152,6 +155,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--compare": ("grid.h5", "OPTION smooth.h5", "out"),
         "--pair": ("bc.h5 --compare cb.h5 --summary", "OPTION order", "out"),
         "--summary": ("grid.h5 smooth.h5", "OPTION", "out"),
+        "--threads": ("grid.h5", "OPTION 0", "code"),
     },
     "convert": PRINTING | FILES | {
         "--extrude": ("grid.h5 -o made.p3d", "OPTION 1", "bytes"),
@@ -184,6 +188,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--from": ("odd.name -o made.json -q", "OPTION vts", "code"),
         "--skip-existing": ("step.wkt -o there.json -q", "OPTION", "layout"),
         "--jobs": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION 2", "workers"),
+        "--engine": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION mpi", "code"),
+        "--scheduler": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION tcp://a:1", "code"),
         "--far-field": ("naca:0012 -o made.json -q", "OPTION 7", "bytes"),
         "--first-cell": ("hole.wkt -o made.json -q", "OPTION .002", "bytes"),
         "--y-plus": ("hole.wkt --y-plus 2 --reynolds 1e4 -o made.json -q", "OPTION 1", "bytes"),
@@ -204,6 +210,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--to": (f"{WING} -o made.name", "OPTION hdf5", "code"),
         "--skip-existing": (f"{WING} -o there.h5 -q", "OPTION", "layout"),
         "--jobs": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION 2", "workers"),
+        "--engine": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION mpi", "code"),
+        "--scheduler": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION tcp://a:1", "code"),
         "--threads": (f"{WING} {MADE} --threads 2", "OPTION 0", "code"),
         "--around": (f"{WING} {MADE}", "OPTION 61", "nodes"),
         "--span": (f"{WING} {MADE}", "OPTION 11", "nodes"),
@@ -228,6 +236,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--to": (f"{PIPE} -o made.name", "OPTION hdf5", "code"),
         "--skip-existing": (f"{PIPE} -o there.h5 -q", "OPTION", "layout"),
         "--jobs": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION 2", "workers"),
+        "--engine": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION mpi", "code"),
+        "--scheduler": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION tcp://a:1", "code"),
         "--threads": (f"{PIPE} {MADE} --threads 2", "OPTION 0", "code"),
         "--res": (f"box.csv path.csv {MADE}", "OPTION 11x9", "nodes"),
         "--planes": (f"{PIPE} {MADE}", "OPTION 7", "nodes"),
@@ -244,6 +254,24 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--growth": (f"{PIPE} --first-cell .001 {MADE}", "OPTION 1.5", "nodes"),
         "--fail-on": (f"{PIPE} {MADE}", "OPTION max_angle>90.5", "code"),
         "--allow-invalid": (f"folded.h5 path.csv {MADE}", "OPTION", "code"),
+    },
+    "deform": {
+        "--json": (f"{SUNK} -o made.h5", "OPTION", "prints"),
+        "--quiet": (f"{SUNK} -o made.h5", "OPTION", "says"),
+        "--debug": (f"missing.h5 --shift south=0,-.1 {MADE}", "OPTION", "error"),
+        "--output": (f"{SUNK} {MADE}", "OPTION other.h5", "files"),
+        "--from": ("odd.name --shift south=0,-.1 -o made.h5", "OPTION vts", "code"),
+        "--to": (f"{SUNK} -o made.name", "OPTION hdf5", "code"),
+        "--skip-existing": (f"{SUNK} -o there.h5 -q", "OPTION", "layout"),
+        "--jobs": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION 2", "workers"),
+        "--engine": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION mpi", "code"),
+        "--scheduler": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION tcp://a:1", "code"),
+        "--threads": (f"{SUNK} {MADE} --threads 2", "OPTION 0", "code"),
+        "--wall": (f"grid.h5 --shift north=0,.1 {MADE}", "OPTION south=c.vts", "nodes"),
+        "--rotate": (f"{SUNK} {MADE}", "OPTION north=2@0,1", "nodes"),
+        "--shift": (f"{SUNK} {MADE}", "OPTION north=0,.1", "nodes"),
+        "--fail-on": (f"{SUNK} {MADE}", "OPTION max_angle>90.5", "code"),
+        "--allow-invalid": (f"grid.h5 --rotate south=180@1,0 {MADE}", "OPTION", "code"),
     },
     "models": {
         "--json": ("", "OPTION", "out"),

@@ -1,0 +1,199 @@
+"""The workers of a Dask cluster: one that is there already, or one of processes of this machine.
+
+Dask does what a dead worker had again by itself; a task whose workers keep dying ends in KilledWorker.
+https://distributed.dask.org
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import sys
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager, suppress
+from multiprocessing.resource_tracker import ensure_running
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from meshonet import __version__
+from meshonet.geometry.errors import InputError
+from meshonet_cli.batch.executors.engine import Engine
+from meshonet_cli.batch.executors.processes_engine import share_cores
+from meshonet_cli.batch.executors.workers import EngineLostError, Warn, WorkerDiedError, Workers
+from meshonet_cli.provenance import abridged
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+_SECONDS = 10  # to wait for the scheduler's answer
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+@contextmanager
+def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
+    """Give the workers of the cluster at the engine's scheduler, or of one of its own."""
+    try:
+        import distributed  # noqa: F401  (a second)
+    except ImportError:
+        remedy = "install it: pip install 'meshonet[dask]'"
+        raise InputError("dask needs the package distributed", remedy, parameter="engine") from None
+    _silence()
+    with _at(engine.scheduler) if engine.scheduler is not None else _local(engine.jobs) as client:
+        workers = _Dask(client, warn)
+        try:
+            yield workers
+        finally:
+            workers.leave()
+
+
+def _silence() -> None:
+    """Keep the packages from saying in many lines what is said here in one: who died."""
+    for name in list(logging.root.manager.loggerDict):
+        if name.startswith(("distributed", "tornado")):
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+
+
+@contextmanager
+def _local(count: int) -> Iterator[Client]:
+    """Give the client of a cluster of processes of this machine, which work on one task at a time each."""
+    import dask
+    from distributed import Client, LocalCluster
+
+    share_cores()
+    settings = {
+        "distributed.scheduler.allowed-failures": 1,
+        "distributed.scheduler.worker-saturation": 1.0,  # a task that waits is not blamed for a death
+    }
+    with dask.config.set(settings), _without_interrupts():
+        cluster = LocalCluster(
+            n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0,
+            silence_logs=logging.CRITICAL + 1,
+        )  # fmt: skip
+    with cluster, Client(cluster) as client:
+        yield client
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Keep Ctrl-C from threads and processes that start inside; it comes after the block."""
+    ensure_running()  # which would let interrupts through in the thread that starts the first process
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _at(address: str) -> Iterator[Client]:
+    """Give the client of the scheduler at an address."""
+    from distributed import Client
+
+    try:
+        client = Client(address, timeout=_SECONDS)
+    except (OSError, ValueError, TypeError) as error:
+        remedy = "start one: dask scheduler; then give its address, tcp://HOST:8786"
+        raise InputError(
+            f"no Dask scheduler answers at {address!r}", remedy, parameter="scheduler"
+        ) from error
+    try:
+        yield client
+    finally:
+        with suppress(Exception):  # the scheduler may be gone
+            client.close(timeout=1)
+
+
+class _Dask(Workers):
+    """Workers of a cluster; deaths are events of the scheduler, and said where results are waited for."""
+
+    def __init__(self, client: Client, warn: Warn) -> None:
+        self._client, self._warn = client, warn
+        self._events: deque[dict[str, Any]] = deque()
+        self._wait()
+        client.subscribe_topic("all", self._hear)
+        super().__init__(client.get_executor(pure=False), len(client.nthreads()))
+        self._folder, self._words = str(Path.cwd()), abridged(sys.argv)
+        self._check_versions()
+
+    def leave(self) -> None:
+        """Drop what is under way and listen no more."""
+        with suppress(Exception):  # the scheduler may be gone
+            self._client.unsubscribe_topic("all")
+            self.executor.shutdown(wait=False)
+
+    def check(self) -> None:
+        """Say which workers died, count those that came, and see that the scheduler is there."""
+        while self._events:
+            event = self._events.popleft()
+            self.count = max(1, self.count + (1 if event["action"] == "add-worker" else -1))
+            if event["action"] == "remove-worker" and not event.get("expected"):
+                self._warn(f"worker {event['worker']} died; what it was doing is done again")
+        if self._client.status in ("closed", "closing"):
+            raise self.lost()
+
+    def lost(self) -> EngineLostError:
+        """Return the error of a scheduler that is gone."""
+        problem = f"the Dask scheduler at {self._client.scheduler.address} is gone"
+        return EngineLostError(problem, "run it again with another one; {skip_existing} keeps what is done")
+
+    def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
+        """Have a worker do a task, where the program was started and by its words."""
+        return self.executor.submit(_call, function, task, self._folder, self._words)
+
+    def result(self, future: Any) -> Any:
+        """Return the result of a task, or raise what it ended in."""
+        from distributed import KilledWorker
+        from distributed.comm import CommClosedError
+
+        try:
+            return super().result(future)
+        except KilledWorker as error:
+            raise WorkerDiedError from error
+        except CommClosedError as error:
+            raise self.lost() from error
+
+    def _hear(self, event: tuple[float, dict[str, Any]]) -> None:
+        if event[1].get("action") in ("add-worker", "remove-worker"):
+            self._events.append(event[1])
+
+    def _wait(self) -> None:
+        if not self._client.nthreads():
+            self._warn(f"{self._client.scheduler.address} has no workers yet; waiting for the first")
+            self._client.wait_for_workers(1)
+
+    def _check_versions(self) -> None:
+        """Raise InputError where a worker cannot run this program."""
+        for worker, version in self._client.run(_version, on_error="return").items():
+            if version != __version__:
+                has = f"meshonet {version}" if isinstance(version, str) else "no meshonet"
+                remedy = "install the same version on all machines"
+                raise InputError(
+                    f"it has {has}, and this is {__version__}", remedy, source=f"worker {worker}"
+                )
+
+
+def _version() -> str:
+    return __version__
+
+
+_one_at_a_time = threading.Lock()
+
+
+def _call(function: Callable[[T], R], task: T, folder: str, words: list[str]) -> R:
+    """Do a task as the program would, one at a time: of folder and words a process has one each.
+
+    Raises InputError: the folder is not there.
+    """
+    with _one_at_a_time:
+        sys.argv = words  # which grids have in their provenance
+        try:
+            os.chdir(folder)
+        except OSError as error:
+            remedy = "give all machines the same file system, at the same place"
+            raise InputError(f"a worker does not see it ({error.strerror})", remedy, source=folder) from error
+        return function(task)
