@@ -280,7 +280,9 @@ def solids_run(
     nodes: Floats, volumes: Floats, summary: Floats, where: Whole, keep: int, kept: Floats, brackets: Floats,
     counts: Whole, caught: Floats, held: Whole, threads: int,
 ) -> None: ...  # fmt: skip
-def solids_lines(nodes: Floats, threads: int, summary: Floats, where: Whole) -> None: ...
+def solids_lines(
+    nodes: Floats, threads: int, summary: Floats, where: Whole, values: NDArray[np.float32] | None = None,
+) -> None: ...  # fmt: skip
 def solids_rows(nodes: Floats, volumes: Floats, rows: Whole, values: Floats) -> None: ...
 
 # volumes
@@ -292,6 +294,9 @@ def volume_energy(
     x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
     threads: int, gradient: Floats,
 ) -> tuple[float, float]: ...  # fmt: skip
+def closed_node(
+    walls: tuple[tuple[Floats, int, int], ...], ranges: tuple[tuple[int, int], ...], threads: int
+) -> int: ...
 def volume_jacobians(x: Floats, over: tuple[float, float, float], threads: int, least: Floats) -> None: ...
 
 class VolumeDescent:
