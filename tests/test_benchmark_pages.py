@@ -21,6 +21,7 @@ SCRIPTS = {
     "wings": "wings",
     "volumes": "volumes",
     "deform": "deform",
+    "pages": "pages",
     "kershaw": "kershaw",
     "blocks": "blocks",
 }
