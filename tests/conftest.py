@@ -1,4 +1,4 @@
-"""Fixtures of all tests, and the marks of those that run programs: ``make test-clients`` installs them."""
+"""Fixtures of all tests; the mark of those that run Debian's programs, from ``make test-clients``."""
 
 from __future__ import annotations
 
@@ -9,12 +9,6 @@ from collections.abc import Iterator
 import pytest
 
 from meshonet.geometry import threads
-
-
-@pytest.fixture
-def eager_threads(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have threads work on grids of any size."""
-    monkeypatch.setattr(threads, "NODES_EACH", 16)
 
 
 @pytest.fixture
@@ -29,9 +23,14 @@ def silent_gmsh() -> Iterator[None]:
     gmsh.finalize()
 
 
+@pytest.fixture
+def eager_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have threads work on grids of any size."""
+    monkeypatch.setattr(threads, "NODES_EACH", 16)
+
+
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "client(program): runs a program that is not from PyPI")
-    config.addinivalue_line("markers", "browser: opens a page in Chromium")
     config.addinivalue_line("markers", "solver(program): runs a program that Debian does not have either")
 
 
@@ -44,8 +43,6 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
             if os.environ.get("MESHONET_CLIENTS"):
                 pytest.fail(missing)
             pytest.skip(missing)
-    if any(item.iter_markers("browser")) and not (shutil.which("chromedriver") and shutil.which("chromium")):
-        pytest.skip("no browser: apt-get install chromium chromium-driver")
     for mark in item.iter_markers("solver"):
         if shutil.which(str(mark.args[0])) is None:
             pytest.skip(f"{mark.args[0]} is not installed")

@@ -20,6 +20,7 @@ SCRIPTS = {
     "marching-surfaces": "marching",
     "wings": "wings",
     "volumes": "volumes",
+    "deform": "deform",
     "pages": "pages",
     "kershaw": "kershaw",
     "blocks": "blocks",
