@@ -32,17 +32,22 @@ def eager_threads(monkeypatch: pytest.MonkeyPatch) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "client(program): runs a program that is not from PyPI")
     config.addinivalue_line("markers", "solver(program): runs a program that Debian does not have either")
+    config.addinivalue_line("markers", "browser: opens pages in Chromium")
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Skip a test whose program is not there, unless it was promised to be."""
-    for mark in item.iter_markers("client"):
-        program = str(mark.args[0])
-        if shutil.which(program) is None:
-            missing = f"{program} is not installed: make test-clients"
-            if os.environ.get("MESHONET_CLIENTS"):
-                pytest.fail(missing)
-            pytest.skip(missing)
-    for mark in item.iter_markers("solver"):
-        if shutil.which(str(mark.args[0])) is None:
-            pytest.skip(f"{mark.args[0]} is not installed")
+    for program in _missing(item, "client"):
+        missing = f"{program} is not installed: make test-clients"
+        if os.environ.get("MESHONET_CLIENTS"):
+            pytest.fail(missing)
+        pytest.skip(missing)
+    for program in _missing(item, "solver"):
+        pytest.skip(f"{program} is not installed")
+    if item.get_closest_marker("browser") and not (shutil.which("chromium") and shutil.which("chromedriver")):
+        pytest.skip("Chromium is not installed")
+
+
+def _missing(item: pytest.Item, mark: str) -> list[str]:
+    programs = [str(each.args[0]) for each in item.iter_markers(mark)]
+    return [program for program in programs if shutil.which(program) is None]

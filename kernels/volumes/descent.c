@@ -65,6 +65,7 @@ void descent3_place(Descent3 *d, double *doubles, float *floats)
         for (ptrdiff_t k = 0; k < d->m[2]; k++)
             d->packed[k / PANEL * PANEL * d->m[2] + l * PANEL + k % PANEL] = d->sines[2][l * d->m[2] + k];
     d->panels = next;
+    d->steps.threads = d->f.threads;
     steps_place(&d->steps, 3 * inner, d->g + 3 * nodes, d->g + 3 * nodes + 3 * inner,
                 next + (size_t)d->f.threads * panel_floats(d));
 }
