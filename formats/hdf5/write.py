@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -104,6 +104,16 @@ class Writer:
             value = np.asarray(value, np.float64) if large else np.array(value, np.float64)
             self._bytes += value.nbytes
         self._held.setdefault(name, []).append((self._count, value))
+
+    def note(self, attributes: Mapping[str, str], texts: Mapping[str, Sequence[str]]) -> None:
+        """Add attributes, and datasets of texts where there are any, that are not of single samples."""
+        import h5py
+
+        self._file.attrs.update(attributes)
+        for name, entries in texts.items():
+            if entries:
+                size = {"chunks": (min(len(entries), 1024),), "maxshape": (None,)}
+                self._file.create_dataset(name, data=list(entries), dtype=h5py.string_dtype(), **size)
 
     def flush(self) -> None:
         """Write what is held back."""

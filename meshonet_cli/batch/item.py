@@ -23,6 +23,14 @@ class Name:
     name: str
 
 
+@dataclass(frozen=True)
+class Unreadable:
+    """Stands for a member that cannot be read."""
+
+    error: Exception
+    name: str = ""
+
+
 T = TypeVar("T", bound=Named)
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.errors import InputError
-from meshonet_cli.batch.item import Item, T
+from meshonet_cli.batch.item import Item, T, Unreadable
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:
@@ -27,28 +27,53 @@ def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: S
         raise InputError("standard input is named twice", "name - once", source="-")
     if "-" in sources and sys.stdin.isatty():
         raise InputError("standard input is the terminal", "pipe a boundary or a grid into it", source="-")
+    count = len(sources) if len(sources) > 1 else None
+    for item in records(sources, read):
+        session.batch = session.batch or count is not None or not item.only
+        if isinstance(item.what, Unreadable):
+            session.fail(item.source, item.source, item.what.error)
+        else:
+            session.begin(item.source, count)
+            yield item
+
+
+def records(sources: Iterable[str], read: Callable[[str], Iterator[T]]) -> Iterator[Item[Any]]:
+    """Yield every member of every source, or `Unreadable` in its place."""
     index = 0
     for source in sources:
-        with session.member(source):
-            begun = time.perf_counter()
-            records = read(source)
-            item, more = _following(records, source, session)
-            if item is None and not more:
-                raise InputError(
-                    "holds nothing", "give a file with a boundary or a grid in it", source=source
-                )
-            only = True
-            while item is not None or more:
-                spent = time.perf_counter() - begun
-                begun = time.perf_counter()
-                following, more = _following(records, source, session) if more else (None, False)
-                only = only and following is None and not more
-                session.batch = session.batch or len(sources) > 1 or not only
-                if item is not None:
-                    session.begin(source, len(sources) if len(sources) > 1 else None)
-                    yield Item(index, source, item, spent, only)
-                index += item is not None or more  # a file that is bad as a whole has no number
-                item = following
+        entries = _entries(source, read)
+        (what, seconds), following = next(entries), next(entries, None)
+        only = following is None
+        while True:
+            yield Item(index, source, what, seconds, only)
+            index += not (
+                only and isinstance(what, Unreadable)
+            )  # a file that is bad as a whole has no number
+            if following is None:
+                break
+            (what, seconds), following = following, next(entries, None)
+
+
+def _entries(source: str, read: Callable[[str], Iterator[T]]) -> Iterator[tuple[T | Unreadable, float]]:
+    """Yield what a source holds, at least one entry, each with the seconds that it took to read."""
+    left: Iterator[T] | None = None
+    empty = True
+    while True:
+        begun = time.perf_counter()
+        try:
+            left = read(source) if left is None else left
+            entry: T | Unreadable = next(left)
+        except StopIteration:
+            break
+        except BrokenPipeError:
+            raise
+        except Exception as error:
+            entry, left = Unreadable(error), iter(()) if left is None else left
+        empty = False
+        yield entry, time.perf_counter() - begun
+    if empty:
+        remedy = "give a file with a boundary or a grid in it"
+        yield Unreadable(InputError("holds nothing", remedy, source=source)), 0.0
 
 
 def shape_items(
@@ -83,11 +108,3 @@ def _assembly(
         domain = assembled(shapes, names, sampling, "+".join(dict.fromkeys(names)))
         session.begin(label)
         yield Item(0, label, domain, time.perf_counter() - begun, called=names[0])
-
-
-def _following(records: Iterator[T], source: str, session: Session) -> tuple[T | None, bool]:
-    """Return the next record, None when it cannot be read, which is said, and whether there may be more."""
-    with session.member(source):
-        item = next(records, None)
-        return item, item is not None
-    return None, True

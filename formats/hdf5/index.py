@@ -1,0 +1,121 @@
+"""The file that shows the parts of a dataset as one, made and resolved."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from meshonet.formats.hdf5.check import opened
+from meshonet.formats.hdf5.file import created
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    import h5py
+
+
+@dataclass
+class PartFacts:
+    """What a part says of itself.
+
+    `columns` are its datasets: length, shape of a row, and type; `attributes` those that all parts share.
+    """
+
+    path: Path
+    request: str = ""
+    count: int = 0
+    inputs: list[str] = field(default_factory=list)
+    failed: list[tuple[str, str, str]] = field(default_factory=list)
+    attributes: dict[str, Any] = field(default_factory=dict)
+    columns: dict[str, tuple[int, tuple[int, ...], Any]] = field(default_factory=dict)
+    parameter_names: Any = None
+
+    @property
+    def size(self) -> str:
+        """What must be the same in all parts, as words."""
+        words = [f"{self.attributes.get(name, '')}" for name in ("format", "topology", "connections")]
+        arrays = {name: row for name, (_, row, _) in self.columns.items() if row}
+        return " ".join([*filter(None, words), *(f"{name} {row}" for name, row in sorted(arrays.items()))])
+
+
+def part_facts(path: Path) -> PartFacts:
+    """Return what the part at `path` says of itself; InputError where it cannot be read."""
+    facts = PartFacts(path)
+    with opened(Source(printable(str(path)), path=path)) as file:
+        facts.attributes = dict(file.attrs)
+        facts.request = str(facts.attributes.get("request", ""))
+        for name, data in _datasets(file):
+            facts.columns[name] = len(data), data.shape[1:], data.dtype
+        if facts.columns.pop("inputs", None):
+            facts.inputs = list(file["inputs"].asstr())
+        if "failed" in facts.columns:
+            facts.failed = [tuple(json.loads(text)) for text in file["failed"].asstr()]
+        facts.count = facts.columns.get("south", facts.columns.get("blocks/0", (0,)))[0]
+        if "parameters" in facts.columns:
+            facts.parameter_names = file["parameters"].attrs.get("names")
+    return facts
+
+
+def _datasets(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
+    import h5py
+
+    for name, data in file.items():
+        if isinstance(data, h5py.Group):
+            yield from ((f"{name}/{key}", each) for key, each in data.items())
+        else:
+            yield name, data
+
+
+def write_index(file: Path, index: Path, parts: Sequence[Path]) -> int:
+    """Write to `file` what will be `index`, over `parts`, and return how many samples it shows.
+
+    Raises InputError: none of them holds a sample; they differ in size or settings.
+    """
+    known = [facts for facts in map(part_facts, parts) if facts.count]
+    if not known:
+        raise InputError("no part holds a sample", "see what failed above", source=printable(str(index)))
+    first = known[0]
+    for facts in known[1:]:
+        _check_same(facts, first)
+    columns = {name: column for facts in reversed(known) for name, column in facts.columns.items()}
+    with created(file) as made:
+        made.attrs.update(first.attributes)
+        for name, (_, row, kind) in sorted(columns.items()):
+            _add_column(made, name, row, kind, known, index.parent)
+        if first.parameter_names is not None:
+            made["parameters"].attrs["names"] = first.parameter_names
+    return sum(facts.count for facts in known)
+
+
+def _check_same(facts: PartFacts, first: PartFacts) -> None:
+    problem, remedy = "", "remove it and make it again"
+    if facts.request != first.request:
+        problem = "was made with other options"
+    elif facts.size != first.size:
+        problem = f"holds {facts.size}, and {first.path.name} {first.size}"
+        remedy = "one dataset has one size and topology: set {res} and {topology}"
+    if problem:
+        raise InputError(problem, remedy, source=printable(str(facts.path)))
+
+
+def _add_column(
+    made: h5py.File, name: str, row: tuple[int, ...], kind: Any, parts: Sequence[PartFacts], folder: Path
+) -> None:
+    """Add the virtual dataset `name` of rows of all `parts`; what a part lacks is empty, or not a number."""
+    import h5py
+
+    ends = [facts.columns.get(name, (0,))[0] if name == "failed" else facts.count for facts in parts]
+    layout = h5py.VirtualLayout((sum(ends), *row), kind)
+    start = 0
+    for facts, rows in zip(parts, ends, strict=True):
+        length = min(facts.columns.get(name, (0,))[0], rows)
+        if length:
+            path = str(facts.path.relative_to(folder)).replace("%", "%%")  # which HDF5 takes for a pattern
+            layout[start : start + length] = h5py.VirtualSource(path, name, (length, *row), kind)
+        start += rows
+    made.create_virtual_dataset(
+        name, layout, fillvalue=None if h5py.check_string_dtype(kind) else float("nan")
+    )

@@ -1,0 +1,156 @@
+"""Datasets in parts: files ``out/part-00000.h5``, each a dataset, that ``out.h5`` shows as one.
+
+A part is written whole or not at all, and says of what it was made:
+
+========== ========================================================================================
+request    attribute: digest of the settings of all parts
+inputs     dataset of texts: digests of the inputs
+failed     dataset of texts: JSON lists ``[input, member, error]`` of members that the part lacks
+========== ========================================================================================
+
+``out.h5`` has the attributes of the first part and a virtual dataset for each of the parts' datasets: rows of
+the parts one after the other, by paths relative to it. Whoever writes a part can make it again at any time.
+https://docs.hdfgroup.org/archive/support/HDF5/docNewFeatures/NewFeaturesVirtualDatasetDocs.html
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from meshonet.formats.hdf5.index import PartFacts, part_facts, write_index
+from meshonet.formats.hdf5.write import Kind, writing
+from meshonet.formats.output import whole_file
+from meshonet.formats.source import printable
+from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from meshonet.geometry.blocks.boundary import Boundary
+    from meshonet.geometry.blocks.grid import Grid
+
+_NAME = re.compile(r"part-(\d{5,12})\.h5")
+State = Literal["missing", "complete", "extended"]
+
+
+class Input(NamedTuple):
+    """An input as it was named, and a digest of what it holds."""
+
+    text: str
+    digest: str
+
+
+Failed = tuple[str, str, str]
+"""A member that could not be made: input, member, error."""
+
+
+class OtherPartsError(InputError):
+    """The parts that are there are not parts of what is being made."""
+
+
+@dataclass(frozen=True)
+class PartFiles:
+    """The files of a dataset in parts.
+
+    Parameters
+    ----------
+    index : the file that shows the parts as one.
+    request : digest of the settings that all parts are made with (`digest_of`).
+    """
+
+    index: Path
+    request: str = ""
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the parts, beside the index and of its name."""
+        return self.index.with_suffix("")
+
+    def path(self, number: int) -> Path:
+        """Return the file of a part, counted from 0."""
+        return self.folder / f"part-{number:05d}.h5"
+
+    def numbers(self) -> list[int]:
+        """Return the numbers of the parts that are there, in order."""
+        if not self.folder.is_dir():
+            return []
+        names = (_NAME.fullmatch(entry.name) for entry in self.folder.iterdir())
+        return sorted(int(match[1]) for match in names if match)
+
+    def check(self) -> None:
+        """Raise OtherPartsError where the parts that are there were made with other settings."""
+        for number in self.numbers()[:1]:
+            self.facts(number)
+
+    def facts(self, number: int) -> PartFacts:
+        """Return what a part says of itself; raises as `state`."""
+        facts = part_facts(self.path(number))
+        if facts.request != self.request:
+            self._refuse(facts.path, "was made with other options or another size of parts")
+        return facts
+
+    def state(self, number: int, inputs: Sequence[Input]) -> State:
+        """Return whether a part is there: ``complete``, to be ``extended`` or made for the first time.
+
+        A part of the first of `inputs` is to be extended; so is one of which an input failed that has changed
+        since. Raises OtherPartsError: the part was made of other inputs or with other settings; InputError:
+        it cannot be read.
+        """
+        if not self.path(number).exists():
+            return "missing"
+        facts = self.facts(number)
+        if len(facts.inputs) > len(inputs):
+            self._refuse(
+                facts.path, f"was made of {len(facts.inputs)} inputs, of which {len(inputs)} are left"
+            )
+        changed = [new for new, digest in zip(inputs, facts.inputs, strict=False) if new.digest != digest]
+        mended = {row[0] for row in facts.failed}
+        for new in changed:
+            if new.text not in mended:
+                self._refuse(facts.path, f"was not made of {printable(new.text)} as it is now, at this place")
+        return "extended" if changed or len(inputs) > len(facts.inputs) else "complete"
+
+    def write(
+        self, number: int, kind: Kind, samples: Iterable[Boundary | Grid], inputs: Sequence[Input],
+        failed: list[Failed],
+    ) -> int:  # fmt: skip
+        """Write a part, whole or not at all, and return how many samples it holds.
+
+        `failed` gets its entries while `samples` are taken. Raises InputError: samples of different sizes; a
+        place that cannot be written.
+        """
+        count = 0
+        with whole_file(str(self.path(number)), make_folder=True) as part:
+            with writing(part, kind) as writer:
+                for sample in samples:
+                    writer.append(sample)
+                    count += 1
+                texts = {"inputs": [each.digest for each in inputs], "failed": list(map(json.dumps, failed))}
+                writer.note({"request": self.request}, texts)
+        return count
+
+    def build(self) -> int:
+        """Write the index over the parts that are there and return how many samples it shows.
+
+        Several processes may do so at once: the one that is last sees the parts of all. Raises InputError: no
+        part holds a sample; parts of different settings or sizes.
+        """
+        numbers, count = None, 0
+        while numbers != (numbers := self.numbers()):
+            with whole_file(str(self.index)) as file:
+                count = write_index(file, self.index, [self.path(number) for number in numbers])
+        return count
+
+    def _refuse(self, path: Path, problem: str) -> None:
+        folder = printable(str(self.folder))
+        remedy = f"write to another name, or remove the old parts: rm -r {folder}"
+        raise OtherPartsError(problem, remedy, source=printable(str(path)))
+
+
+def digest_of(*texts: str) -> str:
+    """Return the digest of texts, in hexadecimal digits."""
+    return hashlib.sha256("\0".join(texts).encode("utf-8", "surrogateescape")).hexdigest()[:32]
