@@ -13,7 +13,7 @@ import contextlib
 import mmap
 import re
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -97,13 +97,11 @@ class Checked:
     def __contains__(self, name: str) -> bool:
         return name in self._file
 
-    def kept(self, split: str) -> list[int]:
-        """Return the samples of a split, or all of them; InputError where there are none."""
-        kept = [k for k in range(self.count) if not split or self.text("split", k) == split]
-        if not kept:
-            remedy = "mark samples where they are made, by {family} and {split}"
-            raise InputError(f"no sample is marked {split!r}", remedy)
-        return kept
+    def kept(self, split: str) -> Sequence[int]:
+        """Return the samples of a split, or all of them."""
+        if not split:
+            return range(self.count)
+        return [k for k in range(self.count) if self.text("split", k) == split]
 
     def sample(self, name: str, k: int) -> Floats:
         """Return row `k` of a checked numeric dataset as float64."""

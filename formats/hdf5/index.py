@@ -8,13 +8,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from meshonet.formats.hdf5.check import opened
+from meshonet.formats.hdf5.check import Checked, opened, own
 from meshonet.formats.hdf5.file import created
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
     import h5py
+
+
+_AGAIN = "repeat the command that made it, with {skip_existing}"
 
 
 @dataclass
@@ -67,6 +70,63 @@ def _datasets(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
             yield from ((f"{name}/{key}", each) for key, each in data.items())
         else:
             yield name, data
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a dataset that an index shows: samples `start` to `stop` of all."""
+
+    source: Source
+    start: int
+    stop: int
+
+    def check(self, data: Checked) -> None:
+        """Raise InputError where the part holds fewer samples than the index shows."""
+        shown = self.stop - self.start
+        if data.count < shown:
+            raise InputError(f"holds {data.count} samples, where the index shows {shown}", _AGAIN)
+
+
+def shown_parts(file: h5py.File, source: Source) -> list[Part] | None:
+    """Return the parts that the open index `source` shows, in order, and None where it is no index.
+
+    Raises InputError: a part is missing, or not in a folder beside the index; rows are not one after the
+    other.
+    """
+    import h5py
+
+    main = own(file, "south") or own(file, "blocks/0")
+    if not isinstance(main, h5py.Dataset) or not main.is_virtual:
+        return None
+    if source.path is None:
+        problem = "shows parts in other files, which cannot be reached from here"
+        raise InputError(problem, "name the file, and have its parts beside it")
+    parts = list(_parts(main.id.get_create_plist(), source.path, source.split))
+    missing = [part.source for part in parts if part.source.path and not part.source.path.exists()]
+    if missing:
+        more = f", as are {len(missing) - 1} more of {len(parts)}" if len(missing) > 1 else ""
+        raise InputError(f"its part {missing[0].name} is missing{more}", f"put it back, or {_AGAIN}")
+    return parts
+
+
+def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
+    """Yield the parts that the mappings of a virtual dataset show."""
+    from h5py import h5s
+
+    start = 0
+    for k in range(mappings.get_virtual_count()):
+        low, high = mappings.get_virtual_vspace(k).get_select_bounds()
+        of_part = mappings.get_virtual_srcspace(k)
+        first = () if of_part.get_select_type() == h5s.SEL_ALL else of_part.get_select_bounds()[0]
+        name = Path(mappings.get_virtual_filename(k).replace("%%", "%"))
+        path = index.parent / name
+        if name.is_absolute() or ".." in name.parts or len(name.parts) != 2:
+            problem = f"shows {printable(str(name))}, which is not in a folder beside it"
+            raise InputError(problem, "keep parts as out/part-00000.h5 beside out.h5")
+        if low[0] != start or any(low[1:]) or any(first):
+            raise InputError("shows rows that are not one after the other", _AGAIN)
+        start = int(high[0]) + 1
+        yield Part(Source(printable(str(path)), path=path, split=split), int(low[0]), start)
 
 
 def write_index(file: Path, index: Path, parts: Sequence[Path]) -> int:
