@@ -19,6 +19,7 @@ import io
 import os
 import sys
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Annotated, Any, NoReturn
 
 import typer
@@ -126,12 +127,23 @@ def main() -> NoReturn:
     install()
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # names from files, on a terminal that lacks them
-    code = run(sys.argv[1:])
+    code = _on_ranks(sys.argv[1:]) if _names_mpi(sys.argv) else run(sys.argv[1:])
     with contextlib.suppress(BrokenPipeError):
         sys.stdout.flush()
         sys.exit(code)
     _silence_stdout()
     sys.exit(code)
+
+
+def _names_mpi(words: Sequence[str]) -> bool:
+    """Say whether ``--engine mpi`` is among the words."""
+    return "--engine=mpi" in words or ("--engine", "mpi") in pairwise(words)
+
+
+def _on_ranks(arguments: Sequence[str]) -> int:
+    from meshonet_cli.batch.executors.mpi_engine import on_ranks
+
+    return on_ranks(lambda: run(arguments))
 
 
 def _explained(error: Exception, name: str) -> str:

@@ -12,6 +12,7 @@ from meshonet.geometry.families.draw import Draw
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import process
 from meshonet_cli.batch.sources import items
@@ -39,7 +40,8 @@ class Sampler:
 
 def write_boundaries(
     sources: Sequence[str] | Sequence[Draw], output: str, sampler: Sampler, session: Session, *,
-    from_format: str | None = None, to_format: str | None = None, skip_existing: bool = False, jobs: int = 1,
+    from_format: str | None = None, to_format: str | None = None, skip_existing: bool = False,
+    engine: Engine = HERE,
 ) -> int:  # fmt: skip
     """Sample the shapes of `sources`, files or members of a family, into `output`; return the exit code.
 
@@ -52,7 +54,7 @@ def write_boundaries(
     members: Iterator[Item[Any]] = items(files, lambda source: read_shapes(source, from_format), session)
     if not files:
         members = _drawn([source for source in sources if isinstance(source, Draw)], session)
-    return process(files, members, sampler, destination, session, skip_existing=skip_existing, jobs=jobs)
+    return process(files, members, sampler, destination, session, skip_existing=skip_existing, engine=engine)
 
 
 def _drawn(members: Sequence[Draw], session: Session) -> Iterator[Item[Draw]]:

@@ -12,11 +12,11 @@ from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.gates import need_percentiles, parse_gates
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.threads import cores
 from meshonet.solvers.pipeline.make_grid import MOST_NODES, Result, make_grids
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.progress import Row, listening
 from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import deliver, prepare
 from meshonet_cli.batch.sources import shape_items
@@ -96,15 +96,14 @@ def request_of(
 
 def write_grids(
     sources: Sequence[str], output: str, request: GridRequest, checks: CheckOptions, files: FileOptions,
-    session: Session, *, history: str | None = None, assemble: bool = False, jobs: int = 1,
+    session: Session, *, history: str | None = None, assemble: bool = False, engine: Engine = HERE,
 ) -> int:  # fmt: skip
     """Turn every boundary of `sources` into a grid in `output` and return the exit code.
 
     With `assemble` they are one domain. The gates of `checks` end the program with 1; the cycles go to the
     file `history`.
     """
-    if jobs > 1 and request.threads is None:
-        request = replace(request, threads=max(cores() // jobs, 1))
+    request = replace(request, threads=engine.threads(request.threads))
     destination = Destination(output, files.to_format, "grids")
     prepare(sources[:1] if assemble else sources, destination, session)
     check_file(history)
@@ -119,7 +118,7 @@ def write_grids(
     with listening(Live(session.status)) if session.live else contextlib.nullcontext():
         deliver(
             members, GridMaker(request), destination, session, written,
-            skip_existing=files.skip_existing, together=_together(request), jobs=jobs,
+            skip_existing=files.skip_existing, together=_together(request), engine=engine,
         )  # fmt: skip
     if history and cycles:
         with whole_file(history) as file:

@@ -14,6 +14,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.blocks import make_layout
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import process
 from meshonet_cli.batch.sources import shape_items
@@ -63,7 +64,7 @@ class LayoutMaker:
 def write_layouts(
     sources: Sequence[str], output: str, parameters: Mapping[str, Any], far_field: float | None,
     session: Session, *, assemble: bool = False, from_format: str | None = None, skip_existing: bool = False,
-    jobs: int = 1,
+    engine: Engine = HERE,
 ) -> int:  # fmt: skip
     """Split the domains of `sources`, or the one that they make, into blocks, and return the exit code."""
     sampling = Sampling(far_field=far_field)
@@ -71,5 +72,5 @@ def write_layouts(
     members = shape_items(sources, from_format, session, sampling if assemble else None)
     return process(
         sources[:1] if assemble else sources, members, maker, Destination(output, "layout", "layouts"),
-        session, skip_existing=skip_existing, jobs=jobs,
+        session, skip_existing=skip_existing, engine=engine,
     )  # fmt: skip

@@ -17,7 +17,6 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.gates import need_percentiles, parse_gates
 from meshonet.geometry.sections.stack import Stack, Tip
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.threads import cores
 from meshonet.solvers.pipeline.parameters import grid_request
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
@@ -25,6 +24,7 @@ from meshonet.solvers.pipeline.sweeps import make_sweep
 from meshonet.solvers.stacking.request import StackRequest, stack_request
 from meshonet.solvers.sweeping.sweep import Sweep
 from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import deliver, one_by_one, prepare, process
 from meshonet_cli.batch.sources import items
@@ -40,28 +40,34 @@ from meshonet_cli.session import Session
 def write_stacks(
     sources: Sequence[str], output: str, parameters: Mapping[str, Any], session: Session, *,
     tip: Tip | None = None, surface: bool = False, fail_on: Sequence[str] | None = None,
-    to_format: str | None = None, skip_existing: bool = False, jobs: int = 1,
+    to_format: str | None = None, skip_existing: bool = False, engine: Engine = HERE,
 ) -> int:  # fmt: skip
     """Write the volumes, or the surfaces, of the stacks of `sources` and return the exit code."""
     percentiles = need_percentiles(parse_gates(fail_on))
-    request = stack_request(**_shared(parameters, jobs), percentiles=percentiles)
+    request = stack_request(**_shared(parameters, engine), percentiles=percentiles)
     members = items(sources, lambda source: iter([stack_of(source).with_tip(tip)]), session)
     if surface:
         if fail_on:
             raise InputError("{fail_on} judges cells, and a surface has none", "leave it out")
         destination = Destination(output, to_format, "grids")
         return process(
-            sources, members, _Surfaces(request), destination, session, skip_existing=skip_existing, jobs=jobs
+            sources,
+            members,
+            _Surfaces(request),
+            destination,
+            session,
+            skip_existing=skip_existing,
+            engine=engine,
         )
     return _write(
-        sources, members, _Stacks(request), output, session, fail_on, to_format, skip_existing, jobs
+        sources, members, _Stacks(request), output, session, fail_on, to_format, skip_existing, engine
     )
 
 
 def write_sweeps(
     files: Sequence[str], output: str, res: str | None, section: Mapping[str, Any], along: Mapping[str, Any],
     session: Session, *, fail_on: Sequence[str] | None = None, from_format: str | None = None,
-    to_format: str | None = None, skip_existing: bool = False, jobs: int = 1,
+    to_format: str | None = None, skip_existing: bool = False, engine: Engine = HERE,
 ) -> int:  # fmt: skip
     """Write the volumes of sections along the path that is the last of `files`; return the exit code."""
     *sources, path = files
@@ -69,12 +75,12 @@ def write_sweeps(
         raise InputError(
             "there is no path", f"name it: meshonet sweep {path} PATH -o pipe.h5", source="sweep"
         )
-    parameters = domain_parameters(_shared(section, jobs))
+    parameters = domain_parameters(_shared(section, engine))
     parameters["percentiles"] = need_percentiles(parse_gates(fail_on))
     request = grid_request(res=None if res is None else _counts(res), **parameters)
     make = _Sweeps(path_of(path), request, Sweep(**along))
     members = items(sources, lambda source: read_sections(source, from_format), session)
-    return _write(sources, members, make, output, session, fail_on, to_format, skip_existing, jobs)
+    return _write(sources, members, make, output, session, fail_on, to_format, skip_existing, engine)
 
 
 def _counts(text: str) -> tuple[int, int]:
@@ -99,22 +105,22 @@ def vector(text: str | None) -> tuple[float, float, float] | None:
     return x, y, z
 
 
-def _shared(parameters: Mapping[str, Any], jobs: int) -> dict[str, Any]:
-    """Return parameters, the cores shared out among so many processes."""
-    if jobs == 1 or parameters.get("threads") is not None:
-        return dict(parameters)
-    return {**parameters, "threads": max(cores() // jobs, 1)}
+def _shared(parameters: Mapping[str, Any], engine: Engine) -> dict[str, Any]:
+    """Return parameters, the cores shared out among the workers of the engine."""
+    return {**parameters, "threads": engine.threads(parameters.get("threads"))}
 
 
 def _write(
     sources: Sequence[str], members: Iterator[Item[Any]], make: Callable[[Any], tuple[Grid, Report]],
     output: str, session: Session, fail_on: Sequence[str] | None, to_format: str | None, skip_existing: bool,
-    jobs: int,
+    engine: Engine,
 ) -> int:  # fmt: skip
     destination = Destination(output, to_format, "grids")
     prepare(sources, destination, session)
     written = judging(session, fail_on)
-    deliver(members, one_by_one(make), destination, session, written, skip_existing=skip_existing, jobs=jobs)
+    deliver(
+        members, one_by_one(make), destination, session, written, skip_existing=skip_existing, engine=engine
+    )
     return session.finish()
 
 

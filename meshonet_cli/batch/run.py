@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -12,16 +13,16 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from meshonet.formats.format import size_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item, Name, Named
 from meshonet_cli.batch.timed import Timed
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:
-    from concurrent.futures import Future
-
     from meshonet.geometry.layout.layout import Layout
+    from meshonet_cli.batch.executors.workers import Workers
 
 T = TypeVar("T", bound=Named)
 S = TypeVar("S", bound="Grid | Boundary | Layout")
@@ -29,6 +30,7 @@ R = TypeVar("R", bound=Timed)
 Make = Callable[[Iterable[Item[T]]], Iterator[tuple[S, R] | Exception]]
 """Yields for each member, in order, what to write and a report, or the error that it ended in."""
 Todo = Iterable[tuple[Item[T], str]]  # members and the paths of their files
+_TASK_SECONDS, _MOST_AT_ONCE = 0.1, 64  # how long tasks of several members are, and how large
 Done = tuple[Item[Name], str, tuple[S | None, R] | Exception]
 
 
@@ -40,13 +42,13 @@ def prepare(sources: Sequence[str], destination: Destination, session: Session) 
 
 def process(
     sources: Sequence[str], members: Iterator[Item[T]], make: Callable[[Item[T]], tuple[S, R]],
-    destination: Destination, session: Session, *, skip_existing: bool = False, jobs: int = 1,
+    destination: Destination, session: Session, *, skip_existing: bool = False, engine: Engine = HERE,
 ) -> int:  # fmt: skip
     """Make something of each of the `members` of `sources`, deliver it, and return the exit code."""
     prepare(sources, destination, session)
     deliver(
         members, one_by_one(make), destination, session, session.written,
-        skip_existing=skip_existing, jobs=jobs,
+        skip_existing=skip_existing, engine=engine,
     )  # fmt: skip
     return session.finish()
 
@@ -68,12 +70,13 @@ class one_by_one(Generic[T, S, R]):  # noqa: N801 - used as a function, and a cl
 
 def deliver(
     members: Iterator[Item[T]], make: Make[T, S, R], destination: Destination, session: Session,
-    written: Callable[[R, str], None], *, skip_existing: bool = False, together: int = 1, jobs: int = 1,
+    written: Callable[[R, str], None], *, skip_existing: bool = False, together: int = 1,
+    engine: Engine = HERE,
 ) -> None:  # fmt: skip
     """Make something of every member of `members`, write it to `destination`, and report it.
 
     A member that fails is reported and left out. `make` yields what to write, and reports whose stage
-    ``write`` is timed here; with several `jobs` (processes), which get so many members `together`, it must be
+    ``write`` is timed here; for the workers of an `engine`, which get so many members `together`, it must be
     something that can be pickled. `written` is called with the report and the path of each; with
     `skip_existing` members whose own file is there are passed over.
     """
@@ -85,7 +88,9 @@ def deliver(
     each = destination.each or not session.batch
     todo = _paths(members, destination, session, skip_existing) if each else ((item, "") for item in members)
     work = _Work(make, destination if each else None)
-    done = _in_processes(work, todo, jobs, together) if jobs > 1 and session.batch else work(todo)
+    done = (
+        work(todo) if engine.here or not session.batch else _by_workers(work, todo, engine, together, session)
+    )
     if each:
         for item, path, outcome in done:
             with session.member(item.label, item.source):
@@ -117,9 +122,10 @@ class _Work(Generic[T, S, R]):
                 outcome.source = ""  # all that the library knows; the member's label says more
             yield item.without_content(), path, self._written(outcome, item, path)
 
-    def listed(self, todo: Todo[T]) -> list[Done[S, R]]:
-        """Return all at once."""
-        return list(self(todo))
+    def timed(self, todo: Todo[T]) -> tuple[list[Done[S, R]], float]:
+        """Return all at once, and the seconds that it took."""
+        begun = time.perf_counter()
+        return list(self(todo)), time.perf_counter() - begun
 
     def _written(
         self, outcome: tuple[S, R] | Exception, item: Item[T], path: str
@@ -156,27 +162,51 @@ def _paths(
                 yield item, path
 
 
-def _in_processes(work: _Work[T, S, R], todo: Todo[T], jobs: int, together: int) -> Iterator[Done[S, R]]:
-    """Yield in order what processes make of groups of members; a few groups are under way."""
-    from meshonet_cli.batch.processes import processes  # and with it concurrent.futures: 10 ms
+def _by_workers(
+    work: _Work[T, S, R], todo: Todo[T], engine: Engine, together: int, session: Session
+) -> Iterator[Done[S, R]]:
+    """Yield in order what workers make of groups of members; a few groups are under way."""
+    groups = _Groups(iter(todo), together)
+    with engine.workers(session.warn) as workers:
+        # where many are made together, their grids are what takes memory
+        ahead = workers.count if together == 1 else 1
+        for group, outcome in workers.in_order(work.timed, groups, ahead):
+            if isinstance(outcome, Exception):
+                yield from _apart(work, group, outcome, workers)
+            else:
+                done, seconds = outcome
+                groups.learn(seconds / len(group))
+                yield from done
 
-    todo = iter(todo)
-    most = 2 * jobs if together == 1 else jobs + 1
-    waiting: deque[tuple[list[tuple[Item[T], str]], Future[list[Done[S, R]]]]] = deque()
-    with processes(jobs) as pool:
-        while group := list(islice(todo, together)):
-            waiting.append((group, pool.submit(work.listed, group)))
-            if len(waiting) >= most:
-                yield from _of_group(*waiting.popleft())
-        while waiting:
-            yield from _of_group(*waiting.popleft())
+
+class _Groups(Generic[T]):
+    """Members in groups, each a task: of one size, or, if that is 1, of as many as are done in no time."""
+
+    def __init__(self, todo: Iterator[tuple[Item[T], str]], size: int) -> None:
+        self._todo, self._size, self._grows = todo, size, size == 1
+
+    def __iter__(self) -> Iterator[list[tuple[Item[T], str]]]:
+        while group := list(islice(self._todo, self._size)):
+            yield group
+
+    def learn(self, seconds: float) -> None:
+        """Take note of how long a member took."""
+        if self._grows:
+            self._size = max(1, min(_MOST_AT_ONCE, int(_TASK_SECONDS / max(seconds, 1e-6))))
 
 
-def _of_group(group: Sequence[tuple[Item[T], str]], future: Future[list[Done[S, R]]]) -> Sequence[Done[S, R]]:
-    try:
-        return future.result()
-    except Exception as error:  # the process itself is gone
-        return [(item.without_content(), path, error) for item, path in group]
+def _apart(
+    work: _Work[T, S, R], group: list[tuple[Item[T], str]], error: Exception, workers: Workers
+) -> Iterator[Done[S, R]]:
+    """Yield what workers make of a group, one by one, of which one ended its worker twice."""
+    for item, path in group:
+        outcome: tuple[list[Done[S, R]], float] | Exception = error
+        if len(group) > 1:
+            try:
+                outcome = workers.alone(work.timed, [(item, path)])
+            except MeshonetError as own:
+                outcome = own
+        yield from [(item.without_content(), path, outcome)] if isinstance(outcome, Exception) else outcome[0]
 
 
 def _streamed(

@@ -43,9 +43,9 @@ DeviceName = Annotated[Literal["cpu", "cuda"] | None, _option(
 def infer(
     boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
     domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions, printing: o.PrintOptions,
-    volume: o.VolumeOptions,
+    volume: o.VolumeOptions, workers: o.EngineOptions,
     blocks: o.BlocksName = "auto", walls: o.Walls = None, model: ModelName = None, polish: Polish = "auto",
-    answer: Answer = "valid", device: DeviceName = None, refine: o.Refine = 0, jobs: o.Jobs = 1,
+    answer: Answer = "valid", device: DeviceName = None, refine: o.Refine = 0,
     threads: o.Threads = None,
 ) -> int:  # fmt: skip
     """Make the grid that measures best: conformal, marched or variational.
@@ -71,4 +71,6 @@ def infer(
         **domain.parameters(walls),
     )
     session = printing.session()
-    return write_grids(boundary, output, request, checks, files, session, assemble=domain.assemble, jobs=jobs)
+    return write_grids(
+        boundary, output, request, checks, files, session, assemble=domain.assemble, engine=workers.chosen()
+    )

@@ -31,6 +31,7 @@ def layout(
     )],
     blocks: o.DomainOptions,
     printing: o.PrintOptions,
+    workers: o.EngineOptions,
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R", help="Distance of the far field, in chords of all bodies. [default: 15]",
     )] = None,
@@ -38,7 +39,6 @@ def layout(
     walls: o.Walls = None,
     from_format: o.From = None,
     skip_existing: o.SkipExisting = False,
-    jobs: o.Jobs = 1,
 ) -> int:
     """Split domains into blocks and write these.
 
@@ -49,6 +49,7 @@ def layout(
     first = {"first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds}
     return write_layouts(
         domain, output, blocks.parameters(walls) | first, far_field, printing.session(),
-        assemble=blocks.assemble, from_format=from_format, skip_existing=skip_existing, jobs=jobs,
+        assemble=blocks.assemble, from_format=from_format, skip_existing=skip_existing,
+        engine=workers.chosen(),
     )
 # fmt: on

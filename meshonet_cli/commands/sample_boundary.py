@@ -49,8 +49,9 @@ Seed = Annotated[int | None, _option("--seed", metavar="S", min=0, help="Seed of
 @o.expanded
 def sample_boundary(
     output: o.Output, sampling: o.SamplingOptions, files: o.FileOptions, printing: o.PrintOptions,
+    workers: o.EngineOptions,
     source: Source = None, family: FamilyName = None, count: Count = None, spread: Range = None,
-    seed: Seed = None, split: Split = None, sensors: Sensors = None, jobs: o.Jobs = 1,
+    seed: Seed = None, split: Split = None, sensors: Sensors = None,
 ) -> int:  # fmt: skip
     """Turn geometry into boundaries of four edges."""
     from meshonet.geometry.errors import InputError
@@ -67,5 +68,5 @@ def sample_boundary(
     )
     return write_boundaries(
         members, output, sampler, printing.session(), from_format=files.from_format,
-        to_format=files.to_format, skip_existing=files.skip_existing, jobs=jobs,
+        to_format=files.to_format, skip_existing=files.skip_existing, engine=workers.chosen(),
     )  # fmt: skip

@@ -68,10 +68,11 @@ History = Annotated[str | None, o.option_of(o.IO)(
 def solve_pde(
     boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
     sides: o.SideOptions, domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions,
-    printing: o.PrintOptions, volume: o.VolumeOptions, blocks: o.BlocksName = "auto", walls: o.Walls = None,
+    printing: o.PrintOptions, volume: o.VolumeOptions, workers: o.EngineOptions,
+    blocks: o.BlocksName = "auto", walls: o.Walls = None,
     method: Method = "auto", tol: Tolerance = None, max_cycles: MaxCycles = None, coarse: Coarse = "auto",
     refine: o.Refine = 0, initial: Initial = None, history: History = None, slide: o.Slide = None,
-    wall_angle: o.WallAngle = None, repair_margin: RepairMargin = None, jobs: o.Jobs = 1,
+    wall_angle: o.WallAngle = None, repair_margin: RepairMargin = None,
     threads: o.Threads = None,
 ) -> int:  # fmt: skip
     """Make grids by elliptic equations, a variational method, or marching.
@@ -92,5 +93,5 @@ def solve_pde(
     session = printing.session()
     return write_grids(
         boundary, output, request, checks, files, session,
-        history=history, assemble=domain.assemble, jobs=jobs,
+        history=history, assemble=domain.assemble, engine=workers.chosen(),
     )  # fmt: skip

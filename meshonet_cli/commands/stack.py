@@ -25,6 +25,7 @@ def stack(
     )],
     output: o.Output,
     printing: o.PrintOptions,
+    workers: o.EngineOptions,
     around: Annotated[int | None, _sampling(
         "--around", metavar="N", help="Nodes around a section, an odd number. [default: 129]",
     )] = None,
@@ -65,7 +66,6 @@ def stack(
     fail_on: o.FailOn = None,
     to_format: o.To = None,
     skip_existing: o.SkipExisting = False,
-    jobs: o.Jobs = 1,
     threads: o.Threads = None,
 ) -> int:
     """Make volumes around wings and blades, and in ducts, from sections."""
@@ -78,6 +78,7 @@ def stack(
     parameters = {name: value for name, value in chosen.items() if value is not None}
     return write_stacks(
         sections, output, parameters | {"allow_invalid": allow_invalid}, printing.session(), tip=tip,
-        surface=surface, fail_on=fail_on, to_format=to_format, skip_existing=skip_existing, jobs=jobs,
+        surface=surface, fail_on=fail_on, to_format=to_format, skip_existing=skip_existing,
+        engine=workers.chosen(),
     )
 # fmt: on

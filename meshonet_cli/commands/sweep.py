@@ -24,6 +24,7 @@ def sweep(
     )],
     output: o.Output,
     printing: o.PrintOptions,
+    workers: o.EngineOptions,
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ", help="Nodes along the sides of a four-sided section. [default: 65x33]",
     )] = None,
@@ -71,7 +72,6 @@ def sweep(
     from_format: o.From = None,
     to_format: o.To = None,
     skip_existing: o.SkipExisting = False,
-    jobs: o.Jobs = 1,
     threads: o.Threads = None,
 ) -> int:
     """Make volumes of pipes and ducts, cross-sections carried along curves."""
@@ -85,6 +85,6 @@ def sweep(
     along = {"planes": planes, "up": vector(up), "twist": twist, "scale": scale}
     return write_sweeps(
         files, output, res, section, along, printing.session(), fail_on=fail_on, from_format=from_format,
-        to_format=to_format, skip_existing=skip_existing, jobs=jobs,
+        to_format=to_format, skip_existing=skip_existing, engine=workers.chosen(),
     )
 # fmt: on

@@ -24,11 +24,11 @@ def tfi(
     checks: o.CheckOptions,
     files: o.FileOptions,
     printing: o.PrintOptions,
+    workers: o.EngineOptions,
     blending: Annotated[BlendingName, _option(
         "--blending", metavar="arclength|linear", show_default=True,
         help="Blend the edges by their arc length, or linearly by index.",
     )] = "arclength",
-    jobs: o.Jobs = 1,
     threads: o.Threads = None,
 ) -> int:
     """Make grids by transfinite interpolation."""
@@ -37,5 +37,7 @@ def tfi(
     request = request_of(
         "tfi", sampling, checks, first, sides, settings={"blending": blending}, threads=threads
     )
-    return write_grids(boundary, output, request, checks, files, printing.session(), jobs=jobs)
+    return write_grids(
+        boundary, output, request, checks, files, printing.session(), engine=workers.chosen()
+    )
 # fmt: on

@@ -8,6 +8,7 @@ from meshonet_cli.options.blocks import expanded as expanded
 from meshonet_cli.options.boundary_layer import *  # noqa: F403
 from meshonet_cli.options.checks import *  # noqa: F403
 from meshonet_cli.options.domain import *  # noqa: F403
+from meshonet_cli.options.engine import *  # noqa: F403
 from meshonet_cli.options.groups import BOUNDARY_LAYER as BOUNDARY_LAYER
 from meshonet_cli.options.groups import CHECKS as CHECKS
 from meshonet_cli.options.groups import DOMAIN as DOMAIN

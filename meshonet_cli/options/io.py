@@ -37,9 +37,6 @@ To = Annotated[str | None, _option(
 SkipExisting = Annotated[bool, _option(
     "--skip-existing", help="Skip inputs whose output file exists already.",
 )]
-Jobs = Annotated[int, _option(
-    "--jobs", metavar="N", min=1, max=1024, show_default=True, help="Processes for a batch.",
-)]
 AsJson = Annotated[bool, _option("--json", help="Print one JSON object on standard output for each result.")]
 Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")]
 

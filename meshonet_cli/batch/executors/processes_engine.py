@@ -1,0 +1,101 @@
+"""Processes of this machine."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import active_children, get_context, parent_process
+from multiprocessing.process import BaseProcess
+from typing import TypeVar
+
+from meshonet_cli.batch.executors.engine import Engine
+from meshonet_cli.batch.executors.workers import Warn, Workers
+
+T = TypeVar("T")
+R = TypeVar("R")
+_TERMINATED = 143
+_GRACE = 10.0  # seconds that a process has to remove what it was writing
+
+
+@contextmanager
+def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
+    """Give fresh processes, which are ended at once when the block ends in an error."""
+    share_cores()
+    others = set(active_children())
+    workers = _Processes(engine.jobs, warn)
+    try:
+        yield workers
+    except BaseException:
+        workers.executor.shutdown(wait=False, cancel_futures=True)
+        _end(set(active_children()) - others)
+        raise
+    finally:
+        workers.executor.shutdown(cancel_futures=True)
+
+
+def share_cores() -> None:
+    """Have NumPy's linear algebra work with one thread in processes started from here on."""
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+
+
+def _pool(count: int) -> Executor:
+    # fresh processes: a fork would copy the locks of numpy's threads in whatever state they are
+    return ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=_begin)
+
+
+class _Processes(Workers):
+    def __init__(self, count: int, warn: Warn) -> None:
+        super().__init__(_pool(count), count)
+        self._warn = warn
+
+    def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
+        """Have a process do a task."""
+        return self.executor.submit(_call, function, task)
+
+    def renew(self) -> None:
+        """Replace the pool, all of whose processes end when one does."""
+        self._warn("a worker process died; what was under way is done again")
+        self.executor.shutdown(cancel_futures=True)
+        self.executor = _pool(self.count)
+
+
+def _begin() -> None:
+    """Leave Ctrl-C to the main process, and end when it does."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
+    threading.Thread(target=_watch, daemon=True).start()
+
+
+def _leave(*_: object) -> None:
+    raise SystemExit(_TERMINATED)  # so that unfinished files go
+
+
+def _watch() -> None:
+    main = parent_process()
+    if main is not None:
+        main.join()
+        os.kill(os.getpid(), signal.SIGTERM)
+        threading.Event().wait(_GRACE)
+        os._exit(_TERMINATED)
+
+
+def _call(function: Callable[[T], R], task: T) -> R:
+    try:
+        return function(task)
+    except SystemExit:
+        os._exit(_TERMINATED)  # the pool would take it for the outcome of the task, and go on
+
+
+def _end(processes: set[BaseProcess]) -> None:
+    """End processes, by force those that take too long."""
+    for process in processes:
+        process.terminate()
+    for process in processes:
+        process.join(_GRACE)
+        process.kill()
+        process.join()
