@@ -6,10 +6,10 @@ unpacked, and no more is unpacked than that. Errors do not name the archive; cal
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterator
 from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError
@@ -24,7 +24,7 @@ _IN_ARCHIVE = re.compile(r"\.zip/", re.IGNORECASE)
 
 def is_archive(path: str) -> bool:
     """Return whether a file is an archive, by its ending."""
-    return path.lower().endswith(".zip") and os.path.isfile(path)
+    return path.lower().endswith(".zip") and Path(path).is_file()
 
 
 def member_names(path: str) -> Iterator[str]:
@@ -38,7 +38,7 @@ def member_names(path: str) -> Iterator[str]:
 def split_member(text: str) -> tuple[str, str] | None:
     """Return archive and member of ``a.zip/b/c.dat``, None where that names none."""
     for match in _IN_ARCHIVE.finditer(text):
-        if os.path.isfile(text[: match.end() - 1]):
+        if Path(text[: match.end() - 1]).is_file():
             return text[: match.end() - 1], text[match.end() :]
     return None
 
@@ -66,12 +66,12 @@ def read_member(path: str, name: str) -> bytes:
 
 
 def _archive(path: str) -> ZipFile:
-    state = os.stat(path)
-    return _opened(path, state.st_mtime_ns, state.st_size)
+    state = Path(path).stat()
+    return _opened(path, (state.st_ino, state.st_mtime_ns, state.st_size))
 
 
 @lru_cache(maxsize=2)  # the table of members is read once for all of them
-def _opened(path: str, changed: int, size: int) -> ZipFile:
+def _opened(path: str, state: tuple[int, int, int]) -> ZipFile:  # noqa: ARG001  (so that a changed one is read)
     from zipfile import BadZipFile, ZipFile
 
     try:

@@ -18,14 +18,14 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import closing
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cached_property
 from itertools import islice
-from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 
 from meshonet.formats.archive import is_archive, member_names
 from meshonet.formats.registry import formats, is_designation
@@ -46,8 +46,21 @@ _WITH_FOLDER = (".h5", ".hdf5", ".vtm")
 
 def readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
     """Return the endings of files that are taken from folders and archives."""
-    read = (f for f in formats() if f.read_grids is not None or (f.read_shapes is not None and not grids_only))
+    read = (
+        f for f in formats() if f.read_grids is not None or (f.read_shapes is not None and not grids_only)
+    )
     return frozenset(suffix for record in read for suffix in record.suffixes)
+
+
+class Numbered(NamedTuple):
+    """An input, the number of its first member among those of all inputs, and how far apart its others are.
+
+    Without a number the members are counted; a step of 0 says that there is one.
+    """
+
+    text: str | InputError
+    first: int | None = None
+    step: int = 1
 
 
 @dataclass(frozen=True)
@@ -89,26 +102,25 @@ class Inputs:
         if self.pick and not walk.taken:
             yield self._nothing(walk)
 
-    def own(self) -> Iterator[tuple[int | None, str | InputError]]:
-        """Yield the inputs of the shard with their numbers among the members of all inputs.
-
-        There are no numbers (None) where nothing is left out. Of a dataset every n-th sample is taken.
-        """
+    def own(self) -> Iterator[Numbered]:
+        """Yield the inputs of the shard; of a dataset every n-th sample is taken."""
         k, n = self.shard
         if n == 1:
-            yield from ((None, entry) for entry in self)
+            yield from map(Numbered, self)
             return
         number = 0
         for entry in self:
-            samples = _samples(entry)
+            samples = samples_in(entry)
             count = 1 if samples is None else len(samples)
             first = (k - 1 - number) % n
-            if first < count:
-                yield number + first, entry if samples is None else samples.named(first, count, n)
+            if first < count and samples is None:
+                yield Numbered(entry, number, 0)
+            elif first < count and samples is not None:
+                yield Numbered(samples.named(first, count, n), number + first, n)
             number += count
 
     def parts(self, size: int) -> Iterator[tuple[int, tuple[str | InputError, ...]]]:
-        """Yield number and inputs of the parts of the shard: `size` inputs each, a sample of a dataset being one.
+        """Yield number and inputs of the parts of the shard, `size` inputs or samples of datasets each.
 
         Parts are the same whatever the shard: the k-th of n has every n-th part.
         """
@@ -117,7 +129,7 @@ class Inputs:
         k, n = self.shard
 
         for entry in self:
-            samples = _samples(entry)
+            samples = samples_in(entry)
             count = 1 if samples is None else len(samples)
             start = 0
             while start < count:
@@ -134,6 +146,13 @@ class Inputs:
     def more_than(self, count: int) -> bool:
         """Return whether there are more than so many inputs; no more are looked for."""
         return len(list(islice(self, count + 1))) > count
+
+    def count(self) -> int | None:
+        """Return how many members the shard has, files that hold several counted once; None from a pipe."""
+        if any(word in ("-", "@-") for word in self.words):
+            return None
+        samples = (samples_in(entry) for entry in self)
+        return -(-sum(1 if each is None else len(each) for each in samples) // self.shard[1])
 
     def first(self) -> str:
         """Return the first input; InputError where there is none."""
@@ -189,7 +208,7 @@ class _Walk:
         elif word == "-" or is_designation(word):
             if not lists or self._takes(word.replace(":", "")):
                 yield word
-        elif os.path.isdir(word):
+        elif Path(word).is_dir():
             yield from self._of_folder(word)
         elif is_archive(word):
             yield from self._of_archive(word)
@@ -223,9 +242,9 @@ class _Walk:
             return
         for name in entries:
             if name.endswith("/"):
-                yield from self._below(os.path.join(folder, name[:-1]), f"{inside}{name}")
+                yield from self._below(str(Path(folder, name)), f"{inside}{name}")
             else:
-                yield os.path.join(folder, name)
+                yield str(Path(folder, name))
 
     def _entries(self, folder: str, inside: str) -> list[str]:
         """Return the names of files to take and, with a slash behind them, of folders to look into."""
@@ -233,13 +252,13 @@ class _Walk:
         owners: set[str] = set()
         with os.scandir(folder) as entries:
             for entry in entries:
-                stem, suffix = os.path.splitext(entry.name)
+                stem, suffix = _split(entry.name)
                 if _is_hidden(entry.name):
                     continue
                 if entry.is_dir(follow_symlinks=False):
                     names.append(f"{entry.name}/")
-                elif suffix.lower() in self._inputs.suffixes and entry.is_file():
-                    if suffix.lower() in _WITH_FOLDER:
+                elif suffix in self._inputs.suffixes and entry.is_file():
+                    if suffix in _WITH_FOLDER:
                         owners.add(f"{stem}/")
                     if self._takes(f"{inside}{entry.name}"):
                         names.append(entry.name)
@@ -251,7 +270,7 @@ class _Walk:
             names = member_names(path)
         for name in names:
             hidden = any(map(_is_hidden, name.split("/")))
-            if not hidden and os.path.splitext(name)[1].lower() in self._inputs.suffixes and self._takes(name):
+            if not hidden and _split(name)[1] in self._inputs.suffixes and self._takes(name):
                 yield f"{path}/{name}"
         if self.seen == before:
             raise self._without_files(path)
@@ -263,19 +282,19 @@ class _Walk:
     def _takes(self, path: str) -> bool:
         """Note a file of a folder, an archive or a list, and return whether it is picked."""
         self.seen += 1
-        name = os.path.basename(path)
-        stem = os.path.splitext(name)[0]
+        name = path.rpartition("/")[2]
+        stem = _split(name)[0]
         self.example = self.example or stem
         taken = not self._patterns or any(
             fnmatchcase(text.lower(), pattern)
             for pattern in self._patterns
-            for text in ((path, os.path.splitext(path)[0]) if "/" in pattern else (stem, name))
+            for text in ((path, _split(path)[0]) if "/" in pattern else (stem, name))
         )
         self.taken += taken
         return taken
 
 
-def _samples(entry: str | InputError) -> Samples | None:
+def samples_in(entry: str | InputError) -> Samples | None:
     """Return the samples of an input that is a dataset, None for any other and one that cannot be read."""
     if isinstance(entry, InputError) or not _IS_DATASET.search(entry):
         return None
@@ -285,6 +304,12 @@ def _samples(entry: str | InputError) -> Samples | None:
         return samples_of(entry)
     except InputError:  # which is said when it is read
         return None
+
+
+def _split(path: str) -> tuple[str, str]:
+    """Return a path without its ending, and the ending in lower case."""
+    suffix = PurePath(path).suffix
+    return path.removesuffix(suffix), suffix.lower()
 
 
 def _is_hidden(name: str) -> bool:
@@ -299,7 +324,9 @@ def _lines(lines: Iterable[bytes], name: str) -> Iterator[str]:
     for number, line in enumerate(lines, start=1):
         if len(line) >= LONGEST_LINE or b"\0" in line:
             remedy = "a list is text, one input a line"
-            raise InputError("is no list of inputs", remedy, source=f"@{printable(name)}", place=f"line {number}")
+            raise InputError(
+                "is no list of inputs", remedy, source=f"@{printable(name)}", place=f"line {number}"
+            )
         text = os.fsdecode(line.removeprefix(b"\xef\xbb\xbf") if number == 1 else line).strip()
         if text and not text.startswith("#"):
             yield text

@@ -87,9 +87,9 @@ class Source:
 def open_source(text: str) -> Source:
     """Return the source that a user named: a path, ``-`` for standard input, or ``FILE.zip/MEMBER``.
 
-    ``FILE#test`` and ``FILE#train`` mean those samples of a dataset, ``FILE#7`` the one of that number from 0,
-    ``FILE#5:9`` and ``FILE#5::2`` those of a range, ``FILE#test,0:9`` both, unless there is a file of that
-    name. Standard input and pipes are read to their end, since formats need to look back and forth.
+    ``FILE#test`` and ``FILE#train`` mean those samples of a dataset, ``FILE#7`` the one of that number (from
+    0 on), ``FILE#5:9`` and ``FILE#5::2`` those of a range, ``FILE#test,0:9`` both, unless there is a file
+    of that name. Standard input and pipes are read to their end, since formats need to look back and forth.
 
     Raises InputError: no such file, a folder, a file that may not be read, nothing in it.
     """

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from meshonet.formats.hdf5.check import Checked, opened, own
 from meshonet.formats.hdf5.file import created
@@ -20,6 +20,15 @@ if TYPE_CHECKING:
 _AGAIN = "repeat the command that made it, with {skip_existing}"
 
 
+class Failed(NamedTuple):
+    """A member that could not be made: its input, what it is called, why, and whether to try it again."""
+
+    text: str
+    member: str
+    error: str
+    again: bool
+
+
 @dataclass
 class PartFacts:
     """What a part says of itself.
@@ -31,7 +40,7 @@ class PartFacts:
     request: str = ""
     count: int = 0
     inputs: list[str] = field(default_factory=list)
-    failed: list[tuple[str, str, str]] = field(default_factory=list)
+    failed: list[Failed] = field(default_factory=list)
     attributes: dict[str, Any] = field(default_factory=dict)
     columns: dict[str, tuple[int, tuple[int, ...], Any]] = field(default_factory=dict)
     parameter_names: Any = None
@@ -55,7 +64,7 @@ def part_facts(path: Path) -> PartFacts:
         if facts.columns.pop("inputs", None):
             facts.inputs = list(file["inputs"].asstr())
         if "failed" in facts.columns:
-            facts.failed = [tuple(json.loads(text)) for text in file["failed"].asstr()]
+            facts.failed = [Failed(*json.loads(text)) for text in file["failed"].asstr()]
         facts.count = facts.columns.get("south", facts.columns.get("blocks/0", (0,)))[0]
         if "parameters" in facts.columns:
             facts.parameter_names = file["parameters"].attrs.get("names")
@@ -129,25 +138,21 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
         yield Part(Source(printable(str(path)), path=path, split=split), int(low[0]), start)
 
 
-def write_index(file: Path, index: Path, parts: Sequence[Path]) -> int:
-    """Write to `file` what will be `index`, over `parts`, and return how many samples it shows.
+def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
+    """Write to `file` what will be `index`, over `parts` that hold samples.
 
-    Raises InputError: none of them holds a sample; they differ in size or settings.
+    Raises InputError: they differ in size or settings.
     """
-    known = [facts for facts in map(part_facts, parts) if facts.count]
-    if not known:
-        raise InputError("no part holds a sample", "see what failed above", source=printable(str(index)))
-    first = known[0]
-    for facts in known[1:]:
+    first = parts[0]
+    for facts in parts[1:]:
         _check_same(facts, first)
-    columns = {name: column for facts in reversed(known) for name, column in facts.columns.items()}
+    columns = {name: column for facts in reversed(parts) for name, column in facts.columns.items()}
     with created(file) as made:
         made.attrs.update(first.attributes)
         for name, (_, row, kind) in sorted(columns.items()):
-            _add_column(made, name, row, kind, known, index.parent)
+            _add_column(made, name, row, kind, parts, index.parent)
         if first.parameter_names is not None:
             made["parameters"].attrs["names"] = first.parameter_names
-    return sum(facts.count for facts in known)
 
 
 def _check_same(facts: PartFacts, first: PartFacts) -> None:

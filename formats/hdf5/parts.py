@@ -5,7 +5,7 @@ A part is written whole or not at all, and says of what it was made:
 ========== ========================================================================================
 request    attribute: digest of the settings of all parts
 inputs     dataset of texts: digests of the inputs
-failed     dataset of texts: JSON lists ``[input, member, error]`` of members that the part lacks
+failed     dataset of texts: JSON lists ``[input, member, error, again]`` of members it lacks
 ========== ========================================================================================
 
 ``out.h5`` has the attributes of the first part and a virtual dataset for each of the parts' datasets: rows of
@@ -21,8 +21,9 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, NoReturn
 
+from meshonet.formats.hdf5.index import Failed as Failed
 from meshonet.formats.hdf5.index import PartFacts, part_facts, write_index
 from meshonet.formats.hdf5.write import Kind, writing
 from meshonet.formats.output import whole_file
@@ -42,10 +43,6 @@ class Input(NamedTuple):
 
     text: str
     digest: str
-
-
-Failed = tuple[str, str, str]
-"""A member that could not be made: input, member, error."""
 
 
 class OtherPartsError(InputError):
@@ -81,10 +78,15 @@ class PartFiles:
         names = (_NAME.fullmatch(entry.name) for entry in self.folder.iterdir())
         return sorted(int(match[1]) for match in names if match)
 
-    def check(self) -> None:
+    def check(self, *, skip_existing: bool) -> None:
         """Raise OtherPartsError where the parts that are there were made with other settings."""
-        for number in self.numbers()[:1]:
+        for number in self.numbers()[:1] if skip_existing else ():
             self.facts(number)
+
+    def refuse(self, number: int) -> NoReturn:
+        """Raise OtherPartsError for a part that is there."""
+        remedy = f"continue with {{skip_existing}}, or remove the parts: rm -r {printable(str(self.folder))}"
+        raise OtherPartsError("is there already", remedy, source=printable(str(self.path(number))))
 
     def facts(self, number: int) -> PartFacts:
         """Return what a part says of itself; raises as `state`."""
@@ -97,8 +99,8 @@ class PartFiles:
         """Return whether a part is there: ``complete``, to be ``extended`` or made for the first time.
 
         A part of the first of `inputs` is to be extended; so is one of which an input failed that has changed
-        since. Raises OtherPartsError: the part was made of other inputs or with other settings; InputError:
-        it cannot be read.
+        since, or that failed for want of memory, say, which may be there now. Raises OtherPartsError: the
+        part was made of other inputs or with other settings; InputError: it cannot be read.
         """
         if not self.path(number).exists():
             return "missing"
@@ -108,14 +110,15 @@ class PartFiles:
                 facts.path, f"was made of {len(facts.inputs)} inputs, of which {len(inputs)} are left"
             )
         changed = [new for new, digest in zip(inputs, facts.inputs, strict=False) if new.digest != digest]
-        mended = {row[0] for row in facts.failed}
+        mended = {row.text for row in facts.failed}
         for new in changed:
             if new.text not in mended:
                 self._refuse(facts.path, f"was not made of {printable(new.text)} as it is now, at this place")
-        return "extended" if changed or len(inputs) > len(facts.inputs) else "complete"
+        again = any(row.again for row in facts.failed)
+        return "extended" if changed or again or len(inputs) > len(facts.inputs) else "complete"
 
     def write(
-        self, number: int, kind: Kind, samples: Iterable[Boundary | Grid], inputs: Sequence[Input],
+        self, number: int, kind: str, samples: Iterable[Boundary | Grid], inputs: Sequence[Input],
         failed: list[Failed],
     ) -> int:  # fmt: skip
         """Write a part, whole or not at all, and return how many samples it holds.
@@ -124,28 +127,34 @@ class PartFiles:
         place that cannot be written.
         """
         count = 0
-        with whole_file(str(self.path(number)), make_folder=True) as part:
-            with writing(part, kind) as writer:
-                for sample in samples:
-                    writer.append(sample)
-                    count += 1
-                texts = {"inputs": [each.digest for each in inputs], "failed": list(map(json.dumps, failed))}
-                writer.note({"request": self.request}, texts)
+        name: Kind = "meshonet-grid" if kind == "grids" else "meshonet-boundary"
+        with (
+            whole_file(str(self.path(number)), make_folder=True) as part,
+            writing(part, name) as writer,
+        ):
+            for sample in samples:
+                writer.append(sample)
+                count += 1
+            texts = {"inputs": [each.digest for each in inputs], "failed": list(map(json.dumps, failed))}
+            writer.note({"request": self.request}, texts)
         return count
 
     def build(self) -> int:
-        """Write the index over the parts that are there and return how many samples it shows.
+        """Write the index over the parts that are there and return how many samples it shows, 0 without one.
 
-        Several processes may do so at once: the one that is last sees the parts of all. Raises InputError: no
-        part holds a sample; parts of different settings or sizes.
+        Several processes may do so at once: the one that is last sees the parts of all. Raises InputError:
+        parts of different settings or sizes.
         """
         numbers, count = None, 0
         while numbers != (numbers := self.numbers()):
-            with whole_file(str(self.index)) as file:
-                count = write_index(file, self.index, [self.path(number) for number in numbers])
+            parts = [facts for number in numbers if (facts := part_facts(self.path(number))).count]
+            count = sum(facts.count for facts in parts)
+            if count:
+                with whole_file(str(self.index)) as file:
+                    write_index(file, self.index, parts)
         return count
 
-    def _refuse(self, path: Path, problem: str) -> None:
+    def _refuse(self, path: Path, problem: str) -> NoReturn:
         folder = printable(str(self.folder))
         remedy = f"write to another name, or remove the old parts: rm -r {folder}"
         raise OtherPartsError(problem, remedy, source=printable(str(path)))

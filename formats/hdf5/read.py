@@ -28,15 +28,15 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     Of grids of many blocks it returns their domains. It continues after a sample that is not right and raised
     InputError.
     """
-    return map(call, _samples(source, _boundary))
+    return map(call, samples_read(source, _boundary))
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
     """Return an iterator over the grids; it too continues after a sample that is not right."""
-    return map(call, _samples(source, _grid))
+    return map(call, samples_read(source, _grid))
 
 
-def _samples(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
+def samples_read(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
     """Yield functions that read one sample each: what they raise does not end the generator."""
     with opened(source) as file:
         parts = shown_parts(file, source)
@@ -55,7 +55,7 @@ def _samples(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Call
 def _samples_of_part(
     part: Part, kept: Sequence[int], read: Callable[[Checked, int], T]
 ) -> Iterator[Callable[[], T]]:
-    """Yield functions as `_samples` does; a part that cannot be read gives one."""
+    """Yield functions as `samples_read` does; a part that cannot be read gives one."""
     try:
         with in_source(part.source.name), checked(part.source) as data:
             part.check(data)

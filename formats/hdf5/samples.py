@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from meshonet.formats.hdf5.check import Checked, opened
 from meshonet.formats.hdf5.index import shown_parts
-from meshonet.formats.hdf5.read import kept_of, rows_of
+from meshonet.formats.hdf5.read import kept_of, rows_of, samples_read
+from meshonet.formats.hdf5.write import TEXTS
 from meshonet.formats.source import open_source
-from meshonet.geometry.errors import in_source
+from meshonet.geometry.arrays import SIDES
+from meshonet.geometry.errors import InputError, in_source
 
 
 @dataclass(frozen=True)
@@ -22,12 +26,30 @@ class Samples:
     def __len__(self) -> int:
         return len(self.rows)
 
+    def digests(self) -> Iterator[str]:
+        """Yield a digest of what is stored of each of these samples."""
+        for digest in samples_read(open_source(self.named(0, len(self.rows))), _digest):
+            try:
+                yield digest()
+            except InputError as error:
+                yield str(error)
+
     def named(self, start: int, stop: int, step: int = 1) -> str:
         """Return the input that names every `step`-th of these samples from `start` to `stop`."""
         rows = self.rows[start:stop:step]
         split = f"{self.split}," if self.split else ""
         words = f"{rows[0]}" if len(rows) == 1 else f"{rows.start}:{rows.stop}"
         return f"{self.name}#{split}{words}" + (f":{rows.step}" if len(rows) > 1 and rows.step > 1 else "")
+
+
+def _digest(data: Checked, k: int) -> str:
+    names = [f"blocks/{m}" for m in range(data.blocks)] or [
+        name for name in (*SIDES, "nodes") if name in data
+    ]
+    digest = hashlib.sha256("\0".join(data.text(name, k) for name in TEXTS).encode())
+    for name in names:
+        digest.update(data.nodes(name, k).tobytes())
+    return digest.hexdigest()
 
 
 def samples_of(text: str) -> Samples:

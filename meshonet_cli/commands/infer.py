@@ -41,7 +41,8 @@ DeviceName = Annotated[Literal["cpu", "cuda"] | None, _option(
 
 @o.expanded
 def infer(
-    boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
+    boundary: o.Boundaries, output: o.Output, many: o.InputOptions, sampling: o.SamplingOptions,
+    first: o.LayerOptions,
     domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions, printing: o.PrintOptions,
     volume: o.VolumeOptions, workers: o.EngineOptions,
     blocks: o.BlocksName = "auto", walls: o.Walls = None, model: ModelName = None, polish: Polish = "auto",
@@ -72,5 +73,12 @@ def infer(
     )
     session = printing.session()
     return write_grids(
-        boundary, output, request, checks, files, session, assemble=domain.assemble, engine=workers.chosen()
+        many.of(boundary),
+        output,
+        request,
+        checks,
+        files,
+        session,
+        assemble=domain.assemble,
+        engine=workers.chosen(),
     )
