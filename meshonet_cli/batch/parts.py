@@ -147,19 +147,22 @@ def one_after_the_other(make: Callable[[Part], PartDone[R]], parts: Iterable[Par
 
 def deliver_parts(
     outcomes: Outcomes[R], files: PartFiles, session: Session, written: Callable[[R, str], None], *,
-    skip_existing: bool,
+    skip_existing: bool, whole: bool,
 ) -> None:  # fmt: skip
     """Report every member of parts as they are made, and show the parts as one file.
 
     A part that fails is reported, and missing in the file until the same command makes it; `written` is
-    called with the report of each member that was made, and the path of the file.
+    called with the report of each member that was made, and the path of the file; `whole` says that these
+    are all parts, and no shard.
 
     Raises OtherPartsError: the parts that are there were made of other inputs or with other settings, or are
     not to be skipped.
     """
     files.check(skip_existing=skip_existing)
     session.batch = True
+    last = -1
     for part, done in outcomes:
+        last = part.number
         if isinstance(done, OtherPartsError):
             raise done
         if isinstance(done, Exception):
@@ -168,6 +171,9 @@ def deliver_parts(
         else:
             _report(done, str(files.index), session, written)
     files.build()
+    more = [number for number in files.numbers() if number > last]
+    if more and whole:
+        session.warn(f"{files.index} also shows parts of an earlier run with more inputs: {len(more)}")
 
 
 def _report(done: PartDone[R], index: str, session: Session, written: Callable[[R, str], None]) -> None:

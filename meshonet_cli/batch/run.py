@@ -6,6 +6,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar
@@ -117,12 +118,15 @@ def _deliver_parts(
     work: _Work[T, S, R] = _Work(make, None)
     maker = PartMaker(files, destination.kind, origin.read, work, skip_existing)
     parts = parts_of(origin.inputs, size)
+    whole = origin.inputs.shard == (1, 1)
+    report = partial(
+        deliver_parts, files=files, session=session, written=written, skip_existing=skip_existing, whole=whole
+    )
     if engine.here:
-        deliver_parts(one_after_the_other(maker, parts), files, session, written, skip_existing=skip_existing)
+        report(one_after_the_other(maker, parts))
         return
     with engine.workers(session.warn) as workers:
-        outcomes = workers.in_order(maker, parts, workers.count)
-        deliver_parts(outcomes, files, session, written, skip_existing=skip_existing)
+        report(workers.in_order(maker, parts, workers.count))
 
 
 class _Work(Generic[T, S, R]):
