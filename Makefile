@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find kernels -name '*.py*' -o -name '*.pxi' -o -name '*.h' -o -name '*.c' ! -name _native.c)
 
-.PHONY: help demo test test-fast test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs gallery wheel clean
+.PHONY: help demo test test-fast test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs tutorials gallery wheel clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
@@ -14,10 +14,11 @@ help:
 	@echo 'make fuzz    every reader against hostile files, MINUTES=10 each; make kills: commands stopped at random'
 	@echo 'make lint    style, types and import contracts'
 	@echo 'make train   the shipped models again, from random shapes (resumable; about three hours on one core)'
-	@echo 'make paper   the MeshONet paper again: docs/paper (hours, resumable); make paper-quick: minutes, in build'
+	@echo 'make paper   the MeshONet paper again: docs/benchmarks/paper (hours, resumable); make paper-quick: minutes, in build'
 	@echo 'make bench   the benchmarks, and their pages in docs/benchmarks'
 	@echo 'make docs    the generated pages and pictures of docs/'
-	@echo 'make gallery  docs/gallery.md: the blocks of thirty domains, with pictures'
+	@echo 'make tutorials  every page of docs/tutorials, compared with what it prints, and its pictures (needs OpenFOAM)'
+	@echo 'make gallery  docs/gallery/domains.md: the blocks of thirty domains, with pictures'
 	@echo 'make wheel   dist/meshonet-*.whl for this platform, and the source distribution'
 
 # --- environments: a stamp stands for what is installed in $(VENV)
@@ -61,7 +62,7 @@ test-fast: $(VENV)/.developing
 test-clients: $(VENV)/.developing
 	{ command -v cgnscheck && command -v checkMesh && command -v simpleFoam; } >/dev/null || \
 	  { apt-get update -qq && apt-get install -y -qq --no-install-recommends cgns-convert openfoam; }
-	MESHONET_CLIENTS=1 $(BIN)/python -m pytest -m client tests/formats
+	MESHONET_CLIENTS=1 $(BIN)/python -m pytest -m client tests/formats tests/test_tutorials.py
 
 # hostile files for MINUTES a reader, JOBS readers at a time; commands killed COUNT times
 MINUTES ?= 10
@@ -79,7 +80,7 @@ lint: $(VENV)/.developing
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# --- the shipped models: the recipes are in their headers and in docs/models.md
+# --- the shipped models: the recipes are in their headers and in docs/reference/models.md
 MODELS := solvers/neural/pretrained
 train: train-airfoils train-quads train-holes
 
@@ -90,7 +91,7 @@ train-airfoils: $(VENV)/.developing
 	$(BIN)/meshonet train train/airfoils.h5 --model strip -o train/airfoil-o.safetensors --epochs 24 --seed 0 --resume \
 	  --log-csv train/airfoil-o.csv
 	cp train/airfoil-o.safetensors $(MODELS)
-	cp train/airfoil-o.csv docs/curves
+	cp train/airfoil-o.csv docs/benchmarks/curves
 
 # the same domains by both methods; Winslow's with twice the nodes, of which every other one is kept.
 # Exit code 3 tells that a few domains have no valid grid: they are left out
@@ -103,7 +104,7 @@ train-quads: train/quad-first.safetensors
 	  -o train/quad-general.safetensors --set angles=3 --set folds=3 \
 	  --epochs 6 --rate 0.001 --seed 0 --resume --log-csv train/quad-general.csv
 	cp train/quad-general.safetensors $(MODELS)
-	cp train/quad-first.csv train/quad-general.csv docs/curves
+	cp train/quad-first.csv train/quad-general.csv docs/benchmarks/curves
 
 train/quad-first.safetensors: train/winslow.h5 train/variational.h5
 	$(BIN)/meshonet train train/variational.h5 train/winslow.h5 --model quad -o $@ \
@@ -128,7 +129,7 @@ train-holes: train/holes/winslow.h5 train/holes/variational.h5
 	  -o train/hole-o.safetensors --set angles=3 --set folds=3 --epochs 6 --batch 16 --rate 0.001 --held-out 60 \
 	  --seed 0 --resume --log-csv train/hole-o.csv
 	cp train/hole-o.safetensors $(MODELS)
-	cp train/hole-o.csv docs/curves
+	cp train/hole-o.csv docs/benchmarks/curves
 
 train/holes/winslow.h5: | $(VENV)/.developing
 	@mkdir -p train/holes
@@ -140,10 +141,10 @@ train/holes/winslow.h5: | $(VENV)/.developing
 train/holes/variational.h5: train/holes/winslow.h5
 	$(BIN)/meshonet solve-pde $< --method variational -q -o $@ || test $$? -eq 3
 
-# --- the MeshONet paper from its families to docs/paper: hours (it goes on where it stopped), or minutes
+# --- the MeshONet paper from its families to docs/benchmarks/paper: hours (it goes on where it stopped), or minutes
 PAPER = $(MAKE) -C examples/paper MESHONET=$(abspath $(BIN))/meshonet PYTHON=$(abspath $(BIN))/python
 paper: $(VENV)/.developing
-	$(PAPER) OUT=$(abspath paper) PAGES=$(abspath docs/paper)
+	$(PAPER) OUT=$(abspath paper) PAGES=$(abspath docs/benchmarks/paper)
 
 QUICK := COUNT=12 RES=41 EPOCHS=60 EPOCHS_COMPARED=20 EPOCHS_PHYSICS=60 EPOCHS_MODES=60 SEEDS='0 1' SIZES='100 200' SPLITS_semicircle=random
 paper-quick: $(VENV)/.developing
@@ -164,10 +165,13 @@ bench: $(VENV)/.developing
 docs: $(VENV)/.developing
 	$(BIN)/python docs/make_pages.py
 
+tutorials: $(VENV)/.developing
+	$(BIN)/python docs/tutorials/run_tutorials.py --pictures
+
 gallery: $(VENV)/.developing
 	$(BIN)/python docs/make_gallery.py
 
-# for an index, wheels of the usual platforms: docs/wheels.md
+# for an index, wheels of the usual platforms: docs/development/wheels.md
 wheel: $(BIN)/python
 	$(PIP) build
 	$(BIN)/python -m build --outdir dist

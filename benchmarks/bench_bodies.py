@@ -172,7 +172,7 @@ HOLES = """
 `hole-winslow` and the paper's models: median relative L2 distance to Winslow's solution; in brackets, how
 many grids have folded cells. `hole-o` and Winslow: largest / mean angle, averaged. The network was not
 trained on holes of this family; the paper's models were trained on 30 of them
-([the reproduction](../paper/README.md)).
+([the reproduction](paper/index.md)).
 
 | split | hole-winslow | 2 cycles | MeshONet | MeshONet-hard | hole-o | hole-o, 5 steps | Winslow |
 | --- | --- | --- | --- | --- | --- | --- | --- |"""
@@ -181,7 +181,7 @@ HEAD = """# The neural operator for bodies: accuracy and time
 <!-- made by python benchmarks/bench_bodies.py --page docs/benchmarks/body-operator.md -->
 
 Read this page to decide whether `infer --model hole-o` is good enough for O grids around your bodies. How the
-operator works is in [operators](../operators.md).
+operator works is in [operators](../theory/operators.md).
 
 - `hole-o` predicts the variational O grid, `hole-winslow` Winslow's grid. *n steps* and *n cycles* are
   `--polish n`: iterations of the variational method, or multigrid cycles for Winslow's grid.

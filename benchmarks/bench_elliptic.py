@@ -39,7 +39,7 @@ HEAD = """# Elliptic solvers: time, convergence, memory
 <!-- made by python benchmarks/bench_elliptic.py --largest 3200 --page docs/benchmarks/elliptic.md -->
 
 Read this page for the cost of `solve-pde` with the methods `winslow`, `thomas-middlecoff` and
-`steger-sorenson`. The methods are described in [elliptic grids](../elliptic.md).
+`steger-sorenson`. The methods are described in [elliptic grids](../theory/elliptic.md).
 
 Processor seconds of one thread on {processor}, float64, while other programs used the machine.
 *default*: stops when the error of the iteration is below that of the discretisation. *rate*: the factor by

@@ -49,7 +49,7 @@ HEAD = """# Marched grids for boundary layers: quality and time
 <!-- made by python benchmarks/bench_hyperbolic.py --page docs/benchmarks/marching.md -->
 
 Read this page to see how good marched grids are at a given size and first cell. How to make them is in
-[boundary layers](../boundary-layers.md), how the method works in [marching](../marching.md).
+[boundary layers](../guide/boundary-layers.md), how the method works in [marching](../theory/marching.md).
 
 All grids: `solve-pde --first-cell H`, H in chords, wall nodes spaced by curvature, far field at 15 chords. In
 C grids the node count includes both sides of the wake: of 250 nodes, about 140 lie on the wall. Blunt

@@ -41,7 +41,7 @@ HEAD = """# Volumes marched from surfaces: quality and time
 <!-- made by python benchmarks/bench_marching.py --page docs/benchmarks/marching-surfaces.md -->
 
 Read this page to see how good marched volumes are. How the method works is in
-[marching from surfaces](../marching-surfaces.md).
+[marching from surfaces](../guide/marching-surfaces.md).
 
 - *tries*: marches that were made, with more smoothing each time.
 - *folded*: cells with a corner Jacobian, or a Bezier coefficient of it, that is not positive.

@@ -247,7 +247,7 @@ HEAD = """# All methods compared: airfoils and four-sided domains
 <!-- made by python benchmarks/bench_operator.py --page docs/benchmarks/o-grids.md (make bench) -->
 
 Read this page to see what each method costs and how close its grid comes to a converged solution. Advice in
-short form is in [choosing a method](../choosing-a-method.md).
+short form is in [choosing a method](../start/choosing-a-method.md).
 
 **Timing.** All methods of a table ran on the same boundaries, in one run, on {machine}, while other programs
 used the machine. *ms* is the processor time of making the grid: set-up is included; reading, writing and
@@ -287,7 +287,7 @@ Median relative L2 distance over all nodes to Winslow's converged solution; in b
 grids have folded cells. Winslow's own grids of the wrench are folded. The operator is `quad-winslow` for the
 first four families, the airfoil operator for the airfoil and `hole-winslow` for the plate with a hole. None
 of them was trained on these shapes. The paper's models were trained on 30 members of each family; their
-figures come from [the reproduction of the paper](../paper/README.md), where they are compared with the grid
+figures come from [the reproduction of the paper](paper/index.md), where they are compared with the grid
 of the PDE solver.
 """
 TIMES_HEAD = """

@@ -237,7 +237,7 @@ FAMILIES = """
 
 Median relative L2 distance to Winslow's solution; in brackets, how many of the six grids have folded cells.
 Winslow's own grids of the wrench are folded. `quad-winslow` was not trained on these shapes. The paper's
-models were trained on 30 members of each family ([the reproduction](../paper/README.md)).
+models were trained on 30 members of each family ([the reproduction](paper/index.md)).
 
 | family | quad-winslow | 1 cycle | MeshONet | MeshONet-hard |
 | --- | --- | --- | --- | --- |"""
@@ -246,7 +246,7 @@ HEAD = """# The neural operator for four-sided domains: accuracy and time
 <!-- made by python benchmarks/bench_quads.py --page docs/benchmarks/quad-operator.md -->
 
 Read this page to decide whether `infer --model quad-general` is good enough for a batch of four-sided
-domains. How the operator works is in [operators](../operators.md).
+domains. How the operator works is in [operators](../theory/operators.md).
 
 - `quad-general` predicts the variational grid, `quad-winslow` Winslow's grid. *n steps* and *n cycles* are
   `--polish n`: iterations of the variational method, or multigrid cycles for Winslow's grid.

@@ -220,7 +220,7 @@ def page(rows: list[Row]) -> str:
 
 
 NOTE = """Read this page before choosing `--batch` and `--points` of `meshonet train --model meshonet`. The
-settings are explained in [paper models](../paper-models.md).
+settings are explained in [paper models](../theory/paper-models.md).
 
 The `meshonet` model on 30 arches of 101 x 101 nodes, one thread, processor seconds. The published scheme
 takes one geometry a step. Whether it uses all grid points or points drawn at random is not known, so both are

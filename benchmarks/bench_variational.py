@@ -229,8 +229,8 @@ HEAD = """# Four-sided domains: TFI, Winslow and variational grids
 <!-- made by python benchmarks/bench_variational.py --page docs/benchmarks/variational.md -->
 
 Read this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`, and
-to see what `--coarse N` saves and costs. The methods are described in [elliptic](../elliptic.md) and
-[variational grids](../variational.md). The neural operator has [its own page](quad-operator.md).
+to see what `--coarse N` saves and costs. The methods are described in [elliptic](../theory/elliptic.md) and
+[variational grids](../theory/variational.md). The neural operator has [its own page](quad-operator.md).
 
 - *angle*: largest included angle of each cell, in degrees. A corner of the boundary itself (arch 147.5,
   hexagon 135) is a lower bound of the maximum.

@@ -35,8 +35,8 @@ HEAD = """# Volumes inside six faces
 <!-- made by python benchmarks/bench_volumes.py --page docs/benchmarks/volumes.md -->
 
 Read this page to see what volumes inside six faces cost and how good they are. How they are made is in
-[volumes](../volumes.md). Times are processor seconds of one thread, the least of several runs; a copy is
-one into memory that is in use. Angles are deviations from 90 degrees, the worst of the three at a corner;
+[volumes](../guide/volumes.md). Times are processor seconds of one thread, the least of several runs; a copy
+is one into memory that is in use. Angles are deviations from 90 degrees, the worst of the three at a corner;
 SJ is the scaled corner Jacobian.
 """
 

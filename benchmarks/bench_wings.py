@@ -50,7 +50,7 @@ HEAD = """# Volumes from sections: wings, blades, pipes
 <!-- made by python benchmarks/bench_wings.py --airfoils FOLDER --page docs/benchmarks/wings.md -->
 
 Read this page to see how many random wings get a valid grid, and how good and how fast these are. How to make
-them is in [wings](../wings.md) and [pipes](../pipes.md).
+them is in [wings](../guide/wings.md) and [pipes](../guide/pipes.md).
 
 Wings are {count} random pairs of {files} airfoil files, sharp and blunt, with a taper of 0.25 to 1, a
 twist of -8 to 4 degrees, a sweep of -0.2 to 0.8 and a dihedral of -0.1 to 0.25 of the span. The far field

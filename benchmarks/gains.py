@@ -94,8 +94,8 @@ def percent(where: Floats) -> str:
 
 
 def published(name: str) -> str:
-    """Return the median error of a paper model in docs/paper/results, and how many of its grids fold."""
-    path = ROOT / "docs" / "paper" / "results" / f"{name}.json"
+    """Return the median error of a paper model by docs/benchmarks/paper/results, and how many grids fold."""
+    path = ROOT / "docs" / "benchmarks" / "paper" / "results" / f"{name}.json"
     if not path.exists():
         return "not run"
     told = json.loads(path.read_text())["summary"]

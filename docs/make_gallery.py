@@ -1,4 +1,4 @@
-"""Make docs/gallery.md and its pictures: python docs/make_gallery.py (make gallery).
+"""Make docs/gallery/domains.md and its pictures: python docs/make_gallery.py (make gallery).
 
 Thirty domains of examples/domains, each gridded by `meshonet.solve_pde` and drawn with its blocks.
 """
@@ -32,7 +32,7 @@ HEAD = """# Gallery
 
 <!-- made by python docs/make_gallery.py (make gallery) -->
 
-Look here for the blocks that a shape like yours gets ([how](blocks.md)). Each grid is made by
+Look here for the blocks that a shape like yours gets ([how](../guide/blocks.md)). Each grid is made by
 `meshonet solve-pde DOMAIN.geojson --cells 900`; thick lines are the sides of blocks. Where three cells meet
 inside there is a yellow dot, where five or more meet a red one. `python examples/domains/domains.py FOLDER`
 writes the domains.
@@ -50,7 +50,7 @@ def main() -> None:
         )
     page += "\n| domain | blocks | cells | irregular vertices | off 90 degrees: mean, largest |\n"
     page += "| --- | --- | --- | --- | --- |\n" + "\n".join(rows) + "\n"
-    (DOCS / "gallery.md").write_text(page, encoding="utf-8")
+    (DOCS / "gallery" / "domains.md").write_text(page, encoding="utf-8")
 
 
 def montage(files: list[Path], number: int, rows: list[str]) -> str:
@@ -63,7 +63,7 @@ def montage(files: list[Path], number: int, rows: list[str]) -> str:
     picture = DOCS / "img" / f"gallery-{number}.png"
     figure.savefig(picture, dpi=120)
     reduce(picture)
-    return f"\n![{', '.join(path.stem for path in files)}](img/{picture.name})\n"
+    return f"\n![{', '.join(path.stem for path in files)}](../img/{picture.name})\n"
 
 
 def examples() -> ModuleType:

@@ -1,7 +1,7 @@
 """Make the generated pages and pictures of docs/: python docs/make_pages.py (make docs).
 
-cli.md from the application, formats.md from the registry, models.md from the headers of the shipped models,
-families.md and the pictures from the commands a user would type.
+In reference/: cli.md from the application, formats.md from the registry, models.md from the headers of the
+shipped models, families.md and the pictures from the commands a user would type.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from meshonet.solvers.neural.registry import HEADS, described, shipped
 from meshonet_cli.reference import reference
 
 DOCS = Path(__file__).parent
+REFERENCE = DOCS / "reference"
 GRIDS = {"o": "O grids", "quad": "Grids of four-sided domains"}
 
 MODELS_HEAD = """# Shipped models
@@ -29,19 +30,20 @@ MODELS_HEAD = """# Shipped models
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
 Look here for the training recipe and the held-out error of a model. When to use which model is said in
-[operators](operators.md). `meshonet models` prints the same data.
+[operators](../theory/operators.md). `meshonet models` prints the same data.
 
 Each model is a safetensors file in `solvers/neural/pretrained/` that carries its recipe and its figures.
-`make train` trains them again. The losses of every epoch are in `docs/curves`; `quad-first` is the first of
-two runs for `quad-general`.
+`make train` trains them again. The losses of every epoch are in `docs/benchmarks/curves`; `quad-first` is the
+first of two runs for `quad-general`.
 """
 C_GRIDS = """## C grids: no model
 
 No model for C grids is shipped, because none is as good as marching. The network for four-sided domains is
 worse there than transfinite interpolation; after five iterations it is still behind the variational grid
-([figures](benchmarks/body-operator.md#c-grids-no-model)). The strip of `airfoil-o` is periodic, which a wake
-does not allow. `infer` therefore [marches](marching.md) C grids from wall and wake and uses the variational
-method where marching does not suit. The report says which. `--model`, `--polish` and `--device` are refused.
+([figures](../benchmarks/body-operator.md#c-grids-no-model)). The strip of `airfoil-o` is periodic, which a
+wake does not allow. `infer` therefore [marches](../theory/marching.md) C grids from wall and wake and uses
+the variational method where marching does not suit. The report says which. `--model`, `--polish` and
+`--device` are refused.
 """
 
 FORMATS_HEAD = """# Formats
@@ -184,21 +186,21 @@ chooses another range, and `solve-pde` makes their grids.
 
 def main() -> None:
     """Write everything."""
-    (DOCS / "models.md").write_text(models_page(), encoding="utf-8")
-    (DOCS / "cli.md").write_text(reference(), encoding="utf-8")
-    (DOCS / "formats.md").write_text(formats_page(), encoding="utf-8")
+    (REFERENCE / "models.md").write_text(models_page(), encoding="utf-8")
+    (REFERENCE / "cli.md").write_text(reference(), encoding="utf-8")
+    (REFERENCE / "formats.md").write_text(formats_page(), encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         pictures(Path(folder))
-    (DOCS / "families.md").write_text(families_page(), encoding="utf-8")
+    (REFERENCE / "families.md").write_text(families_page(), encoding="utf-8")
 
 
 def formats_page() -> str:
-    """Return formats.md."""
+    """Return reference/formats.md."""
     return f"{FORMATS_HEAD}{markdown()}\n{FORMATS_REST}"
 
 
 def models_page() -> str:
-    """Return docs/models.md."""
+    """Return reference/models.md."""
     lines = [MODELS_HEAD]
     for name in shipped():
         if name in HEADS:
@@ -217,20 +219,20 @@ def models_page() -> str:
             *curve(name),
             "",
         ]
-    lines += [C_GRIDS, "The quality of the grids is on [the benchmark pages](benchmarks/README.md).\n"]
+    lines += [C_GRIDS, "The quality of the grids is on [the benchmark pages](../benchmarks/index.md).\n"]
     return "\n".join(lines)
 
 
 def curve(name: str) -> list[str]:
-    """Return a line about the losses of a model's training, where docs/curves/NAME.csv exists."""
-    path = DOCS / "curves" / f"{name}.csv"
+    """Return a line about the losses of a model's training, where benchmarks/curves/NAME.csv exists."""
+    path = DOCS / "benchmarks" / "curves" / f"{name}.csv"
     if not path.exists():
         return []
     with path.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     some = [rows[k] for k in sorted({0, len(rows) // 4, len(rows) // 2, len(rows) - 1})]
     losses = ", ".join(f"{float(row['held_out_loss']):.3g} after {row['epoch']}" for row in some)
-    return [f"\nHeld-out loss by epoch: {losses} ([every epoch](curves/{name}.csv))."]
+    return [f"\nHeld-out loss by epoch: {losses} ([every epoch](../benchmarks/curves/{name}.csv))."]
 
 
 def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
@@ -274,14 +276,14 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
 
 
 def families_page() -> str:
-    """Return docs/families.md."""
+    """Return reference/families.md."""
     lines = [FAMILIES_HEAD]
     for name in FAMILIES:
         member = family(name)
         lines += [
             f"## {name}\n",
             f"{member.parameter}, {member.low:g} to {member.high:g}; topology {member.topology}.\n",
-            f"![{name}](img/{name}.png)\n",
+            f"![{name}](../img/{name}.png)\n",
         ]
     return "\n".join(lines)
 

@@ -1,4 +1,4 @@
-"""Draw the pictures of docs/wings.md and docs/pipes.md: python docs/make_volume_pictures.py."""
+"""Draw the pictures of docs/guide/wings.md and docs/guide/pipes.md: python docs/make_volume_pictures.py."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def near(patch: Floats, middle: Indices, reach: float) -> Floats:
 
 
 def wing() -> None:
-    """Draw the wing of docs/wings.md, its tip, and levels of the volume at its root."""
+    """Draw the wing of docs/guide/wings.md, its tip, and levels of the volume at its root."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "wing.toml"
         path.write_text(toml_of("wings.md"))
@@ -92,7 +92,7 @@ def wing() -> None:
 
 
 def pipe() -> None:
-    """Draw the pipe bend of docs/pipes.md."""
+    """Draw the pipe bend of docs/guide/pipes.md."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bend.toml"
         path.write_text(toml_of("pipes.md"))

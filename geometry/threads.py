@@ -7,8 +7,13 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from meshonet.geometry.errors import InputError
+
 MOST = 64
 """Threads that a kernel starts at the most (``TEAM_MOST`` of ``team.h``)."""
+
+NODES_EACH = 1 << 16
+"""Nodes of a planar grid that are worth a thread, which costs as much as the quickest kernel on 5,000."""
 
 _limit: int | None = None
 
@@ -25,12 +30,22 @@ def thread_count() -> int:
     return min(cores() if _limit is None else _limit, MOST)
 
 
+def threads_for(nodes: int) -> int:
+    """Return the number of threads to work with on so many nodes of a planar grid: one where they are few."""
+    return 1 if nodes < 2 * NODES_EACH else min(thread_count(), nodes // NODES_EACH)
+
+
 @contextmanager
 def limited_to(threads: int | None) -> Iterator[None]:
-    """Have kernels work with so many threads inside; None leaves the number as it is."""
+    """Have kernels work with so many threads inside; None leaves the number as it is.
+
+    Raises InputError: fewer than one.
+    """
     global _limit
+    if threads is not None and threads < 1:
+        raise InputError(f"{threads} threads", "use 1 or more", parameter="threads")
     before = _limit
-    _limit = before if threads is None else max(threads, 1)
+    _limit = before if threads is None else threads
     try:
         yield
     finally:

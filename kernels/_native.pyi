@@ -14,11 +14,11 @@ Placed: TypeAlias = tuple[Indices, Floats]
 TriangleMap: TypeAlias = tuple[Floats, Indices, Indices, Indices]
 
 # geometry
-def count_folded(x: Floats, y: Floats) -> int: ...
+def count_folded(x: Floats, y: Floats, threads: int = 1) -> int: ...
 def folded_cells(x: Floats, y: Floats) -> Whole: ...
 def measure_cells(
     x: Floats, y: Floats, periodic: bool, wake: int, summary: Floats, where: Whole, keep: int, kept: Floats,
-    brackets: Floats, counts: Whole, caught: Floats,
+    brackets: Floats, counts: Whole, caught: Floats, threads: int = 1,
 ) -> None: ...  # fmt: skip
 def curve_locate(
     s: Floats, table: Floats, start: Floats, stop: Floats, pieces: int, closed: bool, interval: Indices,
@@ -33,19 +33,19 @@ def crossing_segments(
 ) -> tuple[list[tuple[int, int]], bool]: ...
 
 # algebraic
-def tfi(x: Floats, y: Floats, xs: Edges, ys: Edges, parameters: Edges) -> None: ...
+def tfi(x: Floats, y: Floats, xs: Edges, ys: Edges, parameters: Edges, threads: int = 1) -> None: ...
 def tfi_batch(nodes: Floats, sides: Edges, parameters: Edges) -> None: ...
 def tfi_coarse(sides: Edges, thin: tuple[Placed, Placed], nodes: Floats) -> None: ...
 def resample(
     coarse: Floats, sides: Edges, fine: tuple[Placed, Placed], opened: Floats, near: float, far: float,
-    reach: float, nodes: Floats, straight: NDArray[np.uint8] | None = None,
+    reach: float, nodes: Floats, straight: NDArray[np.uint8] | None = None, threads: int = 1,
 ) -> None: ...  # fmt: skip
 def add_spline_rows(
-    x: Floats, first: Indices, weights: Floats, values: Floats, bends: Floats, rim: bool
+    x: Floats, first: Indices, weights: Floats, values: Floats, bends: Floats, rim: bool, threads: int = 1
 ) -> None: ...
 
 # elliptic
-def multigrid_scratch(mi: int, mj: int) -> int: ...
+def multigrid_scratch(mi: int, mj: int, threads: int = 1) -> int: ...
 
 class MultigridLevel:
     x: Floats
@@ -55,8 +55,9 @@ class MultigridLevel:
     fx: Floats
     fy: Floats
     def __init__(
-        self, x: Floats, y: Floats, xi: Edges, eta: Edges, periodic: bool, scratch: Floats, coarse: bool
-    ) -> None: ...
+        self, x: Floats, y: Floats, xi: Edges, eta: Edges, periodic: bool, scratch: Floats, coarse: bool,
+        threads: int = 1,
+    ) -> None: ...  # fmt: skip
     def transfer(self, xi: Edges, eta: Edges) -> None: ...
     def control(self, phi: Edges, psi: Edges, xi_reach: Floats, eta_reach: Floats) -> None: ...
     def smooth(self, forced: bool, sweeps: int = 1) -> None: ...
@@ -94,15 +95,15 @@ class VariationalDescent:
 def hyperbolic_march(
     x: Floats, y: Floats, steps: Floats, dissipation: float, even: float, tolerated: float, bend: float,
     implicit: float, volume: float, sweeps: int, rise: int, ends: Floats | None = None,
-    widening: Floats | None = None, ratios: Floats | None = None,
+    widening: Floats | None = None, ratios: Floats | None = None, threads: int = 1,
 ) -> None: ...  # fmt: skip
 
 # layers
 def layer_steps(steps: Floats, length: float, first: float, last: float, constant: int) -> float: ...
 def layer_lines(
-    x: Floats, y: Floats, X: Floats, Y: Floats, first: float, last: float, constant: int
+    x: Floats, y: Floats, X: Floats, Y: Floats, first: float, last: float, constant: int, threads: int = 1
 ) -> float: ...
-def redistribute(x: Floats, y: Floats, first: Floats, fade: Floats) -> None: ...
+def redistribute(x: Floats, y: Floats, first: Floats, fade: Floats, threads: int = 1) -> None: ...
 
 # conformal: `maps` are a geometry.lift.Lift
 Removed: TypeAlias = tuple[complex, complex, complex, complex, float]
@@ -121,7 +122,7 @@ def picard_step(c: Floats, height: float, matrices: Floats, eigenvalues: Floats,
 def strip_rows(
     x: Floats, y: Floats, order: Indices, lift: Any, sums: Sequence[tuple[int, int, Floats]],
     sharpness: float, along: Floats, across: Floats, matrix: Floats, cuts: Indices, begin: int,
-    axis: tuple[complex, complex] | None,
+    axis: tuple[complex, complex] | None, threads: int = 1,
 ) -> bool: ...  # fmt: skip
 
 # neural

@@ -1,4 +1,4 @@
-"""``docs/cli.md``, what every ``--help`` prints: ``python -m meshonet_cli.reference > docs/cli.md``."""
+"""What every ``--help`` prints: ``python -m meshonet_cli.reference > docs/reference/cli.md``."""
 
 import contextlib
 import io

@@ -163,7 +163,7 @@ def test_the_page_of_examples_prints_what_it_says(tmp_path: Path, monkeypatch: p
     import io
 
     monkeypatch.chdir(tmp_path)
-    page = (ROOT / "docs" / "python.md").read_text()
+    page = (ROOT / "docs" / "reference" / "python.md").read_text()
     blocks = re.findall(r"```python\n(.*?)```(?:\n```\n(.*?)```)?", page, flags=re.DOTALL)
     assert len(blocks) >= 5
     names: dict[str, object] = {}

@@ -137,8 +137,8 @@ def test_reading_the_registry_loads_no_format_library() -> None:
 
 
 def test_the_command_reference_is_current() -> None:
-    page = (ROOT / "docs" / "cli.md").read_text()
-    assert page == reference(), "run: python -m meshonet_cli.reference > docs/cli.md"
+    page = (ROOT / "docs" / "reference" / "cli.md").read_text()
+    assert page == reference(), "run: python -m meshonet_cli.reference > docs/reference/cli.md"
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.name)
@@ -174,7 +174,7 @@ def test_solve_pde_offers_every_method_that_solves() -> None:
 
     from meshonet.solvers.method import METHODS, method_named
 
-    match = re.search(r"--method (\S+[|]\S+)", (ROOT / "docs" / "cli.md").read_text())
+    match = re.search(r"--method (\S+[|]\S+)", (ROOT / "docs" / "reference" / "cli.md").read_text())
     offered = match[1].split("|") if match else []
     assert offered == [*(name for name, row in METHODS.items() if row.solves), "auto"]
     for name in METHODS:

@@ -1,4 +1,4 @@
-"""The worked example of docs/grid-convergence.md, on smaller grids: second order, and the right limit."""
+"""The worked example of docs/guide/grid-convergence.md on smaller grids: second order, the right limit."""
 
 import math
 import os

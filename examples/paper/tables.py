@@ -1,4 +1,4 @@
-"""The pages of docs/paper from the JSON and CSV that meshonet wrote: python tables.py PAGES.
+"""The pages of docs/benchmarks/paper from the JSON and CSV that meshonet wrote: python tables.py PAGES.
 
 PAGES/results holds one file a case, split and way; what is missing is left out of the tables, so that a run
 can be looked at while it goes on.
@@ -54,7 +54,7 @@ def main() -> None:
     parts += [words.TIME.format(machine=options.machine), times(results), words.MAPS, maps(pages)]
     parts += [words.SETTINGS, budgets(results)]
     text = "\n\n".join(part.strip() for part in parts if part)
-    (pages / "README.md").write_text(text + "\n", encoding="utf-8")
+    (pages / "index.md").write_text(text + "\n", encoding="utf-8")
 
 
 def quality(results: Path) -> Iterable[str]:

@@ -1,4 +1,4 @@
-"""What the pages of docs/paper say around their tables, and the paper's own figures."""
+"""What the pages of docs/benchmarks/paper say around their tables, and the paper's own figures."""
 
 HEAD = """
 # The MeshONet paper, reproduced
@@ -10,7 +10,7 @@ Generation*, arXiv 2501.11937.
 
 Read this page to see which claims of the paper are confirmed. All figures come from `meshonet` commands: `make paper`
 samples the six families, solves, trains, infers and measures; `examples/paper/Makefile` is the recipe. The models are
-described in [paper models](../paper-models.md). The paper measures quality by the largest included angle and shows it
+described in [paper models](../../theory/paper-models.md). The paper measures quality by the largest included angle and shows it
 as colour maps without numbers. Its claims are therefore quoted in words beside our figures.
 """
 
@@ -41,7 +41,7 @@ node from its place before pasting. Angles are in degrees.
 
 The PDE rows are the grids from which the models learn. On the wrench, Winslow's equations fold 4 to 18 cells of each
 grid at the two corners of 270 degrees, and these are repaired. `meshonet-hard` has a trained trunk, and on wrench and
-airfoil modes of the training grids ([why](../paper-models.md#meshonet-hard)).
+airfoil modes of the training grids ([why](../../theory/paper-models.md#meshonet-hard)).
 """
 
 PAPER = {

@@ -42,9 +42,11 @@ def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[F
                 kind = _family_kind(base, family)
             name = printable(family.rpartition("/")[2] or title).strip() or "part"
             known = next((k for sign, k in _KINDS if kind.startswith(sign)), _OTHER)
-            told = kind_of(name)
+            kind_by_name = kind_of(name)
             for first, last in _covered(condition, counts):
-                yield Face(Window(block, first, last), name, known if told == _OTHER else told)
+                yield Face(
+                    Window(block, first, last), name, known if kind_by_name == _OTHER else kind_by_name
+                )
 
 
 def interfaces(

@@ -51,9 +51,10 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
             base, families = bases[dimensions]
             names = _zone_names(grid, {"DataClass", *zones, *families})
             zones |= set(names)
-            told = plane_of_extruded(grid) or grid
+            described = plane_of_extruded(grid) or grid
             nodes = [
-                _write_zone(base, names[k], grid, k, facts_of(told, k, number)) for k in range(len(names))
+                _write_zone(base, names[k], grid, k, facts_of(described, k, number))
+                for k in range(len(names))
             ]
             write_connections(nodes, names, grid)
             for family, kind in _write_conditions(nodes, grid, zones).items():

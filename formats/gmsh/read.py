@@ -38,10 +38,10 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         tags = physical_tags(_section(data, b"Entities", needed=False), binary, order)
     try:
         numbered = nodes(_section(data, b"Nodes"), version, binary, order)
-        found = elements(_section(data, b"Elements"), version, binary, order, tags)
+        cells = elements(_section(data, b"Elements"), version, binary, order, tags)
     except (ValueError, OverflowError, IndexError) as error:
         raise InputError(f"cannot be read ({printable(str(error))[:80]})", _AGAIN) from None
-    yield from shapes_of(_surface(numbered, found, names), source.stem)
+    yield from shapes_of(_surface(numbered, cells, names), source.stem)
 
 
 def _format(data: bytes) -> tuple[str, bool, str]:
@@ -75,15 +75,15 @@ def _section(data: bytes, name: bytes, *, needed: bool = True) -> bytes:
 
 def _names(section: bytes) -> dict[int, str]:
     """Return the names of physical groups of lines by their tags."""
-    found = (_NAME.match(line) for line in section.splitlines())
+    matches = (_NAME.match(line) for line in section.splitlines())
     return {
         int(match[2]): printable(match[3].decode("utf-8", "replace")) or "part"
-        for match in found
+        for match in matches
         if match and int(match[1]) == 1 and len(match[2]) < 18
     }
 
 
-def _surface(numbered: Nodes, found: Elements, names: dict[int, str]) -> Surface:
+def _surface(numbered: Nodes, groups: Elements, names: dict[int, str]) -> Surface:
     order = np.argsort(numbered.tags, kind="stable")
     tags = numbered.tags[order]
     if not len(tags):
@@ -99,7 +99,7 @@ def _surface(numbered: Nodes, found: Elements, names: dict[int, str]) -> Surface
 
     edges: dict[str, list[Indices]] = {}
     cells: dict[int, list[Indices]] = {}
-    for kind, group, rows in found:
+    for kind, group, rows in groups:
         at = places(rows)
         if kind in _LINES:
             ways = at if _LINES[kind] == 2 else np.concatenate([at[:, [0, 2]], at[:, [2, 1]]])

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Side
-from meshonet.geometry.blocks.block import PLACES, face_of
+from meshonet.geometry.blocks.block import PLACES, face_of, sides_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -25,7 +25,7 @@ Indices = NDArray[np.int64]
 def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, NDArray[np.bool_]]]:
     """Yield block, side, direction of it, and which edges along that, (n-1, m) or (n, m-1), are points."""
     for number, block in enumerate(grid.blocks):
-        for side in tuple(PLACES)[: 2 * len(block.counts)] if len(block.counts) == 3 else ():
+        for side in sides_of(block.counts) if len(block.counts) == 3 else ():
             face = block.face(side)
             for direction, (first, second) in enumerate(((face[1:], face[:-1]), (face[:, 1:], face[:, :-1]))):
                 same = (first == second).all(axis=-1)

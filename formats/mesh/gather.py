@@ -119,17 +119,17 @@ def _joined(blocks: Sequence[Block], joints: Sequence[Joint]) -> list[Connection
 
     Periodic ones of one motion, or its inverse, get the very same one, so that they agree where they meet.
     """
-    found: dict[tuple[Stretch, Stretch], Connection] = {}
+    connections: dict[tuple[Stretch, Stretch], Connection] = {}
     motions: list[Motion] = []
     for joint in joints:
         first, second = sorted(joint[:2], key=lambda end: (end[0], list(_ORDER).index(end[1]), end[2]))
-        if (first, second) in found:
+        if (first, second) in connections:
             continue
         connection = _connection(blocks, first, second)
         if connection.transform is not None:
             connection = like_others(connection, motions)
-        found[first, second] = connection
-    return list(found.values())
+        connections[first, second] = connection
+    return list(connections.values())
 
 
 def _with_periodic_names(
@@ -170,16 +170,16 @@ def _alone(grid: Grid, piece: Piece) -> Grid:
     """Return the grid of a block that touches no other, its topology recovered, its patches along."""
     if any(each.transform for each in grid.connections):
         return with_loop_names(grid)
-    found = replace(recovered(grid.blocks[0].nodes, grid.name), provenance=grid.provenance)
-    if grid.connections and not found.connections:
+    alone = replace(recovered(grid.blocks[0].nodes, grid.name), provenance=grid.provenance)
+    if grid.connections and not alone.connections:
         return with_loop_names(grid)
     nodes, patches = grid.blocks[0].nodes, piece.patches
     for _ in range(4):
-        if nodes.shape == found.nodes.shape and np.array_equal(nodes, found.nodes):
-            return replace(found, patches=patches or found.patches)
+        if nodes.shape == alone.nodes.shape and np.array_equal(nodes, alone.nodes):
+            return replace(alone, patches=patches or alone.patches)
         patches = tuple(turned_patch(patch, len(nodes) - 1) for patch in patches)
         nodes = np.swapaxes(nodes, 0, 1)[:, ::-1]
-    return found
+    return alone
 
 
 def joined_grid(

@@ -69,16 +69,16 @@ def periodic_pairs(
     periodic2, and so on, and never as those `taken` by other faces.
     """
     motions: list[Motion] = []
-    found: dict[tuple[int, str, str], list[tuple[Part, Part]]] = {}
+    by_motion: dict[tuple[int, str, str], list[tuple[Part, Part]]] = {}
     for connection in grid.connections:
         if connection.transform is None:
             continue
         number, backwards = _known(connection.transform, motions)
         ends = _parts(connection.reversed() if backwards else connection, numbers, cells)
         names = patch_on(grid, connection), patch_on(grid, connection.reversed())
-        found.setdefault((number, *(names[::-1] if backwards else names)), []).append(ends)
+        by_motion.setdefault((number, *(names[::-1] if backwards else names)), []).append(ends)
     pairs, used = [], set(taken)
-    for count, ((number, *both), ends_of) in enumerate(found.items()):
+    for count, ((number, *both), ends_of) in enumerate(by_motion.items()):
         own, partner = (
             Part(*map(np.concatenate, zip(*ends, strict=True))) for ends in zip(*ends_of, strict=True)
         )

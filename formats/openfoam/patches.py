@@ -59,18 +59,18 @@ def patches_of(
     """Return title, type and further entries of the patch of each part; periodic sides are ``cyclic``."""
     kind = kinds(grid, grid.outer_patches())
     word = words((name for name in parts if name != PLANES), taken=[EMPTY], letter=True)
-    found = {PLANES: Patch(EMPTY, "empty", 0)}
+    patches = {PLANES: Patch(EMPTY, "empty", 0)}
     for name, title in word.items():
         type_ = _TYPES.get(kind.get(name, "other"), "patch")
         if type_ == "symmetry" and _is_flat(points[parts[name].faces]):
             type_ = "symmetryPlane"
-        found[name] = Patch(title, type_, 0)
+        patches[name] = Patch(title, type_, 0)
     for pair in pairs:
         ends = (pair.name, pair.partner, pair.motion), (pair.partner, pair.name, pair.motion.inverse())
         for name, partner, motion in ends:
             more = f"neighbourPatch  {word[partner]};", *_transform(motion)
-            found[name] = Patch(word[name], "cyclic", 0, more)
-    return [found[name]._replace(size=len(part.cells)) for name, part in parts.items()]
+            patches[name] = Patch(word[name], "cyclic", 0, more)
+    return [patches[name]._replace(size=len(part.cells)) for name, part in parts.items()]
 
 
 def write_boundary(path: Path, patches: Sequence[Patch], start: int) -> None:

@@ -132,8 +132,8 @@ def _of_rings(properties: Mapping[str, Any], key: str, count: int) -> list[Any]:
     if values is None:
         return [None] * count
     if not isinstance(values, list) or len(values) != count:
-        told = f"{len(values)} entries" if isinstance(values, list) else "no list"
-        problem = f"property {key!r} has {told} and the polygon {count} ring{'' if count == 1 else 's'}"
+        entries = f"{len(values)} entries" if isinstance(values, list) else "no list"
+        problem = f"property {key!r} has {entries} and the polygon {count} ring{'' if count == 1 else 's'}"
         raise InputError(problem, "give one entry for each ring, or leave it out")
     return values
 

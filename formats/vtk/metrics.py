@@ -33,9 +33,9 @@ def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> N
 def metrics_of(grid: Grid) -> list[dict[str, NDArray[Any]]]:
     """Return for each block every metric, and ``folded``, of its cells (ni-1, nj-1[, nk-1]) by name."""
     every = {metric.name: per_cell_of_blocks(grid, metric.name) for metric in metrics_of_cells(grid)}
-    found: list[dict[str, NDArray[Any]]] = []
+    of_blocks: list[dict[str, NDArray[Any]]] = []
     for number, block in enumerate(grid.blocks):
         folded = np.zeros([count - 1 for count in block.counts], dtype=np.int8)
         folded[tuple(folded_cells(block.nodes).T)] = 1
-        found.append({**{name: cells[number] for name, cells in every.items()}, "folded": folded})
-    return found
+        of_blocks.append({**{name: cells[number] for name, cells in every.items()}, "folded": folded})
+    return of_blocks

@@ -63,9 +63,9 @@ def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = 
                 facts = facts_of(described, block, number)
                 write(part / name, grid, values[block], facts=facts, block=block)
                 place = f'index="{block if several else number}"'
-                told = f"block-{block}" if several else title
+                label = f"block-{block}" if several else title
                 file = f"{escaped(folder.name)}/{name}"
-                lines.append(f'    <DataSet {place} name="{told}" file="{file}"/>')
+                lines.append(f'    <DataSet {place} name="{label}" file="{file}"/>')
             if several:
                 lines.append("    </Block>")
         if not lines:

@@ -84,6 +84,11 @@ def face_counts(counts: tuple[int, ...], side: Side) -> tuple[int, ...]:
     return counts[:axis] + counts[axis + 1 :]
 
 
+def sides_of(counts: tuple[int, ...]) -> tuple[Side, ...]:
+    """Return the sides of a block with `counts` nodes, in the order of `PLACES`."""
+    return tuple(PLACES)[: 2 * len(counts)]
+
+
 def _check_finite(nodes: Floats) -> None:
     # sums are finite exactly when (overflow aside) their terms are: one pass, no temporary, by BLAS
     ones = np.ones(nodes.shape[-2])

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, Side, Topology
-from meshonet.geometry.blocks.block import PLACES, Range, face_counts
+from meshonet.geometry.blocks.block import Range, face_counts, sides_of
 from meshonet.geometry.errors import InputError
 
 Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
@@ -155,7 +155,7 @@ def check_connections(connections: Sequence[Connection], counts: Sequence[tuple[
     for each in connections:
         ends = (each.block, each.side, each.range), (each.donor, each.donor_side, each.donor_range)
         for block, side, span in ends:
-            known = 0 <= block < len(counts) and side in tuple(PLACES)[: 2 * len(counts[block])]
+            known = 0 <= block < len(counts) and side in sides_of(counts[block])
             most = face_counts(counts[block], side) if known else ()
             if len(span) != len(most) or any(
                 not 0 <= start < stop < n for (start, stop), n in zip(span, most, strict=True)

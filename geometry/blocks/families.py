@@ -45,7 +45,7 @@ def families(grid: Grid) -> list[list[Member]]:
         flip = each.orientation[0] < 0
         beyond.setdefault(own, []).append((donor, flip, whole))
         beyond.setdefault(donor, []).append((own, flip, whole))
-    found: list[list[Member]] = []
+    families: list[list[Member]] = []
     seen: set[tuple[int, int]] = set()
     for start in (
         (block, axis) for block in range(len(grid.blocks)) for axis in range(len(grid.blocks[block].counts))
@@ -59,5 +59,5 @@ def families(grid: Grid) -> list[list[Member]]:
                 if other not in seen:
                     seen.add(other)
                     family.append(Member(*other, member.flipped != flip, member.aligned and whole))
-        found.append(family)
-    return found
+        families.append(family)
+    return families

@@ -64,7 +64,7 @@ def find_connections(
     edges = _edges(blocks, [each for each in without if len(each) == 4])
     free = np.ones(len(edges.start), dtype=bool)
     starts = np.searchsorted(edges.block, np.arange(len(blocks) + 1))
-    found = []
+    connections = []
     for first, last in [*pairwise(starts.tolist()), (0, len(free))]:  # each block by itself, then all
         among = first + np.flatnonzero(free[first:last])
         runs = _runs(edges, *_pairs(edges, among, tolerance))
@@ -72,8 +72,8 @@ def find_connections(
             for start, stop in run.parts(free):
                 own, donor = run.own[start:stop], run.donor[start:stop]
                 free[own] = free[donor] = False
-                found.append(_connection(edges, own, donor))
-    return tuple(sorted(found, key=order))
+                connections.append(_connection(edges, own, donor))
+    return tuple(sorted(connections, key=order))
 
 
 def order(connection: Connection) -> tuple[int, int, Range]:

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import PLACES, Block, Range, form_of
+from meshonet.geometry.blocks.block import PLACES, Block, Range, form_of, sides_of
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.outer_patches import JOINED, rectangles
 from meshonet.geometry.blocks.rounding import rounding
@@ -109,7 +109,7 @@ class _Cells:
 def _cells(blocks: Sequence[Block], known: Sequence[tuple[int, Side, Range]]) -> _Cells:
     corners, numbers, sides, places, inwards = [], [], [], [], []
     for number, block in enumerate(blocks):
-        for turn, side in enumerate(tuple(PLACES)[: 2 * len(block.counts)]):
+        for turn, side in enumerate(sides_of(block.counts)):
             own = _corners(block.face(side))
             keep = _extended(own)
             for span in (part[2] for part in known if part[:2] == (number, side)):

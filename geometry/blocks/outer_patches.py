@@ -23,7 +23,7 @@ JOINED, UNNAMED = -2, -1
 """Owners of cells that are joined to others, and of those that no patch has."""
 
 
-def sides_of(counts: tuple[int, ...]) -> tuple[Side, ...]:
+def listed_sides(counts: tuple[int, ...]) -> tuple[Side, ...]:
     """Return the sides of a block with `counts` nodes, in the order in which its patches are listed."""
     return SIDES if len(counts) == 2 else (*SIDES, *tuple(PLACES)[4:])
 
@@ -60,7 +60,7 @@ def outer_patches(
     own = [patch for patch in patches if patch.block == block]
     inside = list(inside)
     outer: list[Patch] = []
-    for side in sides_of(counts):
+    for side in listed_sides(counts):
         for number, (first, *rest) in rectangles(owners_of(own, counts, inside, side)):
             patch = own[number] if number >= 0 else Patch(side, side, 0, 1, block=block)
             outer.append(replace(patch, start=first[0], stop=first[1], across=rest[0] if rest else None))

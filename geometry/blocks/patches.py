@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from meshonet.geometry.arrays import SIDES, Side, Topology
-from meshonet.geometry.blocks.block import PLACES, Range, face_counts
+from meshonet.geometry.blocks.block import PLACES, Range, face_counts, sides_of
 from meshonet.geometry.errors import InputError
 
 Kind: TypeAlias = Literal["wall", "farfield", "inlet", "outlet", "symmetry", "periodic", "interface", "other"]
@@ -92,7 +92,7 @@ def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -
     """
     for patch in patches:
         what, exists = f"patch {patch.name!r}", 0 <= patch.block < len(counts)
-        sides = tuple(PLACES)[: 2 * len(counts[patch.block])] if exists else SIDES
+        sides = sides_of(counts[patch.block]) if exists else SIDES
         if not patch.name or patch.side not in sides:
             remedy = "name it and use " + "/".join(sides)
             raise InputError(f"{what} on side {patch.side!r} is not usable", remedy)

@@ -50,9 +50,9 @@ class Vertices:
     def place(self, node: int) -> tuple[int, int, int]:
         """Return block, i and j where a node first appears."""
         for block, numbers in enumerate(self.numbers):
-            found = np.argwhere(numbers == node)
-            if len(found):
-                return block, int(found[0, 0]), int(found[0, 1])
+            places = np.argwhere(numbers == node)
+            if len(places):
+                return block, int(places[0, 0]), int(places[0, 1])
         raise ValueError(f"no node {node}")
 
 

@@ -47,7 +47,7 @@ def ring_loop(
         chosen = list(loop.corners)
     else:
         chosen = _numbered(corners, number)
-    labels = _labels(names, len(chosen), found=corners is None)
+    labels = _labels(names, len(chosen), detected=corners is None)
     order = np.argsort(chosen, kind="stable")
     chosen, labels = [chosen[k] for k in order], [labels[k] for k in order] if len(labels) > 1 else labels
     if (area > 0) == hole:  # turned round from the same first point
@@ -85,9 +85,9 @@ def _numbered(corners: Sequence[int], number: Indices) -> list[int]:
     return chosen
 
 
-def _labels(names: Sequence[str], corners: int, *, found: bool) -> list[str]:
+def _labels(names: Sequence[str], corners: int, *, detected: bool) -> list[str]:
     if len(names) == 1 or len(names) == corners:
         return list(names)
-    stretches = f"{corners} corner{'' if corners == 1 else 's'}{' that were found' if found else ''}"
+    stretches = f"{corners} corner{'' if corners == 1 else 's'}{' that were found' if detected else ''}"
     remedy = "give one name, or one for each stretch from a corner to the next"
     raise InputError(f"{len(names)} names and {stretches}", remedy)

@@ -102,15 +102,15 @@ def _of_volume(grid: Grid) -> Faces:
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
     """Return the cells (block, i, j) with a face beyond a non-orthogonality, in degrees, or a skewness."""
-    found: list[tuple[int, int, int]] = []
+    cells: list[tuple[int, int, int]] = []
     for number, block in enumerate(grid.blocks):
         for i, j, angles, skews, _ in _within(block.nodes, number):
-            found += _placed(number, i, j, (angles > angle) | (skews > skew))
+            cells += _placed(number, i, j, (angles > angle) | (skews > skew))
     for i, j, angles, skews, at in _across(grid):
-        found += _placed(at or 0, i, j, (angles > angle) | (skews > skew))
+        cells += _placed(at or 0, i, j, (angles > angle) | (skews > skew))
     for i, j, skews, at in _outer(grid):
-        found += _placed(at or 0, i, j, skews > skew)
-    return found
+        cells += _placed(at or 0, i, j, skews > skew)
+    return cells
 
 
 def _placed(block: int, i: int, j: int, where: NDArray[np.bool_]) -> list[tuple[int, int, int]]:

@@ -18,6 +18,7 @@ from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric, metric_of
 from meshonet.geometry.quality.percentiles import FEW, PERCENTS, no_run, prepared
 from meshonet.geometry.quality.summary import Quality, Summary
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
 
 
@@ -33,7 +34,8 @@ def count_folded(nodes: Floats) -> int:
         return count_folded_solids(nodes)
     if form == "surface":
         return len(folded_cells(nodes))
-    return _native.count_folded(*_planes(nodes))
+    x, y = _planes(nodes)
+    return _native.count_folded(x, y, threads_for(x.size))
 
 
 def folded_cells(nodes: Floats) -> NDArray[np.int64]:

@@ -15,6 +15,7 @@ from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric
 from meshonet.geometry.quality.percentiles import PERCENTS, no_run
 from meshonet.geometry.quality.summary import Quality, Summary
 from meshonet.geometry.quality.surfaces import areas, folded_quads, quad_metrics
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
 
 _TINY, _LARGE = 1e-300, 1e30
@@ -67,7 +68,7 @@ def _area_ratios_across(grid: Grid, ratios: Sequence[Floats]) -> None:
 
 def _folded(nodes: Floats) -> int:
     if nodes.shape[-1] == 2:
-        return _native.count_folded(nodes[..., 0], nodes[..., 1])
+        return _native.count_folded(nodes[..., 0], nodes[..., 1], threads_for(nodes[..., 0].size))
     return len(folded_quads(nodes))
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.metrics import COMPILED
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import measure_cells
 
 PERCENTS = (1.0, 99.0)
@@ -52,7 +53,7 @@ class Run:
         """
         table, where = np.empty((len(COMPILED), 3)), np.empty((len(COMPILED), 2, 2), dtype=np.int64)
         tallies = self.brackets, self.counts, self.caught
-        measure_cells(x, y, periodic, wake, table, where, first, values, *tallies)
+        measure_cells(x, y, periodic, wake, table, where, first, values, *tallies, threads_for(x.size))
         return table, where
 
     def percentile(self, metric: int, which: int, cells: int, percent: float) -> float | None:

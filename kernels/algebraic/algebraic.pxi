@@ -2,7 +2,7 @@ cdef extern from "algebraic/tfi.h":
     ctypedef struct TfiEdges:
         Read south, north, west, east
     void tfi_fill(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const TfiEdges *ex, const TfiEdges *ey,
-                  const TfiEdges *parameter) nogil
+                  const TfiEdges *parameter, int threads) nogil
 
 cdef extern from "algebraic/evaluate.h":
     ctypedef struct Places:
@@ -13,6 +13,7 @@ cdef extern from "algebraic/evaluate.h":
         Places fine[2]
         Places thin[2]
         double near, far, reach
+        int threads
     ctypedef struct Corners:
         Read south, north, west, east, opened
         const unsigned char *straight
@@ -21,7 +22,7 @@ cdef extern from "algebraic/evaluate.h":
     void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch,
                        double *nodes) nogil
     void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
-                      const double *values, const double *bends, int rim) nogil
+                      const double *values, const double *bends, int rim, int threads) nogil
 
 
 cdef TfiEdges four_edges(tuple four, tuple along, tuple across) except *:
@@ -32,15 +33,18 @@ cdef TfiEdges four_edges(tuple four, tuple along, tuple across) except *:
     return e
 
 
-def tfi(x, y, tuple xs, tuple ys, tuple parameters):
-    """Interpolate into the planes `x` and `y` (ni, nj) between edges south, north, west and east."""
+def tfi(x, y, tuple xs, tuple ys, tuple parameters, int threads=1):
+    """Interpolate into the planes `x` and `y` (ni, nj) between edges south, north, west and east.
+
+    Results of all kernels that work with `threads` are the same to the bit for any number of them.
+    """
     cdef Written px = fills(x, y.shape), py = fills(y, x.shape)
     cdef ptrdiff_t ni, nj
     ni, nj = x.shape
     cdef TfiEdges ex = four_edges(xs, (ni,), (nj,)), ey = four_edges(ys, (ni,), (nj,))
     cdef TfiEdges parameter = four_edges(parameters, (ni,), (nj,))
     with nogil:
-        tfi_fill(px, py, ni, nj, &ex, &ey, &parameter)
+        tfi_fill(px, py, ni, nj, &ex, &ey, &parameter, threads)
 
 
 cdef TfiEdges moved(TfiEdges e, ptrdiff_t along, ptrdiff_t across) noexcept nogil:
@@ -58,11 +62,11 @@ def tfi_batch(nodes, tuple sides, tuple parameters):
     with nogil:
         for b in range(batch):
             ey = moved(ex, ni, nj)
-            tfi_fill(x, x + ni * nj, ni, nj, &ex, &ey, &parameter)
+            tfi_fill(x, x + ni * nj, ni, nj, &ex, &ey, &parameter, 1)
             x, ex, parameter = x + 2 * ni * nj, moved(ey, ni, nj), moved(parameter, ni, nj)
 
 
-def add_spline_rows(x, first, weights, values, bends, bint rim):
+def add_spline_rows(x, first, weights, values, bends, bint rim, int threads=1):
     """Add to `x` (ni, nj) rows of a spline, `values` and `bends` (m, nj); see ``algebraic/evaluate.h``."""
     cdef ptrdiff_t ni, nj, m = len(values)
     ni, nj = x.shape
@@ -70,7 +74,7 @@ def add_spline_rows(x, first, weights, values, bends, bint rim):
     cdef Written px = fills(x, (ni, nj))
     cdef Read v = reads(values, (m, nj)), c = reads(bends, (m, nj))
     with nogil:
-        combine_rows(px, ni, nj, p.first, p.weights, v, c, rim)
+        combine_rows(px, ni, nj, p.first, p.weights, v, c, rim, threads)
 
 
 cdef Places places(tuple given, ptrdiff_t count, ptrdiff_t knots) except *:
@@ -115,7 +119,8 @@ def tfi_coarse(tuple sides, tuple thin, nodes):
             to += 2 * e.m * e.n
 
 
-def resample(coarse, tuple sides, tuple fine, opened, double near, double far, double reach, nodes, straight=None):
+def resample(coarse, tuple sides, tuple fine, opened, double near, double far, double reach, nodes, straight=None,
+             int threads=1):
     """Fill the planes `nodes` (batch, 2, ni, nj) from grids `coarse` (batch, 2, m, n) inside `sides`.
 
     The other arguments are those of ``algebraic/evaluate.h``: `fine` the places of ni nodes in m and of nj in n.
@@ -123,7 +128,7 @@ def resample(coarse, tuple sides, tuple fine, opened, double near, double far, d
     cdef ptrdiff_t batch = len(nodes), b
     cdef Evaluation e
     e.m, e.n, e.ni, e.nj = coarse.shape[2], coarse.shape[3], nodes.shape[2], nodes.shape[3]
-    e.near, e.far, e.reach = near, far, reach
+    e.near, e.far, e.reach, e.threads = near, far, reach, min(max(threads, 1), 64)
     cdef Corners edges = corners_of(sides, batch, e.ni, e.nj)
     edges.opened = reads(opened, (batch, 4))
     if straight is not None:

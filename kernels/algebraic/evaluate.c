@@ -12,6 +12,7 @@
 
 #include "clones.h"
 #include "inwards.h"
+#include "team.h"
 #include "tfi.h"
 
 enum { TILE = 16 };
@@ -188,13 +189,13 @@ void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, 
     TfiEdges three[3];
     for (int k = 0; k < 3; k++)
         three[k] = (TfiEdges){at[k][0], at[k][1], at[k][2], at[k][3]};
-    tfi_fill(nodes, nodes + m * n, m, n, &three[0], &three[1], &three[2]);
+    tfi_fill(nodes, nodes + m * n, m, n, &three[0], &three[1], &three[2], 1);
 }
 
 ptrdiff_t evaluate_scratch(const Evaluation *e)
 {
     const ptrdiff_t size = e->m * e->n, most = e->m > e->n ? e->m : e->n;
-    return 20 * e->nj + 14 * size + most;
+    return 8 * e->nj + 14 * size + most + e->threads * 12 * e->nj;
 }
 
 /* What a row of the result is made of, and room for it. */
@@ -264,20 +265,34 @@ MESHONET_INLINE void hold(const Evaluation *e, const double *coarse, Parts *p, p
     }
 }
 
+typedef struct {
+    const Evaluation *e;
+    const double *coarse;
+    const Corners *edges;
+    double *scratch, *nodes;
+    Parts parts;
+} Pass;
+
 MESHONET_CLONES
-void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch, double *nodes)
+static void begin(const Evaluation *e, const double *coarse, const Corners *edges, Parts *p, double *spare)
 {
-    const ptrdiff_t ni = e->ni, nj = e->nj, size = e->m * e->n;
-    double *bends = scratch + 20 * nj, *x = nodes, *y = nodes + ni * nj;
-    Parts p = {scratch, scratch + 4 * nj, scratch + 12 * nj, scratch + 16 * nj, bends, bends + 6 * size, {{{0, 0}}}};
-    prepare(e, coarse, edges, &p, bends + 10 * size);
+    prepare(e, coarse, edges, p, spare);
+}
+
+MESHONET_CLONES
+static void evaluate_rows(const Pass *pass, Parts p, ptrdiff_t start, ptrdiff_t end)
+{
+    const Evaluation *e = pass->e;
+    const Corners *edges = pass->edges;
+    const ptrdiff_t ni = e->ni, nj = e->nj;
+    double *x = pass->nodes + start * nj, *y = x + ni * nj;
     ptrdiff_t held[2] = {-1, -1}; /* the coarse rows in the halves */
-    for (ptrdiff_t i = 0; i < ni; i++, x += nj, y += nj) {
+    for (ptrdiff_t i = start; i < end; i++, x += nj, y += nj) {
         const ptrdiff_t first = e->fine[0].first[i];
         for (ptrdiff_t k = first; k < first + 2; k++)
             if (held[k & 1] != k) {
                 held[k & 1] = k;
-                hold(e, coarse, &p, k);
+                hold(e, pass->coarse, &p, k);
             }
         const double *w = e->fine[0].weights + 4 * i, *south = edges->south + i, *north = edges->north + i;
         const int low = (int)(first & 1), high = 1 - low;
@@ -289,23 +304,68 @@ void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edg
                      joined(p.ranges[low][side], p.ranges[high][side]));
         x[0] = south[0], x[nj - 1] = north[0], y[0] = south[ni], y[nj - 1] = north[ni];
     }
-    x = nodes, y = nodes + ni * nj;
+}
+
+/* Rows of one thread, with two coarse rows of its own. */
+static void evaluate_share(void *data, Member member)
+{
+    const Pass *pass = data;
+    const ptrdiff_t nj = pass->e->nj;
+    Parts own = pass->parts;
+    own.rows = pass->scratch + member.rank * 12 * nj, own.ends = own.rows + 8 * nj;
+    ptrdiff_t first, last;
+    team_share(pass->e->ni, member, &first, &last);
+    evaluate_rows(pass, own, first, last);
+}
+
+void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch, double *nodes)
+{
+    const ptrdiff_t ni = e->ni, nj = e->nj, size = e->m * e->n;
+    double *rows = scratch + 8 * nj, *bends = rows + e->threads * 12 * nj, *x = nodes, *y = nodes + ni * nj;
+    Pass pass = {e, coarse, edges, rows, nodes,
+                 {scratch, NULL, NULL, scratch + 4 * nj, bends, bends + 6 * size, {{{0, 0}}}}};
+    begin(e, coarse, edges, &pass.parts, bends + 10 * size);
+    team_run(e->threads, evaluate_share, &pass);
     const size_t line = (size_t)nj * sizeof *x;
     const ptrdiff_t last = (ni - 1) * nj;
     memcpy(x, edges->west, line), memcpy(y, edges->west + nj, line);
     memcpy(x + last, edges->east, line), memcpy(y + last, edges->east + nj, line);
 }
 
+typedef struct {
+    double *x;
+    ptrdiff_t ni, nj;
+    const ptrdiff_t *first;
+    const double *weights, *values, *bends;
+    int rim;
+} Combine;
+
 MESHONET_CLONES
-void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
-                  const double *values, const double *bends, int rim)
+static void add_rows(const Combine *c, ptrdiff_t start, ptrdiff_t end)
 {
-    for (ptrdiff_t i = rim ? 0 : 1; i < (rim ? ni : ni - 1); i++) {
-        const double w0 = weights[4 * i], w1 = weights[4 * i + 1], w2 = weights[4 * i + 2], w3 = weights[4 * i + 3];
-        const double *restrict v0 = values + first[i] * nj, *restrict v1 = v0 + nj;
-        const double *restrict m0 = bends + first[i] * nj, *restrict m1 = m0 + nj;
-        double *restrict row = x + i * nj;
+    const ptrdiff_t nj = c->nj;
+    for (ptrdiff_t i = start; i < end; i++) {
+        const double *weights = c->weights + 4 * i, w0 = weights[0], w1 = weights[1], w2 = weights[2], w3 = weights[3];
+        const double *restrict v0 = c->values + c->first[i] * nj, *restrict v1 = v0 + nj;
+        const double *restrict m0 = c->bends + c->first[i] * nj, *restrict m1 = m0 + nj;
+        double *restrict row = c->x + i * nj;
         for (ptrdiff_t j = 1; j < nj - 1; j++)
             row[j] += (w0 * v0[j] + w1 * v1[j]) + (w2 * m0[j] + w3 * m1[j]);
     }
+}
+
+static void combine_share(void *data, Member member)
+{
+    const Combine *c = data;
+    const ptrdiff_t start = c->rim ? 0 : 1;
+    ptrdiff_t first, last;
+    team_share(c->ni - 2 * start, member, &first, &last);
+    add_rows(c, first + start, last + start);
+}
+
+void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
+                  const double *values, const double *bends, int rim, int threads)
+{
+    Combine combine = {x, ni, nj, first, weights, values, bends, rim};
+    team_run(threads, combine_share, &combine);
 }

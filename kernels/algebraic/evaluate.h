@@ -16,6 +16,7 @@ typedef struct {
     ptrdiff_t m, n, ni, nj;
     Places fine[2], thin[2];
     double near, far, reach;
+    int threads; /* that evaluate the fine grid, with the same result for any number */
 } Evaluation;
 
 /* Edges of one grid, planes (2, ni) and (2, nj); the share (4) taken out at its corners, those of west first, of each
@@ -38,4 +39,4 @@ void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edg
 /* x (ni, nj) += w0 V[k] + w1 V[k+1] + w2 M[k] + w3 M[k+1] in rows 1 .. ni-2 (all rows with `rim`) and columns
    1 .. nj-2; k = first[i], w = weights[i] (ni, 4); V and M are (m, nj). */
 void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
-                  const double *values, const double *bends, int rim);
+                  const double *values, const double *bends, int rim, int threads);

@@ -8,7 +8,11 @@
        x = (1-v) S_i + v N_i  +  (1-u) W_j + u E_j  -  (1-u)(1-v) a - u (1-v) b - u v c - (1-u) v d.
    With south and north weights equal (n = s, e = w) this is the separable blending of Gordon and Hall. */
 #include "tfi.h"
+
+#include <string.h>
+
 #include "clones.h"
+#include "team.h"
 
 /* Boolean sum in one coordinate; dw and de are the deviations of west and east from their chords. */
 MESHONET_INLINE double boolean_sum(double u, double v, double s, double n, double w, double e, double a, double b,
@@ -38,14 +42,34 @@ MESHONET_INLINE void fill_row(double *restrict x, double *restrict y, ptrdiff_t 
     x[0] = xs, y[0] = ys, x[nj - 1] = xn, y[nj - 1] = yn;
 }
 
+typedef struct {
+    double *x, *y;
+    ptrdiff_t ni, nj;
+    const TfiEdges *ex, *ey, *parameter;
+} Fill;
+
 MESHONET_CLONES
-void tfi_fill(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const TfiEdges *ex, const TfiEdges *ey,
-              const TfiEdges *parameter)
+static void fill_rows(const Fill *f, ptrdiff_t first, ptrdiff_t last)
 {
-    for (ptrdiff_t j = 0; j < nj; j++)
-        x[j] = ex->west[j], y[j] = ey->west[j];
-    for (ptrdiff_t i = 1; i < ni - 1; i++)
-        fill_row(x + i * nj, y + i * nj, i, ni, nj, ex, ey, parameter);
-    for (ptrdiff_t j = 0; j < nj; j++)
-        x[(ni - 1) * nj + j] = ex->east[j], y[(ni - 1) * nj + j] = ey->east[j];
+    for (ptrdiff_t i = first; i < last; i++)
+        fill_row(f->x + i * f->nj, f->y + i * f->nj, i, f->ni, f->nj, f->ex, f->ey, f->parameter);
+}
+
+static void fill_share(void *data, Member member)
+{
+    const Fill *f = data;
+    ptrdiff_t first, last;
+    team_share(f->ni - 2, member, &first, &last);
+    fill_rows(f, first + 1, last + 1);
+}
+
+void tfi_fill(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const TfiEdges *ex, const TfiEdges *ey,
+              const TfiEdges *parameter, int threads)
+{
+    Fill fill = {x, y, ni, nj, ex, ey, parameter};
+    const size_t line = (size_t)nj * sizeof *x;
+    const ptrdiff_t last = (ni - 1) * nj;
+    memcpy(x, ex->west, line), memcpy(y, ey->west, line);
+    team_run(threads, fill_share, &fill);
+    memcpy(x + last, ex->east, line), memcpy(y + last, ey->east, line);
 }

@@ -55,7 +55,7 @@ cdef extern from "conformal/strip_rows.h":
         int symmetric
         Cplx on_axis, turned
     double c_strip_rows "strip_rows"(const StripRows *s, const ptrdiff_t *order, ptrdiff_t count, double *x, double *y,
-                                     ptrdiff_t nj, double *scratch) nogil
+                                     ptrdiff_t nj, int threads, double *scratch) nogil
 
 
 cdef Cplx *fills_complex(array) except NULL:
@@ -183,7 +183,8 @@ def picard_step(c, double height, matrices, eigenvalues, smooth):
     return change
 
 
-def strip_rows(x, y, order, lift, sums, double sharpness, along, across, matrix, cuts, ptrdiff_t begin, axis):
+def strip_rows(x, y, order, lift, sums, double sharpness, along, across, matrix, cuts, ptrdiff_t begin, axis,
+               int threads=1):
     """Write levels 1 .. nj - 2 of the rows in `order` to `x` and `y` (n + 1, nj); return whether they are finite.
 
     `lift` is a `geometry.lift.Lift`, `sums` are a point, how many follow with it, and their columns (Q, 2, width);
@@ -226,8 +227,9 @@ def strip_rows(x, y, order, lift, sums, double sharpness, along, across, matrix,
             raise ValueError("columns are not as wide as the points they are for")
         windows[s.n_sums].columns = reads(values, (len(values), 2, values.shape[2]))
         s.n_sums += 1 if len(values) and count else 0
-    scratch = np.empty(8 * (s.m + LANES))
+    threads = min(max(threads, 1), 64)
+    scratch = np.empty(threads * 8 * (s.m + LANES))
     cdef Written room = fills(scratch, scratch.shape)
     with nogil:
-        total = c_strip_rows(&s, places, rows, px, py, nj, room)
+        total = c_strip_rows(&s, places, rows, px, py, nj, threads, room)
     return bool(isfinite(total))

@@ -7,6 +7,7 @@
 #include "strip_rows.h"
 #include "lanes.h"
 #include "lift_maps.h"
+#include "team.h"
 
 #define ROWS 4
 
@@ -136,14 +137,41 @@ MESHONET_INLINE double some_rows(const StripRows *s, const ptrdiff_t *order, int
     return sum;
 }
 
+/* What a team writes: rows in groups of ROWS, of which the last may be fewer. */
+typedef struct {
+    const StripRows *s;
+    const ptrdiff_t *order;
+    ptrdiff_t count, nj;
+    double *x, *y, *scratch;
+    double sums[TEAM_MOST];
+} Pass;
+
 MESHONET_CLONES
-double strip_rows(const StripRows *s, const ptrdiff_t *order, ptrdiff_t count, double *x, double *y, ptrdiff_t nj,
-                  double *scratch)
+static double groups(const Pass *p, ptrdiff_t i, ptrdiff_t end, double *scratch)
 {
+    const StripRows *s = p->s;
     double *px[ROWS], *py[ROWS], sum = 0.0;
     for (int r = 0; r < ROWS; r++) px[r] = scratch + 2 * r * (s->m + LANES), py[r] = px[r] + s->m + LANES;
-    ptrdiff_t i = 0;
-    for (; i + ROWS <= count; i += ROWS) sum += some_rows(s, order + i, ROWS, x, y, nj, px, py);
-    for (; i < count; i += 2) sum += some_rows(s, order + i, count - i < 2 ? 1 : 2, x, y, nj, px, py);
+    for (; i + ROWS <= end; i += ROWS) sum += some_rows(s, p->order + i, ROWS, p->x, p->y, p->nj, px, py);
+    for (; i < end; i += 2) sum += some_rows(s, p->order + i, end - i < 2 ? 1 : 2, p->x, p->y, p->nj, px, py);
+    return sum;
+}
+
+static void share(void *data, Member member)
+{
+    Pass *p = data;
+    ptrdiff_t first, last;
+    team_share((p->count + ROWS - 1) / ROWS, member, &first, &last);
+    const ptrdiff_t end = ROWS * last < p->count ? ROWS * last : p->count;
+    p->sums[member.rank] = groups(p, ROWS * first, end, p->scratch + 8 * member.rank * (p->s->m + LANES));
+}
+
+double strip_rows(const StripRows *s, const ptrdiff_t *order, ptrdiff_t count, double *x, double *y, ptrdiff_t nj,
+                  int threads, double *scratch)
+{
+    Pass pass = {s, order, count, nj, x, y, scratch, {0.0}};
+    double sum = 0.0;
+    team_run(threads, share, &pass);
+    for (int k = 0; k < TEAM_MOST; k++) sum += pass.sums[k];
     return sum;
 }

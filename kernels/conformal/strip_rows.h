@@ -27,7 +27,7 @@ typedef struct {
     Cplx on_axis, turned;   /* a point of it, and its direction squared */
 } StripRows;
 
-/* x, y (., nj): levels 1 .. nj - 2 of the `count` rows named in `order`; scratch for 8 (m + LANES) numbers. The
+/* x, y (., nj): levels 1 .. nj - 2 of the `count` rows named in `order`; scratch for 8 (m + LANES) numbers a thread. The
    sum of all points, finite when they are. */
 double strip_rows(const StripRows *s, const ptrdiff_t *order, ptrdiff_t count, double *x, double *y, ptrdiff_t nj,
-                  double *scratch);
+                  int threads, double *scratch);

@@ -13,34 +13,35 @@ cdef extern from "elliptic/multigrid.h":
         Differences xi, eta
         Transfer xi_coarse, eta_coarse
         Control phi, psi
+        int threads
         double *scratch
-    size_t c_multigrid_scratch "multigrid_scratch"(ptrdiff_t mi, ptrdiff_t mj) nogil
+    size_t c_multigrid_scratch "multigrid_scratch"(ptrdiff_t mi, ptrdiff_t mj, int threads) nogil
     void multigrid_smooth(const Level *level, int forced) nogil
     double multigrid_residual(const Level *level, int forced) nogil
     double multigrid_restrict(const Level *fine, const Level *coarse, int forced) nogil
     double multigrid_correct(const Level *fine, const Level *coarse) nogil
 
 
-def multigrid_scratch(ptrdiff_t mi, ptrdiff_t mj):
-    """Return the doubles of scratch that the kernels need on a level of mi x mj cells."""
-    return c_multigrid_scratch(mi, mj)
+def multigrid_scratch(ptrdiff_t mi, ptrdiff_t mj, int threads=1):
+    """Return the doubles of scratch that so many threads need on a level of mi x mj cells."""
+    return c_multigrid_scratch(mi, mj, threads)
 
 
 cdef class MultigridLevel:
     """Pointers into the arrays of one level, which are kept alive here: nodes `x`, `y` (mi + 1, mj + 1), changed in place;
     weights (forward, backward, centred) of the differences along `xi` and `eta`; `scratch` that levels share. A `coarse`
-    one has a right side and a copy of what came down."""
+    one has a right side and a copy of what came down. `threads` work on it, with the same result for any number."""
 
     cdef Level level
     cdef list kept
     cdef tuple controls
     cdef readonly object x, y, x0, y0, fx, fy
 
-    def __init__(self, x, y, tuple xi, tuple eta, bint periodic, scratch, bint coarse):
-        self.x, self.y, self.kept = x, y, [scratch]
+    def __init__(self, x, y, tuple xi, tuple eta, bint periodic, scratch, bint coarse, int threads=1):
+        self.x, self.y, self.kept, self.level.threads = x, y, [scratch], min(max(threads, 1), 64)
         self.level.mi, self.level.mj, self.level.periodic = x.shape[0] - 1, x.shape[1] - 1, periodic
         self.level.x, self.level.y = fills(x, y.shape), fills(y, x.shape)
-        self.level.scratch = fills_room(scratch, c_multigrid_scratch(self.level.mi, self.level.mj))
+        self.level.scratch = fills_room(scratch, c_multigrid_scratch(self.level.mi, self.level.mj, self.level.threads))
         self.level.xi, self.level.eta = self.differences(xi, len(x)), self.differences(eta, x.shape[1])
         if coarse:
             self.x0, self.y0, self.fx, self.fy = (np.zeros_like(x) for _ in range(4))

@@ -1,6 +1,9 @@
-/* Zebra line relaxation along eta and along xi, both colours in one pass over memory. */
+/* Zebra line relaxation along eta and along xi, both colours in one pass over memory: a group of lines of the second
+   colour follows as soon as its neighbours of the first are done. Members of a team have groups of their own; the
+   first of their second colour waits for the neighbour's last of the first. */
 #pragma once
 #include "stencil.h"
+#include "team.h"
 #include <string.h>
 
 enum { LANES = 8, BLOCK = 64, AHEAD = 8 }; /* lines along eta, lines along xi that advance together; rows */
@@ -109,19 +112,25 @@ static ptrdiff_t every_second(ptrdiff_t k, ptrdiff_t end, ptrdiff_t most)
     return n < most ? n : most;
 }
 
-/* Both colours in one pass over memory: a group of lines of the second follows as soon as its neighbours of the
-   first are done. */
-static void eta_lines(const Level *g, int forced)
+static ptrdiff_t eta_start(const Level *g)
 {
-    const ptrdiff_t first = g->periodic ? 0 : 1, mi = g->mi;
-    for (ptrdiff_t i = first; i <= mi; i += 2 * LANES) {
-        eta_group(g, i, every_second(i, mi, LANES), forced);
-        if (g->periodic && i == 0)
-            close_ring(g);
-        const ptrdiff_t behind = i > first ? i - 1 : first + 1;
-        const ptrdiff_t ready = i + 2 * LANES - 2; /* later lines wait for the next group, unless there is none */
-        eta_group(g, behind, every_second(behind, ready < mi ? ready : mi, LANES), forced);
-    }
+    return g->periodic ? 0 : 1;
+}
+
+/* Group k of the first colour, and those of the second whose neighbours are done with it. */
+static void eta_first(const Level *g, ptrdiff_t k, int forced)
+{
+    const ptrdiff_t i = eta_start(g) + 2 * LANES * k;
+    eta_group(g, i, every_second(i, g->mi, LANES), forced);
+    if (g->periodic && i == 0)
+        close_ring(g);
+}
+
+static void eta_second(const Level *g, ptrdiff_t k, int forced)
+{
+    const ptrdiff_t first = eta_start(g), i = first + 2 * LANES * k, behind = i > first ? i - 1 : first + 1;
+    const ptrdiff_t ready = i + 2 * LANES - 2; /* later lines wait for the next group, unless there is none */
+    eta_group(g, behind, every_second(behind, ready < g->mi ? ready : g->mi, LANES), forced);
 }
 
 /* ---- xi lines: j fixed, unknowns along i; a block of lines of one colour advances together ---- */
@@ -254,13 +263,51 @@ static void xi_group(const Level *g, ptrdiff_t j0, ptrdiff_t lines, int forced)
         BY_MODE(mode, xi_block, g, j0, n, 0);
 }
 
-/* Both colours in one pass, as eta_lines. */
-static void xi_lines(const Level *g, int forced)
+static void xi_first(const Level *g, ptrdiff_t k, int forced)
 {
-    const ptrdiff_t mj = g->mj;
-    for (ptrdiff_t j = 1; j <= mj; j += 2 * BLOCK) {
-        xi_group(g, j, every_second(j, mj, BLOCK), forced);
-        const ptrdiff_t behind = j > 1 ? j - 1 : 2, ready = j + 2 * BLOCK - 2;
-        xi_group(g, behind, every_second(behind, ready < mj ? ready : mj, BLOCK), forced);
+    const ptrdiff_t j = 1 + 2 * BLOCK * k;
+    xi_group(g, j, every_second(j, g->mj, BLOCK), forced);
+}
+
+static void xi_second(const Level *g, ptrdiff_t k, int forced)
+{
+    const ptrdiff_t j = 1 + 2 * BLOCK * k, behind = j > 1 ? j - 1 : 2, ready = j + 2 * BLOCK - 2;
+    xi_group(g, behind, every_second(behind, ready < g->mj ? ready : g->mj, BLOCK), forced);
+}
+
+/* ---- groups of both colours, in the order of one thread ---- */
+
+typedef void (*Colour)(const Level *g, ptrdiff_t k, int forced);
+
+/* In a ring the first group is done before any other begins. */
+static void zebra(const Level *g, Member member, ptrdiff_t groups, Colour first, Colour second, int ring, int forced)
+{
+    ptrdiff_t own, last;
+    team_share(groups, member, &own, &last);
+    if (own == 0 && own < last)
+        first(g, own, forced);
+    if (ring)
+        team_wait(member);
+    for (ptrdiff_t k = own; k < last; k++) {
+        if (k > 0)
+            first(g, k, forced);
+        if (k > own || own == 0)
+            second(g, k, forced);
     }
+    team_wait(member);
+    if (own > 0 && own < last)
+        second(g, own, forced);
+    team_wait(member);
+}
+
+/* Of a ring lines 0 and mi are one, and the last line looks at it. */
+static void eta_lines(const Level *g, Member member, int forced)
+{
+    const ptrdiff_t groups = (g->mi - eta_start(g)) / (2 * LANES) + 1;
+    zebra(g, member, groups, eta_first, eta_second, g->periodic, forced);
+}
+
+static void xi_lines(const Level *g, Member member, int forced)
+{
+    zebra(g, member, (g->mj - 1) / (2 * BLOCK) + 1, xi_first, xi_second, 0, forced);
 }

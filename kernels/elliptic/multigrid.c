@@ -9,7 +9,8 @@
 #include "lines.h"
 #include "stencil.h"
 
-size_t multigrid_scratch(ptrdiff_t mi, ptrdiff_t mj)
+/* Doubles that one thread needs. */
+static size_t member_room(ptrdiff_t mi, ptrdiff_t mj)
 {
     const size_t eta_lines = (size_t)((5 * LANES + 2) * padded(mj));
     const size_t xi_lines = (size_t)(4 * BLOCK * (mi + 1));
@@ -18,10 +19,53 @@ size_t multigrid_scratch(ptrdiff_t mi, ptrdiff_t mj)
     return (most > rows ? most : rows) + 64;
 }
 
+size_t multigrid_scratch(ptrdiff_t mi, ptrdiff_t mj, int threads)
+{
+    return (size_t)padded(mi) + (size_t)threads * member_room(mi, mj); /* a sum of each row, then scratch of each thread */
+}
+
+/* What a team works on. */
+typedef struct {
+    const Level *level, *coarse;
+    int forced;
+} Task;
+
+/* The level with the scratch of one thread; `sized` is the finer level that owns the scratch. */
+static Level own_level(const Level *g, const Level *sized, Member member)
+{
+    Level own = *g;
+    own.scratch = sized->scratch + padded(sized->mi) + (size_t)member.rank * member_room(sized->mi, sized->mj);
+    return own;
+}
+
+/* This thread's of the rows solved for. */
+static void own_rows(const Level *g, Member member, ptrdiff_t *first, ptrdiff_t *last)
+{
+    const ptrdiff_t start = g->periodic ? 0 : 1;
+    team_share(g->mi - start, member, first, last);
+    *first += start, *last += start;
+}
+
+static double sum_of_rows(const Level *g, const double *sums)
+{
+    double sum = 0.0;
+    for (ptrdiff_t i = g->periodic ? 0 : 1; i < g->mi; i++)
+        sum += sums[i];
+    return sum;
+}
+
+static void smooth_share(void *data, Member member)
+{
+    const Task *task = data;
+    const Level own = own_level(task->level, task->level, member);
+    eta_lines(&own, member, task->forced);
+    xi_lines(&own, member, task->forced);
+}
+
 void multigrid_smooth(const Level *level, int forced)
 {
-    eta_lines(level, forced);
-    xi_lines(level, forced);
+    Task task = {level, NULL, forced};
+    team_run(level->threads, smooth_share, &task);
 }
 
 /* ---- residual, restriction, correction ---- */
@@ -65,14 +109,29 @@ MESHONET_INLINE double squares(const double *restrict a, const double *restrict 
 }
 
 MESHONET_CLONES
+static void residual_rows(const Level *g, ptrdiff_t first, ptrdiff_t last, int forced, double *sums)
+{
+    double *rx = g->scratch, *ry = rx + padded(g->mj);
+    for (ptrdiff_t i = first; i < last; i++) {
+        residual_row(g, i, forced, rx, ry);
+        sums[i] = squares(rx, ry, 1, g->mj);
+    }
+}
+
+static void residual_share(void *data, Member member)
+{
+    const Task *task = data;
+    const Level own = own_level(task->level, task->level, member);
+    ptrdiff_t first, last;
+    own_rows(&own, member, &first, &last);
+    residual_rows(&own, first, last, task->forced, task->level->scratch);
+}
+
 double multigrid_residual(const Level *g, int forced)
 {
-    double sum = 0.0, *rx = g->scratch, *ry = rx + padded(g->mj);
-    for (ptrdiff_t i = g->periodic ? 0 : 1; i < g->mi; i++) {
-        residual_row(g, i, forced, rx, ry);
-        sum += squares(rx, ry, 1, g->mj);
-    }
-    return sum;
+    Task task = {g, NULL, forced};
+    team_run(g->threads, residual_share, &task);
+    return sum_of_rows(g, g->scratch);
 }
 
 static ptrdiff_t finer(ptrdiff_t coarse, ptrdiff_t last)
@@ -100,17 +159,17 @@ MESHONET_INLINE void add_row(double weight, const double *restrict rx, const dou
         ax[j] += weight * rx[j], ay[j] += weight * ry[j];
 }
 
-MESHONET_INLINE void restrict_residual(const Level *g, const Level *coarse, int forced)
+/* Rows `start` to before `end` of the coarse right side. */
+MESHONET_CLONES
+static void restrict_residual(const Level *g, const Level *coarse, ptrdiff_t start, ptrdiff_t end, int forced)
 {
-    const ptrdiff_t width = padded(g->mj), first = g->periodic ? 0 : 1, mj = g->mj;
+    const ptrdiff_t width = padded(g->mj), mj = g->mj;
     double *ax = g->scratch, *ay = ax + width, *rx = ay + width, *ry = rx + width;
     double *ox = ry + width, *oy = ox + width; /* the odd row below, shared by two coarse rows */
     const Transfer *along = &g->xi_coarse, across = g->eta_coarse;
-    if (g->periodic && along->before[0] != 0.0)
-        residual_row(g, g->mi - 1, forced, ox, oy);
-    else if (!g->periodic)
-        residual_row(g, 1, forced, ox, oy);
-    for (ptrdiff_t I = first; I < coarse->mi; I++) {
+    if (start < end && along->before[start] != 0.0)
+        residual_row(g, start > 0 ? 2 * start - 1 : g->mi - 1, forced, ox, oy);
+    for (ptrdiff_t I = start; I < end; I++) {
         memset(ax, 0, 2 * (size_t)width * sizeof(double));
         if (along->before[I] != 0.0)
             add_row(along->before[I], ox, oy, ax, ay, mj);
@@ -130,26 +189,38 @@ MESHONET_INLINE void restrict_residual(const Level *g, const Level *coarse, int 
 }
 
 /* f += L(x) on the coarse level */
-MESHONET_INLINE double add_operator(const Level *g)
+MESHONET_CLONES
+static void add_operator(const Level *g, ptrdiff_t first, ptrdiff_t last, double *sums)
 {
-    double sum = 0.0, *rx = g->scratch, *ry = rx + padded(g->mj);
-    for (ptrdiff_t i = g->periodic ? 0 : 1; i < g->mi; i++) {
+    double *rx = g->scratch, *ry = rx + padded(g->mj);
+    for (ptrdiff_t i = first; i < last; i++) {
         double *restrict fx = g->fx + i * (g->mj + 1), *restrict fy = g->fy + i * (g->mj + 1);
         residual_row(g, i, 0, rx, ry);
         for (ptrdiff_t j = 1; j < g->mj; j++)
             fx[j] -= rx[j], fy[j] -= ry[j];
-        sum += squares(fx, fy, 1, g->mj);
+        sums[i] = squares(fx, fy, 1, g->mj);
     }
-    return sum;
 }
 
-MESHONET_CLONES
+static void restrict_share(void *data, Member member)
+{
+    const Task *task = data;
+    const Level fine = own_level(task->level, task->level, member), coarse = own_level(task->coarse, task->level, member);
+    ptrdiff_t first, last;
+    team_share(coarse.mi + 1, member, &first, &last);
+    for (ptrdiff_t I = first; I < last; I++)
+        inject_row(&fine, &coarse, I);
+    own_rows(&coarse, member, &first, &last);
+    restrict_residual(&fine, &coarse, first, last, task->forced);
+    team_wait(member);
+    add_operator(&coarse, first, last, task->level->scratch);
+}
+
 double multigrid_restrict(const Level *fine, const Level *coarse, int forced)
 {
-    for (ptrdiff_t I = 0; I <= coarse->mi; I++)
-        inject_row(fine, coarse, I);
-    restrict_residual(fine, coarse, forced);
-    return add_operator(coarse);
+    Task task = {fine, coarse, forced};
+    team_run(fine->threads, restrict_share, &task);
+    return sum_of_rows(coarse, fine->scratch);
 }
 
 /* ex, ey [0 .. MJ] = (1 - w) (X - X0) of row I + w times that of row I + 1 */
@@ -163,17 +234,18 @@ MESHONET_INLINE void difference_row(const Level *coarse, ptrdiff_t I, double w, 
     }
 }
 
+/* Rows `first` to before `last`; sums of the coarse ones among them. */
 MESHONET_CLONES
-double multigrid_correct(const Level *fine, const Level *coarse)
+static void correct_rows(const Level *fine, const Level *coarse, ptrdiff_t first, ptrdiff_t last, double *sums)
 {
     const ptrdiff_t mj = fine->mj, ld = mj + 1;
     const double *restrict right = fine->eta_coarse.right;
-    double sum = 0.0, *restrict ex = fine->scratch, *restrict ey = ex + padded(mj);
-    for (ptrdiff_t i = fine->periodic ? 0 : 1; i < fine->mi; i++) {
+    double *restrict ex = fine->scratch, *restrict ey = ex + padded(mj);
+    for (ptrdiff_t i = first; i < last; i++) {
         double *restrict x = fine->x + i * ld, *restrict y = fine->y + i * ld;
         difference_row(coarse, i / 2, i % 2 ? fine->xi_coarse.right[i] : 0.0, ex, ey);
         if (i % 2 == 0)
-            sum += squares(ex, ey, 1, coarse->mj);
+            sums[i / 2] = squares(ex, ey, 1, coarse->mj);
         x[1] += (1.0 - right[1]) * ex[0] + right[1] * ex[1];
         y[1] += (1.0 - right[1]) * ey[0] + right[1] * ey[1];
         for (ptrdiff_t J = 1; 2 * J + 1 < mj; J++) {
@@ -188,9 +260,25 @@ double multigrid_correct(const Level *fine, const Level *coarse)
             y[mj - 1] += ey[mj / 2];
         }
     }
-    if (fine->periodic) {
-        memcpy(fine->x + fine->mi * ld, fine->x, (size_t)ld * sizeof(double));
-        memcpy(fine->y + fine->mi * ld, fine->y, (size_t)ld * sizeof(double));
-    }
+}
+
+static void correct_share(void *data, Member member)
+{
+    const Task *task = data;
+    const Level fine = own_level(task->level, task->level, member);
+    ptrdiff_t first, last;
+    own_rows(&fine, member, &first, &last);
+    correct_rows(&fine, task->coarse, first, last, task->level->scratch);
+}
+
+double multigrid_correct(const Level *fine, const Level *coarse)
+{
+    Task task = {fine, coarse, 0};
+    double sum = 0.0;
+    team_run(fine->threads, correct_share, &task);
+    if (fine->periodic)
+        close_ring(fine);
+    for (ptrdiff_t i = fine->periodic ? 0 : 2; i < fine->mi; i += 2)
+        sum += fine->scratch[i / 2];
     return sum;
 }

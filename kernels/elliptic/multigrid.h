@@ -35,11 +35,12 @@ typedef struct {
     Differences xi, eta;
     Transfer xi_coarse, eta_coarse; /* to the next coarser level, null on the coarsest */
     Control phi, psi;               /* along xi and along eta; no terms: none */
+    int threads;                    /* that work on it */
     double *scratch;                /* multigrid_scratch() doubles */
 } Level;
 
-/* Doubles of scratch that a level of mi x mj cells needs. */
-size_t multigrid_scratch(ptrdiff_t mi, ptrdiff_t mj);
+/* Doubles of scratch that so many threads need for a level of mi x mj cells. */
+size_t multigrid_scratch(ptrdiff_t mi, ptrdiff_t mj, int threads);
 
 /* One sweep of zebra relaxation along eta lines, then along xi lines, in place. `forced`: use the right side. */
 void multigrid_smooth(const Level *level, int forced);

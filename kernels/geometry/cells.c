@@ -1,7 +1,10 @@
 #include "cells.h"
 
+#include <string.h>
+
 #include "angles.h"
 #include "tally.h"
+#include "team.h"
 
 /* A cell and its edges; i runs along e0, j against e3:
 
@@ -35,7 +38,32 @@ static ptrdiff_t cells_folded_in_row(const double *restrict x, const double *res
     return cells - (ptrdiff_t)good;
 }
 
-ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room)
+typedef struct {
+    const double *x, *y;
+    ptrdiff_t ni, nj;
+    int64_t folded; /* in all rows */
+} Count;
+
+static void count_share(void *data, Member member)
+{
+    Count *count = data;
+    const ptrdiff_t nj = count->nj;
+    ptrdiff_t first, last;
+    int64_t folded = 0;
+    team_share(count->ni - 1, member, &first, &last);
+    for (ptrdiff_t i = first; i < last; ++i)
+        folded += cells_folded_in_row(count->x + i * nj, count->y + i * nj, nj, nj - 1);
+    team_reserve(&count->folded, folded);
+}
+
+ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int threads)
+{
+    Count count = {x, y, ni, nj, 0};
+    team_run(threads, count_share, &count);
+    return (ptrdiff_t)count.folded;
+}
+
+void cells_places(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room)
 {
     ptrdiff_t folded = 0;
     for (ptrdiff_t i = 0; i + 1 < ni; ++i, x += nj, y += nj) {
@@ -47,7 +75,6 @@ ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t
             }
         folded = all;
     }
-    return folded;
 }
 
 /* Magnitudes of the areas of one row of cells into area[1 ... nj-1]; area[0] and area[nj] repeat their neighbours. */
@@ -156,43 +183,102 @@ static void first_place(const double *row, ptrdiff_t cells, double value, ptrdif
     where[1] = j;
 }
 
-/* Take the metrics of row i of cells into what is known of those before. */
-static void take_row(const CellRun *run, const double *rows, ptrdiff_t i, ptrdiff_t cells)
+/* What one thread knows of its rows, and room for one row. */
+typedef struct {
+    double *areas;   /* of four rows of cells, (nj + 1) each */
+    double *metrics; /* (METRICS, cells) */
+    double *caught;  /* (cells) */
+    double *summary; /* (METRICS, 2): min, max */
+    int64_t *where;  /* (METRICS, 2, 2) */
+    int64_t *counts; /* (METRICS, n_brackets, 4) */
+    int64_t *rows;   /* how many */
+} Own;
+
+/* A run and what is known of it. */
+typedef struct {
+    const double *x, *y;
+    ptrdiff_t ni, nj;
+    const CellRun *run;
+    double *sums; /* of each row of cells, (ni - 1, METRICS) */
+    int64_t *held; /* values caught in each bracket, (METRICS, n_brackets) */
+    double *room;
+} Cells;
+
+static size_t member_room(const CellRun *run, ptrdiff_t nj)
 {
-    double low, high, sum;
-    for (ptrdiff_t k = 0; k < METRICS; ++k) {
-        const double *row = rows + k * cells;
-        double *summary = run->summary + 3 * k;
-        values_reduce(row, cells, &low, &high, &sum);
-        if (i == 0 || low < summary[0]) {
-            summary[0] = low;
-            first_place(row, cells, low, i, run->where + 4 * k);
-        }
-        if (i == 0 || high > summary[2]) {
-            summary[2] = high;
-            first_place(row, cells, high, i, run->where + 4 * k + 2);
-        }
-        summary[1] = i == 0 ? sum : summary[1] + sum;
-        for (ptrdiff_t m = k * run->n_brackets; m < (k + 1) * run->n_brackets; ++m) {
-            int64_t *counts = run->counts + 4 * m, had = counts[2] - counts[1];
-            const ptrdiff_t kept = had < run->room ? (ptrdiff_t)had : run->room;
-            values_catch(row, cells, run->brackets[2 * m], run->brackets[2 * m + 1], counts,
-                        run->caught + m * run->room + kept, run->room - kept);
-        }
+    return (size_t)(4 * (nj + 1) + (METRICS + 1) * (nj - 1) + 6 * METRICS + 4 * METRICS * run->n_brackets + 1);
+}
+
+static Own own_of(const Cells *c, int rank)
+{
+    const ptrdiff_t cells = c->nj - 1;
+    Own own;
+    own.areas = c->room + (size_t)rank * member_room(c->run, c->nj);
+    own.metrics = own.areas + 4 * (c->nj + 1), own.caught = own.metrics + METRICS * cells;
+    own.summary = own.caught + cells;
+    own.where = (int64_t *)(own.summary + 2 * METRICS), own.counts = own.where + 4 * METRICS;
+    own.rows = own.counts + 4 * METRICS * c->run->n_brackets;
+    return own;
+}
+
+size_t cells_scratch(const CellRun *run, ptrdiff_t ni, ptrdiff_t nj, int threads)
+{
+    return (size_t)(METRICS * (ni - 1 + run->n_brackets)) + (size_t)threads * member_room(run, nj);
+}
+
+/* Rank the values of a metric in a row against its brackets, and keep those inside. */
+static void catch_row(const Cells *c, const Own *own, ptrdiff_t metric, const double *row)
+{
+    const CellRun *run = c->run;
+    for (ptrdiff_t m = metric * run->n_brackets; m < (metric + 1) * run->n_brackets; ++m) {
+        const ptrdiff_t n = values_catch(row, c->nj - 1, run->brackets[2 * m], run->brackets[2 * m + 1],
+                                         own->counts + 4 * m, own->caught, c->nj - 1);
+        const int64_t at = n ? team_reserve(c->held + m, n) : run->room;
+        if (at + n <= run->room)
+            memcpy(run->caught + m * run->room + at, own->caught, (size_t)n * sizeof(double));
     }
 }
 
-void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run, double *scratch)
+/* Take the metrics of row i of cells into what the thread knows of those before. */
+static void take_row(const Cells *c, const Own *own, ptrdiff_t i)
 {
-    const ptrdiff_t cells = nj - 1, width = nj + 1;
+    const ptrdiff_t cells = c->nj - 1;
+    const int fresh = !(*own->rows)++;
+    double low, high;
+    for (ptrdiff_t k = 0; k < METRICS; ++k) {
+        const double *row = own->metrics + k * cells;
+        double *summary = own->summary + 2 * k;
+        values_reduce(row, cells, &low, &high, c->sums + i * METRICS + k);
+        if (fresh || low < summary[0]) {
+            summary[0] = low;
+            first_place(row, cells, low, i, own->where + 4 * k);
+        }
+        if (fresh || high > summary[1]) {
+            summary[1] = high;
+            first_place(row, cells, high, i, own->where + 4 * k + 2);
+        }
+        catch_row(c, own, k, row);
+    }
+}
+
+static void run_rows(const Cells *c, const Own *own, ptrdiff_t first, ptrdiff_t last)
+{
+    const CellRun *run = c->run;
+    const double *x = c->x, *y = c->y;
+    const ptrdiff_t ni = c->ni, nj = c->nj, cells = nj - 1, width = nj + 1;
     /* areas of the rows of cells i-1, i, i+1 take turns in buffers 0 to 2; buffer 3 is the row across the seam */
-    double *seam = scratch + 3 * width, *rows = seam + width, *before = run->periodic ? seam : scratch;
-    cells_areas(x, y, nj, scratch);
-    cells_areas(x + (ni - 2) * nj, y + (ni - 2) * nj, nj, seam);
-    for (ptrdiff_t i = 0; i < ni - 1; ++i) {
-        double *here = scratch + i % 3 * width, *after = here;
+    double *seam = own->areas + 3 * width, *before = own->areas + (first + 2) % 3 * width;
+    cells_areas(x + first * nj, y + first * nj, nj, own->areas + first % 3 * width);
+    if (first > 0)
+        cells_areas(x + (first - 1) * nj, y + (first - 1) * nj, nj, before);
+    else if (run->periodic)
+        cells_areas(x + (ni - 2) * nj, y + (ni - 2) * nj, nj, before = seam);
+    else
+        before = own->areas;
+    for (ptrdiff_t i = first; i < last; ++i) {
+        double *here = own->areas + i % 3 * width, *after = here;
         if (i < ni - 2) {
-            after = scratch + (i + 1) % 3 * width;
+            after = own->areas + (i + 1) % 3 * width;
             cells_areas(x + (i + 1) * nj, y + (i + 1) * nj, nj, after);
         } else if (run->periodic) {
             after = seam;
@@ -202,13 +288,71 @@ void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, con
             const double *xa = x + (ni - 2 - i) * nj, *ya = y + (ni - 2 - i) * nj, *xb = xa + nj, *yb = ya + nj;
             here[0] = 0.5 * magnitude((xb[1] - xa[0]) * (ya[1] - yb[0]) - (yb[1] - ya[0]) * (xa[1] - xb[0]));
         }
-        cells_row(x + i * nj, y + i * nj, nj, before, here, after, rows);
+        cells_row(x + i * nj, y + i * nj, nj, before, here, after, own->metrics);
         before = here;
-        take_row(run, rows, i, cells);
+        take_row(c, own, i);
         for (ptrdiff_t k = 0; k < run->n_kept; ++k)
-            for (ptrdiff_t j = 0; j < cells; ++j)
-                run->kept[(k * (ni - 1) + i) * cells + j] = rows[(run->keep + k) * cells + j];
+            memcpy(run->kept + (k * (ni - 1) + i) * cells, own->metrics + (run->keep + k) * cells,
+                   (size_t)cells * sizeof(double));
     }
+}
+
+static void run_share(void *data, Member member)
+{
+    const Cells *c = data;
+    const Own own = own_of(c, member.rank);
+    ptrdiff_t first, last;
+    team_share(c->ni - 1, member, &first, &last);
+    memset(own.counts, 0, (size_t)(4 * METRICS * c->run->n_brackets) * sizeof *own.counts);
+    if (first < last)
+        run_rows(c, &own, first, last);
+}
+
+/* Add what a thread knows of its rows to what is known of those before. */
+static void add_rows(const CellRun *run, const Own *own, int fresh)
+{
+    for (ptrdiff_t k = 0; k < METRICS; ++k) {
+        double *summary = run->summary + 3 * k;
+        int64_t *where = run->where + 4 * k;
+        if (fresh || own->summary[2 * k] < summary[0]) {
+            summary[0] = own->summary[2 * k];
+            memcpy(where, own->where + 4 * k, 2 * sizeof *where);
+        }
+        if (fresh || own->summary[2 * k + 1] > summary[2]) {
+            summary[2] = own->summary[2 * k + 1];
+            memcpy(where + 2, own->where + 4 * k + 2, 2 * sizeof *where);
+        }
+    }
+    for (ptrdiff_t m = 0; m < 4 * METRICS * run->n_brackets; ++m)
+        run->counts[m] += own->counts[m];
+}
+
+/* The means, of the sums of rows in their order. */
+static void add_sums(const Cells *c)
+{
+    double *summary = c->run->summary;
     for (ptrdiff_t k = 0; k < METRICS; ++k)
-        run->summary[3 * k + 1] /= (double)((ni - 1) * cells);
+        summary[3 * k + 1] = 0.0;
+    for (ptrdiff_t i = 0; i < c->ni - 1; ++i)
+        for (ptrdiff_t k = 0; k < METRICS; ++k)
+            summary[3 * k + 1] += c->sums[i * METRICS + k];
+    for (ptrdiff_t k = 0; k < METRICS; ++k)
+        summary[3 * k + 1] /= (double)((c->ni - 1) * (c->nj - 1));
+}
+
+void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run, int threads,
+               double *scratch)
+{
+    int64_t *held = (int64_t *)(scratch + METRICS * (ni - 1));
+    Cells c = {x, y, ni, nj, run, scratch, held, scratch + METRICS * (ni - 1 + run->n_brackets)};
+    memset(held, 0, (size_t)(METRICS * run->n_brackets) * sizeof *held);
+    for (int rank = 0; rank < threads; ++rank)
+        *own_of(&c, rank).rows = 0;
+    team_run(threads, run_share, &c);
+    for (int rank = 0, fresh = 1; rank < threads; ++rank) {
+        const Own own = own_of(&c, rank);
+        if (*own.rows)
+            add_rows(run, &own, fresh), fresh = 0;
+    }
+    add_sums(&c);
 }

@@ -5,8 +5,11 @@
 
 enum { MAX_ANGLE, MIN_ANGLE, SKEWNESS, SCALED_JACOBIAN, ASPECT_RATIO, ORTHOGONALITY, AREA_RATIO, METRICS };
 
-/* How many cells have a corner Jacobian that is not positive; the indices (i, j) of the first `room` go into pairs. */
-ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room);
+/* How many cells have a corner Jacobian that is not positive. */
+ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int threads);
+
+/* The indices (i, j) of the first `room` of them. */
+void cells_places(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room);
 
 /* What one run over all cells takes and leaves. */
 typedef struct {
@@ -24,5 +27,9 @@ typedef struct {
                           when the counts say so */
 } CellRun;
 
-/* Run over all cells; scratch of 4 (nj + 1) + METRICS (nj - 1). */
-void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run, double *scratch);
+/* Doubles of scratch that a run over the cells of ni x nj nodes needs. */
+size_t cells_scratch(const CellRun *run, ptrdiff_t ni, ptrdiff_t nj, int threads);
+
+/* Run over all cells, with the same result for any number of threads; only the order of what is caught differs. */
+void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run, int threads,
+               double *scratch);

@@ -11,9 +11,11 @@ cdef extern from "geometry/cells.h":
         const double *brackets
         int64_t *counts
         double *caught
-    ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs,
-                           ptrdiff_t room) nogil
-    void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run,
+    ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int threads) nogil
+    void cells_places(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs,
+                      ptrdiff_t room) nogil
+    size_t cells_scratch(const CellRun *run, ptrdiff_t ni, ptrdiff_t nj, int threads) nogil
+    void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run, int threads,
                    double *scratch) nogil
 
 cdef extern from "geometry/curve.h":
@@ -38,13 +40,13 @@ cdef extern from "geometry/segments.h":
         ptrdiff_t limit, long long *budget, ptrdiff_t *pairs) nogil
 
 
-def count_folded(x, y):
+def count_folded(x, y, int threads=1):
     """Return how many cells of the planes x, y (ni, nj) have a corner Jacobian that is not positive."""
     cdef Read px = reads(x, y.shape), py = reads(y, x.shape)
     cdef ptrdiff_t ni, nj, count
     ni, nj = x.shape
     with nogil:
-        count = cells_folded(px, py, ni, nj, NULL, 0)
+        count = cells_folded(px, py, ni, nj, threads)
     return count
 
 
@@ -56,11 +58,12 @@ def folded_cells(x, y):
     pairs = np.empty((room, 2), dtype=np.int64)
     cdef int64_t *to = <int64_t *>numbers(pairs, b"i", 8, (room, 2), True)
     with nogil:
-        cells_folded(px, py, ni, nj, to, room)
+        cells_places(px, py, ni, nj, to, room)
     return pairs
 
 
-def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t keep, kept, brackets, counts, caught):
+def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t keep, kept, brackets, counts, caught,
+                  int threads=1):
     """Run over all cells once; the arguments are those of CellRun in ``geometry/cells.h``."""
     cdef CellRun run
     cdef ptrdiff_t ni, nj
@@ -76,10 +79,11 @@ def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t
     run.brackets = reads(brackets, (METRICS, run.n_brackets, 2))
     run.counts = <int64_t *>numbers(counts, b"i", 8, (METRICS, run.n_brackets, 4), True)
     run.caught = fills(caught, (METRICS, run.n_brackets, run.room))
-    scratch = np.empty(4 * (nj + 1) + METRICS * (nj - 1))
+    threads = min(max(threads, 1), 64)
+    scratch = np.empty(cells_scratch(&run, ni, nj, threads))
     cdef Written room = fills(scratch, scratch.shape)
     with nogil:
-        cells_run(px, py, ni, nj, &run, room)
+        cells_run(px, py, ni, nj, &run, threads, room)
 
 
 def curve_locate(s, table, start, stop, ptrdiff_t pieces, bint closed, interval, place):

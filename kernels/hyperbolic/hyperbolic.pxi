@@ -7,11 +7,12 @@ cdef extern from "hyperbolic/march.h":
     size_t hyperbolic_scratch(ptrdiff_t n) nogil
     void c_hyperbolic_march "hyperbolic_march"(
         double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps, const double *widening,
-        const double *ratios, const MarchEnds *ends, const MarchSettings *settings, double *scratch) nogil
+        const double *ratios, const MarchEnds *ends, const MarchSettings *settings, int threads, double *scratch) nogil
 
 
 def hyperbolic_march(x, y, steps, double dissipation, double even, double tolerated, double bend, double implicit,
-                     double volume, ptrdiff_t sweeps, ptrdiff_t rise, ends=None, widening=None, ratios=None):
+                     double volume, ptrdiff_t sweeps, ptrdiff_t rise, ends=None, widening=None, ratios=None,
+                     int threads=1):
     """Fill levels 1 on of `x` and `y` (levels + 1, n) from level 0, n >= 3 nodes with the grid to their left.
 
     `steps` (levels) are the distances between levels; the others are those of ``march.h``. Level 0 closes, unless
@@ -40,4 +41,4 @@ def hyperbolic_march(x, y, steps, double dissipation, double even, double tolera
         directions = MarchEnds(ends[0][0], ends[0][1], ends[1][0], ends[1][1])
         given = &directions
     with nogil:
-        c_hyperbolic_march(px, py, n, levels, apart, widens, grows, given, &settings, room)
+        c_hyperbolic_march(px, py, n, levels, apart, widens, grows, given, &settings, threads, room)

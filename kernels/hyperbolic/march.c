@@ -13,9 +13,11 @@
    where lines that leave a hollow spread. To eps comes a smoothing as wide as levels are high, bend s h/w² with h the height so far, without
    which fine grids focus lines at concave corners: the others fade as cells become narrower. The periodic block-tridiagonal system is solved by elimination without the last node, whose
    equation then closes it. Levels that do not close have ends that move along straight lines d:
-   dr = d (d . dr of the neighbour). */
+   dr = d (d . dr of the neighbour). Levels of many nodes are eliminated from both ends to the middle, by two threads
+   where there are some; the others share what is done node by node. */
 #include "march.h"
 #include "clones.h"
+#include "team.h"
 #include <math.h>
 #include <string.h>
 
@@ -27,6 +29,8 @@ static const double OPENED = 0.5;
 static const double CALM = 0.25;
 /* What `even` grows by for each unit that neighbouring edges differ too much. */
 static const double EVENING = 15.0;
+
+#define WIDE 1024 /* nodes of a level from which on it is eliminated from both ends */
 
 typedef struct {
     double a, b, c, d; /* a b / c d */
@@ -111,24 +115,35 @@ MESHONET_INLINE void widen(const March *m, ptrdiff_t n, const double *widening, 
             m->volume[i] *= pow(widening[i], part);
 }
 
-/* Unit edges, their lengths, and the areas of the cells between this level and the next. */
-MESHONET_INLINE void measure_level(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
-                                   double step, int closed)
+/* Nodes `from` to before `to` of a level. */
+typedef struct {
+    ptrdiff_t from, to;
+} Nodes;
+
+/* Unit edges and their lengths. */
+MESHONET_INLINE void measure_edges(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
+                                   Nodes own, int closed)
 {
     double *restrict ex = m->ex, *restrict ey = m->ey, *restrict length = m->length;
-    for (ptrdiff_t i = 0; i < n - 1; i++)
+    const int end = own.to == n && own.from < n;
+    for (ptrdiff_t i = own.from; i < own.to - end; i++)
         ex[i] = x[i + 1] - x[i], ey[i] = y[i + 1] - y[i];
-    if (closed)
+    if (end && closed)
         ex[n - 1] = x[0] - x[n - 1], ey[n - 1] = y[0] - y[n - 1];
-    else
+    else if (end)
         ex[n - 1] = x[n - 1] - x[n - 2], ey[n - 1] = y[n - 1] - y[n - 2];
-    for (ptrdiff_t i = 0; i < n; i++) {
+    for (ptrdiff_t i = own.from; i < own.to; i++) {
         length[i] = sqrt(ex[i] * ex[i] + ey[i] * ey[i]);
         ex[i] /= length[i], ey[i] /= length[i];
     }
-    wrap(ex, n, closed), wrap(ey, n, closed), wrap(length, n, closed);
+}
+
+/* The areas of the cells between this level and the next. */
+MESHONET_INLINE void measure_areas(const March *m, ptrdiff_t n, double step, int closed)
+{
+    wrap(m->ex, n, closed), wrap(m->ey, n, closed), wrap(m->length, n, closed);
     for (ptrdiff_t i = 0; i < n; i++)
-        m->volume[i] = 0.5 * step * (length[i] + length[i - 1]);
+        m->volume[i] = 0.5 * step * (m->length[i] + m->length[i - 1]);
 }
 
 MESHONET_INLINE double least(double a, double b)
@@ -159,7 +174,7 @@ MESHONET_INLINE double limited_power(double ratio, double exponent)
 /* Coefficients p, s of (1 + theta) C/2 = [p s / s -p], dissipation and the right side of every node.
    `growth` is sqrt(level / levels): the dissipation's, and in the exponent of the convergence of lines; `bend`
    the settings' times step and height. */
-MESHONET_INLINE void assemble(const March *m, ptrdiff_t n, int first, double growth, double bend,
+MESHONET_INLINE void assemble(const March *m, Nodes own, int first, double growth, double bend,
                               const MarchSettings *settings)
 {
     const double *restrict ex = m->ex, *restrict ey = m->ey, *restrict length = m->length, *restrict v = m->volume;
@@ -168,12 +183,12 @@ MESHONET_INLINE void assemble(const March *m, ptrdiff_t n, int first, double gro
     const double smooth = settings->dissipation * growth, exponent = 2.0 / growth, flux = 0.5 * settings->implicit;
     const double least_even = settings->even, tolerated = settings->tolerated;
     if (first)
-        for (ptrdiff_t i = 0; i < n; i++) {
+        for (ptrdiff_t i = own.from; i < own.to; i++) {
             before[i] = length[i] + length[i - 1];
             let[i] = most(fabs(length[i] - length[i - 1]) / least(length[i], length[i - 1]), tolerated);
         }
     MESHONET_INDEPENDENT
-    for (ptrdiff_t i = 0; i < n; i++) {
+    for (ptrdiff_t i = own.from; i < own.to; i++) {
         const double ux = ex[i], uy = ey[i], both = length[i] + length[i - 1], w = 0.5 * both;
         const double apart = fabs(length[i] - length[i - 1]) / least(length[i], length[i - 1]);
         double tx = ux + ex[i - 1], ty = uy + ey[i - 1];
@@ -196,108 +211,231 @@ MESHONET_INLINE void assemble(const March *m, ptrdiff_t n, int first, double gro
     }
 }
 
-/* Solve for dr of a closed level and add it to (x, y), giving (to_x, to_y). */
-MESHONET_INLINE void solve_closed(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
-                                 double *restrict to_x, double *restrict to_y)
+/* The block row of a node: coefficients of the nodes before and behind it, and of its own. */
+typedef struct {
+    Matrix below, above, centre;
+} BlockRow;
+
+MESHONET_INLINE BlockRow block_row(const March *m, ptrdiff_t i)
 {
-    const ptrdiff_t k = n - 1; /* the bordering node */
-    double *restrict bx = m->bx, *restrict by = m->by;
+    const double p = m->p[i], s = m->s[i], a = m->lower[i], c = m->upper[i];
+    return (BlockRow){{-p - a, -s, -s, p - a}, {p - c, s, s, -p - c}, {1.0 + a + c, 0, 0, 1.0 + a + c}};
+}
+
+/* Eliminate nodes `from`, one `step` (1 or -1) after another, to before `to` of the k first of a closed level: what
+   is left is dr = b - next dr of the node ahead - last dr of the bordering one. */
+MESHONET_INLINE void eliminate_closed(const March *m, ptrdiff_t from, ptrdiff_t to, const int step, ptrdiff_t k)
+{
     Matrix next = {0, 0, 0, 0}, last = next;
     double gx = 0, gy = 0;
-    for (ptrdiff_t i = 0; i < k; i++) {
-        const double p = m->p[i], s = m->s[i], a = m->lower[i], c = m->upper[i];
-        const Matrix below = {-p - a, -s, -s, p - a}, above = {p - c, s, s, -p - c};
-        Matrix centre = {1.0 + a + c, 0, 0, 1.0 + a + c}, border;
+    for (ptrdiff_t i = from; i != to; i += step) {
+        const BlockRow row = block_row(m, i);
+        const Matrix behind = step > 0 ? row.below : row.above, ahead = step > 0 ? row.above : row.below;
+        Matrix centre = row.centre, border;
         double fx = m->rx[i], fy = m->ry[i];
-        if (i == 0) {
-            border = below;
+        if (i == from) {
+            border = behind;
         } else {
             const Matrix zero = {0, 0, 0, 0};
-            centre = difference(centre, product(below, next));
-            border = difference(zero, product(below, last));
-            fx -= below.a * gx + below.b * gy, fy -= below.c * gx + below.d * gy;
+            centre = difference(centre, product(behind, next));
+            border = difference(zero, product(behind, last));
+            fx -= behind.a * gx + behind.b * gy, fy -= behind.c * gx + behind.d * gy;
         }
-        if (i == k - 1)
-            border.a += above.a, border.b += above.b, border.c += above.c, border.d += above.d;
+        if (step > 0 && i == k - 1)
+            border.a += ahead.a, border.b += ahead.b, border.c += ahead.c, border.d += ahead.d;
         const Matrix over = inverse(centre);
-        next = product(over, above), last = product(over, border);
+        next = product(over, ahead), last = product(over, border);
         gx = over.a * fx + over.b * fy, gy = over.c * fx + over.d * fy;
-        m->next[i] = next, m->last[i] = last, bx[i] = gx, by[i] = gy;
+        m->next[i] = next, m->last[i] = last, m->bx[i] = gx, m->by[i] = gy;
     }
-    for (ptrdiff_t i = k - 2; i >= 0; i--) {
-        next = m->next[i];
+}
+
+/* Solve for node `middle`, where both eliminations meet, but for the bordering one. */
+MESHONET_INLINE void join(const March *m, ptrdiff_t middle, int closed)
+{
+    const ptrdiff_t low = middle - 1;
+    const Matrix one = {1.0, 0, 0, 1.0}, back = m->next[middle];
+    const Matrix over = inverse(difference(one, product(back, m->next[low])));
+    const double fx = m->bx[middle] - (back.a * m->bx[low] + back.b * m->by[low]);
+    const double fy = m->by[middle] - (back.c * m->bx[low] + back.d * m->by[low]);
+    m->bx[middle] = over.a * fx + over.b * fy, m->by[middle] = over.c * fx + over.d * fy;
+    if (closed)
+        m->last[middle] = product(over, difference(m->last[middle], product(back, m->last[low])));
+}
+
+/* Put in the nodes ahead, from that next to `from`, where they are known, to before `to`. */
+MESHONET_INLINE void substitute_closed(const March *m, ptrdiff_t from, ptrdiff_t to, const int step)
+{
+    double *restrict bx = m->bx, *restrict by = m->by, gx = bx[from], gy = by[from];
+    Matrix last = m->last[from];
+    for (ptrdiff_t i = from + step; i != to; i += step) {
+        const Matrix next = m->next[i];
         bx[i] -= next.a * gx + next.b * gy, by[i] -= next.c * gx + next.d * gy;
         gx = bx[i], gy = by[i];
         last = difference(m->last[i], product(next, last));
         m->last[i] = last;
     }
-    const double p = m->p[k], s = m->s[k], a = m->lower[k], c = m->upper[k];
-    const Matrix below = {-p - a, -s, -s, p - a}, above = {p - c, s, s, -p - c};
-    Matrix centre = {1.0 + a + c, 0, 0, 1.0 + a + c};
-    centre = difference(difference(centre, product(below, m->last[k - 1])), product(above, m->last[0]));
+}
+
+/* Add dr of a closed level to (x, y), giving (to_x, to_y), once the bordering node is known. */
+MESHONET_INLINE void add_closed(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
+                                Nodes own, double *restrict to_x, double *restrict to_y)
+{
+    const ptrdiff_t k = n - 1; /* the bordering node */
+    const double *restrict bx = m->bx, *restrict by = m->by;
+    const BlockRow row = block_row(m, k);
+    const Matrix below = row.below, above = row.above;
+    const Matrix centre = difference(difference(row.centre, product(below, m->last[k - 1])), product(above, m->last[0]));
     const double fx = m->rx[k] - (below.a * bx[k - 1] + below.b * by[k - 1]) - (above.a * bx[0] + above.b * by[0]);
     const double fy = m->ry[k] - (below.c * bx[k - 1] + below.d * by[k - 1]) - (above.c * bx[0] + above.d * by[0]);
     const Matrix over = inverse(centre);
     const double dx = over.a * fx + over.b * fy, dy = over.c * fx + over.d * fy;
-    for (ptrdiff_t i = 0; i < k; i++) {
+    const ptrdiff_t end = own.to < k ? own.to : k;
+    for (ptrdiff_t i = own.from; i < end; i++) {
         to_x[i] = x[i] + bx[i] - (m->last[i].a * dx + m->last[i].b * dy);
         to_y[i] = y[i] + by[i] - (m->last[i].c * dx + m->last[i].d * dy);
     }
-    to_x[k] = x[k] + dx, to_y[k] = y[k] + dy;
+    if (own.from <= k && own.to > k)
+        to_x[k] = x[k] + dx, to_y[k] = y[k] + dy;
 }
 
-/* The same for a level with two ends. */
-MESHONET_INLINE void solve_open(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
-                                const MarchEnds *ends, double *restrict to_x, double *restrict to_y)
+/* The same elimination for a level with two ends, from the one that moves along (ux, uy). */
+MESHONET_INLINE void eliminate_open(const March *m, ptrdiff_t from, ptrdiff_t to, const int step, double ux, double uy)
 {
-    double *restrict bx = m->bx, *restrict by = m->by;
-    const double fx = ends->first_x, fy = ends->first_y, lx = ends->last_x, ly = ends->last_y;
-    Matrix next = {-fx * fx, -fx * fy, -fx * fy, -fy * fy};
+    Matrix next = {-ux * ux, -ux * uy, -ux * uy, -uy * uy};
     double gx = 0, gy = 0;
-    m->next[0] = next, bx[0] = by[0] = 0;
-    for (ptrdiff_t i = 1; i < n - 1; i++) {
-        const double p = m->p[i], s = m->s[i], a = m->lower[i], c = m->upper[i];
-        const Matrix below = {-p - a, -s, -s, p - a}, above = {p - c, s, s, -p - c};
-        const Matrix centre = {1.0 + a + c, 0, 0, 1.0 + a + c};
-        const Matrix over = inverse(difference(centre, product(below, next)));
-        const double rx = m->rx[i] - below.a * gx - below.b * gy, ry = m->ry[i] - below.c * gx - below.d * gy;
-        next = product(over, above);
+    m->next[from] = next, m->bx[from] = m->by[from] = 0;
+    for (ptrdiff_t i = from + step; i != to; i += step) {
+        const BlockRow row = block_row(m, i);
+        const Matrix behind = step > 0 ? row.below : row.above, ahead = step > 0 ? row.above : row.below;
+        const Matrix over = inverse(difference(row.centre, product(behind, next)));
+        const double rx = m->rx[i] - behind.a * gx - behind.b * gy, ry = m->ry[i] - behind.c * gx - behind.d * gy;
+        next = product(over, ahead);
         gx = over.a * rx + over.b * ry, gy = over.c * rx + over.d * ry;
-        m->next[i] = next, bx[i] = gx, by[i] = gy;
+        m->next[i] = next, m->bx[i] = gx, m->by[i] = gy;
     }
-    /* d (d . dr) of the node before, which is g - next dr of the last one: along d that is one equation */
-    const double along = lx * gx + ly * gy;
+}
+
+/* dr of the last node is d (d . dr of the node before), which is g - next dr of the last one: along d one equation. */
+MESHONET_INLINE void close_end(const March *m, ptrdiff_t n, double lx, double ly)
+{
+    const Matrix next = m->next[n - 2];
+    const double along = lx * m->bx[n - 2] + ly * m->by[n - 2];
     const double share = lx * (next.a * lx + next.b * ly) + ly * (next.c * lx + next.d * ly);
-    gx = lx * along / (1.0 + share), gy = ly * along / (1.0 + share);
-    to_x[n - 1] = x[n - 1] + gx, to_y[n - 1] = y[n - 1] + gy;
-    for (ptrdiff_t i = n - 2; i >= 0; i--) {
-        next = m->next[i];
-        const double dx = bx[i] - (next.a * gx + next.b * gy), dy = by[i] - (next.c * gx + next.d * gy);
+    m->bx[n - 1] = lx * along / (1.0 + share), m->by[n - 1] = ly * along / (1.0 + share);
+}
+
+/* dr of the nodes from `from`, where it is known, to before `to`, added to (x, y). */
+MESHONET_INLINE void add_open(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t from,
+                              ptrdiff_t to, const int step, double *restrict to_x, double *restrict to_y)
+{
+    double gx = m->bx[from], gy = m->by[from];
+    for (ptrdiff_t i = from + step; i != to; i += step) {
+        const Matrix next = m->next[i];
+        const double dx = m->bx[i] - (next.a * gx + next.b * gy), dy = m->by[i] - (next.c * gx + next.d * gy);
         to_x[i] = x[i] + dx, to_y[i] = y[i] + dy;
         gx = dx, gy = dy;
     }
 }
 
-MESHONET_CLONES
-void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps, const double *widening,
-                      const double *ratios, const MarchEnds *ends, const MarchSettings *settings, double *scratch)
+/* A march that a team works on. */
+typedef struct {
+    double *x, *y;
+    ptrdiff_t n, levels;
+    const double *steps, *widening, *ratios;
+    const MarchEnds *ends;
+    const MarchSettings *settings;
+    March parts;
+} Task;
+
+/* A level solved for from its own block rows, by the first thread from below and by the last from above. */
+MESHONET_INLINE void solve_closed(const Task *t, Member member, Nodes own, double *x, double *y)
 {
-    const March m = parts(scratch, n);
+    const March *m = &t->parts;
+    const ptrdiff_t n = t->n, k = n - 1, middle = n < WIDE ? k : k / 2, known = middle < k ? middle : k - 1;
+    const int first = member.rank == 0, last = member.rank == member.size - 1;
+    if (first)
+        eliminate_closed(m, 0, middle, 1, k);
+    if (last && middle < k)
+        eliminate_closed(m, k - 1, middle - 1, -1, k);
+    team_wait(member);
+    if (first && middle < k)
+        join(m, middle, 1);
+    team_wait(member);
+    if (first)
+        substitute_closed(m, known, -1, -1);
+    if (last && middle < k)
+        substitute_closed(m, known, k, 1);
+    team_wait(member);
+    add_closed(m, x, y, n, own, x + n, y + n);
+}
+
+MESHONET_INLINE void solve_open(const Task *t, Member member, double *x, double *y)
+{
+    const March *m = &t->parts;
+    const MarchEnds *ends = t->ends;
+    const ptrdiff_t n = t->n, middle = n < WIDE ? n - 1 : n / 2;
+    const int first = member.rank == 0, last = member.rank == member.size - 1;
+    if (first)
+        eliminate_open(m, 0, middle, 1, ends->first_x, ends->first_y);
+    if (last && middle < n - 1)
+        eliminate_open(m, n - 1, middle - 1, -1, ends->last_x, ends->last_y);
+    team_wait(member);
+    if (first && middle < n - 1)
+        join(m, middle, 0);
+    else if (first)
+        close_end(m, n, ends->last_x, ends->last_y);
+    team_wait(member);
+    double *to_x = x + n, *to_y = y + n;
+    if (first) {
+        to_x[middle] = x[middle] + m->bx[middle], to_y[middle] = y[middle] + m->by[middle];
+        add_open(m, x, y, middle, -1, -1, to_x, to_y);
+    }
+    if (last && middle < n - 1)
+        add_open(m, x, y, middle, n, 1, to_x, to_y);
+}
+
+MESHONET_CLONES
+static void march(void *data, Member member)
+{
+    const Task *t = data;
+    const March m = t->parts;
+    const MarchSettings *settings = t->settings;
+    const ptrdiff_t n = t->n, levels = t->levels;
+    const int closed = t->ends == NULL;
+    double *x = t->x, *y = t->y;
     double height = 0.0;
+    Nodes own;
+    team_share(n, member, &own.from, &own.to);
     for (ptrdiff_t level = 0; level < levels; level++, x += n, y += n) {
+        const double step = t->steps[level];
         const ptrdiff_t risen = level + 1 < settings->rise ? level + 1 : settings->rise;
         const double growth = sqrt((double)risen / (double)levels);
-        const double opened = 1.0 - (double)level / (OPENED * (double)levels);
-        measure_level(&m, x, y, n, steps[level], ends == NULL);
-        widen(&m, n, widening, opened);
-        widen(&m, n, ratios, (double)level);
-        const double calm = fmin((double)level / (CALM * (double)levels), 1.0);
-        smooth_areas(&m, n, calm * (double)settings->sweeps, settings->volume, ends == NULL);
-        height += steps[level];
-        assemble(&m, n, level == 0, growth, settings->bend * steps[level] * height, settings);
-        if (ends)
-            solve_open(&m, x, y, n, ends, x + n, y + n);
+        measure_edges(&m, x, y, n, own, closed);
+        team_wait(member);
+        if (member.rank == 0) {
+            const double calm = fmin((double)level / (CALM * (double)levels), 1.0);
+            measure_areas(&m, n, step, closed);
+            widen(&m, n, t->widening, 1.0 - (double)level / (OPENED * (double)levels));
+            widen(&m, n, t->ratios, (double)level);
+            smooth_areas(&m, n, calm * (double)settings->sweeps, settings->volume, closed);
+        }
+        team_wait(member);
+        height += step;
+        assemble(&m, own, level == 0, growth, settings->bend * step * height, settings);
+        team_wait(member);
+        if (closed)
+            solve_closed(t, member, own, x, y);
         else
-            solve_closed(&m, x, y, n, x + n, y + n);
+            solve_open(t, member, x, y);
+        team_wait(member);
     }
+}
+
+void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps, const double *widening,
+                      const double *ratios, const MarchEnds *ends, const MarchSettings *settings, int threads,
+                      double *scratch)
+{
+    Task task = {x, y, n, levels, steps, widening, ratios, ends, settings, parts(scratch, n)};
+    team_run(n < WIDE ? 1 : threads, march, &task);
 }

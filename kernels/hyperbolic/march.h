@@ -22,6 +22,7 @@ size_t hyperbolic_scratch(ptrdiff_t n);
 
 /* March levels 1 .. levels of the planes x and y (levels + 1, n) from level 0; see march.c.
    `ends` is NULL for closed levels. `widening` (n) multiplies the steps, less and less from the wall on, `ratios` (n)
-   the ratio of one step to the one before; either may be NULL. */
+   the ratio of one step to the one before; either may be NULL. The result is the same for any number of threads. */
 void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps, const double *widening,
-                      const double *ratios, const MarchEnds *ends, const MarchSettings *settings, double *scratch);
+                      const double *ratios, const MarchEnds *ends, const MarchSettings *settings, int threads,
+                      double *scratch);

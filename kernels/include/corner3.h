@@ -9,10 +9,15 @@
    J = 0 and keeps a valid grid valid. The second term, 1 on right angles, is a power of the angles' squared
    sines' inverse. All of it needs the products of edges only; dJ/du = v × w, dS/du = 2 ((h + q) u - (u·v) v - (u·w) w).
 
+   Another energy wants cells that are cubes, 1 where u, v and w are as long and at right angles, infinite at J = 0:
+
+       E = (g + h + q) / (3 J^(2/3))
+
    Ivanenko, Charakch'yan, USSR Comput. Maths. Math. Phys. 28 (1988) 126-133; Garanzha, Comput. Maths. Math. Phys.
-   40 (2000) 1617-1637 (regularisation). */
+   40 (2000) 1617-1637 (regularisation); Knupp, SIAM J. Sci. Comput. 23 (2001) 193-218 (shape, the inverse mean ratio). */
 #pragma once
 #include "clones.h"
+#include "exponential.h"
 #include <math.h>
 
 typedef struct {
@@ -106,4 +111,26 @@ MESHONET_INLINE Stiffness3 stiffness3(Vector3 u, Vector3 v, Vector3 w, const Fac
     return (Stiffness3){by_s * (p.h + p.q) + by_t * p.h * p.q + by_jj * dot3(p.cu, p.cu),
                         by_s * (p.g + p.q) + by_t * p.g * p.q + by_jj * dot3(p.cv, p.cv),
                         by_s * (p.g + p.h) + by_t * p.g * p.h + by_jj * dot3(p.cw, p.cw)};
+}
+
+/* The energy of shapes at a point, times `weight`; nonsense where the Jacobian is not positive. */
+MESHONET_INLINE Corner3 shape3(Vector3 u, Vector3 v, Vector3 w, double weight)
+{
+    const Vector3 cu = cross3(v, w), cv = cross3(w, u), cw = cross3(u, v);
+    const double jacobian = dot3(u, cu), by = 2.0 / 3.0 * weight * exp_double(-2.0 / 3.0 * log_double(jacobian));
+    const double energy = 0.5 * by * (dot3(u, u) + dot3(v, v) + dot3(w, w));
+    const double by_j = -2.0 / 3.0 * energy / jacobian;
+    return (Corner3){{by * u.x + by_j * cu.x, by * u.y + by_j * cu.y, by * u.z + by_j * cu.z},
+                     {by * v.x + by_j * cv.x, by * v.y + by_j * cv.y, by * v.z + by_j * cv.z},
+                     {by * w.x + by_j * cw.x, by * w.y + by_j * cw.y, by * w.z + by_j * cw.z},
+                     energy, jacobian};
+}
+
+/* As stiffness3, of the energy of shapes. */
+MESHONET_INLINE Stiffness3 shape_stiffness3(Vector3 u, Vector3 v, Vector3 w, double weight)
+{
+    const Vector3 cu = cross3(v, w), cv = cross3(w, u), cw = cross3(u, v);
+    const double jacobian = dot3(u, cu), by = 2.0 / 3.0 * weight * exp_double(-2.0 / 3.0 * log_double(jacobian));
+    const double by_jj = 5.0 / 27.0 * by * (dot3(u, u) + dot3(v, v) + dot3(w, w)) / (jacobian * jacobian);
+    return (Stiffness3){by + by_jj * dot3(cu, cu), by + by_jj * dot3(cv, cv), by + by_jj * dot3(cw, cw)};
 }

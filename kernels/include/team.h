@@ -7,6 +7,7 @@
 #pragma once
 
 #include <stddef.h>
+#include <stdint.h>
 
 #ifndef _WIN32
 #include <pthread.h>
@@ -94,6 +95,18 @@ static inline void team_run(int threads, TeamWork work, void *data)
         pthread_join(others[k], NULL);
 }
 #endif
+
+/* Take the next `count` places of a table that all threads fill, in no order; returns the first of them. */
+static inline int64_t team_reserve(int64_t *held, int64_t count)
+{
+#ifdef _WIN32
+    int64_t before = *held;
+    *held += count;
+    return before;
+#else
+    return __atomic_fetch_add(held, count, __ATOMIC_RELAXED);
+#endif
+}
 
 /* First and last (excluded) of `count` things that are this thread's. */
 static inline void team_share(ptrdiff_t count, Member member, ptrdiff_t *first, ptrdiff_t *last)

@@ -8,7 +8,10 @@
    the line. With one end only  ln d_k = ln first + l (k - a). */
 #include "layers.h"
 #include "clones.h"
+#include "team.h"
 #include <math.h>
+
+#define TOGETHER 512 /* lines that one thread takes one after the other, so that laws begin from those before */
 
 /* A grid line as a curve: cubic Hermite pieces between its nodes, tangents those of parabolas through three nodes. */
 typedef struct {
@@ -185,14 +188,27 @@ static void reverse(const Line *line, const Line *back, ptrdiff_t nj)
     }
 }
 
+/* What a team samples anew, and the largest ratio of each thread. */
+typedef struct {
+    const double *x, *y;
+    ptrdiff_t ni, nj, NJ;
+    double *X, *Y, *scratch;
+    const Layers *layers;
+    double largest[TEAM_MOST];
+} Sampling;
+
+/* Lines `i` to before `end`, the law of each begun from that of the line before. */
 MESHONET_CLONES
-double layer_lines(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, double *X, double *Y, ptrdiff_t NJ,
-                   const Layers *layers, double *scratch)
+static double sample_lines(const Sampling *all, ptrdiff_t i, ptrdiff_t end, double *scratch)
 {
+    const ptrdiff_t nj = all->nj, NJ = all->NJ;
+    const Layers *layers = all->layers;
     const Line line = {scratch, scratch + nj, scratch + 2 * nj, scratch + 3 * nj, scratch + 4 * nj};
     double *s = scratch + 5 * nj, *steps = scratch + 10 * nj, log_ratio = 0.0, largest = 1.0;
     const Line back = {s, s + nj, s + 2 * nj, s + 3 * nj, s + 4 * nj};
-    for (ptrdiff_t i = 0; i < ni; i++, x += nj, y += nj, X += NJ, Y += NJ) {
+    for (; i < end; i++) {
+        const double *x = all->x + i * nj, *y = all->y + i * nj;
+        double *X = all->X + i * NJ, *Y = all->Y + i * NJ;
         measure_line(&line, x, y, nj);
         measure_end(&line, nj);
         reverse(&line, &back, nj);
@@ -217,20 +233,68 @@ double layer_lines(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj,
     return largest;
 }
 
+static void sample_share(void *data, Member member)
+{
+    Sampling *all = data;
+    ptrdiff_t first, last;
+    double largest = 1.0;
+    team_share((all->ni + TOGETHER - 1) / TOGETHER, member, &first, &last);
+    for (ptrdiff_t k = first; k < last; k++) {
+        const ptrdiff_t end = TOGETHER * (k + 1) < all->ni ? TOGETHER * (k + 1) : all->ni;
+        const double ratio = sample_lines(all, TOGETHER * k, end, all->scratch + member.rank * (10 * all->nj + all->NJ));
+        largest = ratio > largest ? ratio : largest;
+    }
+    all->largest[member.rank] = largest;
+}
+
+double layer_lines(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, double *X, double *Y, ptrdiff_t NJ,
+                   const Layers *layers, int threads, double *scratch)
+{
+    Sampling all = {x, y, ni, nj, NJ, X, Y, scratch, layers, {0.0}};
+    double largest = 1.0;
+    team_run(threads, sample_share, &all);
+    for (int k = 0; k < TEAM_MOST; k++)
+        largest = all.largest[k] > largest ? all.largest[k] : largest;
+    return largest;
+}
+
+/* What a team moves. */
+typedef struct {
+    double *x, *y, *scratch;
+    ptrdiff_t ni, nj;
+    const double *first, *fade;
+} Moving;
+
 /* The arc lengths A_j of a line become T_j = A_j (1 + (c - 1) fade_j), where c is found such that nodes 0 and 1 end up
    `first[i]` apart. */
 MESHONET_CLONES
-void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const double *first, const double *fade,
-                        double *scratch)
+static void move_lines(const Moving *all, ptrdiff_t start, ptrdiff_t end, double *scratch)
 {
+    const ptrdiff_t nj = all->nj;
     const Line line = {scratch, scratch + nj, scratch + 2 * nj, scratch + 3 * nj, scratch + 4 * nj};
-    for (ptrdiff_t i = 0; i < ni; i++, x += nj, y += nj) {
+    for (ptrdiff_t i = start; i < end; i++) {
+        double *x = all->x + i * nj, *y = all->y + i * nj;
         measure_line(&line, x, y, nj);
-        const double more = place_of_first(&line, first[i], nj) / line.arc[1] - 1.0;
+        const double more = place_of_first(&line, all->first[i], nj) / line.arc[1] - 1.0;
         ptrdiff_t k = 0;
         for (ptrdiff_t j = 1; j < nj - 1; j++) {
-            const double t = line.arc[j] * (1.0 + more * fade[j]);
+            const double t = line.arc[j] * (1.0 + more * all->fade[j]);
             point_at(&line, &k, t, nj, x + j, y + j);
         }
     }
+}
+
+static void move_share(void *data, Member member)
+{
+    const Moving *all = data;
+    ptrdiff_t first, last;
+    team_share(all->ni, member, &first, &last);
+    move_lines(all, first, last, all->scratch + member.rank * 5 * all->nj);
+}
+
+void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const double *first, const double *fade,
+                        int threads, double *scratch)
+{
+    Moving all = {x, y, scratch, ni, nj, first, fade};
+    team_run(threads, move_share, &all);
 }

@@ -5,9 +5,10 @@ cdef extern from "layers/layers.h":
     double c_layer_steps "layer_steps"(double *steps, ptrdiff_t cells, double length, const Layers *layers,
                                        double *log_ratio) nogil
     double c_layer_lines "layer_lines"(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, double *X,
-                                       double *Y, ptrdiff_t NJ, const Layers *layers, double *scratch) nogil
+                                       double *Y, ptrdiff_t NJ, const Layers *layers, int threads,
+                                       double *scratch) nogil
     void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const double *first, const double *fade,
-                            double *scratch) nogil
+                            int threads, double *scratch) nogil
 
 
 cdef Layers layers_of(ptrdiff_t cells, double first, double last, ptrdiff_t constant) except *:
@@ -27,7 +28,7 @@ def layer_steps(steps, double length, double first, double last, ptrdiff_t const
     return c_layer_steps(fills(steps, (cells,)), cells, length, &layers, &log_ratio)
 
 
-def layer_lines(x, y, X, Y, double first, double last, ptrdiff_t constant):
+def layer_lines(x, y, X, Y, double first, double last, ptrdiff_t constant, int threads=1):
     """Sample the lines of `x`, `y` (ni, nj) anew at the nodes of `X`, `Y` (ni, NJ); return the largest ratio of cells."""
     cdef double largest
     cdef ptrdiff_t ni, nj, NJ = X.shape[1]
@@ -37,14 +38,15 @@ def layer_lines(x, y, X, Y, double first, double last, ptrdiff_t constant):
     cdef Layers layers = layers_of(NJ - 1, first, last, constant)
     cdef Read px = reads(x, (ni, nj)), py = reads(y, (ni, nj))
     cdef Written to_x = fills(X, (ni, NJ)), to_y = fills(Y, (ni, NJ))
-    scratch = np.empty(10 * nj + NJ)
+    threads = min(max(threads, 1), 64)
+    scratch = np.empty(threads * (10 * nj + NJ))
     cdef Written room = fills(scratch, scratch.shape)
     with nogil:
-        largest = c_layer_lines(px, py, ni, nj, to_x, to_y, NJ, &layers, room)
+        largest = c_layer_lines(px, py, ni, nj, to_x, to_y, NJ, &layers, threads, room)
     return largest
 
 
-def redistribute(x, y, first, fade):
+def redistribute(x, y, first, fade, int threads=1):
     """Move the inner nodes of the lines i of `x` and `y` (ni, nj >= 3) so that first cells are `first` (ni) high.
 
     `fade` (nj) says how much of the relative change of node 1 each node takes part in.
@@ -55,7 +57,8 @@ def redistribute(x, y, first, fade):
         raise ValueError("lines of fewer than 3 nodes")
     cdef Written px = fills(x, (ni, nj)), py = fills(y, (ni, nj))
     cdef Read heights = reads(first, (ni,)), share = reads(fade, (nj,))
-    scratch = np.empty(5 * nj)
+    threads = min(max(threads, 1), 64)
+    scratch = np.empty(threads * 5 * nj)
     cdef Written room = fills(scratch, scratch.shape)
     with nogil:
-        redistribute_lines(px, py, ni, nj, heights, share, room)
+        redistribute_lines(px, py, ni, nj, heights, share, threads, room)

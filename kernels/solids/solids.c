@@ -111,17 +111,6 @@ static void measured_row(const SolidNodes *nodes, const SolidLines *lines, const
     solid_row(lines, lengths, own, beside, nodes->nk - 1, stride, out);
 }
 
-static int64_t reserved(int64_t *held, int64_t count)
-{
-#ifdef _WIN32
-    int64_t before = *held;
-    *held += count;
-    return before;
-#else
-    return __atomic_fetch_add(held, count, __ATOMIC_RELAXED);
-#endif
-}
-
 /* Rank a row of metric values against the brackets, and keep those inside. */
 static void catch_row(const SolidRun *run, ptrdiff_t chunk, ptrdiff_t metric, const double *row, ptrdiff_t cells,
                       double *room)
@@ -131,7 +120,7 @@ static void catch_row(const SolidRun *run, ptrdiff_t chunk, ptrdiff_t metric, co
         const ptrdiff_t n = values_catch(row, cells, run->brackets[2 * m], run->brackets[2 * m + 1], counts, room, cells);
         if (!n)
             continue;
-        const int64_t at = reserved(run->held + m, n);
+        const int64_t at = team_reserve(run->held + m, n);
         if (at + n <= run->room)
             memcpy(run->caught + m * run->room + at, room, (size_t)n * sizeof(double));
     }

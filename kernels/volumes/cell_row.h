@@ -1,6 +1,9 @@
-/* One row of cells of a volume: the functional's terms at the eight corners of each, and forces on its nodes. */
+/* One row of cells of a volume: the functional's terms at the eight corners of each, and forces on its nodes. The energy
+   of shapes (power SHAPES) is also taken at the eight points of Gauss' rule, which weigh most: so it is nearly the
+   integral over the cell of its trilinear map, and still infinite where a corner's Jacobian is 0. */
 #pragma once
 #include "corner3.h"
+#include "energy.h"
 
 /* Rows of nodes around a row of cells: (i, j), (i, j+1), (i+1, j), (i+1, j+1), of planes of coordinates `nodes` apart. */
 typedef struct {
@@ -15,14 +18,97 @@ MESHONET_INLINE Vector3 edge3(const double *from, const double *to, ptrdiff_t no
     return (Vector3){over * (to[0] - from[0]), over * (to[nodes] - from[nodes]), over * (to[2 * nodes] - from[2 * nodes])};
 }
 
-MESHONET_INLINE Vector3 sum3(Vector3 a, Vector3 b, double factor)
+MESHONET_INLINE Vector3 sum3(Vector3 a, Vector3 b)
 {
-    return (Vector3){factor * (a.x + b.x), factor * (a.y + b.y), factor * (a.z + b.z)};
+    return (Vector3){a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
 MESHONET_INLINE double lower(double a, double b)
 {
     return a < b ? a : b;
+}
+
+#define AT_CORNERS 0.015 /* weight of the corners there: a barrier */
+
+/* The twelve edges of a cell, or forces on them: u by (dj, dk), v by (di, dk), w by (di, dj). */
+typedef struct {
+    Vector3 u00, u10, u01, u11, v00, v10, v01, v11, w00, w10, w01, w11;
+} Edges3;
+
+MESHONET_INLINE Corner3 term3(Vector3 u, Vector3 v, Vector3 w, const Factors3 *f, const int power, const int regular)
+{
+    return power == SHAPES ? shape3(u, v, w, f->angle) : corner3(u, v, w, f, power, regular);
+}
+
+/* The terms of the eight points whose edges these are; their derivatives by the edges, and the smallest Jacobian. */
+MESHONET_INLINE double eight_terms(const Edges3 *e, const Factors3 *f, Edges3 *by, double *low, const int power,
+                                   const int regular)
+{
+    const Corner3 c000 = term3(e->u00, e->v00, e->w00, f, power, regular);
+    const Corner3 c100 = term3(e->u00, e->v10, e->w10, f, power, regular);
+    const Corner3 c010 = term3(e->u10, e->v00, e->w01, f, power, regular);
+    const Corner3 c110 = term3(e->u10, e->v10, e->w11, f, power, regular);
+    const Corner3 c001 = term3(e->u01, e->v01, e->w00, f, power, regular);
+    const Corner3 c101 = term3(e->u01, e->v11, e->w10, f, power, regular);
+    const Corner3 c011 = term3(e->u11, e->v01, e->w01, f, power, regular);
+    const Corner3 c111 = term3(e->u11, e->v11, e->w11, f, power, regular);
+    const double l0 = lower(lower(c000.jacobian, c100.jacobian), lower(c010.jacobian, c110.jacobian));
+    const double l1 = lower(lower(c001.jacobian, c101.jacobian), lower(c011.jacobian, c111.jacobian));
+    *low = lower(l0, l1);
+    by->u00 = sum3(c000.du, c100.du), by->u10 = sum3(c010.du, c110.du);
+    by->u01 = sum3(c001.du, c101.du), by->u11 = sum3(c011.du, c111.du);
+    by->v00 = sum3(c000.dv, c010.dv), by->v10 = sum3(c100.dv, c110.dv);
+    by->v01 = sum3(c001.dv, c011.dv), by->v11 = sum3(c101.dv, c111.dv);
+    by->w00 = sum3(c000.dw, c001.dw), by->w01 = sum3(c010.dw, c011.dw);
+    by->w10 = sum3(c100.dw, c101.dw), by->w11 = sum3(c110.dw, c111.dw);
+    return ((c000.energy + c100.energy) + (c010.energy + c110.energy)) +
+           ((c001.energy + c101.energy) + (c011.energy + c111.energy));
+}
+
+/* Of the share `near` from a point itself and the rest from its neighbour, along two directions. */
+MESHONET_INLINE Vector3 blend(Vector3 own, Vector3 one, Vector3 two, Vector3 both)
+{
+    const double near = 0.78867513459481288225, far = 1.0 - near; /* (1 + 1/sqrt(3)) / 2 */
+    const double p = near * near, q = near * far, r = far * far;
+    return (Vector3){p * own.x + q * (one.x + two.x) + r * both.x, p * own.y + q * (one.y + two.y) + r * both.y,
+                     p * own.z + q * (one.z + two.z) + r * both.z};
+}
+
+/* The edges at the points of Gauss' rule; and its own transpose. */
+MESHONET_INLINE Edges3 at_gauss(const Edges3 *e)
+{
+    return (Edges3){
+        blend(e->u00, e->u10, e->u01, e->u11), blend(e->u10, e->u00, e->u11, e->u01),
+        blend(e->u01, e->u11, e->u00, e->u10), blend(e->u11, e->u01, e->u10, e->u00),
+        blend(e->v00, e->v10, e->v01, e->v11), blend(e->v10, e->v00, e->v11, e->v01),
+        blend(e->v01, e->v11, e->v00, e->v10), blend(e->v11, e->v01, e->v10, e->v00),
+        blend(e->w00, e->w10, e->w01, e->w11), blend(e->w10, e->w00, e->w11, e->w01),
+        blend(e->w01, e->w11, e->w00, e->w10), blend(e->w11, e->w01, e->w10, e->w00),
+    };
+}
+
+MESHONET_INLINE Edges3 added(const Edges3 *a, const Edges3 *b)
+{
+    return (Edges3){sum3(a->u00, b->u00), sum3(a->u10, b->u10), sum3(a->u01, b->u01), sum3(a->u11, b->u11),
+                    sum3(a->v00, b->v00), sum3(a->v10, b->v10), sum3(a->v01, b->v01), sum3(a->v11, b->v11),
+                    sum3(a->w00, b->w00), sum3(a->w10, b->w10), sum3(a->w01, b->w01), sum3(a->w11, b->w11)};
+}
+
+/* The functional of a cell from its edges, as eight_terms. */
+MESHONET_INLINE double cell_terms(const Edges3 *e, const Factors3 *f, Edges3 *by, double *low, const int power,
+                                  const int regular)
+{
+    if (power != SHAPES)
+        return eight_terms(e, f, by, low, power, regular);
+    const Factors3 corners = {.angle = AT_CORNERS * f->angle}, inside = {.angle = (1.0 - AT_CORNERS) * f->angle};
+    const Edges3 inner = at_gauss(e);
+    Edges3 first, second;
+    double least;
+    const double energy = eight_terms(e, &corners, &first, low, SHAPES, 0);
+    const double more = eight_terms(&inner, &inside, &second, &least, SHAPES, 0);
+    *low = lower(*low, least), second = at_gauss(&second);
+    *by = added(&first, &second);
+    return energy + more;
 }
 
 /* `forces` (8, 3, width): on the nodes of cell k at [di][dj][dk], its rows k; `least` (width): smallest Jacobians.
@@ -37,42 +123,27 @@ MESHONET_INLINE double cell_row3(const CellRow3 *row, double *restrict forces, d
     double energy = 0.0;
     MESHONET_INDEPENDENT
     for (ptrdiff_t k = 0; k < row->cells; k++) {
-        const Vector3 u00 = edge3(a + k, c + k, n, o1), u10 = edge3(b + k, d + k, n, o1); /* by dj, dk */
-        const Vector3 u01 = edge3(a + k + 1, c + k + 1, n, o1), u11 = edge3(b + k + 1, d + k + 1, n, o1);
-        const Vector3 v00 = edge3(a + k, b + k, n, o2), v10 = edge3(c + k, d + k, n, o2); /* by di, dk */
-        const Vector3 v01 = edge3(a + k + 1, b + k + 1, n, o2), v11 = edge3(c + k + 1, d + k + 1, n, o2);
-        const Vector3 w00 = edge3(a + k, a + k + 1, n, o3), w01 = edge3(b + k, b + k + 1, n, o3); /* by di, dj */
-        const Vector3 w10 = edge3(c + k, c + k + 1, n, o3), w11 = edge3(d + k, d + k + 1, n, o3);
-        const Corner3 c000 = corner3(u00, v00, w00, &f, power, regular);
-        const Corner3 c100 = corner3(u00, v10, w10, &f, power, regular);
-        const Corner3 c010 = corner3(u10, v00, w01, &f, power, regular);
-        const Corner3 c110 = corner3(u10, v10, w11, &f, power, regular);
-        const Corner3 c001 = corner3(u01, v01, w00, &f, power, regular);
-        const Corner3 c101 = corner3(u01, v11, w10, &f, power, regular);
-        const Corner3 c011 = corner3(u11, v01, w01, &f, power, regular);
-        const Corner3 c111 = corner3(u11, v11, w11, &f, power, regular);
-        energy += ((c000.energy + c100.energy) + (c010.energy + c110.energy)) +
-                  ((c001.energy + c101.energy) + (c011.energy + c111.energy));
-        const double l0 = lower(lower(c000.jacobian, c100.jacobian), lower(c010.jacobian, c110.jacobian));
-        const double l1 = lower(lower(c001.jacobian, c101.jacobian), lower(c011.jacobian, c111.jacobian));
-        least[k] = lower(l0, l1);
-        const Vector3 fu00 = sum3(c000.du, c100.du, o1), fu10 = sum3(c010.du, c110.du, o1);
-        const Vector3 fu01 = sum3(c001.du, c101.du, o1), fu11 = sum3(c011.du, c111.du, o1);
-        const Vector3 fv00 = sum3(c000.dv, c010.dv, o2), fv10 = sum3(c100.dv, c110.dv, o2);
-        const Vector3 fv01 = sum3(c001.dv, c011.dv, o2), fv11 = sum3(c101.dv, c111.dv, o2);
-        const Vector3 fw00 = sum3(c000.dw, c001.dw, o3), fw01 = sum3(c010.dw, c011.dw, o3);
-        const Vector3 fw10 = sum3(c100.dw, c101.dw, o3), fw11 = sum3(c110.dw, c111.dw, o3);
+        const Edges3 edges = {
+            edge3(a + k, c + k, n, o1), edge3(b + k, d + k, n, o1),
+            edge3(a + k + 1, c + k + 1, n, o1), edge3(b + k + 1, d + k + 1, n, o1),
+            edge3(a + k, b + k, n, o2), edge3(c + k, d + k, n, o2),
+            edge3(a + k + 1, b + k + 1, n, o2), edge3(c + k + 1, d + k + 1, n, o2),
+            edge3(a + k, a + k + 1, n, o3), edge3(c + k, c + k + 1, n, o3),
+            edge3(b + k, b + k + 1, n, o3), edge3(d + k, d + k + 1, n, o3),
+        };
+        Edges3 by;
+        energy += cell_terms(&edges, &f, &by, least + k, power, regular);
 #define PUT(node, expression)                                                                                           \
     forces[(3 * (node)) * width + k] = (expression(x)), forces[(3 * (node) + 1) * width + k] = (expression(y)),          \
                               forces[(3 * (node) + 2) * width + k] = (expression(z))
-#define AT_000(t) -fu00.t - fv00.t - fw00.t
-#define AT_001(t) -fu01.t - fv01.t + fw00.t
-#define AT_010(t) -fu10.t + fv00.t - fw01.t
-#define AT_011(t) -fu11.t + fv01.t + fw01.t
-#define AT_100(t) fu00.t - fv10.t - fw10.t
-#define AT_101(t) fu01.t - fv11.t + fw10.t
-#define AT_110(t) fu10.t + fv10.t - fw11.t
-#define AT_111(t) fu11.t + fv11.t + fw11.t
+#define AT_000(t) -o1 * by.u00.t - o2 * by.v00.t - o3 * by.w00.t
+#define AT_001(t) -o1 * by.u01.t - o2 * by.v01.t + o3 * by.w00.t
+#define AT_010(t) -o1 * by.u10.t + o2 * by.v00.t - o3 * by.w01.t
+#define AT_011(t) -o1 * by.u11.t + o2 * by.v01.t + o3 * by.w01.t
+#define AT_100(t) o1 * by.u00.t - o2 * by.v10.t - o3 * by.w10.t
+#define AT_101(t) o1 * by.u01.t - o2 * by.v11.t + o3 * by.w10.t
+#define AT_110(t) o1 * by.u10.t + o2 * by.v10.t - o3 * by.w11.t
+#define AT_111(t) o1 * by.u11.t + o2 * by.v11.t + o3 * by.w11.t
         PUT(0, AT_000), PUT(1, AT_001), PUT(2, AT_010), PUT(3, AT_011);
         PUT(4, AT_100), PUT(5, AT_101), PUT(6, AT_110), PUT(7, AT_111);
     }
@@ -101,7 +172,9 @@ MESHONET_INLINE void stiffness_row3(const CellRow3 *row, double *restrict parts,
                 MESHONET_INDEPENDENT
                 for (ptrdiff_t k = 0; k < row->cells; k++) {
                     const Vector3 u = edge3(a + k, b + k, n, o1), v = edge3(c + k, d + k, n, o2);
-                    const Stiffness3 s = stiffness3(u, v, edge3(e + k, e + k + 1, n, o3), &f, power, regular);
+                    const Vector3 w = edge3(e + k, e + k + 1, n, o3);
+                    const Stiffness3 s = power == SHAPES ? shape_stiffness3(u, v, w, f.angle)
+                                                         : stiffness3(u, v, w, &f, power, regular);
                     const double uu = o1 * o1 * s.uu, vv = o2 * o2 * s.vv, ww = o3 * o3 * s.ww;
                     here[k] += uu + vv + ww, along[k] += uu, across[k] += vv, up[k] += ww;
                 }

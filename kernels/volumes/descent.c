@@ -216,7 +216,7 @@ void descent3_renew(Descent3 *d)
     double diagonal = 0.0;
     volume_stiffness(f, d->x, d->g, d->room);
     for (int e = 0; e < 3; e++)
-        diagonal += 12.0 * f->over[e] * f->over[e];
+        diagonal += (f->power == SHAPES ? 2.0 : 12.0) * f->over[e] * f->over[e];
     diagonal /= (double)(f->n1 - 1) * (double)(f->n2 - 1) * (double)(f->n3 - 1);
     for (ptrdiff_t i = 0; i < d->m[0]; i++)
         for (ptrdiff_t j = 0; j < d->m[1]; j++)

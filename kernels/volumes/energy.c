@@ -53,7 +53,9 @@ static void one_row(const Task *t, const CellRow3 *row, double *room, double *en
     const ptrdiff_t width = row_width(f);
     double low = INFINITY, *lowest = room + FORCES * width;
     if (t->stiffness) {
-        if (f->epsilon > 0.0)
+        if (f->power == SHAPES)
+            stiffness_row3(row, room, width, SHAPES, 0);
+        else if (f->epsilon > 0.0)
             stiffness_row3(row, room, width, 1, 1);
         else if (f->power == 1)
             stiffness_row3(row, room, width, 1, 0);
@@ -61,7 +63,9 @@ static void one_row(const Task *t, const CellRow3 *row, double *room, double *en
             stiffness_row3(row, room, width, 2, 0);
         return;
     }
-    if (f->epsilon > 0.0)
+    if (f->power == SHAPES)
+        *energy = cell_row3(row, room, lowest, width, SHAPES, 0);
+    else if (f->epsilon > 0.0)
         *energy = cell_row3(row, room, lowest, width, 1, 1);
     else if (f->power == 1)
         *energy = cell_row3(row, room, lowest, width, 1, 0);

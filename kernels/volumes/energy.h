@@ -1,6 +1,8 @@
 #pragma once
 #include <stddef.h>
 
+enum { SHAPES = 0 }; /* the power that stands for the energy of shapes: see corner3.h */
+
 /* The functional of a volume's nodes (n1, n2, n3), k contiguous. */
 typedef struct {
     ptrdiff_t n1, n2, n3;
@@ -8,7 +10,7 @@ typedef struct {
     double shape;      /* w, from 0 (Winslow's functional) to 1 (angles only) */
     double smoothness; /* β */
     double epsilon;    /* of the regularisation; 0: the barrier */
-    int power;         /* p, 1 or 2; 1 with a regularisation */
+    int power;         /* p, 1 or 2, 1 with a regularisation; or SHAPES, with w 1 and without one */
     int threads;
 } Functional3;
 

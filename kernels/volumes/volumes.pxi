@@ -91,7 +91,7 @@ cdef Functional3 functional3(tuple counts, tuple over, tuple weights, double eps
     f.over[0], f.over[1], f.over[2] = over
     f.shape, f.smoothness, f.power = weights
     f.epsilon, f.threads = epsilon, min(max(threads, 1), 64)
-    if min(counts) < 3 or f.power < 1 or f.power > (1 if epsilon > 0.0 else 2):
+    if min(counts) < 3 or f.power < (1 if epsilon > 0.0 else 0) or f.power > (1 if epsilon > 0.0 else 2):
         raise ValueError("a functional of no inner nodes, or of another power")
     return f
 

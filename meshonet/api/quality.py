@@ -6,11 +6,13 @@ from meshonet.api.files import only
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.report import QualityReport, quality_report
+from meshonet.geometry.threads import limited_to
 
 
 def quality(
-    grid: Grid | str | Path, *, profile: str | None = None, compare: Grid | str | Path | None = None
-) -> QualityReport:
+    grid: Grid | str | Path, *, profile: str | None = None, compare: Grid | str | Path | None = None,
+    threads: int | None = None,
+) -> QualityReport:  # fmt: skip
     """Measure a grid: folded cells, angles, skewness, walls, growth.
 
     Parameters
@@ -18,9 +20,10 @@ def quality(
     grid : a grid, or a file that holds one.
     profile : thresholds to judge by: ``openfoam``, ``pointwise``, ``verdict`` or ``viscous``.
     compare : reference grid of the same size, or a file that holds one.
+    threads : that work on it, with the same result for any number; None: as many as there are cores.
 
     Raises InputError: a file that cannot be read or holds several grids, a reference of another size, an
-    unknown profile.
+    unknown profile, no threads.
 
     >>> import numpy as np
     >>> x, y = np.meshgrid(np.linspace(0, 2, 5), np.linspace(0, 1, 3), indexing="ij")
@@ -30,7 +33,8 @@ def quality(
     """
     grid = single_grid(grid)
     reference = None if compare is None else single_grid(compare)
-    return quality_report(grid, profile, reference)
+    with limited_to(threads):
+        return quality_report(grid, profile, reference)
 
 
 def single_grid(grid: Grid | str | Path) -> Grid:

@@ -25,7 +25,7 @@ def quality(
     profile: Annotated[Literal["openfoam", "pointwise", "verdict", "viscous"] | None, _check(
         "--profile", metavar="openfoam|pointwise|verdict|viscous",
         help="Judge by the thresholds of other programs: prints each with its figure and pass, warning or "
-        "FAIL, and exits with 1 when one fails. See docs/quality.md.",
+        "FAIL, and exits with 1 when one fails. See docs/reference/quality.md.",
     )] = None,
     plot: Annotated[str | None, _output(
         "--plot", metavar="F.png", help="Draw the grid, coloured by max_angle.",
@@ -47,14 +47,17 @@ def quality(
         "--summary", help="One table (or JSON object) over all grids, a row each.",
     )] = False,
     from_format: o.From = None,
+    threads: o.Threads = None,
 ) -> int:
     """Measure grids: folded cells, angles, skewness."""
+    from meshonet.geometry.threads import limited_to
     from meshonet_cli.quality_batch import measure_grids
 
     o.only_with("compare", compare is not None, pair=pair)
-    return measure_grids(
-        many.of(grid, grids=True), printing.session(),
-        fmt=from_format, fail_on=fail_on, profile=profile, compare=compare, pairing=pair or "auto",
-        summary=summary, plot=plot, per_cell=per_cell,
-    )
+    with limited_to(threads):
+        return measure_grids(
+            many.of(grid, grids=True), printing.session(),
+            fmt=from_format, fail_on=fail_on, profile=profile, compare=compare, pairing=pair or "auto",
+            summary=summary, plot=plot, per_cell=per_cell,
+        )
 # fmt: on

@@ -15,6 +15,7 @@ EXAMPLES = (
     "meshonet solve-pde duct.csv --method variational --res 129 -o best.vts",
     "meshonet solve-pde duct.csv --method steger-sorenson --spacing-south 1e-3 -o upright.vts",
     "meshonet solve-pde duct.csv --res 200x80 --first-cell 1e-4 --slide -o channel.vts",
+    "meshonet solve-pde box.xyz --method variational --energy shape -o cubes.vts",
     "meshonet solve-pde airfoil.dat --res 250x100 --y-plus 1 --reynolds 6e6 -o viscous.vts",
 )
 

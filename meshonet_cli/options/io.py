@@ -37,6 +37,11 @@ To = Annotated[str | None, _option(
 SkipExisting = Annotated[bool, _option(
     "--skip-existing", help="Skip inputs whose output file, or part of a dataset, exists already.",
 )]
+Threads = Annotated[int | None, _option(
+    "--threads", metavar="N", min=1, max=64,
+    help="Threads that work on one large grid; the result is the same for any number. [default: all cores, "
+    "divided among --jobs]",
+)]
 AsJson = Annotated[bool, _option("--json", help="Print one JSON object on standard output for each result.")]
 PartSize = Annotated[int | None, _option(
     "--part-size", metavar="N", min=1, max=1_000_000,

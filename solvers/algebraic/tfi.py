@@ -22,6 +22,7 @@ from meshonet.geometry.arrays import Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import tfi as fill
 from meshonet.solvers.solution import Solution
 
@@ -66,7 +67,7 @@ def interpolate(x: Floats, y: Floats, edges: Four, along: Four) -> None:
     """Fill `x` and `y` (ni, nj) from `edges` (south, north, west, east) with parameters `along` them."""
     south, north, west, east = (np.ascontiguousarray(edge.T) for edge in edges)
     xs, ys = ((south[k], north[k], west[k], east[k]) for k in (0, 1))
-    fill(x, y, xs, ys, along)
+    fill(x, y, xs, ys, along, threads_for(x.size))
 
 
 def arc_length_fraction(points: Floats) -> Floats:

@@ -19,6 +19,7 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats, read_only
 from meshonet.geometry.conformal.lift import Lift
 from meshonet.geometry.polygon.mirror import Axis
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import strip_rows
 from meshonet.solvers.conformal.chebyshev import NODES, panels
 from meshonet.solvers.conformal.nufft import SHARPNESS, columns
@@ -81,7 +82,9 @@ class StripGrid:
             order = np.stack([half, -half % n], axis=1).ravel()
         sums = list(self._columns(eta, len(eta) - len(far)))
         x, y = out[..., 0], out[..., 1]
-        finite = strip_rows(x, y, order, lift, sums, SHARPNESS, along, across, matrix, cuts, begin, axis)
+        finite = strip_rows(
+            x, y, order, lift, sums, SHARPNESS, along, across, matrix, cuts, begin, axis, threads_for(x.size)
+        )
         out[-1, 1:-1] = out[0, 1:-1]
         return finite
 

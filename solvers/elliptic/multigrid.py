@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, planar_nodes
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import MultigridLevel, multigrid_scratch
 from meshonet.solvers.algebraic.tfi import Four, interpolate, parameters
 from meshonet.solvers.elliptic.coarsening import Direction, uniform
@@ -49,13 +50,15 @@ class Multigrid:
         along = parameters(edges, "arclength")
         xi = uniform(nodes.shape[0], periodic)
         eta = uniform(nodes.shape[1], False)
-        scratch = np.empty(multigrid_scratch(xi.cells, eta.cells))
+        threads = threads_for(nodes[..., 0].size)
+        scratch = np.empty(multigrid_scratch(xi.cells, eta.cells, threads))
         while True:
             if self.levels:
                 nodes = planar_nodes(xi.cells + 1, eta.cells + 1)
             planes = nodes[..., 0], nodes[..., 1]
             coarse = bool(self.levels)
-            level = MultigridLevel(*planes, xi.differences, eta.differences, periodic, scratch, coarse)
+            weights, threads = (xi.differences, eta.differences), threads_for(planes[0].size)
+            level = MultigridLevel(*planes, *weights, periodic, scratch, coarse, threads)
             self.levels.append(level)
             self._patches.append(patches(level, xi, eta, corners, scratch))
             self._edges.append(edges)

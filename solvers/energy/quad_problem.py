@@ -149,8 +149,8 @@ class Problem:
             ends = np.sort(partner[edges[twins]], axis=1)
             keys = edges[:, 0] * n + edges[:, 1]
             at = np.minimum(np.searchsorted(keys, ends[:, 0] * n + ends[:, 1]), len(keys) - 1)
-            found = (edges[at] == ends).all(axis=1)
-            edge[twins[found]] = at[found]
+            exists = (edges[at] == ends).all(axis=1)
+            edge[twins[exists]] = at[exists]
         line, pairs = line_neighbours(np.ascontiguousarray(mesh.quads), mesh.edge_of, node, edge)
         still = np.asarray(~self.moves[edges].any(axis=1))
         if still.any():

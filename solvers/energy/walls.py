@@ -96,7 +96,7 @@ def _once_around(arc: Floats, edges: Indices, length: Floats, following: Indices
 
 def _chains(edges: Indices, following: Indices, starts: Indices, ends: Bools) -> list[list[int]]:
     """Return the edges in chains, from nodes `starts` and then from others, up to those that are `ends`."""
-    seen, found = np.zeros(len(edges), dtype=bool), []
+    seen, chains = np.zeros(len(edges), dtype=bool), []
     for start in [*starts.tolist(), *edges[:, 0].tolist()]:
         k, chain = int(following[start]), []
         while k >= 0 and not seen[k]:
@@ -104,8 +104,8 @@ def _chains(edges: Indices, following: Indices, starts: Indices, ends: Bools) ->
             chain.append(k)
             k = -1 if ends[edges[k, 1]] else int(following[edges[k, 1]])
         if chain:
-            found.append(chain)
-    return found
+            chains.append(chain)
+    return chains
 
 
 def _spread(arc: Floats, chain: Indices, length: float, ends: bool) -> None:

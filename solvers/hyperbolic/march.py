@@ -22,6 +22,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import hyperbolic_march, redistribute
 from meshonet.solvers.hyperbolic.front import Front, distance_to_march
 from meshonet.solvers.hyperbolic.level_spacing import level_steps
@@ -134,11 +135,12 @@ def _marched(
         settings.sweeps,
         round(RISING * cells),
     )
+    threads = threads_for(levels[0].size)
     edge = front.edge if even else None
     distance = distance_to_march(front, first, cells, settings, constant, edge)
     for _ in range(4):
         steps = level_steps(first, distance, cells, constant, edge)
-        hyperbolic_march(levels[0], levels[1], steps, *knobs, front.ends, front.widening)
+        hyperbolic_march(levels[0], levels[1], steps, *knobs, front.ends, front.widening, None, threads)
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None
@@ -158,7 +160,7 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
     rate = math.log(steps[-1] / steps[-2]) if rows > 2 else 1.0
     fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(FADE_ROWS, 1.5 / max(rate, 1e-3)))
     if rows > 2:
-        redistribute(nodes[..., 0], nodes[..., 1], heights, fade)
+        redistribute(nodes[..., 0], nodes[..., 1], heights, fade, threads_for(nodes[..., 0].size))
 
 
 def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:

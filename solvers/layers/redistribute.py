@@ -22,6 +22,7 @@ from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.growth import LARGEST
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import layer_lines, redistribute
 from meshonet.solvers.elliptic.wall_lines import first_heights, lines_off
 from meshonet.solvers.layers.first_cells import (
@@ -91,7 +92,7 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Flo
     planar = as_planar(nodes)
     ends = heights.south, heights.north
     planes = planar[..., 0], planar[..., 1], out[..., 0], out[..., 1]
-    ratio = layer_lines(*planes, *ends, heights.constant)
+    ratio = layer_lines(*planes, *ends, heights.constant, threads_for(planes[2].size))
     _check_ratio(ratio, count, longest, ends, heights)
     if boundary.periodic:
         out[-1] = out[0]
@@ -178,7 +179,7 @@ def _correct(nodes: Floats, side: str, height: float) -> None:
         fade = (away == 0.0).astype(np.float64)
     else:  # nothing from the middle on: the other wall's cells are thin against the arc length there
         fade = np.exp(-np.maximum(away, 0.0) / FADE_NODES) * np.clip(1.0 - 2.0 * away / count, 0.0, 1.0)
-    redistribute(*planes, np.full(len(view), height), fade)
+    redistribute(*planes, np.full(len(view), height), fade, threads_for(planes[0].size))
     view[..., 0], view[..., 1] = planes
 
 

@@ -51,8 +51,8 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
 
 def smooths(shape: DomainShape, request: GridRequest) -> bool:
     """Say whether a request is to smooth the blocks of a grid that was given: it asks for no others."""
-    asked = request.asks_for_blocks or request.sampling.ni or request.at_walls
-    return shape.given is not None and request.method in SMOOTHERS and not asked
+    new_blocks = request.asks_for_blocks or request.sampling.ni or request.at_walls
+    return shape.given is not None and request.method in SMOOTHERS and not new_blocks
 
 
 def smoothed(grid: Grid, request: GridRequest) -> Solution:

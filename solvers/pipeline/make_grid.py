@@ -28,6 +28,7 @@ from meshonet.solvers.solution import Outcome, Solution
 
 if TYPE_CHECKING:
     from meshonet.geometry.shapes.domain_shape import DomainShape
+    from meshonet.solvers.stacking.request import StackRequest
 
 MOST_TOGETHER = 64  # shapes that are solved together at the most
 MOST_NODES = 1 << 22  # nodes of grids from which no more are solved together: some hundred MB
@@ -91,7 +92,8 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     method = request.solver()
     shapes = iter(shapes)
     while group := _group(shapes, request, MOST_TOGETHER if method.together else 1):
-        _solve_together(group, method)
+        with limited_to(request.threads):
+            _solve_together(group, method)
         while group:
             yield _finished_or_error(group.popleft(), method, request)
 
@@ -209,22 +211,14 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
     if shape.given is not None and smooths(shape, request):
         solution = smoothed(shape.given, request)
         seconds |= {"load": time.perf_counter() - begun - solution.seconds["grid"], **solution.seconds}
-        begun = time.perf_counter()
-        quality = measure(solution.grid, percentiles=request.percentiles)
-        seconds["quality"] = time.perf_counter() - begun
-        return Result(solution, quality, seconds, (*shape.notes, *solution.notes))
+        solution = replace(solution, notes=(*shape.notes, *solution.notes))
+        return judged(solution, seconds, request, remedy="")
     from meshonet.solvers.blocking.make import make_blocks
 
     loaded = time.perf_counter()
     solution = make_blocks(shape, block_request(request))
     seconds |= {"load": loaded - begun, **solution.seconds}
-    begun = time.perf_counter()
-    quality = measure(solution.grid, percentiles=request.percentiles)
-    seconds["quality"] = time.perf_counter() - begun
-    if quality.folded and not request.allow_invalid:
-        problem = f"{quality.folded} of {quality.cells} cells of the blocks are folded; use more {{cells}}"
-        raise NoValidGridError(problem, worst_cells_of(solution.grid))
-    return Result(solution, quality, seconds, solution.notes)
+    return judged(solution, seconds, request, remedy="use more {cells}")
 
 
 def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, float]) -> Result:
@@ -232,23 +226,20 @@ def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, flo
     begun = time.perf_counter()
     solution = make_volume(shape, request)
     _add_times(seconds, solution, time.perf_counter() - begun)
-    return judged(
-        solution, seconds, percentiles=request.percentiles, allow_invalid=request.allow_invalid,
-        remedy=_OTHER_METHODS,
-    )  # fmt: skip
+    return judged(solution, seconds, request, remedy=_OTHER_METHODS)
 
 
 def judged(
-    solution: Solution, seconds: dict[str, float], *, percentiles: bool, allow_invalid: bool, remedy: str
+    solution: Solution, seconds: dict[str, float], request: GridRequest | StackRequest, *, remedy: str
 ) -> Result:
     """Return a solution with its quality, whose time is added to `seconds` by stage.
 
     Raises NoValidGridError: cells are folded, which is not allowed; `remedy` says what to try.
     """
     begun = time.perf_counter()
-    quality = measure(solution.grid, percentiles=percentiles)
+    quality = measure(solution.grid, percentiles=request.percentiles)
     seconds["quality"] = time.perf_counter() - begun
-    if quality.folded and not allow_invalid:
+    if quality.folded and not request.allow_invalid:
         problem = f"{quality.folded} of {quality.cells} cells are folded; {remedy}"
         raise NoValidGridError(problem, worst_cells_of(solution.grid))
     return Result(solution, quality, seconds, solution.notes)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
     from meshonet.solvers.pipeline.layered import FirstCells
 
-OF_VOLUMES = ("layers", "symmetry")
+OF_VOLUMES = ("layers", "symmetry", "energy")
 """Parameters that only grids in space have a use for."""
 
 OPERATOR_SETTINGS = ("model", "polish", "device")  # settings any of which asks for a network
@@ -71,6 +71,7 @@ class GridRequest:
         (`meshonet.solvers.blocking.request.BlockRequest`).
     layers, symmetry : of a volume marched from a surface: nodes along its lines, the wall's included, and the
         axis that its open edges lie across, or ``none``.
+    energy : what is minimised inside six faces, ``angles`` or ``shape``; None: angles.
     threads : that kernels work with; None: all there are.
 
     Raises InputError: a value out of its range; parameters that need or exclude each other.
@@ -109,6 +110,7 @@ class GridRequest:
     layout: Layout | None = None
     layers: int | None = None
     symmetry: Literal["x", "y", "z", "none"] | None = None
+    energy: Literal["angles", "shape"] | None = None
     threads: int | None = None
 
     def __post_init__(self) -> None:

@@ -39,10 +39,7 @@ def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
     with limited_to(request.threads):
         make = _wing if stack.kind == "wing" else _loft
         solution = make(stack, request, seconds)
-        return judged(
-            solution, seconds, percentiles=request.percentiles, allow_invalid=request.allow_invalid,
-            remedy=_REMEDY,
-        )  # fmt: skip
+        return judged(solution, seconds, request, remedy=_REMEDY)
 
 
 def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:

@@ -41,7 +41,4 @@ def make_sweep(
             )
         seconds["grid"] = time.perf_counter() - begun
         solution = Solution(grid, "sweep", notes=notes)
-        return judged(
-            solution, seconds, percentiles=request.percentiles, allow_invalid=request.allow_invalid,
-            remedy=_REMEDY,
-        )  # fmt: skip
+        return judged(solution, seconds, request, remedy=_REMEDY)

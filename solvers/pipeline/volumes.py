@@ -17,7 +17,11 @@ from meshonet.solvers.solution import Solution
 _ALWAYS = ("method", "settings", "allow_invalid", "percentiles", "history", "threads", "sampling", "repair")
 _OPEN = ("best", "auto")
 """Names that leave the method open."""
-_FILLERS = {"variational": ("max_cycles", "coarse"), "winslow": ("tol", "max_cycles"), "tfi": ("blending",)}
+_FILLERS = {
+    "variational": ("max_cycles", "coarse", "energy"),
+    "winslow": ("tol", "max_cycles"),
+    "tfi": ("blending",),
+}
 """Methods that fill six faces, in `meshonet.solvers.volumes`, and their settings."""
 
 
@@ -123,6 +127,8 @@ def _fill(shape: SpatialShape, request: GridRequest) -> Solution:
     settings = {each: value for each, value in request.settings.items() if each in request.chosen}
     if request.coarse != "auto":
         settings["coarse"] = request.coarse
+    if request.energy is not None:
+        settings["energy"] = request.energy
     for each in settings:
         if each not in _FILLERS[name]:
             raise InputError(f"{{{each}}} is of no use to {name} in space", f"leave {{{each}}} out")
@@ -158,5 +164,7 @@ _MARCH = _Way(
     ("first_cell", "y_plus", "reynolds", "chord_fraction", "growth", "far_field", "layers", "symmetry"),
     _march,
 )  # fmt: skip
-_FILL = _Way("six faces", tuple(_FILLERS), ("res", "coarse", "blending", "tol", "max_cycles"), _fill)
+_FILL = _Way(
+    "six faces", tuple(_FILLERS), ("res", "coarse", "blending", "tol", "max_cycles", "energy"), _fill
+)  # fmt: skip
 _SMOOTH = _Way("blocks that are there already", ("variational",), ("max_cycles", "slide"), _smooth)

@@ -40,9 +40,9 @@ class Measures:
 
 def measures(grid: Grid) -> Measures:
     """Return the measures of a grid of planar blocks."""
-    found, figures = faces(grid), block_figures(grid)
-    angle = found.non_orthogonality.max if found.non_orthogonality else 0.0
-    skew = found.face_skewness.max if found.face_skewness else 0.0
+    of_faces, figures = faces(grid), block_figures(grid)
+    angle = of_faces.non_orthogonality.max if of_faces.non_orthogonality else 0.0
+    skew = of_faces.face_skewness.max if of_faces.face_skewness else 0.0
     angles, across = figures.deviation, figures.lines.growth_across
     jump = math.log(across.max) if across else 0.0
     folded = sum(count_folded(block.nodes) for block in grid.blocks)

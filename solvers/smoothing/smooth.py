@@ -43,14 +43,14 @@ def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> 
     begun = time.perf_counter()
     given = layout_of(grid)
     before = measures(grid)
-    found: list[tuple[Measures, Grid]] = []
+    candidates: list[tuple[Measures, Grid]] = []
     for layout in _optima(given, slide=slide, iterations=iterations):
         made: Grid | None = with_nodes(grid, layout)
         if made is not None and not measures(made).no_worse(before):
             made = held_back(grid, given, layout, before)
         if made is not None:
-            found.append((measures(made), made))
-    least, best = min(found, key=lambda pair: pair[0].score, default=(before, grid))
+            candidates.append((measures(made), made))
+    least, best = min(candidates, key=lambda pair: pair[0].score, default=(before, grid))
     better = least.folded < before.folded or least.score < before.score
     notes = () if better else (_AS_GOOD,)
     best = best if better else grid
@@ -76,11 +76,11 @@ def _optima(given: Layout, *, slide: bool, iterations: int) -> Iterator[Layout]:
             targets=wanted,
             tolerance=TOLERANCE,
         )
-        found = towards(mesh, held=stays)
-        if not found.valid:
+        optimum = towards(mesh, held=stays)
+        if not optimum.valid:
             continue
-        layers, inside = with_layers(found.mesh, mesh)
+        layers, inside = with_layers(optimum.mesh, mesh)
         if inside.any():
-            found = towards(layers, held=stays | inside)
-        if found.valid:
-            yield replace(given, mesh=found.mesh)
+            optimum = towards(layers, held=stays | inside)
+        if optimum.valid:
+            yield replace(given, mesh=optimum.mesh)

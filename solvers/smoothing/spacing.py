@@ -67,6 +67,6 @@ def thin_heights(mesh: QuadMesh) -> NDArray[np.bool_]:
     ratio = aspects(mesh, lengths(mesh))[cell]
     thin = np.where(side % 2 == 0, ratio < 1.0 / THIN, ratio > THIN)
     beside = mesh.edge_of[cell[:, None], (side[:, None] + [1, 3]) % 4][thin]
-    found = np.zeros(len(mesh.edges), dtype=bool)
-    found[beside.ravel()] = True
-    return np.asarray(found & (mesh.wall_nodes[mesh.edges].sum(axis=1) == 1))
+    heights = np.zeros(len(mesh.edges), dtype=bool)
+    heights[beside.ravel()] = True
+    return np.asarray(heights & (mesh.wall_nodes[mesh.edges].sum(axis=1) == 1))

@@ -9,8 +9,8 @@ from meshonet.solvers.volumes.functional import OPENING, UNFOLDING, Weights, inv
 
 RENEWED = 10
 """Iterations after which the preconditioner follows the nodes."""
-STILL, GAIN = 0.3, 5e-4
-"""Moves, in cells, and parts of the value: two steps on end below both end a descent."""
+STILL = 0.3
+"""Moves, in cells: two steps on end below it that also gain little end a descent."""
 REACH = 0.5
 """The farthest that a node may move in a first step, in cells."""
 FLAT = 0.05
@@ -46,8 +46,9 @@ class Descent:
     def run(self, weights: Weights, most: int, epsilon: float = 0.0) -> float:
         """Take `most` iterations, fewer where nothing moves any more; return the smallest Jacobian."""
         terms = weights.shape, weights.smoothness, weights.power
-        limits = STILL, REACH, GAIN
-        _, smallest, done = self._run.run(self.planes, self._over, terms, epsilon, most, RENEWED, *limits)
+        over = (float(np.prod(self._over) ** (1 / 3)),) * 3 if weights.of_cubes else self._over
+        limits = STILL, REACH, weights.gain
+        _, smallest, done = self._run.run(self.planes, over, terms, epsilon, most, RENEWED, *limits)
         self.iterations += done
         return smallest
 

@@ -12,12 +12,21 @@ valid grid valid. The second is 1/sin² of the corner's solid angle, to the powe
 cells from stripes of alternating ones. Folded grids are minimised with χ = (J + √(J² + ε²)) / 2 > 0 in place
 of J.
 
+The other functional wants cells like cubes. With T the Jacobian matrix of a cell's trilinear map, its columns
+u, v, w over the same length::
+
+    E = mean over cells of the integral of |T|² / (3 det(T)^⅔)
+
+which is 1 for cubes of any size, the inverse of the mean ratio, and metric 303 of the target-matrix paradigm.
+
 Ivanenko, Charakch'yan, USSR Comput. Maths. Math. Phys. 28 (1988) 126-133 (the barrier); Garanzha, Comput.
-Maths. Math. Phys. 40 (2000) 1617-1637 (regularisation).
+Maths. Math. Phys. 40 (2000) 1617-1637 (regularisation); Knupp, SIAM J. Sci. Comput. 23 (2001) 193-218 (cells
+like cubes).
 """
 
 from dataclasses import dataclass
 from itertools import product
+from typing import Literal
 
 import numpy as np
 
@@ -26,15 +35,30 @@ from meshonet.geometry.arrays import Floats
 
 @dataclass(frozen=True)
 class Weights:
-    """Weights of the terms: `shape` q, `smoothness` β, `power` p (1 or 2)."""
+    """Weights of the terms: `shape` q, `smoothness` β, `power` p (1 or 2).
+
+    Power 0 stands for cells like cubes, with q = 1 and β = 0. A descent ends after two steps of which each
+    lowers the value by less than `gain` of it.
+    """
 
     shape: float = 0.9
     smoothness: float = 2e-3
     power: int = 2
+    gain: float = 5e-4
+
+    @property
+    def of_cubes(self) -> bool:
+        """Whether edges of all directions are measured by the same length."""
+        return self.power == 0
 
 
 OPTIMAL = Weights()
 """What grids are made with."""
+CUBES = Weights(1.0, 0.0, power=0, gain=1e-6)
+"""Cells like cubes."""
+Energy = Literal["angles", "shape"]
+ENERGIES: dict[Energy, Weights] = {"angles": OPTIMAL, "shape": CUBES}
+"""What may be minimised, by name."""
 UNFOLDING = Weights(0.02, power=1)
 """About Winslow's functional, which unfolds the most."""
 OPENING = Weights(0.3, power=1), Weights(0.9, power=1)

@@ -14,7 +14,7 @@ from meshonet.solvers.volumes.descent import FLAT, Descent
 from meshonet.solvers.volumes.edge_corners import check_corners
 from meshonet.solvers.volumes.evaluate import evaluate
 from meshonet.solvers.volumes.first_cells import keep_first_cells
-from meshonet.solvers.volumes.functional import OPTIMAL
+from meshonet.solvers.volumes.functional import ENERGIES, OPTIMAL, Energy, Weights
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import Laws, arc_laws, mean_laws, uniform_laws
 from meshonet.solvers.volumes.repair import lift, repair
@@ -34,31 +34,37 @@ LEAST = 5
 
 
 def variational(
-    faces: SixFaces, *, max_cycles: int | None = None, coarse: int | Literal["auto"] | None = "auto"
+    faces: SixFaces,
+    *,
+    max_cycles: int | None = None,
+    coarse: int | Literal["auto"] | None = "auto",
+    energy: Energy = "angles",
 ) -> Solution:
-    """Minimise the functional of `meshonet.solvers.volumes.functional` over the nodes inside `faces`.
+    """Minimise a functional of `meshonet.solvers.volumes.functional` over the nodes inside `faces`.
 
     The optimum is found on at most `coarse` nodes a direction, evenly spaced in the mean arc length of the
     edges ("auto": 33; None: as many as the faces have), from coarser copies, and evaluated at the nodes of
     the faces by splines; folds that this leaves at faces are unfolded on windows. `max_cycles` are
-    iterations on the finest level that is solved.
+    iterations on the finest level that is solved. `energy` is what is minimised: ``angles``, with lengths
+    that change gradually, or ``shape``, for cells like cubes.
 
     Raises InputError: faces that fold cells whatever is inside, with the node, before any work; an edge of no
     length; settings not positive.
     """
     begun = time.perf_counter()
-    _check(max_cycles, coarse)
+    _check(max_cycles, coarse, energy)
     check_corners(faces)
     laws = mean_laws(arc_laws(faces))
     optimum_faces = _coarse_faces(faces, laws, coarse)
-    planes, iterations = optimum(optimum_faces, max_cycles)
+    weights = ENERGIES[energy]
+    planes, iterations = optimum(optimum_faces, max_cycles, weights)
     solved = time.perf_counter()
     if optimum_faces is not faces:
         planes = np.ascontiguousarray(evaluate(planes, optimum_faces, faces, laws))
         keep_first_cells(planes, faces, laws)
     evaluated = time.perf_counter()
     folded = repair(planes)
-    facts = {"method": "variational", "shape": OPTIMAL.shape, "smoothness": OPTIMAL.smoothness}
+    facts = {"method": "variational", "energy": energy} | _terms(weights)
     counts = "x".join(map(str, optimum_faces.counts))
     grid = faces.grid(np.moveaxis(planes, 0, -1), {**facts, "cycles": iterations, "coarse": counts})
     done = time.perf_counter()
@@ -67,7 +73,14 @@ def variational(
     return Solution(grid, "variational", cycles=iterations, seconds=spent, outcome=outcome)
 
 
-def optimum(faces: SixFaces, most: int | None = None) -> tuple[Floats, int]:
+def _terms(weights: Weights) -> dict[str, float]:
+    """Return the weights that a grid's provenance names."""
+    return {} if weights.of_cubes else {"shape": weights.shape, "smoothness": weights.smoothness}
+
+
+def optimum(
+    faces: SixFaces, most: int | None = None, weights: Weights = OPTIMAL
+) -> tuple[Floats, int]:  # fmt: skip
     """Return the optimum inside evenly spaced `faces`, (3, ni, nj, nk), and iterations on the finest level.
 
     Coarser copies come first, the coarsest from the interpolation. A grid that could not be unfolded is
@@ -77,18 +90,44 @@ def optimum(faces: SixFaces, most: int | None = None) -> tuple[Floats, int]:
     while max(levels[-1].counts) > COARSEST:
         levels.append(levels[-1].resampled(_halved(levels[-1].counts)))
     last, count = levels[-1], 0
-    planes = np.ascontiguousarray(np.moveaxis(interpolate(last, uniform_laws(last.counts)), -1, 0))
+    planes = _interpolated(last)
     for depth in range(len(levels) - 1, -1, -1):
         if levels[depth] is not last:
             finer = levels[depth]
             planes = np.ascontiguousarray(evaluate(planes, last, finer, uniform_laws(finer.counts)))
             last = finer
         limit = ITERATIONS[max(len(ITERATIONS) - 1 - depth, 0)]
-        count = _settle(planes, most if depth == 0 and most is not None else limit)
+        limit = most if depth == 0 and most is not None else limit
+        planes, count = _solved(planes, last, limit, weights)
     return planes, count
 
 
-def _settle(planes: Floats, most: int) -> int:
+def _interpolated(faces: SixFaces) -> Floats:
+    """Return planes interpolated between evenly spaced `faces`."""
+    return np.ascontiguousarray(np.moveaxis(interpolate(faces, uniform_laws(faces.counts)), -1, 0))
+
+
+def _solved(planes: Floats, faces: SixFaces, most: int, weights: Weights) -> tuple[Floats, int]:
+    """Return the optimum from planes, which may change, and the iterations.
+
+    Where these stay folded, as splines leave them that overshoot at kinks of faces, the interpolation is the
+    start if it is less so.
+    """
+    count = _settle(planes, most, weights)
+    smallest = _smallest(planes)
+    if smallest <= 0.0:
+        plain = _interpolated(faces)
+        if _smallest(plain) > smallest:
+            return plain, count + _settle(plain, most, weights)
+    return planes, count
+
+
+def _smallest(planes: Floats) -> float:
+    """Return the smallest corner Jacobian, or infinity where there is no inner node."""
+    return Descent(planes).smallest if min(planes.shape[1:]) > 2 else np.inf
+
+
+def _settle(planes: Floats, most: int, weights: Weights) -> int:
     """Minimise over planes in place, unfolded first; return the iterations."""
     if min(planes.shape[1:]) < 3:
         return 0
@@ -103,7 +142,7 @@ def _settle(planes: Floats, most: int) -> int:
     elif 0.0 < smallest < FLAT:
         lift(planes, descent.jacobians() < FLAT)
     if smallest > 0.0:
-        descent.run(OPTIMAL, most)
+        descent.run(weights, most)
     return descent.iterations
 
 
@@ -125,7 +164,9 @@ def _coarse_faces(faces: SixFaces, laws: Laws, coarse: int | Literal["auto"] | N
     return faces.at([law[0] for law in laws], places)
 
 
-def _check(max_cycles: int | None, coarse: int | Literal["auto"] | None) -> None:
+def _check(max_cycles: int | None, coarse: int | Literal["auto"] | None, energy: str) -> None:
     check_tolerances(None, max_cycles)
+    if energy not in ENERGIES:
+        raise InputError(f"energy {energy!r}", f"use {' or '.join(ENERGIES)}", parameter="energy")
     if isinstance(coarse, int) and coarse < LEAST:
         raise InputError(f"{coarse} coarse nodes", f"use at least {LEAST}", parameter="coarse")

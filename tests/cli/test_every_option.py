@@ -94,6 +94,7 @@ BLOCKS = DOMAINS | {
 BALL = f"ball.xyz --first-cell .01 --far-field 3 {MADE}"
 MARCHED = {
     "--layers": (BALL, "OPTION 9", "nodes"),
+    "--energy": (f"bent.vts --res 5 {MADE}", "OPTION shape", "nodes"),
     "--symmetry": (f"cap.xyz --first-cell .01 --layers 9 --far-field 3 {MADE}", "OPTION none", "nodes"),
 }
 TRAINING = "arches.h5 --epochs 4 --points 60 --batch 4 -o new.safetensors"
@@ -151,6 +152,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--compare": ("grid.h5", "OPTION smooth.h5", "out"),
         "--pair": ("bc.h5 --compare cb.h5 --summary", "OPTION order", "out"),
         "--summary": ("grid.h5 smooth.h5", "OPTION", "out"),
+        "--threads": ("grid.h5", "OPTION 0", "code"),
     },
     "convert": PRINTING | FILES | {
         "--extrude": ("grid.h5 -o made.p3d", "OPTION 1", "bytes"),
@@ -332,6 +334,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "path.csv").write_text("0 0 0\n9 0 0\n18 3 0\n")
     cube = np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1)
     Grid.from_nodes(cube).write(folder / "cube.vts")
+    Grid.from_nodes(cube + 0.03 * cube[..., ::-1] ** 2).write(folder / "bent.vts")
     cubed_sphere().write(folder / "ball.xyz")
     half_sphere().write(folder / "cap.xyz")
     shape = np.loadtxt(Path(__file__).parents[2] / "examples" / "naca2412.dat", skiprows=1) * 40

@@ -107,12 +107,40 @@ def test_the_gradient_is_that_of_the_functional() -> None:
     over, step = inverse_lengths(planes), np.random.default_rng(1).normal(size=planes.shape)
     step[:, [0, -1]] = step[:, :, [0, -1]] = step[..., [0, -1]] = 0.0
     inner = (slice(None), *[slice(1, -1)] * 3)
-    for weights, epsilon in (((0.9, 2e-3, 2), 0.0), ((0.02, 2e-3, 1), 0.3)):
+    for weights, epsilon in (((0.9, 2e-3, 2), 0.0), ((0.02, 2e-3, 1), 0.3), ((1.0, 0.0, 0), 0.0)):
         gradient, spare = np.empty_like(planes), np.empty_like(planes)
         volume_energy(planes, over, weights, epsilon, 1, gradient)
         ends = [volume_energy(planes + h * step, over, weights, epsilon, 1, spare)[0] for h in (1e-6, -1e-6)]
         slope = (gradient[inner] * step[inner]).sum()
         assert (ends[0] - ends[1]) / 2e-6 == pytest.approx(slope, rel=1e-6)
+
+
+def test_the_energy_of_shapes_is_the_inverse_mean_ratio() -> None:
+    box = np.ascontiguousarray(np.moveaxis(mapped(lambda a, b, c: (a, b, c), (5, 6, 7)), -1, 0))
+    for over, wanted in (((4.0, 5.0, 6.0), 1.0), ((4.0, 5.0, 12.0), 6.0 / (3.0 * 2.0 ** (2.0 / 3.0)))):
+        value, _ = volume_energy(box, over, (1.0, 0.0, 0), 0.0, 1, np.empty_like(box))
+        assert value == pytest.approx(wanted, rel=1e-12)
+
+
+@pytest.mark.parametrize("shape", [bump, skewed])
+def test_least_energy_of_shapes_has_cells_more_like_cubes(shape) -> None:
+    faces = SixFaces.of_block(mapped(shape, (21, 21, 21)))
+    angles, cubes = (variational(faces, energy=energy).grid for energy in ("angles", "shape"))
+    assert count_folded(cubes.nodes) == 0
+    assert (1 / mean_ratios(cubes.nodes)).mean() < (1 / mean_ratios(angles.nodes)).mean()
+    assert cubes.provenance["energy"] == "shape"
+
+
+def mean_ratios(nodes: np.ndarray) -> np.ndarray:
+    """Return 3 det(T)^(2/3) / |T|^2 at the centres of cells."""
+    edges = []
+    for axis in range(3):
+        edge = np.diff(nodes, axis=axis)
+        for other in {0, 1, 2} - {axis}:
+            edge = np.take(edge, range(edge.shape[other] - 1), other) + np.diff(edge, axis=other) / 2
+        edges.append(edge)
+    matrix = np.stack(edges, axis=-1)
+    return 3 * np.cbrt(np.linalg.det(matrix)) ** 2 / (matrix**2).sum(axis=(-2, -1))
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -158,7 +186,10 @@ def test_left_handed_volumes_are_refused() -> None:
         variational(SixFaces.of_block(mapped(skewed, (5, 5, 5))[::-1]))
 
 
-@pytest.mark.parametrize(("settings", "name"), [({"max_cycles": 0}, "max_cycles"), ({"coarse": 2}, "coarse")])
+@pytest.mark.parametrize(
+    ("settings", "name"),
+    [({"max_cycles": 0}, "max_cycles"), ({"coarse": 2}, "coarse"), ({"energy": "cube"}, "energy")],
+)
 def test_settings_are_checked(settings, name) -> None:
     with pytest.raises(InputError) as caught:
         variational(SixFaces.of_block(mapped(skewed, (5, 5, 5))), **settings)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, array_like, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import add_spline_rows
 from meshonet.solvers.algebraic.resample.spline import bending, places, spline_matrix
 
@@ -28,11 +29,12 @@ SQUARINGS = 3  # squarings that make the eighth power
 def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
     """Return planar nodes inside the O `boundary` from a grid (m, n, 2) inside its thinned edges."""
     m, ni, nj = len(coarse), boundary.ni, boundary.nj
+    threads = threads_for(ni * nj)
     lines, share = map(np.ascontiguousarray, along_lines(coarse[..., 0] + 1j * coarse[..., 1], nj))
     first, weights = places(m, ni)
     straight = weights * (1.0, 1.0, 0.0, 0.0)
     shares, nodes = np.zeros((ni, nj)), planar_nodes(ni, nj)
-    add_spline_rows(shares, first, straight, share, share, True)
+    add_spline_rows(shares, first, straight, share, share, True, threads)
     near_south, near_north = 1.0 - shares, shares
     for _ in range(SQUARINGS):
         near_south *= near_south
@@ -41,7 +43,7 @@ def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
     for c, values in enumerate((lines.real.copy(), lines.imag.copy())):
         plane = nodes[..., c]
         plane[:] = 0.0
-        add_spline_rows(plane, first, weights, values, bending(m, True) @ values, True)
+        add_spline_rows(plane, first, weights, values, bending(m, True) @ values, True, threads)
         plane += (boundary.south[:, c] - around @ values[:, 0])[:, None] * near_south
         plane += (boundary.north[:, c] - around @ values[:, -1])[:, None] * near_north
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded, folded_cells
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import resample
 from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.resample.edge_blending import REACH
@@ -85,5 +86,6 @@ def _evaluated(coarse: Floats, sides: Sides, straight: Straight | None) -> Float
     opened = acute.openings(corners[:, 0] + 1j * corners[:, 1], np).reshape(-1, 4)
     nodes = np.empty((len(coarse), 2, ni, nj))
     fine = places(m, ni), places(n, nj)
-    resample(coarse, sides, fine, opened, acute.NEAR, acute.FAR, REACH, nodes, straight)
+    threads = threads_for(ni * nj)
+    resample(coarse, sides, fine, opened, acute.NEAR, acute.FAR, REACH, nodes, straight, threads)
     return nodes

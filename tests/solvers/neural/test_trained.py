@@ -71,7 +71,7 @@ def test_the_paper_counts_as_many_parameters() -> None:
 
 
 def test_the_page_counts_every_models_parameters() -> None:
-    page = (Path(__file__).parents[3] / "docs" / "paper-models.md").read_text()
+    page = (Path(__file__).parents[3] / "docs" / "theory" / "paper-models.md").read_text()
     for kind in ARCHITECTURES:
         shapes = architecture(kind, "quad").shapes(Frame("quad", 101, 101, 1))
         assert f"| `{kind}` | {sum(int(np.prod(shape)) for shape in shapes.values()):,}" in page

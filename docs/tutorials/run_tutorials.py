@@ -1,0 +1,210 @@
+"""Run the tutorials: the blocks of each page in their order; compare what they print with the page.
+
+    python docs/tutorials/run_tutorials.py [PAGE...]             say where a page and its commands differ
+    python docs/tutorials/run_tutorials.py --pictures [PAGE...]  and draw its pictures again
+
+A page may hold blocks of `bash` and `python`, which are run; blocks of `text` behind them, which are what is
+printed (a line `...` stands for any lines); blocks of `toml` that begin with `# NAME.toml`, which are files.
+A comment `<!-- needs: PROGRAM -->` in front of a block names a program or Python package that may be absent.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+FOLDER = Path(__file__).parent
+PAGES = sorted(set(FOLDER.glob("*.md")) - {FOLDER / "index.md"})
+TOLERANCE = 0.02
+WIDTH, COLOURS = 800, 32
+_BLOCK = re.compile(
+    r"(?:^<!-- needs: (\S+) -->\n)?^```(bash|python|text|toml)\n(.*?)^```$", re.DOTALL | re.MULTILINE
+)
+_TIME = re.compile(r"\d[\d.]* (ms|s|min)\b")
+_NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?(?![\w])")
+_SETTING = re.compile(r"^export (\w+)=(\S+)$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Step:
+    """A block that is run, and what the page says it prints."""
+
+    language: str
+    text: str
+    needs: str = ""
+    prints: str = ""
+
+
+@dataclass(frozen=True)
+class Result:
+    """A step, what it printed, and its exit status."""
+
+    step: Step
+    printed: str
+    status: int
+
+
+def steps_of(page: Path) -> list[Step]:
+    """Return the steps of a page in their order."""
+    steps: list[Step] = []
+    for needs, language, text in _BLOCK.findall(page.read_text(encoding="utf-8")):
+        if language == "text":
+            last = steps.pop()
+            steps.append(Step(last.language, last.text, last.needs, text))
+        else:
+            steps.append(Step(language, text, needs))
+    return steps
+
+
+def pictures_of(page: Path) -> list[str]:
+    """Return the names of the pictures that a page shows."""
+    return re.findall(r"!\[[^]]*\]\(img/([\w-]+\.png)\)", page.read_text(encoding="utf-8"))
+
+
+def is_there(program: str) -> bool:
+    """Return whether a program, or a Python package of that name, is installed."""
+    return not program or shutil.which(program) is not None or importlib.util.find_spec(program) is not None
+
+
+def run(
+    page: Path, folder: Path, settings: dict[str, str] | None = None, quick: bool = False
+) -> list[Result]:
+    """Run a page in a folder, with other values for the variables it exports; stop at the first error.
+
+    Quick runs leave out what needs another program, and `meshonet plot`.
+    """
+    shutil.copytree(ROOT / "examples", folder / "examples", ignore=shutil.ignore_patterns("run-*", "paper"))
+    environment = _environment(folder, quick)
+    results: list[Result] = []
+    for step in steps_of(page):
+        if quick and step.needs:
+            continue
+        results.append(_run_step(step, folder, environment, settings or {}))
+        if results[-1].status:
+            break
+    return results
+
+
+def _environment(folder: Path, quick: bool) -> dict[str, str]:
+    """Return an environment in which `meshonet` and `python` are this project's."""
+    programs = folder / ".bin"
+    programs.mkdir()
+    no_plots = 'test "$1" = plot && exit\n' if quick else ""
+    for name, words in (("meshonet", "-m meshonet_cli "), ("python", "")):
+        text = f'#!/bin/sh\n{no_plots}exec "{sys.executable}" {words}"$@"\n'
+        (programs / name).write_text(text, encoding="utf-8")
+        (programs / name).chmod(0o755)
+    added = {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "MPLBACKEND": "Agg", "COLUMNS": "100"}
+    return {**os.environ, **added, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"}
+
+
+def _run_step(step: Step, folder: Path, environment: dict[str, str], settings: dict[str, str]) -> Result:
+    """Run a step; remember what it exports in the environment."""
+    if step.language == "toml":
+        (folder / _file_name(step)).write_text(step.text, encoding="utf-8")
+        return Result(step, "", 0)
+    text = _SETTING.sub(lambda hit: f"export {hit[1]}={settings.get(hit[1], hit[2])}", step.text)
+    environment.update(_SETTING.findall(text))
+    words = ["bash", "-e", "-c", text] if step.language == "bash" else ["python", "-c", text]
+    done = subprocess.run(  # noqa: S603
+        words, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    return Result(step, done.stdout, done.returncode)
+
+
+def _file_name(step: Step) -> str:
+    name = re.match(r"# ([\w-]+\.toml)\n", step.text)
+    if name is None:
+        message = f"a block of toml begins with '# NAME.toml', not with {step.text[:40]!r}"
+        raise ValueError(message)
+    return name[1]
+
+
+def differences(expected: str, printed: str) -> list[str]:
+    """Return the lines of a page that were not printed where they should be; none for a page that is true."""
+    lines = [line for line in printed.splitlines() if line.strip()]
+    at, gap, missing = 0, False, []
+    for line in filter(str.strip, expected.splitlines()):
+        if line.strip() == "...":
+            gap = True
+            continue
+        last = len(lines) if gap else min(at + 1, len(lines))
+        hits = [k for k in range(at, last) if same_line(line, lines[k])]
+        if hits:
+            at, gap = hits[0] + 1, False
+        else:
+            missing.append(line)
+    extra = [] if gap or not expected.strip() else lines[at:]
+    return missing + [f"not on the page: {line}" for line in extra if not missing]
+
+
+def same_line(one: str, other: str) -> bool:
+    """Return whether lines have the same words, and numbers that are as good as equal; times are let pass."""
+    one, other = (_TIME.sub("TIME", " ".join(line.split())) for line in (one, other))
+    if _NUMBER.sub("#", one) != _NUMBER.sub("#", other):
+        return False
+    return all(map(_close, _NUMBER.findall(one), _NUMBER.findall(other)))
+
+
+def _close(one: str, other: str) -> bool:
+    """Within the tolerance, or a unit of the last digit that is shown."""
+    a, b = float(one), float(other)
+    digits = re.search(r"\.(\d*)", one)
+    unit = 10.0 ** -len(digits[1]) if digits and "e" not in one else 0.0
+    return abs(a - b) <= max(TOLERANCE * abs(a), 1.01 * unit)
+
+
+def keep_pictures(page: Path, folder: Path) -> None:
+    """Put the pictures of a page that was run beside it, small."""
+    from PIL import Image
+
+    for name in pictures_of(page):
+        picture = Image.open(folder / name).convert("RGB")
+        if picture.width > WIDTH:
+            size = (WIDTH, round(picture.height * WIDTH / picture.width))
+            picture = picture.resize(size, Image.Resampling.LANCZOS)
+        (FOLDER / "img").mkdir(exist_ok=True)
+        picture.quantize(COLOURS, dither=Image.Dither.NONE).save(FOLDER / "img" / name, optimize=True)
+
+
+def main() -> int:
+    """Run pages and report."""
+    parser = argparse.ArgumentParser(description="Run tutorials, compare what they print with their pages.")
+    parser.add_argument("pages", nargs="*", type=Path, default=PAGES)
+    parser.add_argument("--pictures", action="store_true", help="keep the pictures in docs/tutorials/img")
+    parser.add_argument("--verbose", action="store_true", help="show all that is printed")
+    told = parser.parse_args()
+    wrong = 0
+    for page in told.pages:
+        with tempfile.TemporaryDirectory() as name:
+            results = run(page, Path(name))
+            wrong += report(page, results, told.verbose)
+            if told.pictures and not results[-1].status:
+                keep_pictures(page, Path(name))
+    return min(wrong, 1)
+
+
+def report(page: Path, results: list[Result], verbose: bool) -> int:
+    """Print how a page fared; return the number of its steps that failed or printed something else."""
+    wrong = 0
+    for result in results:
+        unlike = differences(result.step.prints, result.printed)
+        wrong += bool(unlike or result.status)
+        if unlike or result.status or verbose:
+            print(f"--- {page.name}: exit {result.status}\n{result.step.text}=== printed\n{result.printed}")
+            print("\n".join(f"=== differs: {line}" for line in unlike))
+    print(f"{page.name}: {len(results)} steps, {wrong} wrong")
+    return wrong
+
+
+if __name__ == "__main__":
+    sys.exit(main())

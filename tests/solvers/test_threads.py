@@ -1,0 +1,106 @@
+"""Threads on single grids of the plane: the same bits for any number, and none where grids are small."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from solver_shapes import bump, naca
+
+import meshonet
+from meshonet.geometry import threads
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.measure import folded_cells, measure
+from meshonet.geometry.quality.summary import Quality
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.threads import limited_to, threads_for
+from meshonet.solvers.pipeline.make_grid import make_grid
+from meshonet.solvers.pipeline.request import GridRequest
+
+FULL = {"coarse": None}  # solve on all nodes
+
+
+@pytest.fixture
+def eager(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have threads work on grids of any size."""
+    monkeypatch.setattr(threads, "NODES_EACH", 16)
+
+
+def made(shape: Shape, method: str, count: int, **options: Any) -> tuple[bytes, Quality]:
+    """Return the nodes and the quality of a grid made with so many threads."""
+    request = GridRequest(method=method, threads=count, percentiles=True, allow_invalid=True, **options)
+    result = make_grid(shape, request)
+    return np.ascontiguousarray(result.grid.nodes).tobytes(), result.quality
+
+
+@pytest.mark.parametrize(
+    ("method", "options"),
+    [
+        ("tfi", {}),
+        ("winslow", {}),
+        ("winslow", FULL),
+        ("thomas-middlecoff", FULL),
+        ("steger-sorenson", FULL),
+        ("variational", FULL),
+    ],
+)
+def test_threads_change_no_bit_between_four_sides(
+    eager: None, method: str, options: Mapping[str, Any]
+) -> None:
+    single, *several = (made(bump(301, 149), method, count, **options) for count in (1, 2, 3))
+    assert several == [single, single]
+
+
+@pytest.mark.parametrize(
+    ("method", "options"),
+    [
+        ("winslow", FULL),
+        ("thomas-middlecoff", FULL),
+        ("variational", FULL),
+        ("conformal", {}),
+        ("hyperbolic", {"first_cell": 1e-3}),
+        ("winslow", {"first_cell": 1e-3}),
+    ],
+)
+@pytest.mark.parametrize("ni", [200, 163])
+def test_threads_change_no_bit_around_a_body(
+    eager: None, method: str, options: Mapping[str, Any], ni: int
+) -> None:
+    single, *several = (made(naca(ni, 71), method, count, **options) for count in (1, 2, 3))
+    assert several == [single, single]
+
+
+def test_more_threads_than_rows_do_no_harm(eager: None) -> None:
+    assert made(bump(17, 9), "winslow", 50, **FULL) == made(bump(17, 9), "winslow", 1, **FULL)
+
+
+def test_threads_change_nothing_in_the_measures_of_a_folded_grid(eager: None) -> None:
+    i, j = np.meshgrid(np.arange(601.0), np.arange(450.0), indexing="ij")
+    nodes = np.stack([i, j], axis=-1) + np.random.default_rng(0).uniform(-0.4, 0.4, (601, 450, 2))
+    grid = Grid.from_nodes(nodes)
+    results = []
+    for count in (1, 2, 5):
+        with limited_to(count):
+            results.append((measure(grid, percentiles=True), folded_cells(grid.nodes).tolist()))
+    assert results[0][1]
+    assert results[1:] == results[:1] * 2
+
+
+def test_small_grids_start_no_threads() -> None:
+    with limited_to(8):
+        assert [threads_for(n) for n in (250 * 100, 2 * threads.NODES_EACH - 1)] == [1, 1]
+        assert threads_for(3 * threads.NODES_EACH) == 3
+        assert threads_for(3200 * 3200) == 8
+
+
+def test_quality_works_with_the_threads_that_are_wanted(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = []
+    monkeypatch.setattr(
+        "meshonet.geometry.quality.measure.threads_for", lambda _: seen.append(threads.thread_count()) or 1
+    )
+    grid = Grid.from_nodes(np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1))
+    meshonet.quality(grid, threads=5)
+    assert set(seen) == {5}
+    with pytest.raises(InputError, match="0 threads"):
+        meshonet.quality(grid, threads=0)

@@ -1,0 +1,77 @@
+"""Tutorials run: the blocks of each page in their order, and they print what the page shows."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+import run_tutorials as tutorials
+
+PAGES = tutorials.PAGES
+SMALL: dict[str, dict[str, str]] = {}
+"""Smaller values of what a page exports, where its own take long; what it prints is not compared then."""
+
+
+def name_of(page: Path) -> str:
+    return page.stem
+
+
+def check(page: Path, results: list[tutorials.Result], compared: bool = True) -> None:
+    for result in results:
+        assert result.status == 0, f"{result.step.text}\n{result.printed}"
+        unlike = tutorials.differences(result.step.prints, result.printed) if compared else []
+        assert not unlike, f"{page.name} shows\n{unlike}\nand this is printed:\n{result.printed}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_the_steps_of_a_tutorial_run_and_print_what_it_shows(page: Path, tmp_path: Path) -> None:
+    small = SMALL.get(page.stem, {})
+    check(page, tutorials.run(page, tmp_path, small, quick=True), compared=not small)
+
+
+WITH_FLOW = [page for page in PAGES if any(step.needs == "simpleFoam" for step in tutorials.steps_of(page))]
+
+
+@pytest.mark.client("simpleFoam")
+@pytest.mark.parametrize("page", WITH_FLOW, ids=name_of)
+def test_the_flow_of_a_tutorial_is_computed_and_its_figures_are_those_shown(
+    page: Path, tmp_path: Path
+) -> None:
+    results = tutorials.run(page, tmp_path)
+    assert len(results) == len(tutorials.steps_of(page))
+    check(page, results)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_pictures_are_made_by_the_page_and_small(page: Path) -> None:
+    code = "\n".join(step.text for step in tutorials.steps_of(page))
+    names = tutorials.pictures_of(page)
+    assert names
+    for name in names:
+        assert re.search(rf"\b{re.escape(name)}\b", code), f"no step of {page.name} makes {name}"
+        assert (tutorials.FOLDER / "img" / name).stat().st_size < 120_000
+
+
+def test_the_index_lists_every_tutorial() -> None:
+    index = (tutorials.FOLDER / "index.md").read_text(encoding="utf-8")
+    assert not [page.name for page in PAGES if f"]({page.name})" not in index]
+
+
+@pytest.mark.parametrize(
+    ("shown", "printed", "same"),
+    [
+        ("cells 100, angle 90.1", "cells 101, angle 90.0", True),
+        ("cells 100", "cells 110", False),
+        ("cells 100", "nodes 100", False),
+        ("time 12 ms: read 1.5 ms", "time 1.2 s: read 950 ms", True),
+        ("a\n...\nb", "a\nx\ny\nb", True),
+        ("a\nb", "a\nx\nb", False),
+        ("a", "a\nb", False),
+        ("a\n...", "a\nb", True),
+        ("cd 0.0129", "cd 0.0130", True),
+        ("folded 0", "folded 1", False),
+    ],
+)
+def test_what_is_printed_is_compared_by_words_and_by_numbers(shown: str, printed: str, same: bool) -> None:
+    assert (not tutorials.differences(shown, printed)) == same
