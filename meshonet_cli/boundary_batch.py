@@ -72,7 +72,7 @@ def write_boundaries(
 
 def drawn_items(inputs: DrawnInputs, session: Session) -> Members[Draw]:
     """Return the members of a family."""
-    return Members(_drawn(inputs, session), Origin(inputs, _itself))
+    return Members(_drawn(inputs, session), Origin(inputs, itself))
 
 
 def _drawn(inputs: DrawnInputs, session: Session) -> Iterator[Item[Draw]]:
@@ -82,5 +82,6 @@ def _drawn(inputs: DrawnInputs, session: Session) -> Iterator[Item[Draw]]:
         yield Item(member.index, member.kind, member, 0.0, not session.batch)
 
 
-def _itself(member: Draw) -> Iterator[Draw]:
+def itself(member: Draw) -> Iterator[Draw]:
+    """Yield what a member of a family holds, itself."""
     return iter([member])
