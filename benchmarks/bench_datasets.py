@@ -45,8 +45,8 @@ their size. Times are wall-clock seconds of one process.
 READING = """
 ## Reading
 
-A fresh process opens `out.h5` with h5py, then the column of nodes and reads one sample of it, then the name of
-that sample. Milliseconds, the median of {repeats} processes; the slowest in brackets.
+A fresh process opens `out.h5` with h5py, then the column of nodes and reads one sample of it, then the name
+of that sample. Milliseconds, the median of {repeats} processes; the slowest in brackets.
 """
 PARTS = """
 ## How many parts

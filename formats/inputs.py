@@ -76,7 +76,8 @@ class Inputs:
 
     shard : k of n: that only every n-th input is taken by `own` and `parts`, from the k-th (from 1) on.
 
-    Raises InputError: standard input is named twice, or is a terminal; a shard that is none.
+    Raises InputError: standard input is named twice, or is a terminal; a shard that is none; patterns, and
+    nothing to pick from.
     """
 
     words: tuple[str, ...]
@@ -92,6 +93,9 @@ class Inputs:
             what = "a list of inputs" if streams == ["@-"] else "a boundary or a grid"
             raise InputError("standard input is the terminal", f"pipe {what} into it", source=streams[0])
 
+        if self.pick and not any(map(_stands_for_many, self.words)):
+            remedy = "name a folder, a .zip file or a list, or leave it out"
+            raise InputError("there is nothing to pick from", remedy, parameter="pick")
         k, n = self.shard
         if not 1 <= k <= n:
             raise InputError(f"there is no shard {k} of {n}", "use K/N with K from 1 to N", parameter="shard")
@@ -178,9 +182,6 @@ class Inputs:
 
     def _nothing(self, walk: _Walk) -> InputError:
         pattern = " or ".join(printable(pattern) for pattern in self.pick)
-        if not walk.seen:
-            remedy = "name a folder, a .zip file or a list, or leave it out"
-            return InputError(f"there is nothing to pick {pattern!r} from", remedy, parameter="pick")
         files = f"{walk.seen} files" if walk.seen > 1 else "1 file"
         remedy = f"names are like {printable(walk.example)!r}; quote the pattern, so that the shell leaves it"
         return InputError(f"{pattern!r} matches none of {files}", remedy, parameter="pick")
@@ -205,14 +206,9 @@ class _Walk:
     def _of_word(self, word: str, lists: tuple[str, ...]) -> Iterator[str | InputError]:
         if word.startswith("@"):
             yield from self._of_list(word[1:], lists)
-        elif word == "-" or is_designation(word):
-            if not lists or self._takes(word.replace(":", "")):
-                yield word
-        elif Path(word).is_dir():
-            yield from self._of_folder(word)
-        elif is_archive(word):
-            yield from self._of_archive(word)
-        elif not lists or self._takes(word):
+        elif not (lists and _split(word)[1] in self._inputs.suffixes) and _stands_for_many(word):
+            yield from self._of_archive(word) if is_archive(word) else self._of_folder(word)
+        elif not lists or self._takes(word.replace(":", "") if is_designation(word) else word):
             yield word
 
     def _of_list(self, name: str, lists: tuple[str, ...]) -> Iterator[str | InputError]:
@@ -314,6 +310,10 @@ def _split(path: str) -> tuple[str, str]:
 
 def _is_hidden(name: str) -> bool:
     return name.startswith((".", "__"))
+
+
+def _stands_for_many(word: str) -> bool:
+    return word.startswith("@") or is_archive(word) or (not is_designation(word) and Path(word).is_dir())
 
 
 def _opened(name: str) -> BinaryIO:

@@ -113,7 +113,8 @@ def shown_parts(file: h5py.File, source: Source) -> list[Part] | None:
     parts = list(_parts(main.id.get_create_plist(), source.path, source.split))
     missing = [part.source for part in parts if part.source.path and not part.source.path.exists()]
     if missing:
-        more = f", as are {len(missing) - 1} more of {len(parts)}" if len(missing) > 1 else ""
+        verb = "are" if len(missing) > 2 else "is"
+        more = f", as {verb} {len(missing) - 1} more of {len(parts)}" if len(missing) > 1 else ""
         raise InputError(f"its part {missing[0].name} is missing{more}", f"put it back, or {_AGAIN}")
     return parts
 
