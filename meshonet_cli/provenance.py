@@ -4,8 +4,11 @@ import shlex
 import sys
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import groupby
 
 from meshonet import __version__
+
+_MOST_NAMED = 12  # words between options that are all kept
 
 
 def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
@@ -18,11 +21,25 @@ def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
     >>> provenance(["tfi", "a b.csv", "-o", "grid.vts", "--res", "80"])["command"]
     "meshonet tfi 'a b.csv' --res 80"
     """
-    line = tuple(sys.argv[1:] if arguments is None else arguments)
+    line = tuple(abridged(sys.argv[1:]) if arguments is None else arguments)
     return {"software": f"meshonet {__version__}", "command": _command(line)}
 
 
-@lru_cache(maxsize=1)  # every grid of many files has the same, and it names all of them
+def abridged(words: Sequence[str]) -> list[str]:
+    """Return a command line with long lists of inputs shortened: every grid of a dataset has it.
+
+    >>> abridged(["tfi", *(f"{k}.csv" for k in range(40)), "--res", "80"])
+    ['tfi', '0.csv', '[38 more]', '39.csv', '--res', '80']
+    """
+    kept: list[str] = []
+    for option, run in groupby(words, lambda word: word.startswith("-")):
+        names = list(run)
+        long = not option and len(names) > _MOST_NAMED
+        kept += [*names[:2], f"[{len(names) - 3} more]", names[-1]] if long else names
+    return kept
+
+
+@lru_cache(maxsize=1)
 def _command(words: tuple[str, ...]) -> str:
     kept = ["meshonet"]
     taken = iter(words)

@@ -7,22 +7,31 @@ https://distributed.dask.org
 from __future__ import annotations
 
 import logging
+import os
+import signal
+import sys
+import threading
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Any
+from multiprocessing.resource_tracker import ensure_running
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from meshonet import __version__
 from meshonet.geometry.errors import InputError
 from meshonet_cli.batch.executors.engine import Engine
 from meshonet_cli.batch.executors.processes_engine import share_cores
 from meshonet_cli.batch.executors.workers import EngineLostError, Warn, WorkerDiedError, Workers
+from meshonet_cli.provenance import abridged
 
 if TYPE_CHECKING:
     from distributed import Client
 
 _SECONDS = 10  # to wait for the scheduler's answer
-_LOST = "run it again, with {skip_existing}, when there is one"
+T = TypeVar("T")
+R = TypeVar("R")
 
 
 @contextmanager
@@ -33,14 +42,20 @@ def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
     except ImportError:
         remedy = "install it: pip install 'meshonet[dask]'"
         raise InputError("dask needs the package distributed", remedy, parameter="engine") from None
-    for name in ("distributed", "tornado"):  # what they say of a lost worker or scheduler is said here
-        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    _silence()
     with _at(engine.scheduler) if engine.scheduler is not None else _local(engine.jobs) as client:
         workers = _Dask(client, warn)
         try:
             yield workers
         finally:
             workers.leave()
+
+
+def _silence() -> None:
+    """Keep the packages from saying in many lines what is said here in one: who died."""
+    for name in list(logging.root.manager.loggerDict):
+        if name.startswith(("distributed", "tornado")):
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
 
 
 @contextmanager
@@ -54,15 +69,24 @@ def _local(count: int) -> Iterator[Client]:
         "distributed.scheduler.allowed-failures": 1,
         "distributed.scheduler.worker-saturation": 1.0,  # a task that waits is not blamed for a death
     }
-    with (
-        dask.config.set(settings),
-        LocalCluster(
+    with dask.config.set(settings), _without_interrupts():
+        cluster = LocalCluster(
             n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0,
             silence_logs=logging.CRITICAL + 1,
-        ) as cluster,
-        Client(cluster) as client,
-    ):  # fmt: skip
+        )  # fmt: skip
+    with cluster, Client(cluster) as client:
         yield client
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Keep Ctrl-C from threads and processes that start inside; it comes after the block."""
+    ensure_running()  # which would let interrupts through in the thread that starts the first process
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager
@@ -93,6 +117,7 @@ class _Dask(Workers):
         self._wait()
         client.subscribe_topic("all", self._hear)
         super().__init__(client.get_executor(pure=False), len(client.nthreads()))
+        self._surroundings = str(Path.cwd()), abridged(sys.argv)
         self._check_versions()
 
     def leave(self) -> None:
@@ -109,7 +134,17 @@ class _Dask(Workers):
             if event["action"] == "remove-worker" and not event.get("expected"):
                 self._warn(f"worker {event['worker']} died; what it was doing is done again")
         if self._client.status in ("closed", "closing"):
-            raise EngineLostError("the Dask scheduler is gone", _LOST)
+            raise self.lost()
+
+    def lost(self) -> EngineLostError:
+        """Return the error of a scheduler that is gone."""
+        problem = f"the Dask scheduler at {self._client.scheduler.address} is gone"
+        return EngineLostError(problem, "run it again with another one; {skip_existing} keeps what is done")
+
+    def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
+        """Have a worker do a task, where the program was started and by its words."""
+        future: Future[R] = self.executor.submit(_call, function, task, *self._surroundings)
+        return future
 
     def result(self, future: Any) -> Any:
         """Return the result of a task, or raise what it ended in."""
@@ -121,7 +156,7 @@ class _Dask(Workers):
         except KilledWorker as error:
             raise WorkerDiedError from error
         except CommClosedError as error:
-            raise EngineLostError("the Dask scheduler is gone", _LOST) from error
+            raise self.lost() from error
 
     def _hear(self, event: tuple[float, dict[str, Any]]) -> None:
         if event[1].get("action") in ("add-worker", "remove-worker"):
@@ -144,6 +179,22 @@ class _Dask(Workers):
 
 
 def _version() -> str:
-    from meshonet import __version__
-
     return __version__
+
+
+_one_at_a_time = threading.Lock()
+
+
+def _call(function: Callable[[T], R], task: T, folder: str, words: list[str]) -> R:
+    """Do a task as the program would, one at a time: of folder and words a process has one each.
+
+    Raises InputError: the folder is not there.
+    """
+    with _one_at_a_time:
+        sys.argv = words  # which grids have in their provenance
+        try:
+            os.chdir(folder)
+        except OSError as error:
+            remedy = "give all machines the same file system, at the same place"
+            raise InputError(f"a worker does not see it ({error.strerror})", remedy, source=folder) from error
+        return function(task)

@@ -71,8 +71,24 @@ def _begin() -> None:
     threading.Thread(target=_watch, daemon=True).start()
 
 
+class _Here:
+    """What a signal must know of this process: whether it is in a task, and whether it is to end."""
+
+    working = ending = False
+
+
 def _leave(*_: object) -> None:
-    raise SystemExit(_TERMINATED)  # so that unfinished files go
+    """End: from within a task by an exception, so that unfinished files go."""
+    if not _Here.working:
+        os._exit(_TERMINATED)
+    _Here.ending = True
+    threading.Thread(target=_force, daemon=True).start()
+    raise SystemExit(_TERMINATED)
+
+
+def _force() -> None:
+    threading.Event().wait(_GRACE)
+    os._exit(_TERMINATED)
 
 
 def _watch() -> None:
@@ -80,15 +96,17 @@ def _watch() -> None:
     if main is not None:
         main.join()
         os.kill(os.getpid(), signal.SIGTERM)
-        threading.Event().wait(_GRACE)
-        os._exit(_TERMINATED)
+        _force()
 
 
 def _call(function: Callable[[T], R], task: T) -> R:
     try:
+        _Here.working = True
         return function(task)
-    except SystemExit:
-        os._exit(_TERMINATED)  # the pool would take it for the outcome of the task, and go on
+    finally:
+        _Here.working = False
+        if _Here.ending:  # the pool would take the exception for the outcome of the task, and go on
+            os._exit(_TERMINATED)
 
 
 def _end(processes: set[BaseProcess]) -> None:

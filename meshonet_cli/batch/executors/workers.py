@@ -28,7 +28,7 @@ class WorkerDiedError(MeshonetError):
 
 
 class EngineLostError(InputError):
-    """The executor is gone for good, with what was under way."""
+    """The executor is gone for good, and with it what was under way."""
 
 
 class Workers:
@@ -52,7 +52,11 @@ class Workers:
 
     def renew(self) -> None:
         """Replace an executor that broke. Raises EngineLostError: it cannot be replaced."""
-        raise EngineLostError("the workers are gone", "run it again, with {skip_existing}")
+        raise self.lost()
+
+    def lost(self) -> EngineLostError:
+        """Return the error of an executor that is gone for good."""
+        return EngineLostError("the workers are gone", "run it again, with {skip_existing}")
 
     def result(self, future: Future[R]) -> R:
         """Return the result of a task, or raise what it ended in."""
@@ -65,7 +69,7 @@ class Workers:
                     raise
             except CancelledError as error:
                 self.check()
-                raise EngineLostError("a task was dropped", "run it again, with {skip_existing}") from error
+                raise self.lost() from error
 
     def in_order(
         self, function: Callable[[T], R], tasks: Iterable[T], ahead: int
