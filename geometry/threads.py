@@ -13,7 +13,9 @@ MOST = 64
 """Threads that a kernel starts at the most (``TEAM_MOST`` of ``team.h``)."""
 
 NODES_EACH = 1 << 16
-"""Nodes of a planar grid that are worth a thread, which costs as much as the quickest kernel on 5,000."""
+"""Nodes that are worth a thread: starting it costs what the quickest kernel takes for 5,000."""
+MANY_VISITS = 16
+"""How often kernels that iterate, as descents and marches do, visit a node at the least."""
 
 _limit: int | None = None
 
@@ -30,9 +32,9 @@ def thread_count() -> int:
     return min(cores() if _limit is None else _limit, MOST)
 
 
-def threads_for(nodes: int) -> int:
-    """Return the number of threads to work with on so many nodes of a planar grid: one where they are few."""
-    return 1 if nodes < 2 * NODES_EACH else min(thread_count(), nodes // NODES_EACH)
+def threads_for(nodes: int, visits: int = 1) -> int:
+    """Return the number of threads to work with on so many nodes, each visited so often: one for few."""
+    return max(min(thread_count(), visits * nodes // NODES_EACH), 1)
 
 
 @contextmanager

@@ -21,6 +21,7 @@ SCRIPTS = {
     "wings": "wings",
     "volumes": "volumes",
     "kershaw": "kershaw",
+    "blocks": "blocks",
 }
 """Page to script, benchmarks/bench_NAME.py."""
 

@@ -15,7 +15,7 @@ from meshonet.geometry.blocks.families import families
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.growth import Extreme, Growth, Tally, ratios
 from meshonet.geometry.quality.lines import Lines, bends
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
 
 
@@ -63,7 +63,7 @@ def _inside(grid: Grid) -> Iterator[_Part]:
     for number, block in enumerate(grid.blocks):
         ni = block.counts[0]
         summary, where = np.empty((ni, 3, 2, 2)), np.empty((ni, 3, 2, 3), dtype=np.int64)
-        _native.solids_lines(block.nodes, thread_count(), summary, where)
+        _native.solids_lines(block.nodes, threads_for(block.nodes[..., 0].size), summary, where)
         for axis, count in enumerate(block.counts):
             size = int(np.prod(block.counts)) // count * (count - 2)
             measures = [Tally(), Tally()]

@@ -3,7 +3,7 @@
 A cell is folded when any of its eight corner Jacobians is not positive. Where all 27 Bezier coefficients of
 its Jacobian are positive, that is positive everywhere in the cell (`meshonet.geometry.quality.metrics`);
 corners at which an edge has no length are left out of both tests. Kernels work with
-`meshonet.geometry.threads.thread_count` threads, results are the same to the bit for any number.
+`meshonet.geometry.threads.threads_for` threads, results are the same to the bit for any number.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,7 +21,7 @@ from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.metrics import SOLID_METRICS, SOLID_NAMES
 from meshonet.geometry.quality.percentiles import FEW, PERCENTS, Run
 from meshonet.geometry.quality.summary import Quality, Summary
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
 
 CORNERS, BEZIER = 0, 1
@@ -52,7 +52,7 @@ def folded_solids(nodes: Floats, test: int = CORNERS) -> NDArray[np.int64]:
 
 def _folded_rows(nodes: Floats, test: int) -> NDArray[np.int64]:
     rows = np.empty((nodes.shape[0] - 1, nodes.shape[1] - 1), dtype=np.int64)
-    _native.solids_folded(nodes, test, thread_count(), rows)
+    _native.solids_folded(nodes, test, threads_for(nodes[..., 0].size), rows)
     return rows
 
 
@@ -126,7 +126,7 @@ def padded_volumes(grid: Grid) -> list[Floats]:
     padded = []
     for block in grid.blocks:
         sizes = np.zeros([count + 1 for count in block.counts])
-        _native.solids_volumes(block.nodes, thread_count(), sizes)
+        _native.solids_volumes(block.nodes, threads_for(sizes.size), sizes)
         for axis in range(3):
             layers = np.moveaxis(sizes, axis, 0)
             layers[0], layers[-1] = layers[1], layers[-2]
@@ -183,7 +183,7 @@ class _Cells:
         values = np.empty((last - first, *(count - 1 for count in nodes.shape[:3])))
         _native.solids_run(
             nodes, self._volumes[number], summary, where, first, values,
-            self._brackets, counts, self._caught, self._held, thread_count(),
+            self._brackets, counts, self._caught, self._held, threads_for(nodes[..., 0].size),
         )  # fmt: skip
         self._counts += counts.sum(axis=0)
         low, high = summary[..., 0].argmin(axis=0), summary[..., 2].argmax(axis=0)

@@ -18,7 +18,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import MANY_VISITS, threads_for
 from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
 from meshonet.kernels._native import HexDescent
 from meshonet.solvers.energy.hex_bricks import Bricks, Targets, bricks_of, cell_lengths, forces_of
@@ -84,7 +84,7 @@ class HexProblem:
         return HexDescent(
             self.nodes, bricks.bricks, bricks.lattices, self.moves, bricks.inverse, bricks.targets,
             (free, start, place, 1.0 / sizes), (unknowns, projections), float(self.mesh.cells),
-            thread_count(),
+            threads_for(len(self.nodes), MANY_VISITS),
         )  # fmt: skip
 
     def result(self) -> Floats:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import MANY_VISITS, threads_for
 from meshonet.kernels._native import VolumeDescent, volume_jacobians
 from meshonet.solvers.volumes.functional import OPENING, UNFOLDING, Weights, inverse_lengths
 
@@ -30,12 +30,12 @@ class Descent:
     def __init__(self, planes: Floats) -> None:
         self.planes, self.iterations = planes, 0
         self._over = inverse_lengths(planes)
-        self._run = VolumeDescent(planes.shape[1:], thread_count())
+        self._run = VolumeDescent(planes.shape[1:], threads_for(planes[0].size, MANY_VISITS))
 
     def jacobians(self) -> Floats:
         """Return the smallest corner Jacobian of each cell (ni-1, nj-1, nk-1), 1 in one of mean edges."""
         least = np.empty([n - 1 for n in self.planes.shape[1:]])
-        volume_jacobians(self.planes, self._over, thread_count(), least)
+        volume_jacobians(self.planes, self._over, threads_for(least.size), least)
         return least
 
     @property

@@ -10,7 +10,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.six_faces import FACES, SixFaces
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import volume_lines
 from meshonet.solvers.volumes.laws import Laws
 
@@ -33,7 +33,7 @@ def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, 
                 kept.append(side)
         low, high = heights
         if low is not None or high is not None:
-            volume_lines(planes, axis, low, high, REACH, thread_count())
+            volume_lines(planes, axis, low, high, REACH, threads_for(planes[0].size))
     return tuple(kept)
 
 

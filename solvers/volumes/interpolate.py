@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import tfi_volume
 from meshonet.solvers.volumes.laws import Laws
 
@@ -39,5 +39,5 @@ def interpolate(
     planes = np.empty((3, *faces.counts)) if out is None else out
     sides = tuple(np.moveaxis(face, -1, 0) for face in faces.faces)
     added = None if spline is None else (spline.coefficients, spline.first, spline.weights)
-    tfi_volume(planes, sides, laws, thread_count(), added)
+    tfi_volume(planes, sides, laws, threads_for(planes[0].size), added)
     return np.moveaxis(planes, 0, -1)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import combine_along, winslow_residual, winslow_room, winslow_smooth
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import uniform_laws
@@ -49,18 +49,19 @@ class Level:
         self.start = np.ascontiguousarray(np.moveaxis(start, -1, 0))
         self.residual = np.empty_like(self.start)
         self.right = np.zeros_like(self.start) if coarse else None
-        self.room = np.empty(winslow_room(faces.counts, thread_count()))
+        self.threads = threads_for(self.start[0].size)
+        self.room = np.empty(winslow_room(faces.counts, self.threads))
         self.transfers: list[Transfer | None] = []
 
     def smooth(self, x: Floats, sweeps: int, forced: bool, factor: float) -> None:
         """Relax x (3, ni, nj, nk) in place."""
         for _ in range(sweeps):
-            winslow_smooth(x, self.right if forced else None, factor, thread_count(), self.room)
+            winslow_smooth(x, self.right if forced else None, factor, self.threads, self.room)
 
     def norm(self, x: Floats, forced: bool) -> float:
         """Return the norm of the residual of x, which is kept in `residual`."""
         right = self.right if forced else None
-        return float(np.sqrt(winslow_residual(x, right, self.residual, thread_count(), self.room)))
+        return float(np.sqrt(winslow_residual(x, right, self.residual, self.threads, self.room)))
 
 
 class Multigrid:
@@ -148,7 +149,7 @@ class Multigrid:
             add = to is not None and axis == axes[-1]
             result = to if add and to is not None else self._room(depth, way, axis, shape)
             first, weights = getattr(self.levels[depth].transfers[axis], way)
-            combine_along(values, axis + 1, first, weights, add, thread_count(), result)
+            combine_along(values, axis + 1, first, weights, add, threads_for(result.size), result)
             values = result
         return values
 

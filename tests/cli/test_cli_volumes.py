@@ -49,6 +49,7 @@ def test_a_surface_is_marched_off(meshonet: Meshonet, sphere: str, tmp_path: Pat
         assert far == pytest.approx(5.0, rel=0.12)
 
 
+@pytest.mark.usefixtures("eager_threads")
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_threads_do_not_change_a_bit(meshonet: Meshonet, sphere: str, tmp_path: Path, threads: int) -> None:
     for name, count in (("one", 1), ("several", threads)):

@@ -233,7 +233,7 @@ def test_figures_of_many_cells_are_those_of_all_values(shape: tuple[int, int, in
         assert values[row.worst[1:]] in (row.min, row.max)
 
 
-def test_threads_change_no_bit() -> None:
+def test_threads_change_no_bit(eager_threads: None) -> None:
     nodes = lattice((0, 69, 70), (0, 69, 70), (0, 65, 66))
     grid = Grid.from_nodes(nodes + np.random.default_rng(0).uniform(-0.4, 0.4, nodes.shape))
     results = []

@@ -113,7 +113,7 @@ def test_slopes_are_those_of_the_value(
     assert (ends[0] - ends[1]) / (2 * step) == pytest.approx(expected, rel=1e-5, abs=1e-6)
 
 
-def test_the_optimum_is_the_same_to_the_bit_for_any_number_of_threads() -> None:
+def test_the_optimum_is_the_same_to_the_bit_for_any_number_of_threads(eager_threads: None) -> None:
     mesh = hex_mesh_of(perturbed(shell(n=17, layers=24), 0.5))
     results = []
     for threads in (1, 2, 3):

@@ -112,7 +112,7 @@ def test_the_wall_is_the_surface() -> None:
         assert np.abs(block.nodes[:, :, 0] - patch).max() < 1e-12
 
 
-def test_results_are_the_same_to_the_bit_for_any_number_of_threads() -> None:
+def test_results_are_the_same_to_the_bit_for_any_number_of_threads(eager_threads: None) -> None:
     grids = []
     for threads in (1, 2, 3):
         with limited_to(threads):

@@ -56,7 +56,7 @@ def test_faces_are_kept_bitwise_and_boxes_are_even(solve, counts) -> None:
 
 
 @pytest.mark.parametrize("solve", SOLVERS)
-def test_threads_change_no_bit(solve) -> None:
+def test_threads_change_no_bit(eager_threads, solve) -> None:
     faces = random_domain(3, 21)
     grids = []
     for threads in (1, 2, 3):

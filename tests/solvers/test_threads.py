@@ -21,12 +21,6 @@ from meshonet.solvers.pipeline.request import GridRequest
 FULL = {"coarse": None}  # solve on all nodes
 
 
-@pytest.fixture
-def eager(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have threads work on grids of any size."""
-    monkeypatch.setattr(threads, "NODES_EACH", 16)
-
-
 def made(shape: Shape, method: str, count: int, **options: Any) -> tuple[bytes, Quality]:
     """Return the nodes and the quality of a grid made with so many threads."""
     request = GridRequest(method=method, threads=count, percentiles=True, allow_invalid=True, **options)
@@ -46,7 +40,7 @@ def made(shape: Shape, method: str, count: int, **options: Any) -> tuple[bytes, 
     ],
 )
 def test_threads_change_no_bit_between_four_sides(
-    eager: None, method: str, options: Mapping[str, Any]
+    eager_threads: None, method: str, options: Mapping[str, Any]
 ) -> None:
     single, *several = (made(bump(301, 149), method, count, **options) for count in (1, 2, 3))
     assert several == [single, single]
@@ -65,17 +59,17 @@ def test_threads_change_no_bit_between_four_sides(
 )
 @pytest.mark.parametrize("ni", [200, 163])
 def test_threads_change_no_bit_around_a_body(
-    eager: None, method: str, options: Mapping[str, Any], ni: int
+    eager_threads: None, method: str, options: Mapping[str, Any], ni: int
 ) -> None:
     single, *several = (made(naca(ni, 71), method, count, **options) for count in (1, 2, 3))
     assert several == [single, single]
 
 
-def test_more_threads_than_rows_do_no_harm(eager: None) -> None:
+def test_more_threads_than_rows_do_no_harm(eager_threads: None) -> None:
     assert made(bump(17, 9), "winslow", 50, **FULL) == made(bump(17, 9), "winslow", 1, **FULL)
 
 
-def test_threads_change_nothing_in_the_measures_of_a_folded_grid(eager: None) -> None:
+def test_threads_change_nothing_in_the_measures_of_a_folded_grid(eager_threads: None) -> None:
     i, j = np.meshgrid(np.arange(601.0), np.arange(450.0), indexing="ij")
     nodes = np.stack([i, j], axis=-1) + np.random.default_rng(0).uniform(-0.4, 0.4, (601, 450, 2))
     grid = Grid.from_nodes(nodes)

@@ -25,7 +25,7 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, worst_solids
 from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import MANY_VISITS, threads_for
 from meshonet.kernels._native import respace_lines, surface_march
 from meshonet.solvers.hyperbolic.volume.blocks import blocks_of, volume_grid
 from meshonet.solvers.hyperbolic.volume.graph import MarchGraph, march_graph
@@ -112,7 +112,8 @@ def march_levels(
     levels = np.empty((len(steps) + 1, 3, len(nodes)))
     levels[0] = nodes[graph.order].T
     numbers = smoothing.numbers(0.5 * surface.size)
-    made, _, _ = surface_march(levels, np.cumsum(steps), graph, numbers, thread_count())
+    threads = threads_for(len(nodes), MANY_VISITS)
+    made, _, _ = surface_march(levels, np.cumsum(steps), graph, numbers, threads)
     return levels[: made + 1]
 
 
@@ -124,7 +125,7 @@ def _respaced(levels: Floats, graph: MarchGraph, steps: Floats) -> Floats:
         lines[:, graph.order] = np.moveaxis(levels, 0, -1)
         return lines
     fade = np.exp(-np.arange(made) / FADE)
-    respace_lines(levels, steps[:made], fade, graph.order, SWEEPS, lines, thread_count())
+    respace_lines(levels, steps[:made], fade, graph.order, SWEEPS, lines, threads_for(lines[0].size))
     return lines
 
 
