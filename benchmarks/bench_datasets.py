@@ -17,6 +17,8 @@ import sys
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -54,14 +56,21 @@ PARTS = """
 The index of parts of ten grids each: seconds to build it, its size, and milliseconds to open it and to read
 the last sample in a fresh process.
 """
+ZARR = """
+## Beside Zarr
+
+Nodes of 200,000 grids in 200 files: of parts, HDF5 files and their index; of Zarr, shards. Microseconds to
+write a grid, and milliseconds of a fresh process to import the package, to open the column and to read the
+last grid, the median of five. `pip install zarr`, without which this table is left out.
+"""
 TAIL = """
 HDF5 reads the list of all parts of a column when the column is opened, and looks through it at each read: up
 to a few thousand parts that takes some milliseconds, at ten thousand a tenth of a second. So a part has up to
 1,000 inputs or 256 MiB. Of grids of 200 x 100 nodes these are 500, and a million of them 2,000 parts.
 
-Zarr would do as well: chunks are files of their own, and appending is writing more of them. A virtual dataset
-was preferred because one file is still one dataset, read by the same ten lines of h5py, MATLAB or Julia as
-before, a part is a dataset by itself, and no dependency is added.
+A virtual dataset was preferred to Zarr, since the two are about as fast once Zarr is loaded: one file still
+shows one dataset, read by the same ten lines of h5py, MATLAB or Julia as before, a part is a dataset by
+itself, and no dependency is added.
 """
 READER = """
 import json, sys, time, h5py
@@ -75,6 +84,19 @@ name = file["names"].asstr()[k]
 named = time.perf_counter()
 times = [opened - begun, read - opened, named - read]
 print(json.dumps({"name": name, "corner": nodes[-1, -1].tolist(), "ms": [1e3 * t for t in times]}))
+"""
+COLUMN_READER = """
+import json, sys, time
+path, package, k = sys.argv[1], sys.argv[2], int(sys.argv[3])
+begun = time.perf_counter()
+module = __import__(package)
+imported = time.perf_counter()
+nodes = module.File(path)["nodes"] if package == "h5py" else module.open_group(path, mode="r")["nodes"]
+opened = time.perf_counter()
+corner = float(nodes[k][-1, -1, 0])
+read = time.perf_counter()
+times = [imported - begun, opened - imported, read - opened]
+print(json.dumps({"corner": corner, "ms": [1e3 * t for t in times]}))
 """
 NI, NJ = 5, 4
 
@@ -163,6 +185,57 @@ def parts_row(folder: Path, parts: int) -> str:
     )
 
 
+def write_zarr(path: Path, parts: int, size: int) -> None:
+    """Write columns of nodes, the number of the part everywhere, as shards of Zarr."""
+    import zarr
+
+    shape = (NI, NJ, 2)
+    settings = {"chunks": (50, *shape), "shards": (size, *shape), "compressors": None}
+    nodes = zarr.open_group(path, mode="w").create_array(
+        "nodes", shape=(parts * size, *shape), dtype="f8", **settings
+    )
+    for k in range(parts):
+        nodes[k * size : (k + 1) * size] = np.full((size, *shape), float(k))
+
+
+def write_hdf5(path: Path, parts: int, size: int) -> None:
+    """Write the same as parts of HDF5 and a virtual dataset."""
+    import h5py
+
+    shape = (NI, NJ, 2)
+    layout = h5py.VirtualLayout((parts * size, *shape), "f8")
+    for k in range(parts):
+        part = path.with_name(f"part-{k}.h5")
+        with h5py.File(part, "w") as file:
+            data = file.create_dataset("nodes", (size, *shape), "f8", chunks=(50, *shape))
+            data[:] = np.full((size, *shape), float(k))
+        layout[k * size : (k + 1) * size] = h5py.VirtualSource(part.name, "nodes", (size, *shape), "f8")
+    with h5py.File(path, "w") as file:
+        file.create_virtual_dataset("nodes", layout)
+
+
+def beside_zarr(parts: int = 200, size: int = 1000) -> Iterator[str]:
+    """Yield the lines of the comparison with Zarr."""
+    if find_spec("zarr") is None:
+        return
+    yield ZARR
+    yield from ("| | write | import | open | read |", "| --- | --- | --- | --- | --- |")
+    with TemporaryDirectory() as name:
+        for title, package, write in (("HDF5", "h5py", write_hdf5), ("Zarr", "zarr", write_zarr)):
+            path = Path(name) / f"out.{package}"
+            begun = time.perf_counter()
+            write(path, parts, size)
+            seconds = time.perf_counter() - begun
+            command = [sys.executable, "-c", COLUMN_READER, str(path), package, str(parts * size - 1)]
+            answers = [
+                json.loads(subprocess.run(command, capture_output=True, check=True).stdout) for _ in range(5)
+            ]
+            assert {answer["corner"] for answer in answers} == {parts - 1.0}
+            times = np.median([answer["ms"] for answer in answers], axis=0)
+            cells = " | ".join(f"{each:.1f}" for each in times)
+            yield f"| {title} {version(package)} | {1e6 * seconds / (parts * size):.1f} | {cells} |"
+
+
 def page(members: int, size: int, repeats: int, parts: Iterable[int]) -> str:
     """Return the page."""
     watched: list[float] = []
@@ -183,7 +256,7 @@ def page(members: int, size: int, repeats: int, parts: Iterable[int]) -> str:
             "| sample | open file | nodes | name |", "| --- | --- | --- | --- |",
             *reading_rows(index, numbers, repeats), PARTS,
             "| parts | build | size | open | read |", "| --- | --- | --- | --- | --- |",
-            *(parts_row(Path(name), count) for count in parts),
+            *(parts_row(Path(name), count) for count in parts), *beside_zarr(),
         ]  # fmt: skip
     return HEAD + "\n".join(lines) + "\n" + TAIL
 

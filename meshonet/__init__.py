@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from meshonet.api.convert import convert as convert
+    from meshonet.api.files import inputs as inputs
     from meshonet.api.files import read as read
     from meshonet.api.files import read_all as read_all
     from meshonet.api.files import write as write
@@ -55,7 +56,7 @@ __version__ = "0.1.0"
 
 _MODULES = {
     "meshonet.api.convert": ("convert",),
-    "meshonet.api.files": ("read", "read_all", "write"),
+    "meshonet.api.files": ("inputs", "read", "read_all", "write"),
     "meshonet.api.grid": ("grid", "infer", "sample_boundary", "sample_family", "solve_pde", "tfi"),
     "meshonet.api.layout": ("layout",),
     "meshonet.api.models": ("models",),

@@ -20,6 +20,7 @@ SCRIPTS = {
     "marching-surfaces": "marching",
     "wings": "wings",
     "volumes": "volumes",
+    "datasets": "datasets",
     "kershaw": "kershaw",
     "blocks": "blocks",
 }

@@ -9,6 +9,7 @@ EXAMPLES = (
     "meshonet infer naca:2412 --fail-on 'max_angle>178' --json -o naca2412.h5",
     "meshonet infer airfoil.dat --first-cell 1e-5 --growth 1.15 -o viscous.vts",
     "meshonet infer airfoils/*.dat --res 200 -o 'grids/{stem}.vts'",
+    "meshonet infer airfoils.zip --pick 'naca*' --res 200 -o dataset.h5",
     "meshonet infer plate.geojson --cells 2500 -o plate.cgns",
     "meshonet infer main.dat flap.dat --assemble --far-field 20 -o wing.cgns",
 )

@@ -17,8 +17,8 @@ _option = o.option_of(o.SAMPLING)
 # fmt: off
 Source = Annotated[list[str] | None, typer.Argument(
     metavar="SOURCE", show_default=False,
-    help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input. None "
-    "with --family.",
+    help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input; a "
+    "folder or .zip of them, or @FILE, a list of them. None with --family.",
 )]
 FamilyName = Annotated[str | None, _option(
     "--family", metavar="NAME",

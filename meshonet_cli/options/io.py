@@ -17,10 +17,12 @@ _option = option_of(IO)
 # fmt: off
 Boundaries = Annotated[list[str], typer.Argument(
     metavar="BOUNDARY", show_default=False,
-    help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input.",
+    help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input; a "
+    "folder or .zip of them, or @FILE, a list of them.",
 )]
 Grids = Annotated[list[str], typer.Argument(
-    metavar="GRID", show_default=False, help="Grid file, or - for standard input.",
+    metavar="GRID", show_default=False,
+    help="Grid file, or - for standard input; a folder of them, or @FILE, a list of them.",
 )]
 Output = Annotated[str, _option(
     "-o", "--output", metavar="FILE",
