@@ -39,6 +39,8 @@ MOST_NESTED = 8
 """Lists that may name each other."""
 LONGEST_LINE = 8192
 """Bytes; a path has at most 4096."""
+_BEGINNING = 10_001
+"""Inputs that are looked at before work begins."""
 _IS_DATASET = re.compile(r"\.(?:h5|hdf5)(?:#[a-z0-9,:]+)?$", re.IGNORECASE)
 _WITH_FOLDER = (".h5", ".hdf5", ".vtm")
 """Endings of files to which a folder of their name belongs."""
@@ -149,7 +151,12 @@ class Inputs:
 
     def more_than(self, count: int) -> bool:
         """Return whether there are more than so many inputs; no more are looked for."""
-        return len(list(islice(self, count + 1))) > count
+        return (self._begun if count < _BEGINNING else sum(1 for _ in islice(self, count + 1))) > count
+
+    @cached_property
+    def _begun(self) -> int:
+        """How many inputs there are, of which no more than `_BEGINNING` are looked for."""
+        return sum(1 for _ in islice(self, _BEGINNING))
 
     def count(self) -> int | None:
         """Return how many members the shard has, files that hold several counted once; None from a pipe."""

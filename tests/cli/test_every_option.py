@@ -160,9 +160,9 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--threads": ("grid.h5", "OPTION 0", "code"),
     },
     "convert": PRINTING | FILES | {
-        "--part-size": ("three.h5 -o made.h5 -q", "OPTION 2", "files"),
-        "--pick": ("@shapes.txt -o made-{stem}.h5 -q", "OPTION *C*", "files"),
-        "--shard": ("@shapes.txt -o made-{stem}.h5 -q", "OPTION 2/2", "files"),
+        "--part-size": ("bc.h5 -o made.h5 -q", "OPTION 1", "files"),
+        "--pick": ("@grids.txt -o made-{stem}.h5 -q", "OPTION *oo*", "files"),
+        "--shard": ("@grids.txt -o made-{stem}.h5 -q", "OPTION 2/2", "files"),
         "--extrude": ("grid.h5 -o made.p3d", "OPTION 1", "bytes"),
         "--planes": ("grid.h5 -o made.p3d --extrude 1", "OPTION 3", "bytes"),
         "--plot3d": ("grid.h5 -o made.p3d", "OPTION binary", "bytes"),
