@@ -64,8 +64,8 @@ write a grid, and milliseconds of a fresh process to import the package, to open
 last grid, the median of five. `pip install zarr`, without which this table is left out.
 """
 TAIL = """
-HDF5 reads the list of all parts of a column when the column is opened, and looks through it at each read: up
-to a few thousand parts that takes some milliseconds, at ten thousand a tenth of a second. So a part has up to
+HDF5 reads the list of all parts of a column when the column is opened, and looks through it at each read,
+which takes a few milliseconds for a thousand parts and grows with their number. So parts are not small: up to
 1,000 inputs or 256 MiB. Of grids of 200 x 100 nodes these are 500, and a million of them 2,000 parts.
 
 A virtual dataset was preferred to Zarr, since the two are about as fast once Zarr is loaded: one file still

@@ -131,9 +131,9 @@ donor's direction that runs along it, counted from 1, negative when reversed; `t
 
 A dataset may be in parts: `out/part-00000.h5` and on are datasets, and in `out.h5` each column is a virtual
 dataset of their rows, by paths relative to it. The layout and its version are the same. A part also has the
-attribute `request` (a digest of the options), `inputs` (digests of its inputs) and `failed` (JSON lists
-`[input, member, error, again]`), texts both. Parts lie in one folder beside the index; an index that shows
-files elsewhere is refused. [Large datasets](../guide/datasets.md) says how they are made.
+attributes `request` (a digest of the options) and `size`, and texts `inputs` (digests of its inputs) and
+`failed` (JSON lists `[input, member, error, again]`). Parts lie in one folder beside the index; an index that
+shows files elsewhere is refused. [Large datasets](../guide/datasets.md) says how they are made.
 
 `FILE.h5#7` is a sample of a dataset, counted from 0, `#5:9` and `#::2` are ranges, `#train` and `#test`
 splits, `#test,0:9` both.

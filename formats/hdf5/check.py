@@ -210,11 +210,16 @@ def checked(source: Source) -> Iterator[Checked]:
 
 
 @contextlib.contextmanager
-def opened(source: Source) -> Iterator[h5py.File]:
-    """Open `source` for reading; whatever goes wrong inside becomes an InputError."""
+def opened(source: Source, *, texts: bool = True) -> Iterator[h5py.File]:
+    """Open `source` for reading; whatever goes wrong inside becomes an InputError.
+
+    Without `texts` none of variable length may be read, and none are searched for, which takes the time of
+    reading the file.
+    """
     import h5py
 
-    _check_heaps(source)
+    if texts:
+        check_heaps(source)
     with contextlib.ExitStack() as stack:
         try:
             target = source.path or stack.enter_context(source.open())
@@ -246,7 +251,7 @@ def _short(error: Exception) -> str:
     return printable(str(error).splitlines()[0] if str(error) else type(error).__name__)[:120]
 
 
-def _check_heaps(source: Source) -> None:
+def check_heaps(source: Source) -> None:
     """Raise InputError where the sizes in a heap of texts do not lead from its start to its end."""
     if source.size > _MOST_SEARCHED:
         return

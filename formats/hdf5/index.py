@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from meshonet.formats.hdf5.check import Checked, opened, own
+from meshonet.formats.hdf5.check import Checked, check_heaps, opened, own
 from meshonet.formats.hdf5.file import created
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.errors import InputError
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import h5py
 
 
+OF_PARTS = ("request", "size")
+"""Attributes that parts have and the index does not."""
 _AGAIN = "repeat the command that made it, with {skip_existing}"
 
 
@@ -33,42 +35,42 @@ class Failed(NamedTuple):
 class PartFacts:
     """What a part says of itself.
 
-    `columns` are its datasets: length, shape of a row, and type; `attributes` those that all parts share.
+    `size` must be the same in all parts; `columns` are its datasets: length, shape of a row, and type.
     """
 
     path: Path
     request: str = ""
+    size: str = ""
     count: int = 0
     inputs: list[str] = field(default_factory=list)
     failed: list[Failed] = field(default_factory=list)
-    attributes: dict[str, Any] = field(default_factory=dict)
     columns: dict[str, tuple[int, tuple[int, ...], Any]] = field(default_factory=dict)
     parameter_names: Any = None
-
-    @property
-    def size(self) -> str:
-        """What must be the same in all parts, as words."""
-        words = [f"{self.attributes.get(name, '')}" for name in ("format", "topology", "connections")]
-        arrays = {name: row for name, (_, row, _) in self.columns.items() if row}
-        return " ".join([*filter(None, words), *(f"{name} {row}" for name, row in sorted(arrays.items()))])
 
 
 def part_facts(path: Path) -> PartFacts:
     """Return what the part at `path` says of itself; InputError where it cannot be read."""
     facts = PartFacts(path)
-    with opened(Source(printable(str(path)), path=path)) as file:
-        facts.attributes = dict(file.attrs)
-        facts.request = str(facts.attributes.get("request", ""))
+    source = Source(printable(str(path)), path=path)
+    with opened(source, texts=False) as file:
+        facts.request, facts.size = _fixed(file, "request"), _fixed(file, "size")
         for name, data in _datasets(file):
             facts.columns[name] = len(data), data.shape[1:], data.dtype
         if facts.columns.pop("inputs", None):
-            facts.inputs = list(file["inputs"].asstr())
+            facts.inputs = [digest.decode("ascii") for digest in file["inputs"].astype("S32")]
         if "failed" in facts.columns:
+            check_heaps(source)
             facts.failed = [Failed(*json.loads(text)) for text in file["failed"].asstr()]
         facts.count = facts.columns.get("south", facts.columns.get("blocks/0", (0,)))[0]
         if "parameters" in facts.columns:
             facts.parameter_names = file["parameters"].attrs.get("names")
     return facts
+
+
+def _fixed(file: h5py.File, name: str) -> str:
+    """Return an attribute that is a text of fixed length; those of others are left alone."""
+    kind = file.attrs.get_id(name).dtype.kind if name in file.attrs else ""
+    return bytes(file.attrs[name]).decode("utf-8", "replace") if kind == "S" else ""
 
 
 def _datasets(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
@@ -148,8 +150,10 @@ def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
     for facts in parts[1:]:
         _check_same(facts, first)
     columns = {name: column for facts in reversed(parts) for name, column in facts.columns.items()}
+    with opened(Source(printable(str(first.path)), path=first.path)) as model:
+        attributes = dict(model.attrs)
     with created(file) as made:
-        made.attrs.update(first.attributes)
+        made.attrs.update({name: value for name, value in attributes.items() if name not in OF_PARTS})
         for name, (_, row, kind) in sorted(columns.items()):
             _add_column(made, name, row, kind, parts, index.parent)
         if first.parameter_names is not None:

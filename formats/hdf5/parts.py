@@ -4,6 +4,7 @@ A part is written whole or not at all, and says of what it was made:
 
 ========== ========================================================================================
 request    attribute: digest of the settings of all parts
+size       attribute: counts of nodes and topology, in words
 inputs     dataset of texts: digests of the inputs
 failed     dataset of texts: JSON lists ``[input, member, error, again]`` of members it lacks
 ========== ========================================================================================
@@ -135,8 +136,8 @@ class PartFiles:
             for sample in samples:
                 writer.append(sample)
                 count += 1
-            texts = {"inputs": [each.digest for each in inputs], "failed": list(map(json.dumps, failed))}
-            writer.note({"request": self.request}, texts)
+            digests = [each.digest for each in inputs]
+            writer.note(self.request, digests, list(map(json.dumps, failed)))
         return count
 
     def build(self) -> int:

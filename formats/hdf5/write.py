@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import zlib
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -105,15 +106,20 @@ class Writer:
             self._bytes += value.nbytes
         self._held.setdefault(name, []).append((self._count, value))
 
-    def note(self, attributes: Mapping[str, str], texts: Mapping[str, Sequence[str]]) -> None:
-        """Add attributes, and datasets of texts where there are any, that are not of single samples."""
+    def note(self, request: str, digests: Sequence[str], failed: Sequence[str]) -> None:
+        """Say of what the samples were made: digests of request and inputs, texts on inputs that failed.
+
+        Attributes are texts of fixed length, which are read without a search for damage.
+        """
         import h5py
 
-        self._file.attrs.update(attributes)
-        for name, entries in texts.items():
-            if entries:
-                size = {"chunks": (min(len(entries), 1024),), "maxshape": (None,)}
-                self._file.create_dataset(name, data=list(entries), dtype=h5py.string_dtype(), **size)
+        size, connections = self._first or ("", "")
+        joined = f", connected as {zlib.crc32(connections.encode()):08x}" if connections else ""
+        facts = {"request": request, "size": f"{size}{joined}"[-500:]}
+        self._file.attrs.update({name: np.bytes_(fact.encode()) for name, fact in facts.items()})
+        self._file.create_dataset("inputs", data=np.array(digests, dtype=np.bytes_))
+        if failed:
+            self._file.create_dataset("failed", data=list(failed), dtype=h5py.string_dtype())
 
     def flush(self) -> None:
         """Write what is held back."""

@@ -87,7 +87,7 @@ class Delivered(Timed):
     counts: dict[str, int] = field(init=False)
     topology: str = field(init=False)
 
-    def __post_init__(self, what: Grid | Boundary) -> None:  # type: ignore[override]
+    def __post_init__(self, what: Grid | Boundary) -> None:
         super().__post_init__()
         self.counts, self.topology = _counts(what), what.topology
 
