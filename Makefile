@@ -1,11 +1,11 @@
-# meshonet: make demo, make test, make lint, make train, make bench, make docs, make wheel
+# meshonet: make demo, make test, make lint, make train, make bench, make docs, make site, make wheel
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find kernels -name '*.py*' -o -name '*.pxi' -o -name '*.h' -o -name '*.c' ! -name _native.c)
 
-.PHONY: help demo test test-fast test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs tutorials gallery wheel clean
+.PHONY: help demo test test-fast test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs tutorials gallery site wheel clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
@@ -17,6 +17,7 @@ help:
 	@echo 'make paper   the MeshONet paper again: docs/benchmarks/paper (hours, resumable); make paper-quick: minutes, in build'
 	@echo 'make bench   the benchmarks, and their pages in docs/benchmarks'
 	@echo 'make docs    the generated pages and pictures of docs/'
+	@echo 'make site    the documentation site: build/site/index.html'
 	@echo 'make tutorials  every page of docs/tutorials, compared with what it prints, and its pictures (needs OpenFOAM)'
 	@echo 'make gallery  docs/gallery/domains.md: the blocks of thirty domains, with pictures'
 	@echo 'make wheel   dist/meshonet-*.whl for this platform, and the source distribution'
@@ -171,11 +172,23 @@ tutorials: $(VENV)/.developing
 gallery: $(VENV)/.developing
 	$(BIN)/python docs/make_gallery.py
 
+# pages, gallery, references of Python; no network is needed. Spelling first: what is misspelt is named with its line
+SITE := build/site
+$(VENV)/.documenting: $(VENV)/.installed
+	$(PIP) --editable '.[docs]'
+	@touch $@
+
+site: $(VENV)/.documenting
+	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md docs examples meshonet_cli meshonet/api
+	$(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going -q docs $(SITE)
+	@echo '$(SITE)/index.html'
+
 # for an index, wheels of the usual platforms: docs/development/wheels.md
 wheel: $(BIN)/python
 	$(PIP) build
 	$(BIN)/python -m build --outdir dist
 
 clean:
-	rm -rf build demo *.egg-info $(VENV)/.installed $(VENV)/.developing
+	rm -rf build demo *.egg-info $(VENV)/.installed $(VENV)/.developing $(VENV)/.documenting
+	rm -rf docs/reference/api docs/gallery/python
 	rm -f kernels/_native.c kernels/*.so

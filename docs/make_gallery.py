@@ -1,4 +1,4 @@
-"""Make docs/gallery/domains.md and its pictures: python docs/make_gallery.py (make gallery).
+"""Make docs/gallery/domains.md, its pictures and its table: python docs/make_gallery.py (make gallery).
 
 Thirty domains of examples/domains, each gridded by `meshonet.solve_pde` and drawn with its blocks.
 """
@@ -28,14 +28,24 @@ PICTURE = COLUMNS * ROWS
 COLOURS = 24
 FEW, MANY = "#f2b705", "#e4572e"
 
-HEAD = """# Gallery
+HEAD = """# Domains of many blocks
 
 <!-- made by python docs/make_gallery.py (make gallery) -->
 
 Look here for the blocks that a shape like yours gets ([how](../guide/blocks.md)). Each grid is made by
 `meshonet solve-pde DOMAIN.geojson --cells 900`; thick lines are the sides of blocks. Where three cells meet
 inside there is a yellow dot, where five or more meet a red one. `python examples/domains/domains.py FOLDER`
-writes the domains.
+writes the domains. Their counts and angles are [measured](../benchmarks/domains.md).
+"""
+TABLE = """# Thirty domains of many blocks
+
+<!-- made by python docs/make_gallery.py (make gallery) -->
+
+Look here for the number of blocks, irregular vertices and angles of the domains in the
+[gallery](../gallery/domains.md), each by `meshonet solve-pde DOMAIN.geojson --cells 900`.
+
+| domain | blocks | cells | irregular vertices | off 90 degrees: mean, largest |
+| --- | --- | --- | --- | --- |
 """
 
 
@@ -48,9 +58,8 @@ def main() -> None:
         page += "".join(
             montage(files[k : k + PICTURE], k // PICTURE + 1, rows) for k in range(0, len(files), PICTURE)
         )
-    page += "\n| domain | blocks | cells | irregular vertices | off 90 degrees: mean, largest |\n"
-    page += "| --- | --- | --- | --- | --- |\n" + "\n".join(rows) + "\n"
     (DOCS / "gallery" / "domains.md").write_text(page, encoding="utf-8")
+    (DOCS / "benchmarks" / "domains.md").write_text(TABLE + "\n".join(rows) + "\n", encoding="utf-8")
 
 
 def montage(files: list[Path], number: int, rows: list[str]) -> str:

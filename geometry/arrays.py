@@ -1,5 +1,6 @@
 """Names for the arrays that everything passes around."""
 
+from collections.abc import Sequence
 from typing import Any, Literal, TypeAlias, TypeVar
 
 import numpy as np
@@ -41,6 +42,21 @@ def middle(values: Floats) -> float:
     """Return the median of a one-dimensional array without NaN. np.median loads numpy.ma: 25 ms."""
     ordered, half = np.sort(values), len(values) // 2
     return float(ordered[half] if len(values) % 2 else 0.5 * (ordered[half - 1] + ordered[half]))
+
+
+def percentiles_of(values: NDArray[Any], percents: Sequence[float]) -> list[float]:
+    """Return the percentiles of all `values`, to the bit those of np.percentile, which loads numpy.ma: 25 ms.
+
+    >>> percentiles_of(np.array([[3.0, 1.0], [2.0, 4.0]]), (0, 50, 100))
+    [1.0, 2.5, 4.0]
+    """
+    places = np.asarray(percents) / 100.0 * (values.size - 1)
+    below = np.floor(places).astype(np.intp)
+    above = np.minimum(below + 1, values.size - 1)
+    ordered = np.partition(values, np.concatenate([below, above]), axis=None)
+    low, high, part = ordered[below], ordered[above], places - below
+    step = high - low
+    return [float(v) for v in np.where(part < 0.5, low + step * part, high - step * (1.0 - part))]
 
 
 def read_only(values: AnyArray) -> AnyArray:

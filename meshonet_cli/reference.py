@@ -13,7 +13,8 @@ _HEAD = """# Commands
 
 <!-- made by python -m meshonet_cli.reference; a test keeps it current -->
 
-What `meshonet --help` and the `--help` of every command print; `python -m meshonet_cli` is the same program.
+Look up an option here: what `meshonet --help` and the `--help` of every command print.
+`python -m meshonet_cli` is the same program.
 """
 
 

@@ -48,6 +48,11 @@ def test_the_models_page_is_current() -> None:
     assert (REFERENCE / "models.md").read_text() == pages().models_page(), "run make docs"  # type: ignore[attr-defined]
 
 
+def test_the_page_of_held_out_errors_is_current() -> None:
+    page = (ROOT / "docs" / "benchmarks" / "models.md").read_text()
+    assert page == pages().errors_page(), "run make docs"  # type: ignore[attr-defined]
+
+
 def test_the_formats_page_is_current() -> None:
     assert (REFERENCE / "formats.md").read_text() == pages().formats_page(), "run make docs"  # type: ignore[attr-defined]
 
@@ -93,14 +98,16 @@ def test_links_lead_to_files_and_headings(page: Path) -> None:
 
 
 def blocks(page: Path, language: str = "") -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), flags=re.DOTALL | re.MULTILINE)
+    fences = re.findall(r"^```([^\n]*)\n(.*?)^```$", page.read_text(), flags=re.DOTALL | re.MULTILINE)
+    return [text for word, text in fences if word == language]
 
 
 def commands(page: Path) -> list[str]:
-    """Every `meshonet ...` line of the blocks of a page; tutorials have a test of their own."""
+    """Commands in the blocks of a page, and Python of a line; tutorials have a test of their own."""
     if page.parent.name == "tutorials":
         return []
-    return [line for block in blocks(page) for line in block.splitlines() if line.startswith("meshonet ")]
+    begun = ("meshonet ", "python -c ")
+    return [line for block in blocks(page) for line in block.splitlines() if line.startswith(begun)]
 
 
 @pytest.fixture
@@ -149,6 +156,7 @@ def domains(folder: Path) -> dict[str, Any]:
 def run(line: str, folder: Path) -> None:
     program = f"{shlex.quote(sys.executable)} -m meshonet_cli"
     shell = re.sub(r"\bmeshonet (?=[a-z])", f"{program} ", line)
+    shell = re.sub("^python ", f"{shlex.quote(sys.executable)} ", shell)
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(  # noqa: S602
         shell, shell=True, cwd=folder, env=environment, capture_output=True, text=True, timeout=120
@@ -204,10 +212,11 @@ def test_the_example_makefile_grids_a_folder_and_judges_it(tmp_path: Path) -> No
     assert (tmp_path / "quality.json").read_text().count('"folded"') >= 2
 
 
-def test_every_path_of_the_architecture_page_is_there() -> None:
+@pytest.mark.parametrize("name", ["architecture", "changes", "stages"])
+def test_every_path_of_the_pages_for_developers_is_there(name: str) -> None:
     """Paths in backticks, from the root or from a package; NAME stands for what is added."""
-    page = (ROOT / "docs" / "development" / "architecture.md").read_text()
+    page = (ROOT / "docs" / "development" / f"{name}.md").read_text()
     words = re.findall(r"`([a-z_/]+(?:/|\.py|\.md|\.pyi|\.pyx))`", page)
-    assert len(words) > 30
+    assert len(words) > 15
     roots = (ROOT, ROOT / "docs", ROOT / "tests" / "formats", ROOT / "meshonet_cli")
     assert not [word for word in words if not any((root / word).exists() for root in roots)]

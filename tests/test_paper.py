@@ -74,7 +74,7 @@ def test_tables_say_what_the_results_hold(tmp_path: Path) -> None:
     (results / "arch.interpolation.meshonet.race0.csv").write_text(least)
     (results / "time.tfi.100.json").write_text(json.dumps({"seconds": {"grid": 0.00042}}))
     subprocess.run([sys.executable, str(PAPER / "tables.py"), str(tmp_path)], check=True)
-    page = (tmp_path / "README.md").read_text()
+    page = (tmp_path / "index.md").read_text()
     assert "| extrapolation | MeshONet, boundary pasted | 1.2e-02 / 2.5e-02 | 2e-02 |" in page
     assert "| 7 (3 of 6) |" in page
     assert "| arch.interpolation | deeponet | 60 | 1 | 1.0e+00 ± 0e+00 | 1.2e-02 ± 0e+00 | 7 |" in page

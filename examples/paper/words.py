@@ -5,13 +5,13 @@ HEAD = """
 
 <!-- made by make paper -->
 
-Xiao, Chen, Peng, Wang, Liu, *MeshONet: A Generalizable and Efficient Operator Learning Method for Structured Mesh
-Generation*, arXiv 2501.11937.
+Read this page to see which claims of the paper are confirmed: Xiao, Chen, Peng, Wang, Liu, *MeshONet: A Generalizable
+and Efficient Operator Learning Method for Structured Mesh Generation*, arXiv 2501.11937.
 
-Read this page to see which claims of the paper are confirmed. All figures come from `meshonet` commands: `make paper`
-samples the six families, solves, trains, infers and measures; `examples/paper/Makefile` is the recipe. The models are
-described in [paper models](../../theory/paper-models.md). The paper measures quality by the largest included angle and shows it
-as colour maps without numbers. Its claims are therefore quoted in words beside our figures.
+All figures come from `meshonet` commands: `make paper` samples the six families, solves, trains, infers and measures;
+`examples/paper/Makefile` is the recipe. The models are described in [paper models](../../theory/paper-models.md). The
+paper measures quality by the largest included angle and shows it as colour maps without numbers. Its claims are
+therefore quoted in words beside our figures.
 """
 
 STANDS = """

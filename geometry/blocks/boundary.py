@@ -48,21 +48,35 @@ class Boundary(Connected):
 
     Parameters
     ----------
-    south, north : (ni, 2) nodes along xi.
-    west, east : (nj, 2) nodes along eta.
-    topology : ``quad``, ``o`` or ``c``. The wake of a ``c`` is where south lies on itself.
-    patches : named stretches of the sides; empty means those of `default_patches`.
-    name : what the input called this shape.
-    wall : the curve that `south` was sampled from, if any: it lets operators see the body between nodes.
-    chord : unit of spacings: an airfoil's chord, another body's largest extent. 0 stands for the distance of
-        the first node of the body from the farthest.
-    sensors : (m, 2) nodes that an operator's branches read (`with_sensors`), when asked for.
-    notes : sentences a user should read, such as that an outline was changed.
-    origin : the numbers that made it and what it is kept for, of a sample of a dataset.
-    sampled : whether the nodes were chosen here, on curves, and may be chosen otherwise.
+    south, north : array
+        (ni, 2) nodes along xi.
+    west, east : array
+        (nj, 2) nodes along eta.
+    topology : {'quad', 'o', 'c'}, optional
+        ``quad``, ``o`` or ``c``. The wake of a ``c`` is where south lies on itself.
+    patches : tuple of Patch, optional
+        Named stretches of the sides; empty means those of `default_patches`.
+    name : str, optional
+        What the input called this shape.
+    wall : Curve, optional
+        The curve that `south` was sampled from, if any: it lets operators see the body between nodes.
+    chord : float, optional
+        Unit of spacings: an airfoil's chord, another body's largest extent. 0 stands for the distance of the
+        first node of the body from the farthest.
+    sensors : array, optional
+        (m, 2) nodes that an operator's branches read (`with_sensors`), when asked for.
+    notes : tuple of str, optional
+        Sentences a user should read, such as that an outline was changed.
+    origin : Origin, optional
+        The numbers that made it and what it is kept for, of a sample of a dataset.
+    sampled : bool, optional
+        Whether the nodes were chosen here, on curves, and may be chosen otherwise.
 
-    Raises InputError: an edge of the wrong shape, with a node that is not finite or repeated, edges that do
-    not meet, a left-handed outline, a ``c`` without a wake.
+    Raises
+    ------
+    InputError
+        An edge of the wrong shape, with a node that is not finite or repeated, edges that do not meet, a
+        left-handed outline, a ``c`` without a wake.
     """
 
     south: Floats

@@ -55,10 +55,25 @@ UNKNOWN = Origin()
 class Grid(Connected):
     """At least one block, named stretches of the sides, and where sides are the same nodes; validates itself.
 
-    `name` is what the input called the shape, `provenance` how the grid was made: method, settings, version;
-    `origin` is that of its boundary.
+    Parameters
+    ----------
+    blocks : tuple of Block
+        Arrays of nodes: (ni, nj, 2) in the plane, (ni, nj, 3) on a surface, (ni, nj, nk, 3) in space.
+    patches : tuple of Patch, optional
+        Named stretches of the outer sides.
+    connections : tuple of Connection, optional
+        Sides that are the same nodes.
+    name : str, optional
+        What the input called the shape.
+    provenance : dict, optional
+        How the grid was made: method, settings, version.
+    origin : Origin, optional
+        Origin of its boundary, of a sample of a dataset.
 
-    Raises InputError: no block; a patch outside its side; connected sides whose nodes differ.
+    Raises
+    ------
+    InputError
+        No block; a patch outside its side; connected sides whose nodes differ.
     """
 
     blocks: tuple[Block, ...]
@@ -93,7 +108,16 @@ class Grid(Connected):
         """Return the grid of a single block (see `Block`), its connections found in the nodes.
 
         The wake of a ``c`` is where the south side lies on itself; no `patches` means `default_patches`.
-        Raises InputError: see `Block`; an O grid that is not closed, a C grid without a wake.
+
+        Returns
+        -------
+        Grid
+            The grid of a single block (see `Block`), its connections found in the nodes.
+
+        Raises
+        ------
+        InputError
+            See `Block`; an O grid that is not closed, a C grid without a wake.
         """
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]
@@ -197,7 +221,13 @@ class Grid(Connected):
         return replace(self, provenance={**self.provenance, **facts})
 
     def quality(self) -> Quality:
-        """Return the summaries of all metrics (`meshonet.geometry.quality.measure.measure`)."""
+        """Return the summaries of all metrics (`meshonet.geometry.quality.measure.measure`).
+
+        Returns
+        -------
+        Quality
+            The summaries of all metrics (`meshonet.geometry.quality.measure.measure`).
+        """
         # by name: what is measured needs grids
         return import_module("meshonet.geometry.quality.measure").measure(self, percentiles=True)
 
@@ -209,7 +239,17 @@ class Grid(Connected):
     def to_pyvista(self) -> Any:
         """Return the grid as a `pyvista.StructuredGrid`, many blocks as a `pyvista.MultiBlock` of these.
 
-        What is in the plane has z = 0. Raises InputError: pyvista is not installed.
+        What is in the plane has z = 0.
+
+        Returns
+        -------
+        pyvista.StructuredGrid or pyvista.MultiBlock
+            The grid as a `pyvista.StructuredGrid`, many blocks as a `pyvista.MultiBlock` of these.
+
+        Raises
+        ------
+        InputError
+            PyVista is not installed.
         """
         try:
             from pyvista import MultiBlock, StructuredGrid

@@ -41,7 +41,13 @@ class Domain:
 
     @classmethod
     def of_polygons(cls, polygons: list[Floats], name: str = "") -> Domain:
-        """Return the domain inside the first polygon (n, 2) and outside the others, either way round."""
+        """Return the domain inside the first polygon (n, 2) and outside the others, either way round.
+
+        Returns
+        -------
+        Domain
+            The domain inside the first polygon (n, 2) and outside the others, either way round.
+        """
         loops = []
         for number, points in enumerate(polygons):
             names = ("outer",) if number == 0 else ("body" if number == 1 else f"body{number}",)

@@ -18,6 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
+from meshonet.geometry.arrays import distinct
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 
@@ -28,11 +29,15 @@ class Layout:
 
     Parameters
     ----------
-    mesh : nodes and their places on the boundary.
-    blocks : lattices of node numbers, right-handed; each quad of the mesh is in one of them.
-    layers : by number of a block, how many rows of cells from its south side are layers at a wall whose
-        heights are given, so that no optimisation moves them.
-    fronts : numbers of the loops that are no walls but the fronts of layers around them, which come later.
+    mesh : QuadMesh
+        Nodes and their places on the boundary.
+    blocks : tuple of array
+        Lattices of node numbers, right-handed; each quad of the mesh is in one of them.
+    layers : dict, optional
+        By number of a block, how many rows of cells from its south side are layers at a wall whose heights
+        are given, so that no optimisation moves them.
+    fronts : tuple of int, optional
+        Numbers of the loops that are no walls but the fronts of layers around them, which come later.
     """
 
     mesh: QuadMesh
@@ -44,7 +49,7 @@ class Layout:
     def vertices(self) -> Indices:
         """(v,) nodes that are corners of blocks, ascending."""
         corners = [block[[0, -1, -1, 0], [0, 0, -1, -1]] for block in self.blocks]
-        return np.asarray(np.unique(np.concatenate(corners)))
+        return np.asarray(distinct(np.concatenate(corners)))
 
     @property
     def cells(self) -> int:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, norms, percentiles_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.quality.summary import Quality
@@ -33,7 +33,7 @@ def deviation(grid: Grid) -> Deviation:
     corners = sum(values.size for values in every)
     return Deviation(
         mean=float(sum(values.sum() for values in every)) / corners,
-        p99=float(np.percentile(np.concatenate([cells.ravel() for cells in worst]), 99.0)),
+        p99=percentiles_of(np.concatenate([cells.ravel() for cells in worst]), (99,))[0],
         max=float(worst[block].max()),
         at=(block, i, j),
     )

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, norms, percentiles_of
 from meshonet.geometry.blocks.grid import Grid
 
 ROWS = 128
@@ -86,7 +86,7 @@ class Tally:
         """The extreme of all values so far, None when there were none."""
         if not self._count:
             return None
-        p99 = None if self._values is None else float(np.percentile(np.concatenate(self._values), 99.0))
+        p99 = None if self._values is None else percentiles_of(np.concatenate(self._values), (99,))[0]
         return Extreme(self._max, self._total / self._count, self._at, p99)
 
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, as_planar
+from meshonet.geometry.arrays import Floats, as_planar, percentiles_of
 from meshonet.geometry.blocks.block import form_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
@@ -122,7 +122,7 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
             ends = [run.percentile(k, m, cells, percent) for m, percent in enumerate(PERCENTS)]
         if percentiles and None in ends:
             all_values = values[k] if len(values) else per_cell(grid, metric.name)
-            ends = [float(v) for v in np.percentile(all_values.ravel(), PERCENTS, overwrite_input=True)]
+            ends = [*percentiles_of(all_values, PERCENTS)]
         metrics[metric.name] = Summary(low, mean, high, (int(i), int(j)), *ends)
     metrics |= {m.name: _summary(m, m.cells(grid), percentiles) for m in METRICS if m.cells}
     return Quality(cells, count_folded(grid.nodes), metrics)
@@ -131,7 +131,7 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
 def _summary(metric: Metric, values: Floats, percentiles: bool) -> Summary:
     worst = np.argmin(values) if metric.worst == "min" else np.argmax(values)
     i, j = divmod(int(worst), values.shape[1])
-    ends = [float(v) for v in np.percentile(values, PERCENTS)] if percentiles else [None, None]
+    ends = percentiles_of(values, PERCENTS) if percentiles else [None, None]
     return Summary(float(values.min()), float(values.mean()), float(values.max()), (i, j), *ends)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, percentiles_of
 from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
@@ -79,9 +79,5 @@ def _summary(metric: Metric, blocks: Sequence[Floats], percentiles: bool) -> Sum
     at = int(np.argmin(cells) if metric.worst == "min" else np.argmax(cells))
     every = np.concatenate([cells.ravel() for cells in blocks])
     low, mean, high = float(every.min()), float(every.mean()), float(every.max())
-    part = (
-        [float(v) for v in np.percentile(every, PERCENTS, overwrite_input=True)]
-        if percentiles
-        else [None, None]
-    )
+    part = percentiles_of(every, PERCENTS) if percentiles else [None, None]
     return Summary(low, mean, high, (block, *divmod(at, cells.shape[1])), *part)

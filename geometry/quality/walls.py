@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, norms, percentiles_of
 from meshonet.geometry.blocks.across import rows_beside
 from meshonet.geometry.blocks.block import face_counts
 from meshonet.geometry.blocks.grid import Grid
@@ -144,5 +144,5 @@ def _off_square(along: Floats, away: Floats) -> Floats:
 
 def _spread(parts: Sequence[Floats], *, percentile: bool) -> Spread:
     values = parts[0] if len(parts) == 1 else np.concatenate([part.ravel() for part in parts])
-    p95 = float(np.percentile(values, 95.0)) if percentile else None
+    p95 = percentiles_of(values, (95,))[0] if percentile else None
     return Spread(float(values.min()), float(values.mean()), float(values.max()), p95)

@@ -32,14 +32,23 @@ class Section:
 
     Parameters
     ----------
-    shape : an airfoil, or a closed curve, in any unit.
-    chord : length of the section in the unit of the whole.
-    z : of its plane.
-    x, y : of its leading edge before the twist.
-    twist : degrees, nose up.
-    about : place that it is twisted about, in chords from the leading edge along x and y.
+    shape : Airfoil or Outline
+        An airfoil, or a closed curve, in any unit.
+    chord : float
+        Length of the section in the unit of the whole.
+    z : float
+        Of the section's plane.
+    x, y : float, optional
+        Place of its leading edge before the twist.
+    twist : float, optional
+        Degrees, nose up.
+    about : tuple of 2 float, optional
+        Place that it is twisted about, in chords from the leading edge along x and y.
 
-    Raises InputError: a chord that is not positive; a value that is not finite.
+    Raises
+    ------
+    InputError
+        A chord that is not positive; a value that is not finite.
     """
 
     shape: Airfoil | Outline

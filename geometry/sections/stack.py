@@ -27,13 +27,21 @@ class Stack:
 
     Parameters
     ----------
-    sections : from the root on.
-    kind : ``wing`` has a tip behind its last section, ``blade`` two end walls, ``duct`` is flown through.
-    tip : of a wing: ``round``, ``flat``, or ``open``, which has none.
-    between : what lies between sections: ``linear``, or ``smooth``, cubics in z that do not overshoot.
-    name : what the input called it.
+    sections : tuple of Section
+        Sections from the root on.
+    kind : {'wing', 'blade', 'duct'}, optional
+        ``wing`` has a tip behind its last section, ``blade`` two end walls, ``duct`` is flown through.
+    tip : {'round', 'flat', 'open'}, optional
+        Of a wing: ``round``, ``flat``, or ``open``, which has none.
+    between : {'linear', 'smooth'}, optional
+        What lies between sections: ``linear``, or ``smooth``, cubics in z that do not overshoot.
+    name : str, optional
+        What the input called it.
 
-    Raises InputError: fewer than two sections; z that does not increase.
+    Raises
+    ------
+    InputError
+        Fewer than two sections; z that does not increase.
     """
 
     sections: tuple[Section, ...]

@@ -23,26 +23,41 @@ class Sampling:
 
     Parameters
     ----------
-    ni, nj : nodes along xi (around the body) and eta (away from it); None means what the shape has, and
-        for a curve `DEFAULT_NI` and `DEFAULT_NJ`.
-    nk : nodes of a volume along zeta; None for grids in the plane, and for what a volume has.
-    topology : ``auto`` lets the shape choose.
-    spacing : law of the nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies
-        (``tanh`` where a cell is asked for), and ``uniform`` elsewhere.
-    le_spacing, te_spacing : wall cell at the leading and at the trailing edge, in chords.
-    far_field : radius of the outer boundary, in chords or, around other bodies, in their largest extent;
-        None is `DEFAULT_FAR_FIELD`, and all that shapes without one take. Off a surface in space the distance
-        to march, in its unit.
-    corners : the points, counted from 0, that become the corners of a quad domain.
-    te : blunt trailing edges of airfoils as they are (``exact``), with their corners rounded (``round``) or
+    ni, nj : int, optional
+        Nodes along xi (around the body) and eta (away from it); None means what the shape has, and for a
+        curve `DEFAULT_NI` and `DEFAULT_NJ`.
+    nk : int, optional
+        Nodes of a volume along zeta; None for grids in the plane, and for what a volume has.
+    topology : {'auto', 'quad', 'o', 'c'}, optional
+        ``auto`` lets the shape choose.
+    spacing : str, optional
+        Law of the nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies (``tanh``
+        where a cell is asked for), and ``uniform`` elsewhere.
+    le_spacing, te_spacing : float, optional
+        Wall cell at the leading and at the trailing edge, in chords.
+    far_field : float, optional
+        Radius of the outer boundary, in chords or, around other bodies, in their largest extent; None is
+        `DEFAULT_FAR_FIELD`, and all that shapes without one take. Off a surface in space the distance to
+        march, in its unit.
+    corners : tuple of 4 int, optional
+        The points, counted from 0, that become the corners of a quad domain.
+    te : {'auto', 'exact', 'round', 'wedge'}, optional
+        Blunt trailing edges of airfoils as they are (``exact``), with their corners rounded (``round``) or
         closed by a wedge behind them (``wedge``); ``auto`` is ``wedge`` for a C boundary, which needs a sharp
         edge, and ``exact`` otherwise.
-    wake : length of a C boundary's wake in chords; None is as long as the far field is away.
-    wake_nodes : nodes of it, the trailing edge included; None derives it from the cell at the edge.
-    viscous : the cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
-    normalise : put the leading edge at (0, 0) and the trailing edge at (1, 0).
+    wake : float, optional
+        Length of a C boundary's wake in chords; None is as long as the far field is away.
+    wake_nodes : int, optional
+        Nodes of it, the trailing edge included; None derives it from the cell at the edge.
+    viscous : bool, optional
+        The cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
+    normalise : bool, optional
+        Put the leading edge at (0, 0) and the trailing edge at (1, 0).
 
-    Raises InputError: a value out of its range.
+    Raises
+    ------
+    InputError
+        A value out of its range.
     """
 
     ni: int | None = None

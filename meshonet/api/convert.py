@@ -27,16 +27,26 @@ def convert(
 
     Parameters
     ----------
-    source, output : the files; several grids need a format that holds many.
-    extrude : height in z of the 3D grid to make; None leaves grids plane.
-    planes : with `extrude`, planes of nodes in z, one more than cells; None is 2.
-    swap : exchange the directions of xi and eta (four-sided grids), keeping grids right-handed.
-    normalise : scale to unit chord, leading edge at (0, 0); four-sided grids to unit length.
-    coarsen : keep the nodes whose indices along xi and eta are multiples of this number.
-    from_format, to_format : formats, when endings and content do not say.
+    source, output : str or Path
+        The files; several grids need a format that holds many.
+    extrude : float, optional
+        Height in z of the 3D grid to make; None leaves grids plane.
+    planes : int, optional
+        With `extrude`, planes of nodes in z, one more than cells; None is 2.
+    swap : bool, optional
+        Exchange the directions of xi and eta (four-sided grids), keeping grids right-handed.
+    normalise : bool, optional
+        Scale to unit chord, leading edge at (0, 0); four-sided grids to unit length.
+    coarsen : int, optional
+        Keep the nodes whose indices along xi and eta are multiples of this number.
+    from_format, to_format : str, optional
+        Formats, when endings and content do not say.
 
-    Raises InputError: a format that cannot be read, or written, or cannot hold 3D grids; a height that is not
-    positive; numbers of cells that `coarsen` does not divide.
+    Raises
+    ------
+    InputError
+        A format that cannot be read, or written, or cannot hold 3D grids; a height that is not positive;
+        numbers of cells that `coarsen` does not divide.
     """
     conversion = Conversion(extrude, planes, swap, normalise, coarsen)
     boundaries = conversion.of_boundaries(str(source), str(output), from_format, to_format)

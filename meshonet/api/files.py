@@ -56,7 +56,15 @@ def _readable(text: str | InputError) -> str:
 def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
     """Return the grid of a file, or the shape of one without grids or of a designation ``naca:2412``.
 
-    Raises InputError: a file that cannot be read, or holds several: `read_all` has them.
+    Returns
+    -------
+    Grid or shape
+        The grid of a file, or the shape of one without grids or of a designation ``naca:2412``.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read, or holds several: `read_all` has them.
     """
     nothing = "holds nothing", "give a file with a boundary or a grid in it"
     several = "holds several grids or boundaries", "use read_all"
@@ -79,7 +87,15 @@ def only(records: Iterator[T], source: str, nothing: tuple[str, str], several: t
 def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Grid | Shape]:
     """Return an iterator over the grids of a file, or over the shapes of one without grids.
 
-    Raises InputError: a file that cannot be read.
+    Returns
+    -------
+    iterator of Grid or shape
+        The grids of a file, or the shapes of one without grids.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read.
     """
     text = str(path)
     if is_designation(text):
@@ -101,10 +117,15 @@ def write(what: Grid | Boundary | Layout, path: str | Path, *, to_format: str | 
 
     Parameters
     ----------
-    path : file to write; its ending says the format.
-    to_format : format, when the ending does not say.
+    path : str or Path
+        File to write; its ending says the format.
+    to_format : str, optional
+        Format, when the ending does not say.
 
-    Raises InputError: a format that is not known or cannot hold this; a place that cannot be written.
+    Raises
+    ------
+    InputError
+        A format that is not known or cannot hold this; a place that cannot be written.
     """
     kind: Kind = (
         "grids" if isinstance(what, Grid) else "layouts" if isinstance(what, Layout) else "boundaries"

@@ -40,23 +40,42 @@ def grid(
 ) -> Grid:
     """Return a valid grid inside a boundary, around a body, of the blocks of a domain, or of a volume.
 
+    The grid has `write`, `quality` and `to_pyvista`; `meshonet.make_grid` returns notes and times too.
+
     Parameters
     ----------
-    shape : a file or designation, points (n, 2) of a closed outline, a boundary, a grid for its outer edges
-        or faces, a `meshonet.Domain`; with `assemble` a list of these. In space nodes (ni, nj, nk, 3) of a
+    shape : str, Path, array, Grid, Boundary or Domain, or a list of these
+        A file or designation, points (n, 2) of a closed outline, a boundary, a grid for its outer edges or
+        faces, a `meshonet.Domain`; with `assemble` a list of these. In space nodes (ni, nj, nk, 3) of a
         volume, whose outer faces are filled, or a list of the patches (ni, nj, 3) of a surface.
-    assemble : whether all of them are one domain.
-    res : nodes along xi (around a body) and eta (away from it); one number for both.
-    method : ``best`` for what measures best, ``auto`` for the same among equations, a name in
-        `meshonet.METHODS`, or ``operator:NAME``.
-    parameters : those of `meshonet.Sampling` and `meshonet.GridRequest`, such as ``topology``, ``far_field``,
+    assemble : bool, optional
+        Whether all of them are one domain.
+    res : int or tuple of int, optional
+        Nodes along xi (around a body) and eta (away from it); one number for both.
+    method : str, optional
+        ``best`` for what measures best, ``auto`` for the same among equations, a name in `meshonet.METHODS`,
+        or ``operator:NAME``.
+    **parameters
+        Those of `meshonet.Sampling` and `meshonet.GridRequest`, such as ``topology``, ``far_field``,
         ``y_plus``, ``reynolds``, ``growth``, ``repair``, ``cells``, ``cell_size``, ``walls``, ``layout``
         (one, or its file), and settings of the method, such as ``tol``.
 
-    The grid has `write`, `quality` and `to_pyvista`; `meshonet.make_grid` returns notes and times too. Raises
-    InputError: a shape or parameter that cannot be used; NoValidGridError: cells are folded, and
-    `allow_invalid` was not given; SolverError: the method diverged.
+    Returns
+    -------
+    Grid
+        A valid grid inside a boundary, around a body, of the blocks of a domain, or of a volume.
 
+    Raises
+    ------
+    InputError
+        A shape or parameter that cannot be used.
+    NoValidGridError
+        Cells are folded, and `allow_invalid` was not given.
+    SolverError
+        The method diverged.
+
+    Examples
+    --------
     >>> made = grid("naca:2412", res=(81, 31))
     >>> made.ni, made.nj, made.topology, made.quality().folded
     (81, 31, 'o', 0)
@@ -77,12 +96,24 @@ def domain_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
 
 
 def tfi(shape: AnyShape, *, res: Counts | None = None, **parameters: Any) -> Grid:
-    """Return a grid by transfinite interpolation; parameters as of `grid`, and ``blending``."""
+    """Return a grid by transfinite interpolation; parameters as of `grid`, and ``blending``.
+
+    Returns
+    -------
+    Grid
+        A grid by transfinite interpolation.
+    """
     return grid(shape, res=res, method="tfi", **parameters)
 
 
 def solve_pde(shape: AnyShape, *, res: Counts | None = None, method: str = "auto", **parameters: Any) -> Grid:
-    """Return a grid by elliptic equations, a variational method or marching; parameters as of `grid`."""
+    """Return a grid by elliptic equations, a variational method or marching; parameters as of `grid`.
+
+    Returns
+    -------
+    Grid
+        A grid by elliptic equations, a variational method or marching.
+    """
     return grid(shape, res=res, method=method, **parameters)
 
 
@@ -91,7 +122,13 @@ def infer(shape: AnyShape, *, res: Counts | None = None, model: str | None = Non
 
     Parameters
     ----------
-    model : a shipped operator, a ``.safetensors`` file, or ``base`` for the conformal solver.
+    model : str, optional
+        A shipped operator, a ``.safetensors`` file, or ``base`` for the conformal solver.
+
+    Returns
+    -------
+    Grid
+        The grid that measures best, or that of an operator.
     """
     return grid(shape, res=res, method="best", model=model, **parameters)
 
@@ -103,12 +140,25 @@ def sample_boundary(
 
     Parameters
     ----------
-    shape, res : as of `grid`.
-    sensors : so many boundary nodes are kept as sensors as well.
-    parameters : those of `meshonet.Sampling`, such as ``topology``, ``te_spacing``, ``far_field``.
+    shape, res
+        As of `grid`.
+    sensors : int, optional
+        So many boundary nodes are kept as sensors as well.
+    **parameters
+        Those of `meshonet.Sampling`, such as ``topology``, ``te_spacing``, ``far_field``.
 
-    Raises InputError: a shape or parameter that cannot be used.
+    Returns
+    -------
+    Boundary
+        The four edges of a shape.
 
+    Raises
+    ------
+    InputError
+        A shape or parameter that cannot be used.
+
+    Examples
+    --------
     >>> edges = sample_boundary("naca:0012", res=(61, 21), far_field=20)
     >>> edges.south.shape, edges.topology
     ((61, 2), 'o')
@@ -132,15 +182,29 @@ def sample_family(
 
     Parameters
     ----------
-    family : ``arch``, ``hexagon``, ``wrench``, ``semicircle``, ``airfoil``, ``hole``, ``procedural``,
+    family : str
+        ``arch``, ``hexagon``, ``wrench``, ``semicircle``, ``airfoil``, ``hole``, ``procedural``,
         ``four-sided`` or ``bodies``.
-    count : of members.
-    res : as of `grid`; None is 101.
-    range : of the family's parameter.
-    seed : of the draw.
-    split : ``interpolation``, ``extrapolation`` or ``random``: a sixth is marked for tests.
+    count : int, optional
+        How many to draw.
+    res : int or tuple of int, optional
+        As of `grid`; None is 101.
+    range : tuple of 2 float, optional
+        Of the family's parameter; None is the whole range.
+    seed : int, optional
+        Of the random numbers.
+    split : str, optional
+        ``interpolation``, ``extrapolation`` or ``random``: a sixth is marked for tests.
 
-    Raises InputError: no such family, a range that leaves the family's, members that cannot be split.
+    Returns
+    -------
+    list of Boundary
+        Boundaries drawn at random from a family, as ``sample-boundary --family`` does.
+
+    Raises
+    ------
+    InputError
+        No such family, a range that leaves the family's, members that cannot be split.
     """
     spread = None if range is None else "{!r}:{!r}".format(*range)
     sampling = sampling_of(res, {})

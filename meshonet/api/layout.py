@@ -14,12 +14,26 @@ def layout(shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, **pa
 
     Parameters
     ----------
-    shape, assemble : as of `grid`.
-    parameters : ``cells`` or ``cell_size``, ``far_field``, ``layout``, ``pitch``, ``inlet``, ``outlet``;
-        with ``first_cell``, or ``y_plus`` and ``reynolds``, and ``walls`` it is the layout outside of layers.
+    shape, assemble
+        As of `grid`.
+    **parameters
+        ``cells`` or ``cell_size``, ``far_field``, ``layout``, ``pitch``, ``inlet``, ``outlet``; with
+        ``first_cell``, or ``y_plus`` and ``reynolds``, and ``walls`` it is the layout outside of layers.
 
-    Raises InputError: a shape or parameter that cannot be used; SolverError: no blocks are found.
+    Returns
+    -------
+    Layout
+        The blocks, and the nodes they are made of.
 
+    Raises
+    ------
+    InputError
+        A shape or parameter that cannot be used.
+    SolverError
+        No blocks are found.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> step = np.array([[0, 1], [2, 1], [2, 0], [6, 0], [6, 2], [0, 2]])
     >>> len(layout(step).blocks)

@@ -23,18 +23,29 @@ def plot(
 
     Parameters
     ----------
-    grid : a grid, or a file that holds one.
-    output : picture to write, ``.png``, ``.svg`` or ``.pdf``.
-    metric : colours the cells; None draws lines only.
-    zoom : x0, x1, y0, y1 of the part to show, with z0, z1 of a picture in space; None shows all.
-    every : draw every so many-th grid line; None chooses by the resolution of the picture.
-    slice : slice of a volume, a layer ``i=10`` or ``k=-1`` or a plane ``x=.5``; None draws its walls, or the
+    grid : Grid, str or Path
+        A grid, or a file that holds one.
+    output : str or Path
+        Picture to write, ``.png``, ``.svg`` or ``.pdf``.
+    metric : str, optional
+        Colours the cells; None draws lines only.
+    zoom : tuple of float, optional
+        x0, x1, y0, y1 of the part to show, with z0, z1 of a picture in space; None shows all.
+    every : int, optional
+        Draw every so many-th grid line; None chooses by the resolution of the picture.
+    slice : str, optional
+        Slice of a volume, a layer ``i=10`` or ``k=-1`` or a plane ``x=.5``; None draws its walls, or the
         outer boundary without any.
-    seen_from : azimuth and elevation in degrees that a picture in space is seen from.
-    to_format : ``png``, ``svg`` or ``pdf``, when the ending does not say.
+    seen_from : tuple of 2 float, optional
+        Azimuth and elevation in degrees that a picture in space is seen from.
+    to_format : str, optional
+        ``png``, ``svg`` or ``pdf``, when the ending does not say.
 
-    Raises InputError: an unknown metric, slice or ending, a box that shows none of the grid, a file that
-    cannot be read or written.
+    Raises
+    ------
+    InputError
+        An unknown metric, slice or ending, a box that shows none of the grid, a file that cannot be read or
+        written.
     """
     picture = Picture(metric, zoom, every, slice, seen_from)
     kind = picture_format(str(output), to_format).name

@@ -17,14 +17,28 @@ def quality(
 
     Parameters
     ----------
-    grid : a grid, or a file that holds one.
-    profile : thresholds to judge by: ``openfoam``, ``pointwise``, ``verdict`` or ``viscous``.
-    compare : reference grid of the same size, or a file that holds one.
-    threads : that work on it, with the same result for any number; None: as many as there are cores.
+    grid : Grid, str or Path
+        A grid, or a file that holds one.
+    profile : str, optional
+        Thresholds to judge by: ``openfoam``, ``pointwise``, ``verdict`` or ``viscous``.
+    compare : Grid, str or Path, optional
+        Reference grid of the same size, or a file that holds one.
+    threads : int, optional
+        Threads that work on it, with the same result for any number; None: as many as there are cores.
 
-    Raises InputError: a file that cannot be read or holds several grids, a reference of another size, an
-    unknown profile, no threads.
+    Returns
+    -------
+    QualityReport
+        Every metric with its percentiles, the worst cells, walls and growth; the verdict of the profile.
 
+    Raises
+    ------
+    InputError
+        A file that cannot be read or holds several grids, a reference of another size, an unknown profile,
+        no threads.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> x, y = np.meshgrid(np.linspace(0, 2, 5), np.linspace(0, 1, 3), indexing="ij")
     >>> report = quality(Grid.from_nodes(np.stack([x, y], axis=-1)))

@@ -17,14 +17,27 @@ def stack(
 
     Parameters
     ----------
-    sections : a TOML file, or the stack itself.
-    tip : ``round``, ``flat`` or ``open``; None is what the stack says.
-    surface : the patches of its surface instead of a volume.
-    parameters : those of `meshonet.StackRequest`, such as ``around``, ``span``, ``first_cell``, ``y_plus``,
+    sections : str, Path or Stack
+        A TOML file, or the stack itself.
+    tip : {'round', 'flat', 'open'}, optional
+        How a wing ends; None is what the stack says.
+    surface : bool, optional
+        The patches of its surface instead of a volume.
+    **parameters
+        Those of `meshonet.StackRequest`, such as ``around``, ``span``, ``first_cell``, ``y_plus``,
         ``reynolds``, ``layers``, ``growth``, ``far_field``.
 
-    Raises InputError: a file or parameter that cannot be used; NoValidGridError: cells are folded, and
-    `allow_invalid` was not given.
+    Returns
+    -------
+    Grid
+        The volume around a wing or blade, or inside a duct, from sections placed in space.
+
+    Raises
+    ------
+    InputError
+        A file or parameter that cannot be used.
+    NoValidGridError
+        Cells are folded, and `allow_invalid` was not given.
     """
     what = (sections if isinstance(sections, Stack) else stack_of(str(sections))).with_tip(tip)
     request = stack_request(**parameters)

@@ -38,16 +38,32 @@ def sweep(
 
     Parameters
     ----------
-    outline : ``circle:RADIUS``, a file with a closed curve, a domain or a planar grid, or what these are.
-    path : see `AnyPath`.
-    planes, up, twist, scale : as of `meshonet.Sweep`.
-    res : nodes along the sides of a four-sided section.
-    parameters : of the section's grid: ``cells``, ``cell_size``, ``first_cell``, ``y_plus``, ``reynolds``,
-        ``growth``, ``walls``, ``layout``, and ``allow_invalid``.
+    outline : str, Path, array, Grid, Boundary or Domain
+        ``circle:RADIUS``, a file with a closed curve, a domain or a planar grid, or what these are.
+    path : str, Path or array (n, 3)
+        A file, points that a smooth curve goes through, or a path itself.
+    planes, up, twist, scale
+        As of `meshonet.Sweep`.
+    res : int or tuple of int, optional
+        Nodes along the sides of a four-sided section.
+    **parameters
+        Of the section's grid: ``cells``, ``cell_size``, ``first_cell``, ``y_plus``, ``reynolds``, ``growth``,
+        ``walls``, ``layout``, and ``allow_invalid``.
 
-    Raises InputError: a section, path or parameter that cannot be used, a bend too tight for the section;
-    NoValidGridError: cells are folded, and `allow_invalid` was not given.
+    Returns
+    -------
+    Grid
+        The volume of a cross-section carried along a curve in space.
 
+    Raises
+    ------
+    InputError
+        A section, path or parameter that cannot be used, a bend too tight for the section.
+    NoValidGridError
+        Cells are folded, and `allow_invalid` was not given.
+
+    Examples
+    --------
     >>> bend = sweep("circle:0.5", np.array([[0, 0, 0], [1, 0, 0], [2, 1, 0], [2, 2, 0]]), cells=100)
     >>> len(bend.blocks), sorted({patch.name for patch in bend.patches})
     (5, ['inlet', 'outlet', 'wall'])

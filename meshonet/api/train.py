@@ -42,26 +42,47 @@ def train(
 
     Parameters
     ----------
-    datasets : files of solved grids; for ``strip`` of O boundaries; for ``quad`` of grids of the same domains
-        by winslow and by variational.
-    output : model file, ``.safetensors``.
-    model : name in `meshonet.solvers.neural.registry.MODELS`; None goes by what the first dataset holds.
-    settings : of the model; for ``quad`` weights of its loss.
-    split : ``interpolation``, ``extrapolation``, ``random``, or a file with ``train`` or ``test`` for each
-        grid; None for what the dataset says.
-    held_out : shapes kept out to watch the loss; None for the model's own.
-    initial : quad model, by name or path, to start from.
-    resume : continue from the checkpoint beside the output, if there is one.
-    threads : of torch.
-    from_format : format of the datasets, when neither ending nor content says.
-    report, note : called with the progress of the run, and with what is worth a line beside it.
-    plan : settings of `meshonet.solvers.neural.fit.plan.Plan`; None stands for the model's own. `points` is
-        a number, or ``all``.
+    datasets : str, Path or list of these
+        Files of solved grids; for ``strip`` of O boundaries; for ``quad`` of grids of the same domains by
+        winslow and by variational.
+    output : str or Path
+        Model file, ``.safetensors``.
+    model : str, optional
+        Name in `meshonet.solvers.neural.registry.MODELS`; None goes by what the first dataset holds.
+    settings : dict, optional
+        Settings of the model; for ``quad`` weights of its loss.
+    split : str, optional
+        ``interpolation``, ``extrapolation``, ``random``, or a file with ``train`` or ``test`` for each grid;
+        None for what the dataset says.
+    held_out : int, optional
+        Shapes kept out to watch the loss; None for the model's own.
+    initial : str, optional
+        Quad model, by name or path, to start from.
+    resume : bool, optional
+        Continue from the checkpoint beside the output, if there is one.
+    threads : int, optional
+        Threads of torch.
+    from_format : str, optional
+        Format of the datasets, when neither ending nor content says.
+    report, note : callable, optional
+        Called with the progress of the run, and with what is worth a line beside it.
+    **plan
+        Settings of `meshonet.solvers.neural.fit.plan.Plan`; None stands for the model's own. `points` is a
+        number, or ``all``.
 
-    Returns the ``model``, the number of ``shapes`` and the ``figures`` of those held out; nothing in
-    processes of torchrun that do not lead. Raises InputError: torch is not installed; the output is no
-    ``.safetensors`` file in a folder that exists; bad settings or datasets. Raises SolverError: the loss is
-    not finite.
+    Returns
+    -------
+    dict
+        The ``model``, the number of ``shapes`` and the ``figures`` of those held out; nothing in processes of
+        torchrun that do not lead.
+
+    Raises
+    ------
+    InputError
+        Torch is not installed; the output is no ``.safetensors`` file in a folder that exists; bad settings
+        or datasets.
+    SolverError
+        The loss is not finite.
     """
     path = Path(output)
     if path.suffix != ".safetensors":

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, percentiles_of
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import NoValidGridError, SolverError
 from meshonet.geometry.layout.layout import Layout
@@ -110,7 +110,7 @@ def skewness(mesh: QuadMesh) -> float:
     edge = np.roll(z, -1, axis=1) - z
     before = np.roll(edge, 1, axis=1)
     cosine = (before * edge).sum(axis=2) / np.sqrt((before**2).sum(axis=2) * (edge**2).sum(axis=2))
-    return float(np.degrees(np.arcsin(np.percentile(np.abs(cosine), 99))))
+    return float(np.degrees(np.arcsin(percentiles_of(np.abs(cosine), (99,))[0])))
 
 
 def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:

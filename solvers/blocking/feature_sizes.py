@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from meshonet.geometry.arrays import distinct
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.grading import graded
@@ -28,7 +29,7 @@ def feature_sizes(domain: Domain) -> SizeMetric:
     """Return isotropic sizes of cells that show every feature of the walls of a domain."""
     points, normals, sizes = [], [], []
     for loop in domain.loops:
-        arcs = np.unique(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
+        arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
         along, bend = loop.tangent(arcs), wall_bend(loop, arcs, _WINDOW)
         size = np.minimum(loop.length / CELLS_AROUND, TURN / np.maximum(bend, 1e-300))
         size = np.minimum(size, wall_gaps(domain, loop, arcs) / CELLS_IN_GAP)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from meshonet.geometry.arrays import percentiles_of
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.chords import Chords
@@ -39,7 +40,9 @@ def _price(layout: Layout) -> float:
     if smallest_corner(layout.mesh) <= 0.0:
         return np.inf
     off = deviations(layout.mesh)
-    return float(off.mean() + 0.05 * np.quantile(off.max(axis=1), 0.99) + UNEVEN * uneven_percent(layout))
+    return float(
+        off.mean() + 0.05 * percentiles_of(off.max(axis=1), (99,))[0] + UNEVEN * uneven_percent(layout)
+    )
 
 
 def uneven_percent(layout: Layout) -> float:

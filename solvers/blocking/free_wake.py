@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_points
 from meshonet.geometry.domain.loop import Loop
@@ -66,12 +66,12 @@ def _reach(begin: Floats, leaving: float, turn: float, chord: float, outer: Loop
     """Return a wake that turns by `turn` on its way."""
     reach = float(np.hypot(*(outer.curve.points - begin).T).max()) * 1.5
     near = min(_NEAR * chord, reach)  # it is straight beyond
-    s = np.unique(np.append(np.linspace(0.0, near, 240), np.linspace(near, 1.01 * reach, 80)))
+    s = distinct(np.append(np.linspace(0.0, near, 240), np.linspace(near, 1.01 * reach, 80)))
     middle = 0.5 * (s[1:] + s[:-1])
     angle = leaving + turn * -np.expm1(-middle / (RELAXATION * chord))
     step = np.diff(s) * np.exp(1j * angle)
     z = complex(*begin) + np.concatenate([[0.0], np.cumsum(step)])
-    places = np.unique(np.append(np.linspace(0.0, outer.length, 600, endpoint=False), outer.corner_arcs))
+    places = distinct(np.append(np.linspace(0.0, outer.length, 600, endpoint=False), outer.corner_arcs))
     at = outer.at(places)
     w = at[:, 0] + 1j * at[:, 1]
     v = np.roll(w, -1) - w

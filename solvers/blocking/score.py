@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, percentiles_of
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.base_complex import BaseComplex
 from meshonet.solvers.blocking.padding import wrong_count
@@ -34,7 +34,7 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
     worst = off.max(axis=1)
     return float(
         off.mean()
-        + 0.05 * np.quantile(worst, 0.99)
+        + 0.05 * percentiles_of(worst, (99,))[0]
         + 0.1 * max(0.0, worst.max() - 60.0)
         + 0.15 * max(0.0, largest_turning(mesh) - 35.0)
         + 4.0 * np.count_nonzero(wrong_count(mesh))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
 from meshonet.solvers.blocking.wall_bend import wall_bend
@@ -23,7 +23,7 @@ def wall_columns(loop: Loop, largest: float) -> Floats:
 
     `largest` is the length of the largest cell.
     """
-    arcs = np.unique(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
+    arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
     size = _sizes(loop, arcs, largest)
     closed = np.append(arcs, loop.length)
     density = 1.0 / np.append(size, size[0])

@@ -43,13 +43,18 @@ class Result:
 
     Parameters
     ----------
-    solution : the grid, its method, path and figures.
-    quality : of the grid.
-    seconds : wall-clock seconds by stage: boundary, load (modules and models, once a process), grid (from
-        boundary nodes in memory to grid nodes in memory), guard, quality.
-    notes : sentences a user should read, those of boundary and solution among them; names of parameters
-        stand in braces, for `meshonet.geometry.errors.spelled`.
-    history : its cycles, when the request keeps them.
+    solution : Solution
+        The grid, its method, path and figures.
+    quality : Quality
+        Quality of the grid.
+    seconds : dict
+        Wall-clock seconds by stage: boundary, load (modules and models, once a process), grid (from boundary
+        nodes in memory to grid nodes in memory), guard, quality.
+    notes : tuple of str, optional
+        Sentences a user should read, those of boundary and solution among them; names of parameters stand in
+        braces, for `meshonet.geometry.errors.spelled`.
+    history : tuple of Row, optional
+        Cycles of the method, when the request keeps them.
     """
 
     solution: Solution
@@ -72,8 +77,19 @@ class Result:
 def make_grid(shape: Shape, request: GridRequest) -> Result:
     """Return the grid of `shape` that `request` describes.
 
-    Raises InputError: they do not go together; NoValidGridError: cells are folded, and that was not allowed;
-    SolverError: the method diverged.
+    Returns
+    -------
+    Result
+        The grid of `shape` that `request` describes.
+
+    Raises
+    ------
+    InputError
+        Shape and request do not go together.
+    NoValidGridError
+        Cells are folded, and that was not allowed.
+    SolverError
+        The method diverged.
     """
     result = next(make_grids([shape], request))
     if isinstance(result, Exception):
@@ -87,7 +103,15 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     Shapes are read as results are taken, and a few ahead (`MOST_TOGETHER`, `MOST_NODES`) when the method
     solves many faster in one call. They do not change one another's grids but in the last digits.
 
-    Raises InputError: the method does not have such settings.
+    Yields
+    ------
+    Result or Exception
+        For each of the shapes, in order, its grid or the error that it ended in.
+
+    Raises
+    ------
+    InputError
+        The method does not have such settings.
     """
     method = request.solver()
     shapes = iter(shapes)

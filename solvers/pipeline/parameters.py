@@ -15,11 +15,28 @@ Counts: TypeAlias = int | tuple[int, int] | tuple[int, int, int]
 def grid_request(method: str = "best", *, res: Counts | None = None, **parameters: Any) -> GridRequest:
     """Return the request with the parameters, of the sampling, the request or the method.
 
-    `res`: nodes along xi, eta and, of volumes, zeta; one number for all. `parameters`: fields of `Sampling`
-    and `GridRequest`,
-    settings of the method; None leaves a setting out. ``wall_spacing`` is another name of ``first_cell``.
-    Raises InputError: as `GridRequest`, or a parameter that the method does not have.
+    Parameters
+    ----------
+    method : str, optional
+        As of `GridRequest`.
+    res : int or tuple of int, optional
+        Nodes along xi, eta and, of volumes, zeta; one number for all.
+    **parameters
+        Fields of `Sampling` and `GridRequest`, settings of the method; None leaves a setting out.
+        ``wall_spacing`` is another name of ``first_cell``.
 
+    Returns
+    -------
+    GridRequest
+        The request with the parameters, of the sampling, the request or the method.
+
+    Raises
+    ------
+    InputError
+        As `GridRequest`, or a parameter that the method does not have.
+
+    Examples
+    --------
     >>> request = grid_request("winslow", res=(80, 40), topology="o", tol=1e-8)
     >>> request.sampling.ni, request.sampling.topology, request.settings
     (80, 'o', {'tol': 1e-08})

@@ -39,42 +39,77 @@ class GridRequest:
 
     Parameters
     ----------
-    sampling : node counts and spacing of the boundary.
-    method : a name in `METHODS`, or ``best``: what measures best for the topology, and marching around bodies
-        with a first cell; or ``auto``: marching where ``best`` marches, Winslow's equations elsewhere.
-    settings : keywords of the method.
-    first_cell : height of the first cell at every wall node, around a body in chords; in a four-sided domain
-        the walls are south and north, and the unit is that of the domain.
-    y_plus, reynolds : the same height by its y+, converted for a flat plate; the Reynolds number is based on
-        the chord.
-    chord_fraction : where along the chord the y+ is converted to a height, 0 to 1.
-    growth : largest ratio of neighbouring cells away from the wall; without `nj` in the sampling there are as
-        many rows as it needs.
-    constant_layers : number of first layers of equal height.
-    spacing_south, spacing_north, spacing_west, spacing_east : heights of first cells off single sides of a
-        four-sided domain.
-    slide : move the nodes of south and north along these walls; None: if a first cell is given and this
-        request samples the nodes.
-    wall_angle : angle of grid lines at walls in degrees, for ``steger-sorenson``.
-    coarse : nodes along each direction to solve on, before the grid is evaluated at its own node counts;
-        ``auto`` chooses by method and size, None solves on all nodes of the grid.
-    refine : how many times, after the first solve, to halve all cells and solve again.
-    initial : grid to start from.
-    repair : whether folded grids are repaired or made by another method; else they are refused. None: all are
+    sampling : Sampling, optional
+        Node counts and spacing of the boundary.
+    method : str, optional
+        A name in `METHODS`, or ``best``: what measures best for the topology, and marching around bodies with
+        a first cell; or ``auto``: marching where ``best`` marches, Winslow's equations elsewhere.
+    settings : dict, optional
+        Keywords of the method.
+    first_cell : float, optional
+        Height of the first cell at every wall node, around a body in chords; in a four-sided domain the walls
+        are south and north, and the unit is that of the domain.
+    y_plus, reynolds : float, optional
+        The same height by its y+, converted for a flat plate; the Reynolds number is based on the chord.
+    chord_fraction : float, optional
+        Where along the chord the y+ is converted to a height, 0 to 1.
+    growth : float, optional
+        Largest ratio of neighbouring cells away from the wall; without `nj` in the sampling there are as many
+        rows as it needs.
+    constant_layers : int, optional
+        Number of first layers of equal height.
+    spacing_south, spacing_north, spacing_west, spacing_east : float, optional
+        Heights of first cells off single sides of a four-sided domain.
+    slide : bool, optional
+        Move the nodes of south and north along these walls; None: if a first cell is given and this request
+        samples the nodes.
+    wall_angle : float, optional
+        Angle of grid lines at walls in degrees, for ``steger-sorenson``.
+    coarse : int or 'auto', optional
+        Nodes along each direction to solve on, before the grid is evaluated at its own node counts; ``auto``
+        chooses by method and size, None solves on all nodes of the grid.
+    refine : int, optional
+        How many times, after the first solve, to halve all cells and solve again.
+    initial : Grid, optional
+        Grid to start from.
+    repair : bool, optional
+        Whether folded grids are repaired or made by another method; else they are refused. None: all are
         repaired but those of algebraic methods and of networks asked for raw answers.
-    repair_margin : cells around folded ones that move with them.
-    allow_invalid : whether a folded grid is a result.
-    percentiles : whether the quality includes percentiles.
-    history : whether the cycles of the solve are kept.
-    blocks : ``single`` for one block also where many would be made.
-    cells, cell_size, walls, pitch, inlet, outlet, layout : of a grid of many blocks, which these ask for
-        (`meshonet.solvers.blocking.request.BlockRequest`).
-    layers, symmetry : of a volume marched from a surface: nodes along its lines, the wall's included, and the
-        axis that its open edges lie across, or ``none``.
-    energy : what is minimised inside six faces, ``angles`` or ``shape``; None: angles.
-    threads : that kernels work with; None: all there are.
+    repair_margin : int, optional
+        Cells around folded ones that move with them.
+    allow_invalid : bool, optional
+        Whether a folded grid is a result.
+    percentiles : bool, optional
+        Whether the quality includes percentiles.
+    history : bool, optional
+        Whether the cycles of the solve are kept.
+    blocks : {'auto', 'single'}, optional
+        ``single`` for one block also where many would be made.
+    cells : int, optional
+        About how many cells a grid of many blocks has. This and those down to `layout` ask for many blocks.
+    cell_size : float, optional
+        Length of edges, in place of `cells`.
+    walls : tuple of str, optional
+        Names of the walls that get layers; empty means all holes.
+    pitch : tuple of 2 float, optional
+        From one blade of a cascade to the next.
+    inlet, outlet : float, optional
+        Axial chords before and behind the blade of a cascade.
+    layout : Layout, optional
+        Blocks to use again.
+    layers : int, optional
+        Nodes along the lines of a volume marched from a surface, the wall's included.
+    symmetry : {'x', 'y', 'z', 'none'}, optional
+        Axis that the open edges of a surface lie across.
+    energy : {'angles', 'shape'}, optional
+        What is minimised inside six faces; None: angles.
+    threads : int, optional
+        Threads that kernels work with; None: all there are.
 
-    Raises InputError: a value out of its range; parameters that need or exclude each other.
+    Raises
+    ------
+    InputError
+        A value out of its range; parameters that need or exclude each other.
     """
 
     sampling: Sampling = field(default_factory=Sampling)

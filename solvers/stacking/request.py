@@ -20,20 +20,34 @@ class StackRequest:
 
     Parameters
     ----------
-    around : nodes around a section, the first one repeated; odd.
-    span : nodes from the first section to the last.
-    base : least height of trailing edges, in chords of their section.
-    first_cell : height of the first cell at every node of the wall; None is 1e-3.
-    y_plus, reynolds, chord_fraction : the same height by its y+, converted for a flat plate; the Reynolds
-        number is that of the longest chord.
-    layers : nodes away from the wall, the wall's included; None: what `growth` needs.
-    growth : ratio of neighbouring cells away from the wall, where `layers` is not given; None is 1.2.
-    far_field : distance of the far field.
-    threads : that kernels work with; None: all there are.
-    percentiles : whether the quality includes percentiles.
-    allow_invalid : whether a folded grid is a result.
+    around : int, optional
+        Nodes around a section, the first one repeated; odd.
+    span : int, optional
+        Nodes from the first section to the last.
+    base : float, optional
+        Least height of trailing edges, in chords of their section.
+    first_cell : float, optional
+        Height of the first cell at every node of the wall; None is 1e-3.
+    y_plus, reynolds, chord_fraction : float, optional
+        The same height by its y+, converted for a flat plate; the Reynolds number is that of the longest
+        chord.
+    layers : int, optional
+        Nodes away from the wall, the wall's included; None: what `growth` needs.
+    growth : float, optional
+        Ratio of neighbouring cells away from the wall, where `layers` is not given; None is 1.2.
+    far_field : float, optional
+        Distance of the far field.
+    threads : int, optional
+        Threads that kernels work with; None: all there are.
+    percentiles : bool, optional
+        Whether the quality includes percentiles.
+    allow_invalid : bool, optional
+        Whether a folded grid is a result.
 
-    Raises InputError: a value out of its range; parameters that need or exclude each other.
+    Raises
+    ------
+    InputError
+        A value out of its range; parameters that need or exclude each other.
     """
 
     around: int = DEFAULT_AROUND

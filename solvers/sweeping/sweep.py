@@ -38,14 +38,21 @@ class Sweep:
 
     Parameters
     ----------
-    planes : planes of nodes; None: cells turn by at most `TURN_DEG` and are at most three times as long as
-        those of the section are wide in the mean.
-    up : direction (3,) that the section's y axis is nearest to where the path starts; None is z, or y for a
+    planes : int, optional
+        Planes of nodes; None: cells turn by at most `TURN_DEG` and are at most three times as long as those
+        of the section are wide in the mean.
+    up : tuple of 3 float, optional
+        Direction (3,) that the section's y axis is nearest to where the path starts; None is z, or y for a
         path along z.
-    twist : degrees that the section turns by from start to end, in addition.
-    scale : its size at the end, in sizes at the start.
+    twist : float, optional
+        Degrees that the section turns by from start to end, in addition.
+    scale : float, optional
+        Its size at the end, in sizes at the start.
 
-    Raises InputError: a value out of its range.
+    Raises
+    ------
+    InputError
+        A value out of its range.
     """
 
     planes: int | None = None

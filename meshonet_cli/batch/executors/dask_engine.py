@@ -117,7 +117,7 @@ class _Dask(Workers):
         self._wait()
         client.subscribe_topic("all", self._hear)
         super().__init__(client.get_executor(pure=False), len(client.nthreads()))
-        self._surroundings = str(Path.cwd()), abridged(sys.argv)
+        self._folder, self._words = str(Path.cwd()), abridged(sys.argv)
         self._check_versions()
 
     def leave(self) -> None:
@@ -143,8 +143,7 @@ class _Dask(Workers):
 
     def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
         """Have a worker do a task, where the program was started and by its words."""
-        future: Future[R] = self.executor.submit(_call, function, task, *self._surroundings)
-        return future
+        return self.executor.submit(_call, function, task, self._folder, self._words)
 
     def result(self, future: Any) -> Any:
         """Return the result of a task, or raise what it ended in."""

@@ -82,9 +82,11 @@ class Workers:
         for task in tasks:
             self._put(function, task, under_way)
             if len(under_way) >= self.count + ahead:
-                yield self._next(function, under_way)
+                done = self._next(function, under_way)
+                yield done
         while under_way:
-            yield self._next(function, under_way)
+            left = self._next(function, under_way)
+            yield left
 
     def alone(self, function: Callable[[T], R], task: T) -> R:
         """Return the result of a task done while nothing else is. Raises WorkerDiedError: its worker died."""

@@ -1,0 +1,76 @@
+"""The site has every page in its place, and every page says when to use it; `make site` builds it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from statistics import median
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+MADE = DOCS / "reference" / "api", DOCS / "gallery" / "python"
+PAGES = sorted(page for page in DOCS.rglob("*.md") if not any(folder in page.parents for folder in MADE))
+MEASURED = DOCS / "benchmarks"
+WHEN = r"\b([Uu]se|[Rr]ead|[Ll]ook|[Cc]ome|[Ff]ind|[Ss]tart|[Ww]ork|[Ww]hen|default|minutes)\b"
+
+
+def path_of(page: Path) -> str:
+    return page.relative_to(DOCS).as_posix()
+
+
+def listed(page: Path) -> set[Path]:
+    """Return the pages of the toctrees of a page."""
+    found: set[Path] = set()
+    for block in re.findall(r"^```\{toctree\}\n(.*?)^```", page.read_text(), flags=re.DOTALL | re.MULTILINE):
+        for line in block.splitlines():
+            if line and not line.startswith(":"):
+                found |= set(page.parent.glob(f"{line}.md"))
+    return found
+
+
+def prose(page: Path) -> str:
+    """Return the text of a page without code, tables and comments."""
+    return re.sub(r"```.*?```|^\|.*?$|<!--.*?-->", "", page.read_text(), flags=re.DOTALL | re.MULTILINE)
+
+
+def test_every_page_can_be_reached_from_the_start() -> None:
+    reached, found = set(), {DOCS / "index.md"}
+    while found - reached:
+        page = (found - reached).pop()
+        reached.add(page)
+        found |= listed(page)
+    assert [path_of(page) for page in PAGES if page not in reached] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=path_of)
+def test_a_page_says_first_when_to_use_it(page: Path) -> None:
+    title, *paragraphs = [part for part in re.split(r"\n\s*\n", prose(page)) if part.strip()]
+    assert title.strip().startswith("# ")
+    assert re.search(WHEN, paragraphs[0]), paragraphs[0]
+
+
+def test_pages_are_short() -> None:
+    words = {page: len(page.read_text().split()) for page in PAGES}
+    assert median(words.values()) < 800
+    generated = {DOCS / "reference" / "cli.md"}
+    long = [page for page, n in words.items() if n > 1500 and page not in generated]
+    assert [path_of(page) for page in long if MEASURED not in page.parents] == []
+
+
+@pytest.mark.parametrize("page", sorted((DOCS / "theory").glob("[!i]*.md")), ids=path_of)
+def test_theory_has_a_drawing_its_failures_and_its_source(page: Path) -> None:
+    text = page.read_text()
+    if page.stem != "paper-models":  # architectures: their results are under benchmarks
+        assert "](../img/" in text
+        assert re.search(r"(?i)when (it|they) fails?", text)
+        assert re.search(r"Source|Code:|\(\d{4}\)", text)
+
+
+def test_pictures_are_small() -> None:
+    pictures = [path for path in DOCS.rglob("*") if path.suffix in (".png", ".svg", ".jpg", ".webp")]
+    kept = [path for path in pictures if not any(folder in path.parents for folder in MADE)]
+    assert sum(path.stat().st_size for path in kept) < 3 * 2**20
+    for name in re.findall(r"!\[[^\]]*\]\(([^)]*)\)", (ROOT / "README.md").read_text()):
+        assert (ROOT / name).stat().st_size < 200_000
