@@ -130,7 +130,7 @@ def resident() -> float:
 
 def make(index: Path, members: int, size: int, watched: list[float]) -> dict[str, float]:
     """Make a dataset and return figures; `watched` gets the memory after each tenth."""
-    files = PartFiles(index, "tiny")
+    files = PartFiles(index, "tiny", size)
     inputs = DrawnInputs(draws("arch", members))
     maker: PartMaker[Any, Delivered] = PartMaker(files, "grids", itself, Tiny())
     begun = time.perf_counter()

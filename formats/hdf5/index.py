@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import h5py
 
 
-OF_PARTS = ("request", "size")
+OF_PARTS = ("request", "part_size", "size")
 """Attributes that parts have and the index does not."""
 _AGAIN = "repeat the command that made it, with {skip_existing}"
 
@@ -41,6 +41,7 @@ class PartFacts:
     path: Path
     request: str = ""
     size: str = ""
+    part_size: int = 0
     count: int = 0
     inputs: list[str] = field(default_factory=list)
     failed: list[Failed] = field(default_factory=list)
@@ -54,6 +55,8 @@ def part_facts(path: Path) -> PartFacts:
     source = Source(printable(str(path)), path=path)
     with opened(source, texts=False) as file:
         facts.request, facts.size = _fixed(file, "request"), _fixed(file, "size")
+        digits = _fixed(file, "part_size")
+        facts.part_size = int(digits) if digits.isascii() and digits.isdigit() and len(digits) < 10 else 0
         for name, data in _datasets(file):
             facts.columns[name] = len(data), data.shape[1:], data.dtype
         if facts.columns.pop("inputs", None):

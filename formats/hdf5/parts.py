@@ -4,6 +4,7 @@ A part is written whole or not at all, and says of what it was made:
 
 ========== ========================================================================================
 request    attribute: digest of the settings of all parts
+part_size  attribute: how many inputs all parts but the last are made of
 size       attribute: counts of nodes and topology, in words
 inputs     dataset of texts: digests of the inputs
 failed     dataset of texts: JSON lists ``[input, member, error, again]`` of members it lacks
@@ -58,10 +59,12 @@ class PartFiles:
     ----------
     index : the file that shows the parts as one.
     request : digest of the settings that all parts are made with (`digest_of`).
+    part_size : how many inputs all parts but the last are made of.
     """
 
     index: Path
     request: str = ""
+    part_size: int = 0
 
     @property
     def folder(self) -> Path:
@@ -95,6 +98,12 @@ class PartFiles:
         if facts.request != self.request:
             self._refuse(facts.path, "was made with other options or another size of parts")
         return facts
+
+    def size_there(self) -> int:
+        """Return of how many inputs the parts that are there are made, 0 where there are none."""
+        for number in self.numbers()[:1]:
+            return part_facts(self.path(number)).part_size
+        return 0
 
     def state(self, number: int, inputs: Sequence[Input]) -> State:
         """Return whether a part is there: ``complete``, to be ``extended`` or made for the first time.
@@ -137,7 +146,8 @@ class PartFiles:
                 writer.append(sample)
                 count += 1
             digests = [each.digest for each in inputs]
-            writer.note(self.request, digests, list(map(json.dumps, failed)))
+            facts = {"request": self.request, "part_size": str(self.part_size)}
+            writer.note(facts, digests, list(map(json.dumps, failed)))
         return count
 
     def build(self) -> int:

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 FIELDS = ("stem", "index", "name")
 MANY = 10_000
 """Inputs of which more are written as a dataset in parts."""
-_PART_BYTES, _MOST_IN_PART, _LIKELY_NODES = 1 << 28, 1000, 40_000
+_PART_BYTES, _LIKELY_NODES = 1 << 28, 40_000
+_MOST_IN_PART, _MOST_FOR_MANY_WORKERS = 1000, 100
 
 
 class Destination:
@@ -91,8 +92,9 @@ class Destination:
     def part_size_for(self, members: Members[Any], *, skip_existing: bool, elsewhere: bool) -> int:
         """Return how many inputs a part of the dataset has, 0 where it is no dataset in parts.
 
-        Parts are written where they are asked for, by jobs that share the work, where workers may be on other
-        machines, where parts are to be continued, and where there are more than `MANY` inputs.
+        Parts are written where they are asked for, by jobs that share the work, where parts are to be
+        continued, and where there are more than `MANY` inputs. They are smaller where workers may
+        be `elsewhere`, or for shards.
 
         Raises InputError: there is another dataset, which parts would replace or which cannot be continued.
         """
@@ -100,7 +102,7 @@ class Destination:
         if inputs is None or not self._can_have_parts or not inputs.more_than(0):
             return 0
         index = Path(self.text)
-        shared = inputs.shard != (1, 1) or (elsewhere and inputs.more_than(1))
+        shared = inputs.shard != (1, 1)
         continued = skip_existing and index.with_suffix("").is_dir()
         if not (self._part_size or shared or continued or inputs.more_than(MANY)):
             if skip_existing and inputs.more_than(1) and index.exists():
@@ -110,7 +112,8 @@ class Destination:
         if index.exists() and not index.with_suffix("").is_dir():
             problem = "is there, and the parts would replace it"
             raise InputError(problem, "remove it, or choose another name", source=self.text)
-        return self._part_size or usual_part_size(self._nodes)
+        most = _MOST_FOR_MANY_WORKERS if shared or elsewhere else _MOST_IN_PART
+        return self._part_size or _size_there(index) or usual_part_size(self._nodes, most)
 
     def part_files(self, make: object, size: int) -> PartFiles:
         """Return the files of a dataset whose members `make` makes, in parts of so many inputs."""
@@ -118,7 +121,7 @@ class Destination:
         from meshonet_cli.batch.described import described
 
         request = digest_of(self.kind, str(size), described(make))
-        return PartFiles(Path(self.text), request)
+        return PartFiles(Path(self.text), request, size)
 
     @property
     def holds_many(self) -> bool:
@@ -141,15 +144,23 @@ class Destination:
             self._put(part, what)
 
 
-def usual_part_size(nodes: int | None) -> int:
-    """Return how many grids of so many nodes (None: not known) make a part of 256 MiB at the most.
+def _size_there(index: Path) -> int:
+    if not index.with_suffix("").is_dir():
+        return 0
+    from meshonet.formats.hdf5.parts import PartFiles
+
+    return PartFiles(index).size_there()
+
+
+def usual_part_size(nodes: int | None, most: int = _MOST_IN_PART) -> int:
+    """Return how many grids of so many nodes (None: not known) make a part of 256 MiB: `most` at the most.
 
     >>> usual_part_size(200 * 100), usual_part_size(65 * 65), usual_part_size(800 * 400)
     (500, 1000, 50)
     """
-    most = _PART_BYTES // (17 * (nodes or _LIKELY_NODES) + 2000)
+    fitting = min(_PART_BYTES // (17 * (nodes or _LIKELY_NODES) + 2000), most)
     sizes = (digit * 10**power for power in range(4) for digit in (1, 2, 5))
-    return max((size for size in sizes if size <= min(most, _MOST_IN_PART)), default=1)
+    return max((size for size in sizes if size <= fitting), default=1)
 
 
 def _escaped(text: str) -> str:

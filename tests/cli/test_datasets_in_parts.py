@@ -121,6 +121,13 @@ def test_members_that_fail_are_left_out_and_named(meshonet: Meshonet, five: Path
     assert made()[0] == ["a", "b", "c", *"vwxyz"]
 
 
+def test_parts_that_are_there_say_how_large_the_others_are(meshonet: Meshonet, five: Path) -> None:
+    assert meshonet("tfi", *MAKE, *PARTS).code == 0
+    Path("out/part-00001.h5").unlink()
+    assert meshonet("tfi", *MAKE, "--skip-existing", "--shard", "2/2", "-q").code == 0
+    assert len(made()[0]) == 8
+
+
 def test_fewer_inputs_than_parts_that_are_there_are_told(meshonet: Meshonet, five: Path) -> None:
     assert meshonet("tfi", *MAKE, *PARTS).code == 0
     done = meshonet("tfi", "squares", *MAKE[2:], *PARTS, "--skip-existing")
