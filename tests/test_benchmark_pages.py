@@ -21,6 +21,8 @@ SCRIPTS = {
     "wings": "wings",
     "volumes": "volumes",
     "datasets": "datasets",
+    "deform": "deform",
+    "pages": "pages",
     "kershaw": "kershaw",
     "blocks": "blocks",
 }

@@ -19,6 +19,7 @@ from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.geometry.threads import limited_to
+from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.method import Method
 from meshonet.solvers.pipeline.fallback import guard, refuse_folded
 from meshonet.solvers.pipeline.request import GridRequest
@@ -77,6 +78,13 @@ class Result:
 def make_grid(shape: Shape, request: GridRequest) -> Result:
     """Return the grid of `shape` that `request` describes.
 
+    Parameters
+    ----------
+    shape : shape
+        Shape to sample, such as an airfoil or a `Boundary`.
+    request : GridRequest
+        How to make the grid.
+
     Returns
     -------
     Result
@@ -102,6 +110,13 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
 
     Shapes are read as results are taken, and a few ahead (`MOST_TOGETHER`, `MOST_NODES`) when the method
     solves many faster in one call. They do not change one another's grids but in the last digits.
+
+    Parameters
+    ----------
+    shapes : iterable of shape
+        Shapes to sample.
+    request : GridRequest
+        How to make all of the grids.
 
     Yields
     ------
@@ -254,7 +269,11 @@ def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, flo
 
 
 def judged(
-    solution: Solution, seconds: dict[str, float], request: GridRequest | StackRequest, *, remedy: str
+    solution: Solution,
+    seconds: dict[str, float],
+    request: GridRequest | StackRequest | DeformRequest,
+    *,
+    remedy: str,
 ) -> Result:
     """Return a solution with its quality, whose time is added to `seconds` by stage.
 
