@@ -172,9 +172,12 @@ class _Records(Iterator[T]):
 
 
 def _selectable(source: Source, record: Format) -> Format:
-    if source.split and record.name != "hdf5":
+    if record.name != "hdf5" and source.split:
         problem = f"{record.name} files do not say which samples are to {source.split}"
         raise InputError(problem, f"leave #{source.split} out", source=source.name)
+    if record.name != "hdf5" and source.rows:
+        problem = f"samples of {record.name} files have no numbers"
+        raise InputError(problem, "leave out what is behind #", source=source.name)
     return record
 
 

@@ -3,17 +3,21 @@
 import io
 import itertools
 import mmap
+import re
 import stat
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
-from meshonet.geometry.errors import InputError, meant
+from meshonet.formats.archive import read_member, split_member
+from meshonet.geometry.errors import InputError, in_source, meant
 
-SPLITS = ("train", "test")
 HEAD_BYTES = 65536
 """How much of a file a format sees when it is asked whether the file is one of its own."""
+_SELECTION = re.compile(
+    r"(?P<split>train|test)|(?:(?P<kind>train|test),)?(?:(?P<number>\d{1,15})|(?P<range>\d{0,15}:\d{0,15}(?::[1-9]\d{0,14})?))"
+)
 _MOST_NAMES = 10_000
 """Names of files that are looked at for the nearest."""
 _LIKENESS = 0.75
@@ -33,12 +37,14 @@ class Source:
     path : a regular file.
     data : the bytes themselves, for standard input, pipes and tests.
     split : which samples of a dataset with a split to take, ``train`` or ``test``; empty takes all.
+    rows : which of these samples to take; None takes all.
     """
 
     name: str
     path: Path | None = None
     data: bytes | None = None
     split: str = ""
+    rows: slice | None = None
 
     @property
     def stem(self) -> str:
@@ -84,16 +90,17 @@ class Source:
 
 
 def open_source(text: str) -> Source:
-    """Return the source that a user named: a path, or ``-`` for standard input.
+    """Return the source that a user named: a path, ``-`` for standard input, or ``FILE.zip/MEMBER``.
 
-    ``FILE#test`` and ``FILE#train`` mean those samples of a dataset, unless there is a file of that name.
-    Standard input and pipes are read to their end, since formats need to look back and forth.
+    ``FILE#test`` and ``FILE#train`` mean those samples of a dataset, ``FILE#7`` the one of that number (from
+    0 on), ``FILE#5:9`` and ``FILE#5::2`` those of a range, ``FILE#test,0:9`` both, unless there is a file
+    of that name. Standard input and pipes are read to their end, since formats need to look back and forth.
 
     Raises InputError: no such file, a folder, a file that may not be read, nothing in it.
     """
-    text, kept = _selected(text)
+    text, split, rows = _selected(text)
     try:
-        source = replace(_opened(text), split=kept)
+        source = replace(_opened(text), split=split, rows=rows)
     except FileNotFoundError:
         raise _missing(text) from None
     except PermissionError:
@@ -119,17 +126,25 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
-def _selected(text: str) -> tuple[str, str]:
-    name, mark, kept = text.rpartition("#")
-    return (name, kept) if mark and name and kept in SPLITS and not Path(text).exists() else (text, "")
+def _selected(text: str) -> tuple[str, str, slice | None]:
+    name, mark, words = text.rpartition("#")
+    match = _SELECTION.fullmatch(words)
+    if not (mark and name and match) or Path(text).exists():
+        return text, "", None
+    return name, match["split"] or match["kind"] or "", _rows(match["number"], match["range"])
+
+
+def _rows(number: str | None, words: str | None) -> slice | None:
+    if number is not None:
+        return slice(int(number), int(number) + 1)
+    return None if words is None else slice(*(int(word) if word else None for word in words.split(":")))
 
 
 def _missing(text: str) -> InputError:
     name, mark, kept = text.rpartition("#")
     if not (mark and Path(name).is_file()):
         return InputError("no such file", _beside(Path(text)) or "check the path", source=printable(text))
-    splits = " or ".join(f"#{split}" for split in SPLITS)
-    problem = f"no such file, and of {printable(name)} there is only {splits}"
+    problem = f"no such file, and of {printable(name)} there is only #train, #test, #7 or #5:9"
     return InputError(problem, f"leave #{printable(kept)} out", source=printable(text))
 
 
@@ -146,7 +161,14 @@ def _opened(text: str) -> Source:
     if text == "-":
         return Source("-", data=sys.stdin.buffer.read())
     path = Path(text)
-    mode = path.stat().st_mode
+    try:
+        mode = path.stat().st_mode
+    except NotADirectoryError:
+        member = split_member(text)
+        if member is None:
+            raise
+        with in_source(printable(text)):
+            return Source(printable(text), data=read_member(*member))
     if stat.S_ISDIR(mode):
         raise InputError("is a folder", "name a file in it", source=printable(text))
     with path.open("rb") as stream:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from meshonet.api.derivatives import deform_derivative as deform_derivative
     from meshonet.api.derivatives import optimum_derivative as optimum_derivative
     from meshonet.api.doctor import doctor as doctor
+    from meshonet.api.files import inputs as inputs
     from meshonet.api.files import read as read
     from meshonet.api.files import read_all as read_all
     from meshonet.api.files import write as write
@@ -65,7 +66,7 @@ _MODULES = {
     "meshonet.api.deform": ("deform", "rotation"),
     "meshonet.api.derivatives": ("deform_derivative", "optimum_derivative"),
     "meshonet.api.doctor": ("doctor",),
-    "meshonet.api.files": ("read", "read_all", "write"),
+    "meshonet.api.files": ("inputs", "read", "read_all", "write"),
     "meshonet.api.grid": ("grid", "infer", "sample_boundary", "sample_family", "solve_pde", "tfi"),
     "meshonet.api.layout": ("layout",),
     "meshonet.api.models": ("models",),

@@ -1,10 +1,14 @@
 """The boundaries of `sample-boundary`: from files, or drawn from a family."""
 
-import time
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any
+from __future__ import annotations
 
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from meshonet.formats.inputs import Inputs
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
@@ -15,9 +19,16 @@ from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import process
-from meshonet_cli.batch.sources import items
+from meshonet_cli.batch.sources import DrawnInputs, Members, Origin, items
 from meshonet_cli.batch.timed import Delivered, part_names
 from meshonet_cli.session import Session
+
+if TYPE_CHECKING:
+    from meshonet_cli.options import FileOptions
+
+
+EDGE_NODES = 1000
+"""Nodes that the edges of a boundary have, as a rule."""
 
 
 @dataclass(frozen=True)
@@ -39,26 +50,38 @@ class Sampler:
 
 
 def write_boundaries(
-    sources: Sequence[str] | Sequence[Draw], output: str, sampler: Sampler, session: Session, *,
-    from_format: str | None = None, to_format: str | None = None, skip_existing: bool = False,
+    inputs: Inputs | DrawnInputs, output: str, sampler: Sampler, files: FileOptions, session: Session, *,
     engine: Engine = HERE,
 ) -> int:  # fmt: skip
-    """Sample the shapes of `sources`, files or members of a family, into `output`; return the exit code.
+    """Sample the shapes of `inputs`, files or members of a family, into `output`; return the exit code.
 
     Raises InputError: a format without room for sensors, or for several members.
     """
-    destination = Destination(output, to_format, "boundaries")
+    destination = Destination(
+        output, files.to_format, "boundaries", part_size=files.part_size, nodes=EDGE_NODES
+    )
     if sampler.sensors is not None and destination.format.name != "hdf5":
         raise InputError("only HDF5 keeps sensors", "write an .h5 file", parameter="sensors")
-    files = [source for source in sources if isinstance(source, str)]
-    members: Iterator[Item[Any]] = items(files, lambda source: read_shapes(source, from_format), session)
-    if not files:
-        members = _drawn([source for source in sources if isinstance(source, Draw)], session)
-    return process(files, members, sampler, destination, session, skip_existing=skip_existing, engine=engine)
+    members: Members[Any] = (
+        drawn_items(inputs, session)
+        if isinstance(inputs, DrawnInputs)
+        else items(inputs, partial(read_shapes, fmt=files.from_format), session)
+    )
+    return process(members, sampler, destination, session, skip_existing=files.skip_existing, engine=engine)
 
 
-def _drawn(members: Sequence[Draw], session: Session) -> Iterator[Item[Draw]]:
-    session.batch = len(members) > 1
-    for member in members:
-        session.begin(member.kind, len(members) if session.batch else None)
+def drawn_items(inputs: DrawnInputs, session: Session) -> Members[Draw]:
+    """Return the members of a family."""
+    return Members(_drawn(inputs, session), Origin(inputs, itself))
+
+
+def _drawn(inputs: DrawnInputs, session: Session) -> Iterator[Item[Draw]]:
+    session.batch = len(inputs.draws) > 1
+    for member in inputs.own():
+        session.begin(member.kind, len(inputs.draws) // inputs.shard[1] if session.batch else None)
         yield Item(member.index, member.kind, member, 0.0, not session.batch)
+
+
+def itself(member: Draw) -> Iterator[Draw]:
+    """Yield what a member of a family holds, itself."""
+    return iter([member])

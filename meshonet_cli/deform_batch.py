@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from meshonet.api.deform import rotation
 from meshonet.api.files import only, read_all
+from meshonet.formats.inputs import Inputs
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
@@ -27,18 +29,19 @@ from meshonet_cli.session import Session
 
 
 def write_deformed(
-    sources: Sequence[str], output: str, session: Session, *, wall: Sequence[str] = (),
+    inputs: Inputs, output: str, session: Session, *, wall: Sequence[str] = (),
     rotate: Sequence[str] = (), shift: Sequence[str] = (), allow_invalid: bool = False,
     fail_on: Sequence[str] | None = None, from_format: str | None = None, to_format: str | None = None,
-    skip_existing: bool = False, engine: Engine = HERE, threads: int | None = None,
+    skip_existing: bool = False, part_size: int | None = None, engine: Engine = HERE,
+    threads: int | None = None,
 ) -> int:  # fmt: skip
-    """Write the grids of `sources` with walls in their new places and return the exit code."""
+    """Write the grids of `inputs` with walls in their new places and return the exit code."""
     walls = walls_of(wall, rotate, shift)
     percentiles = need_percentiles(parse_gates(fail_on))
     make = _Deformed(walls, DeformRequest(allow_invalid, percentiles, engine.threads(threads)))
-    destination = Destination(output, to_format, "grids")
-    prepare(sources, destination, session)
-    members = items(sources, lambda source: read_grids(source, from_format), session)
+    destination = Destination(output, to_format, "grids", part_size=part_size)
+    members = items(inputs, partial(read_grids, fmt=from_format), session)
+    prepare(members, destination, session)
     written = judging(session, fail_on)
     deliver(
         members, one_by_one(make), destination, session, written, skip_existing=skip_existing, engine=engine

@@ -7,11 +7,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from meshonet.formats.inputs import Inputs
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.gates import need_percentiles, parse_gates
 from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ
 from meshonet.solvers.pipeline.make_grid import MOST_NODES, Result, make_grids
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.progress import Row, listening
@@ -95,19 +97,26 @@ def request_of(
 
 
 def write_grids(
-    sources: Sequence[str], output: str, request: GridRequest, checks: CheckOptions, files: FileOptions,
+    inputs: Inputs, output: str, request: GridRequest, checks: CheckOptions, files: FileOptions,
     session: Session, *, history: str | None = None, assemble: bool = False, engine: Engine = HERE,
 ) -> int:  # fmt: skip
-    """Turn every boundary of `sources` into a grid in `output` and return the exit code.
+    """Turn every boundary of `inputs` into a grid in `output` and return the exit code.
 
     With `assemble` they are one domain. The gates of `checks` end the program with 1; the cycles go to the
     file `history`.
     """
     request = replace(request, threads=engine.threads(request.threads))
-    destination = Destination(output, files.to_format, "grids")
-    prepare(sources[:1] if assemble else sources, destination, session)
+    nodes = (request.sampling.ni or DEFAULT_NI) * (request.sampling.nj or DEFAULT_NJ)
+    destination = Destination(
+        output,
+        files.to_format,
+        "grids",
+        part_size=files.part_size,
+        nodes=None if request.asks_for_blocks else nodes,
+    )
+    members = shape_items(inputs, files.from_format, session, request.sampling if assemble else None)
+    prepare(members, destination, session)
     check_file(history)
-    members = shape_items(sources, files.from_format, session, request.sampling if assemble else None)
     cycles: list[tuple[str, Iterable[Row]]] = []
     judge = judging(session, checks.fail_on)
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from meshonet.formats.inputs import Inputs
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
@@ -62,15 +63,15 @@ class LayoutMaker:
 
 
 def write_layouts(
-    sources: Sequence[str], output: str, parameters: Mapping[str, Any], far_field: float | None,
+    inputs: Inputs, output: str, parameters: Mapping[str, Any], far_field: float | None,
     session: Session, *, assemble: bool = False, from_format: str | None = None, skip_existing: bool = False,
     engine: Engine = HERE,
 ) -> int:  # fmt: skip
-    """Split the domains of `sources`, or the one that they make, into blocks, and return the exit code."""
+    """Split the domains of `inputs`, or the one that they make, into blocks, and return the exit code."""
     sampling = Sampling(far_field=far_field)
     maker = LayoutMaker(GridRequest(sampling, **parameters))
-    members = shape_items(sources, from_format, session, sampling if assemble else None)
+    members = shape_items(inputs, from_format, session, sampling if assemble else None)
     return process(
-        sources[:1] if assemble else sources, members, maker, Destination(output, "layout", "layouts"),
+        members, maker, Destination(output, "layout", "layouts"),
         session, skip_existing=skip_existing, engine=engine,
     )  # fmt: skip

@@ -1,9 +1,9 @@
 """The pictures of `plot`, one after the other."""
 
-from collections.abc import Sequence
 from functools import partial
 
 from meshonet.formats.figure.picture import Picture, picture_format
+from meshonet.formats.inputs import Inputs
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet_cli.batch.destination import Destination
@@ -15,10 +15,10 @@ from meshonet_cli.session import Session
 
 
 def plot_grids(
-    sources: Sequence[str], output: str, picture: Picture, session: Session, *,
+    inputs: Inputs, output: str, picture: Picture, session: Session, *,
     from_format: str | None = None, to_format: str | None = None, skip_existing: bool = False,
 ) -> int:  # fmt: skip
-    """Draw every grid of `sources` to `output` and return the exit code.
+    """Draw every grid of `inputs` to `output` and return the exit code.
 
     Raises InputError: `output` is no picture, or holds one and there are several grids.
     """
@@ -28,8 +28,8 @@ def plot_grids(
     def make(item: Item[Grid]) -> tuple[Grid, Delivered]:
         return item.what, Delivered(item, item.what, {"metric": picture.metric}, colours)
 
-    grids = items(sources, lambda source: read_grids(source, from_format), session)
-    return process(sources, grids, make, destination, session, skip_existing=skip_existing)
+    grids = items(inputs, partial(read_grids, fmt=from_format), session)
+    return process(grids, make, destination, session, skip_existing=skip_existing)
 
 
 def picture_file(output: str, to_format: str | None, picture: Picture) -> Destination:

@@ -7,6 +7,7 @@ from functools import partial
 from meshonet.api.quality import quality
 from meshonet.formats.figure.picture import Picture
 from meshonet.formats.figure.report.report import QualityPage
+from meshonet.formats.inputs import Inputs
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import format_for_output, read_grids
 from meshonet.formats.vtk.metrics import write_metrics
@@ -24,11 +25,11 @@ from meshonet_cli.session import Session
 
 
 def measure_grids(
-    sources: Sequence[str], session: Session, *, fmt: str | None = None, fail_on: Sequence[str] | None = None,
+    inputs: Inputs, session: Session, *, fmt: str | None = None, fail_on: Sequence[str] | None = None,
     profile: str | None = None, compare: str | None = None, pairing: Pairing = "auto", summary: bool = False,
     plot: str | None = None, html: str | None = None, per_cell: str | None = None,
 ) -> int:  # fmt: skip
-    """Measure every grid of `sources`, print the reports and return the exit code.
+    """Measure every grid of `inputs`, print the reports and return the exit code.
 
     `fail_on` are gates, `profile` names thresholds, `compare` is a file of reference grids, matched by
     `pairing`. `summary` prints one table over all; `plot` and `per_cell` are pictures and files of metrics to
@@ -38,13 +39,13 @@ def measure_grids(
     outputs = [picture_file(plot, None, Picture())] if plot else []
     outputs += [_metrics_file(per_cell)] if per_cell else []
     for destination in outputs:
-        destination.check_room(sources)
+        destination.check_room(several=inputs.more_than(1))
         if destination.text == "-":
             raise InputError("standard output has the table", "write to a file", source="-")
     page = _page(html, gates) if html else None
     references = GridMatcher(read_grids(compare), pairing) if compare else None
     rows: list[tuple[str, Mapping[str, float]]] = []
-    for item in items(sources, lambda source: read_grids(source, fmt), session):
+    for item in items(inputs, partial(read_grids, fmt=fmt), session):
         with session.member(item.label, item.source):
             begun = time.perf_counter()
             reference = references.match(item.what.name) if references else None

@@ -149,7 +149,7 @@ class Session:
         check()
         self.members += 1
         done = self.members - 1
-        if count:
+        if count and done < count:
             spent = time.perf_counter() - self._begun
             left = f", {(count - done) * spent / done:.0f} s left" if done else ""
             self.status(f"{_bar(done, count)} {self.members}/{count}{left}: {name}")
@@ -161,10 +161,10 @@ class Session:
         self.status(f"{_bar(done, count)} {text}")
         return self._bar
 
-    def skip(self, name: str, path: str) -> None:
+    def skip(self, name: str, path: str, remark: str = "") -> None:
         """Report a member whose result is there already."""
         self.skipped += 1
-        self.note(f"{name} -> {path}: there already")
+        self.note(f"{name} -> {path}: there already{remark}")
 
     def finish(self) -> int:
         """Report how a batch went and return the exit code."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from meshonet.api.grid import domain_parameters
+from meshonet.formats.inputs import Inputs
 from meshonet.formats.path import path_of
 from meshonet.formats.section import read_sections
 from meshonet.formats.stack import stack_of
@@ -27,7 +29,7 @@ from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import deliver, one_by_one, prepare, process
-from meshonet_cli.batch.sources import items
+from meshonet_cli.batch.sources import Members, items
 from meshonet_cli.batch.timed import Delivered, part_names
 from meshonet_cli.grid_batch import judging, reported
 from meshonet_cli.options.groups import bad_value
@@ -36,51 +38,46 @@ from meshonet_cli.provenance import provenance
 from meshonet_cli.report.grid import Report
 from meshonet_cli.session import Session
 
+VOLUME_NODES = 1_000_000
+"""Nodes of a volume, about; how many there will be is known when it is made."""
+
 
 def write_stacks(
-    sources: Sequence[str], output: str, parameters: Mapping[str, Any], session: Session, *,
+    inputs: Inputs, output: str, parameters: Mapping[str, Any], session: Session, *,
     tip: Tip | None = None, surface: bool = False, fail_on: Sequence[str] | None = None,
     to_format: str | None = None, skip_existing: bool = False, engine: Engine = HERE,
 ) -> int:  # fmt: skip
-    """Write the volumes, or the surfaces, of the stacks of `sources` and return the exit code."""
+    """Write the volumes, or the surfaces, of the stacks of `inputs` and return the exit code."""
     percentiles = need_percentiles(parse_gates(fail_on))
     request = stack_request(**_shared(parameters, engine), percentiles=percentiles)
-    members = items(sources, lambda source: iter([stack_of(source).with_tip(tip)]), session)
+    members = items(inputs, partial(_stack, tip=tip), session)
     if surface:
         if fail_on:
             raise InputError("{fail_on} judges cells, and a surface has none", "leave it out")
-        destination = Destination(output, to_format, "grids")
+        destination = Destination(output, to_format, "grids", nodes=VOLUME_NODES)
         return process(
-            sources,
-            members,
-            _Surfaces(request),
-            destination,
-            session,
-            skip_existing=skip_existing,
-            engine=engine,
+            members, _Surfaces(request), destination, session, skip_existing=skip_existing, engine=engine
         )
-    return _write(
-        sources, members, _Stacks(request), output, session, fail_on, to_format, skip_existing, engine
-    )
+    return _write(members, _Stacks(request), output, session, fail_on, to_format, skip_existing, engine)
+
+
+def _stack(source: str, tip: Tip | None) -> Iterator[Stack]:
+    return iter([stack_of(source).with_tip(tip)])
 
 
 def write_sweeps(
-    files: Sequence[str], output: str, res: str | None, section: Mapping[str, Any], along: Mapping[str, Any],
-    session: Session, *, fail_on: Sequence[str] | None = None, from_format: str | None = None,
-    to_format: str | None = None, skip_existing: bool = False, engine: Engine = HERE,
+    inputs: Inputs, path: str, output: str, res: str | None, section: Mapping[str, Any],
+    along: Mapping[str, Any], session: Session, *, fail_on: Sequence[str] | None = None,
+    from_format: str | None = None, to_format: str | None = None, skip_existing: bool = False,
+    engine: Engine = HERE,
 ) -> int:  # fmt: skip
-    """Write the volumes of sections along the path that is the last of `files`; return the exit code."""
-    *sources, path = files
-    if not sources:
-        raise InputError(
-            "there is no path", f"name it: meshonet sweep {path} PATH -o pipe.h5", source="sweep"
-        )
+    """Write the volumes of the sections of `inputs` along a path; return the exit code."""
     parameters = domain_parameters(_shared(section, engine))
     parameters["percentiles"] = need_percentiles(parse_gates(fail_on))
     request = grid_request(res=None if res is None else _counts(res), **parameters)
     make = _Sweeps(path_of(path), request, Sweep(**along))
-    members = items(sources, lambda source: read_sections(source, from_format), session)
-    return _write(sources, members, make, output, session, fail_on, to_format, skip_existing, engine)
+    members = items(inputs, partial(read_sections, fmt=from_format), session)
+    return _write(members, make, output, session, fail_on, to_format, skip_existing, engine)
 
 
 def _counts(text: str) -> tuple[int, int]:
@@ -111,12 +108,12 @@ def _shared(parameters: Mapping[str, Any], engine: Engine) -> dict[str, Any]:
 
 
 def _write(
-    sources: Sequence[str], members: Iterator[Item[Any]], make: Callable[[Any], tuple[Grid, Report]],
+    members: Members[Any], make: Callable[[Any], tuple[Grid, Report]],
     output: str, session: Session, fail_on: Sequence[str] | None, to_format: str | None, skip_existing: bool,
     engine: Engine,
 ) -> int:  # fmt: skip
-    destination = Destination(output, to_format, "grids")
-    prepare(sources, destination, session)
+    destination = Destination(output, to_format, "grids", nodes=VOLUME_NODES)
+    prepare(members, destination, session)
     written = judging(session, fail_on)
     deliver(
         members, one_by_one(make), destination, session, written, skip_existing=skip_existing, engine=engine

@@ -22,6 +22,7 @@ SCRIPTS = {
     "volumes": "volumes",
     "threads": "threads",
     "gpu": "gpu",
+    "datasets": "datasets",
     "deform": "deform",
     "pages": "pages",
     "kershaw": "kershaw",

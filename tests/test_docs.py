@@ -10,6 +10,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -125,6 +126,9 @@ def all_inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (tmp_path / "airfoils").mkdir()
     for name in ("a", "b"):
         (tmp_path / "airfoils" / f"{name}.dat").write_text(section)
+    (tmp_path / "list.txt").write_text("airfoils/a.dat\nnaca:0012\n")
+    with zipfile.ZipFile(tmp_path / "airfoils.zip", "w") as archive:
+        archive.writestr("naca2412.dat", section)
     sides = ["0 0\n1 0.1\n2 0", "2 0\n2 1", "0 1\n1 1.2\n2 1", "0 0\n0 1"]
     (tmp_path / "duct.csv").write_text("\n\n".join(sides) + "\n")
     shutil.copy(ROOT / "examples" / "grid-convergence" / "ellipse.csv", tmp_path)

@@ -13,7 +13,7 @@ import contextlib
 import mmap
 import re
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -97,13 +97,11 @@ class Checked:
     def __contains__(self, name: str) -> bool:
         return name in self._file
 
-    def kept(self, split: str) -> list[int]:
-        """Return the samples of a split, or all of them; InputError where there are none."""
-        kept = [k for k in range(self.count) if not split or self.text("split", k) == split]
-        if not kept:
-            remedy = "mark samples where they are made, by {family} and {split}"
-            raise InputError(f"no sample is marked {split!r}", remedy)
-        return kept
+    def kept(self, split: str) -> Sequence[int]:
+        """Return the samples of a split, or all of them."""
+        if not split:
+            return range(self.count)
+        return [k for k in range(self.count) if self.text("split", k) == split]
 
     def sample(self, name: str, k: int) -> Floats:
         """Return row `k` of a checked numeric dataset as float64."""
@@ -212,11 +210,16 @@ def checked(source: Source) -> Iterator[Checked]:
 
 
 @contextlib.contextmanager
-def opened(source: Source) -> Iterator[h5py.File]:
-    """Open `source` for reading; whatever goes wrong inside becomes an InputError."""
+def opened(source: Source, *, texts: bool = True) -> Iterator[h5py.File]:
+    """Open `source` for reading; whatever goes wrong inside becomes an InputError.
+
+    Without `texts` none of variable length may be read, and none are searched for, which takes the time of
+    reading the file.
+    """
     import h5py
 
-    _check_heaps(source)
+    if texts:
+        check_heaps(source)
     with contextlib.ExitStack() as stack:
         try:
             target = source.path or stack.enter_context(source.open())
@@ -248,7 +251,7 @@ def _short(error: Exception) -> str:
     return printable(str(error).splitlines()[0] if str(error) else type(error).__name__)[:120]
 
 
-def _check_heaps(source: Source) -> None:
+def check_heaps(source: Source) -> None:
     """Raise InputError where the sizes in a heap of texts do not lead from its start to its end."""
     if source.size > _MOST_SEARCHED:
         return

@@ -1,12 +1,14 @@
 """Reading HDF5 datasets: boundaries, grids, and the numbers that made them."""
 
 import json
-from collections.abc import Callable, Iterator
+from bisect import bisect_left
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from operator import call
-from typing import Any, TypeVar
+from typing import Any, NoReturn, TypeVar
 
-from meshonet.formats.hdf5.check import Checked, checked
+from meshonet.formats.hdf5.check import Checked, checked, opened
+from meshonet.formats.hdf5.index import Part, shown_parts
 from meshonet.formats.mesh.recover_topology import boundary_of, usable
 from meshonet.formats.source import Source
 from meshonet.geometry.arrays import SIDES, Side
@@ -14,7 +16,7 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid, Origin
 from meshonet.geometry.blocks.patches import Kind, Patch
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.shapes.shape import Shape
 
 T = TypeVar("T")
@@ -26,22 +28,79 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     Of grids of many blocks it returns their domains. It continues after a sample that is not right and raised
     InputError.
     """
-    return map(call, _samples(source, _boundary))
+    return map(call, samples_read(source, _boundary))
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
     """Return an iterator over the grids; it too continues after a sample that is not right."""
-    return map(call, _samples(source, _grid))
+    return map(call, samples_read(source, _grid))
 
 
-def _samples(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
+def samples_read(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
     """Yield functions that read one sample each: what they raise does not end the generator."""
-    with checked(source) as data:
-        if read is _grid and "nodes" not in data and not data.blocks:
-            remedy = "make grids of them first: meshonet solve-pde IN -o OUT.h5"
-            raise InputError("holds boundaries, not grids", remedy)
-        for k in data.kept(source.split):
-            yield partial(read, data, k)
+    with opened(source) as file:
+        parts = shown_parts(file, source)
+        if parts is None:
+            data = Checked(file, source)
+            _check_holds(data, read)
+            yield from (partial(read, data, k) for k in rows_of(data.kept(source.split), source))
+            return
+    kept = rows_of(kept_of(parts, source.split), source)
+    for part in parts:
+        own = kept[bisect_left(kept, part.start) : bisect_left(kept, part.stop)]
+        if own:
+            yield from _samples_of_part(part, own, read)
+
+
+def _samples_of_part(
+    part: Part, kept: Sequence[int], read: Callable[[Checked, int], T]
+) -> Iterator[Callable[[], T]]:
+    """Yield functions as `samples_read` does; a part that cannot be read gives one."""
+    try:
+        with in_source(part.source.name), checked(part.source) as data:
+            part.check(data)
+            _check_holds(data, read)
+            yield from (partial(_of_part, part, read, data, k - part.start) for k in kept)
+    except InputError as error:
+        yield partial(_raise, error)
+
+
+def _of_part(part: Part, read: Callable[[Checked, int], T], data: Checked, k: int) -> T:
+    with in_source(part.source.name):
+        return read(data, k)
+
+
+def _raise(error: Exception) -> NoReturn:
+    raise error
+
+
+def kept_of(parts: Sequence[Part], split: str) -> Sequence[int]:
+    """Return the numbers of the samples of a split, or of all of them, counted through all parts."""
+    if not split:
+        return range(parts[-1].stop)
+    kept: list[int] = []
+    for part in parts:
+        with in_source(part.source.name), checked(part.source) as data:
+            part.check(data)
+            kept += (part.start + k for k in data.kept(split) if k < part.stop - part.start)
+    return kept
+
+
+def rows_of(kept: Sequence[int], source: Source) -> Sequence[int]:
+    """Return those of the samples `kept` that the source's rows name; InputError where there are none."""
+    if not kept:
+        remedy = "mark samples where they are made, by {family} and {split}"
+        raise InputError(f"no sample is marked {source.split!r}", remedy)
+    taken = kept[source.rows] if source.rows else kept
+    if not taken:
+        raise InputError(f"has {len(kept)} samples", "number them from 0")
+    return taken
+
+
+def _check_holds(data: Checked, read: Callable[[Checked, int], T]) -> None:
+    if read is _grid and "nodes" not in data and not data.blocks:
+        remedy = "make grids of them first: meshonet solve-pde IN -o OUT.h5"
+        raise InputError("holds boundaries, not grids", remedy)
 
 
 def _boundary(data: Checked, k: int) -> Shape:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import json
-from collections.abc import Iterable, Iterator
+import zlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -104,6 +105,21 @@ class Writer:
             value = np.asarray(value, np.float64) if large else np.array(value, np.float64)
             self._bytes += value.nbytes
         self._held.setdefault(name, []).append((self._count, value))
+
+    def note(self, facts: Mapping[str, str], digests: Sequence[str], failed: Sequence[str]) -> None:
+        """Say of what the samples were made: facts, digests of inputs, texts on inputs that failed.
+
+        Attributes are texts of fixed length, which are read without a search for damage.
+        """
+        import h5py
+
+        size, connections = self._first or ("", "")
+        joined = f", connected as {zlib.crc32(connections.encode()):08x}" if connections else ""
+        every = {**facts, "size": f"{size}{joined}"[-500:]}
+        self._file.attrs.update({name: np.bytes_(fact.encode()) for name, fact in every.items()})
+        self._file.create_dataset("inputs", data=np.array(digests, dtype=np.bytes_))
+        if failed:
+            self._file.create_dataset("failed", data=list(failed), dtype=h5py.string_dtype())
 
     def flush(self) -> None:
         """Write what is held back."""

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
+from typing import overload
 
 import numpy as np
 
@@ -56,9 +57,31 @@ class Draw:
         return replace(self.family.boundary(self.parameter, ni, nj), origin=origin)
 
 
+@dataclass(frozen=True)
+class Draws(Sequence[Draw]):
+    """Members of a family, of which none takes memory: `length` like `first`, and the split of each."""
+
+    first: Draw
+    length: int
+    splits: Sequence[str] = ()
+
+    def __len__(self) -> int:
+        return self.length
+
+    @overload
+    def __getitem__(self, index: int) -> Draw: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Draw]: ...
+    def __getitem__(self, index: int | slice) -> Draw | list[Draw]:
+        if isinstance(index, slice):
+            return [self[k] for k in range(self.length)[index]]
+        number = range(self.length)[index]
+        return replace(self.first, index=number, split=self.splits[number] if self.splits else "")
+
+
 def draws(
     name: str, count: int = 1, spread: str | None = None, seed: int = 0, way: str | None = None
-) -> list[Draw]:
+) -> Draws:
     """Return `count` members of the family `name`, whose boundaries are not made yet.
 
     `spread` is ``A:B``, the range of the parameter, or None for that of the family, `seed` that of all random
@@ -72,14 +95,13 @@ def draws(
         raise InputError(f"family {name!r} is not known", known, parameter="family")
     kind = None if name in RANDOM else family(name)
     low, high = _range(spread, kind)
-    members = [Draw(name, kind, low, high, seed, index) for index in range(count)]
-    kept = _kept(members, kind, way, seed)
-    return [replace(member, split=use) for member, use in zip(members, kept, strict=True)]
+    members = Draws(Draw(name, kind, low, high, seed, 0), count)
+    return replace(members, splits=_kept(members, kind, way, seed))
 
 
 def _kept(every: Sequence[Draw], kind: Family | None, way: str | None, seed: int) -> Sequence[str]:
     if way is None:
-        return [""] * len(every)
+        return ()
     if kind is None:
         raise InputError("random shapes have no parameter to split by", "leave it out", parameter="split")
     try:

@@ -1,10 +1,11 @@
-"""`meshonet.read`, `meshonet.read_all` and `meshonet.write`."""
+"""`meshonet.inputs`, `meshonet.read`, `meshonet.read_all` and `meshonet.write`."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any, TypeVar
 
+from meshonet.formats.inputs import Inputs, readable_suffixes
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import (
     Kind,
@@ -22,6 +23,34 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
 
 T = TypeVar("T")
+
+
+def inputs(
+    names: str | Path | Sequence[str | Path],
+    *,
+    pick: str | Sequence[str] = (),
+    shard: tuple[int, int] = (1, 1),
+) -> Iterator[str]:
+    """Return an iterator over what can be read one by one: each goes to `read`, `grid` or `infer`.
+
+    Parameters
+    ----------
+    names : files, folders, zip archives, designations; ``@FILE`` is a list of them, one a line.
+    pick : patterns of names (``naca*``), to take only such files of folders, archives and lists.
+    shard : k and n, to take every n-th input from the k-th on.
+
+    Raises InputError: a folder, archive or list that cannot be read, or in which there is nothing.
+    """
+    words = (names,) if isinstance(names, str | Path) else names
+    patterns = (pick,) if isinstance(pick, str) else tuple(pick)
+    found = Inputs(tuple(map(str, words)), readable_suffixes(), patterns, shard)
+    return (_readable(each.text) for each in found.own())
+
+
+def _readable(text: str | InputError) -> str:
+    if isinstance(text, InputError):
+        raise text
+    return text
 
 
 def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:

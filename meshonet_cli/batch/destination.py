@@ -1,35 +1,56 @@
 """Where the results of a batch go."""
 
+from __future__ import annotations
+
 import re
 import string
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from meshonet.formats.format import size_of
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import Kind, format_for_output
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.item import NO_NUMBER, Item
+
+if TYPE_CHECKING:
+    from meshonet.formats.hdf5.parts import PartFiles
+    from meshonet.geometry.layout.layout import Layout
+    from meshonet_cli.batch.sources import Members
 
 FIELDS = ("stem", "index", "name")
+MANY = 10_000
+"""Inputs of which more are written as a dataset in parts."""
+_PART_BYTES, _LIKELY_NODES = 1 << 28, 40_000
+_MOST_IN_PART, _MOST_FOR_MANY_WORKERS = 1000, 100
 
 
 class Destination:
     """Where results go: one file, one file each (``{stem}``, ``{index}`` or ``{name}`` in `text`), or ``-``.
 
-    `put` writes to a path in place of the format's own function for that `kind`. Raises InputError: an
-    unknown field or ending, or a format that cannot be written.
+    `put` writes to a path in place of the format's own function for that `kind`. A dataset is written in
+    parts of `part_size` inputs where that is given, or by itself where there are many, of about so many
+    `nodes` each. Raises InputError: an unknown field or ending, a format that cannot be written or has no
+    parts.
     """
 
     def __init__(
-        self, text: str, fmt: str | None, kind: Kind = "grids", put: Callable[[Path, Any], None] | None = None
-    ) -> None:
-        self.text = text
+        self, text: str, fmt: str | None, kind: Kind = "grids",
+        put: Callable[[Path, Any], None] | None = None, *,
+        part_size: int | None = None, nodes: int | None = None,
+    ) -> None:  # fmt: skip
+        self.text, self.kind, self._part_size, self._nodes = text, kind, part_size, nodes
         self.each = _has_fields(text)
         self.format = format_for_output(text, fmt, kind)
         self._put = put or getattr(self.format, f"write_{kind}")
         self._taken: dict[str, str] = {}
+        if part_size is not None and not self._can_have_parts:
+            remedy = "write one .h5 file, or leave it out"
+            raise InputError("only a dataset has parts", remedy, parameter="part_size")
         if text == "-" and sys.stdout.isatty():
             raise InputError("standard output is the terminal", "pipe it on, or write to a file", source="-o")
 
@@ -40,6 +61,9 @@ class Destination:
         """
         if not self.each:
             return self.text
+        if item.index == NO_NUMBER and "index" in _fields(self.text):
+            problem = "is one of several in its file, which {shard} leaves without a number"
+            raise InputError(problem, "use {{name}} in place of {{index}}", source=item.label)
         name = re.sub(r"[^\w.+-]+", "_", item.what.name).strip("._") or item.stem
         path = self.text.format(stem=item.stem, index=item.index, name=name)
         place = str(Path(path).parent) if self.format.fills_folder else path
@@ -52,14 +76,52 @@ class Destination:
         self._taken[place] = item.label
         return path
 
-    def check_room(self, sources: Sequence[str]) -> None:
+    def check_room(self, *, several: bool) -> None:
         """Raise InputError when several inputs would go into a file that holds one."""
-        if len(sources) > 1 and not self.holds_many:
+        if several and not self.holds_many:
             raise InputError(
-                f"{len(sources)} inputs and one {self.format.name} file, which holds one",
+                f"several inputs and one {self.format.name} file, which holds one",
                 f"use -o '{_escaped(_pattern(self.text))}' or one .h5",
                 source=self.text,
             )
+
+    @property
+    def _can_have_parts(self) -> bool:
+        return self.format.name == "hdf5" and not self.each and self.text != "-"
+
+    def part_size_for(self, members: Members[Any], *, skip_existing: bool, elsewhere: bool) -> int:
+        """Return how many inputs a part of the dataset has, 0 where it is no dataset in parts.
+
+        Parts are written where they are asked for, by jobs that share the work, where parts are to be
+        continued, and where there are more than `MANY` inputs. They are smaller where workers may
+        be `elsewhere`, or for shards.
+
+        Raises InputError: there is another dataset, which parts would replace or which cannot be continued.
+        """
+        inputs = members.origin.inputs if members.origin else None
+        if inputs is None or not self._can_have_parts or not inputs.more_than(0):
+            return 0
+        index = Path(self.text)
+        shared = inputs.shard != (1, 1)
+        continued = skip_existing and index.with_suffix("").is_dir()
+        if not (self._part_size or shared or continued or inputs.more_than(MANY)):
+            if skip_existing and inputs.more_than(1) and index.exists():
+                problem = "is a dataset in one file, which cannot be continued"
+                raise InputError(problem, "remove it, or leave {skip_existing} out", source=self.text)
+            return 0
+        if index.exists() and not index.with_suffix("").is_dir():
+            problem = "is there, and the parts would replace it"
+            raise InputError(problem, "remove it, or choose another name", source=self.text)
+        most = _MOST_FOR_MANY_WORKERS if shared or elsewhere else _MOST_IN_PART
+        return self._part_size or _size_there(index) or usual_part_size(self._nodes, most)
+
+    def part_files(self, make: object, size: int) -> PartFiles:
+        """Return the files of a dataset whose members `make` makes, in parts of so many inputs."""
+        from meshonet.formats.hdf5.parts import PartFiles, digest_of
+        from meshonet_cli.batch.described import described
+
+        request = digest_of(self.kind, str(size), described(make))
+        return PartFiles(Path(self.text), request, size)
 
     @property
     def holds_many(self) -> bool:
@@ -82,6 +144,25 @@ class Destination:
             self._put(part, what)
 
 
+def _size_there(index: Path) -> int:
+    if not index.with_suffix("").is_dir():
+        return 0
+    from meshonet.formats.hdf5.parts import PartFiles
+
+    return PartFiles(index).size_there()
+
+
+def usual_part_size(nodes: int | None, most: int = _MOST_IN_PART) -> int:
+    """Return how many grids of so many nodes (None: not known) make a part of 256 MiB: `most` at the most.
+
+    >>> usual_part_size(200 * 100), usual_part_size(65 * 65), usual_part_size(800 * 400)
+    (500, 1000, 50)
+    """
+    fitting = min(_PART_BYTES // (17 * (nodes or _LIKELY_NODES) + 2000), most)
+    sizes = (digit * 10**power for power in range(4) for digit in (1, 2, 5))
+    return max((size for size in sizes if size <= fitting), default=1)
+
+
 def _escaped(text: str) -> str:
     """Return `text` for a message, where names in single braces would be those of parameters."""
     return re.sub(r"\{(\w+)\}", r"{{\1}}", text)
@@ -92,9 +173,13 @@ def _pattern(text: str, field: str = "stem") -> str:
     return str(path.with_name(f"{path.stem}-{{{field}}}{path.suffix}")) if text != "-" else f"{{{field}}}.vts"
 
 
+def _fields(text: str) -> list[str]:
+    return [field for _, field, _, _ in string.Formatter().parse(text) if field is not None]
+
+
 def _has_fields(text: str) -> bool:
     try:
-        fields = [field for _, field, _, _ in string.Formatter().parse(text) if field is not None]
+        fields = _fields(text)
         text.format(stem="", index=0, name="")
     except (ValueError, KeyError, IndexError, AttributeError):
         fields = [""]
@@ -106,3 +191,14 @@ def _has_fields(text: str) -> bool:
             source="-o",
         )
     return bool(fields)
+
+
+def same_size(what: Grid | Boundary | Layout, size: str) -> str:
+    """Return the size of what goes into a dataset. Raises InputError: it is not `size`, that of the first."""
+    if not isinstance(what, Grid | Boundary):  # files of layouts hold one
+        return ""
+    own = size_of(what)
+    if size and own != size:
+        problem = f"{own} does not fit a dataset of {size}"
+        raise InputError(problem, "set {res} and {topology}, or write one file each")
+    return own

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from meshonet.formats.format import size_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError
-from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.destination import Destination, same_size
 from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item, Name, Named
+from meshonet_cli.batch.sources import Members, Origin
 from meshonet_cli.batch.timed import Timed
 from meshonet_cli.session import Session
 
@@ -34,18 +35,18 @@ _TASK_SECONDS, _MOST_AT_ONCE = 0.1, 64  # how long tasks of several members are,
 Done = tuple[Item[Name], str, tuple[S | None, R] | Exception]
 
 
-def prepare(sources: Sequence[str], destination: Destination, session: Session) -> None:
-    """Raise InputError when `destination` cannot take what `sources` and `session` will give it."""
-    destination.check_room(sources)
+def prepare(members: Members[T], destination: Destination, session: Session) -> None:
+    """Raise InputError when `destination` cannot take what `members` and `session` will give it."""
+    destination.check_room(several=members.several)
     session.check_output(destination.text)
 
 
 def process(
-    sources: Sequence[str], members: Iterator[Item[T]], make: Callable[[Item[T]], tuple[S, R]],
-    destination: Destination, session: Session, *, skip_existing: bool = False, engine: Engine = HERE,
+    members: Members[T], make: Callable[[Item[T]], tuple[S, R]], destination: Destination,
+    session: Session, *, skip_existing: bool = False, engine: Engine = HERE,
 ) -> int:  # fmt: skip
-    """Make something of each of the `members` of `sources`, deliver it, and return the exit code."""
-    prepare(sources, destination, session)
+    """Make something of each of the `members`, deliver it, and return the exit code."""
+    prepare(members, destination, session)
     deliver(
         members, one_by_one(make), destination, session, session.written,
         skip_existing=skip_existing, engine=engine,
@@ -69,7 +70,7 @@ class one_by_one(Generic[T, S, R]):  # noqa: N801 - used as a function, and a cl
 
 
 def deliver(
-    members: Iterator[Item[T]], make: Make[T, S, R], destination: Destination, session: Session,
+    members: Members[T], make: Make[T, S, R], destination: Destination, session: Session,
     written: Callable[[R, str], None], *, skip_existing: bool = False, together: int = 1,
     engine: Engine = HERE,
 ) -> None:  # fmt: skip
@@ -80,13 +81,17 @@ def deliver(
     something that can be pickled. `written` is called with the report and the path of each; with
     `skip_existing` members whose own file is there are passed over.
     """
+    size = destination.part_size_for(members, skip_existing=skip_existing, elsewhere=engine.elsewhere)
+    if size and members.origin:
+        _deliver_parts(members.origin, make, destination, size, session, written, skip_existing, engine)
+        return
     leading = next(members, None)
     if leading is None:
         return
     destination.check_only(leading)
-    members = chain([leading], members)
+    items = chain([leading], members)
     each = destination.each or not session.batch
-    todo = _paths(members, destination, session, skip_existing) if each else ((item, "") for item in members)
+    todo = _paths(items, destination, session, skip_existing) if each else ((item, "") for item in items)
     work = _Work(make, destination if each else None)
     done = (
         work(todo) if engine.here or not session.batch else _by_workers(work, todo, engine, together, session)
@@ -100,6 +105,28 @@ def deliver(
     first = next(stream, None)
     if first is not None:
         destination.write(destination.text, chain([first], stream))
+
+
+def _deliver_parts(
+    origin: Origin[T], make: Make[T, S, R], destination: Destination, size: int, session: Session,
+    written: Callable[[R, str], None], skip_existing: bool, engine: Engine,
+) -> None:  # fmt: skip
+    """Deliver a dataset in parts of so many inputs, each made by a worker."""
+    from meshonet_cli.batch.parts import PartMaker, deliver_parts, one_after_the_other, parts_of
+
+    files = destination.part_files(make, size)
+    work: _Work[T, S, R] = _Work(make, None)
+    maker = PartMaker(files, destination.kind, origin.read, work, skip_existing)
+    parts = parts_of(origin.inputs, size)
+    whole = origin.inputs.shard == (1, 1)
+    report = partial(
+        deliver_parts, files=files, session=session, written=written, skip_existing=skip_existing, whole=whole
+    )
+    if engine.here:
+        report(one_after_the_other(maker, parts))
+        return
+    with engine.workers(session.warn) as workers:
+        report(workers.in_order(maker, parts, workers.count))
 
 
 class _Work(Generic[T, S, R]):
@@ -219,20 +246,10 @@ def _streamed(
         with session.member(item.label, item.source):
             made, report = _made(outcome)
             if destination.format.one_size and made is not None:
-                size = _same_size(made, size)
+                size = same_size(made, size)
             what = made
         if what is None:
             continue
         with report.timed("write"):
             yield what
         written(report, destination.text)
-
-
-def _same_size(what: Grid | Boundary | Layout, size: str) -> str:
-    if not isinstance(what, Grid | Boundary):  # files of layouts hold one
-        return ""
-    own = size_of(what)
-    if size and own != size:
-        problem = f"{own} does not fit a dataset of {size}"
-        raise InputError(problem, "set {res} and {topology}, or write one file each")
-    return own

@@ -2,92 +2,180 @@
 
 from __future__ import annotations
 
-import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic
 
+from meshonet.formats.inputs import Inputs, Numbered
 from meshonet.formats.registry import read_shapes
+from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError
-from meshonet_cli.batch.item import Item, T
+from meshonet_cli.batch.item import NO_NUMBER, Item, T, Unreadable, stem_of
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:
+    from meshonet.geometry.families.draw import Draw
     from meshonet.geometry.shapes.shape import Shape
     from meshonet.geometry.spacing.sampling import Sampling
 
 
-def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: Session) -> Iterator[Item[T]]:
-    """Yield every member of every source; one that cannot be read is reported and passed over.
+@dataclass(frozen=True)
+class Origin(Generic[T]):
+    """Where members come from: inputs, and what yields the members that an input holds."""
 
-    Raises InputError: standard input is named twice, or is a terminal.
+    inputs: Inputs | DrawnInputs
+    read: Callable[[Any], Iterator[T]]
+
+
+class Members(Iterator[Item[T]]):
+    """Members of a batch, one after the other.
+
+    Parameters
+    ----------
+    members : they themselves.
+    origin : for those who read them elsewhere; None where all inputs together make one.
     """
-    if sources.count("-") > 1:
-        raise InputError("standard input is named twice", "name - once", source="-")
-    if "-" in sources and sys.stdin.isatty():
-        raise InputError("standard input is the terminal", "pipe a boundary or a grid into it", source="-")
-    index = 0
-    for source in sources:
-        with session.member(source):
-            begun = time.perf_counter()
-            records = read(source)
-            item, more = _following(records, source, session)
-            if item is None and not more:
-                raise InputError(
-                    "holds nothing", "give a file with a boundary or a grid in it", source=source
-                )
-            only = True
-            while item is not None or more:
-                spent = time.perf_counter() - begun
-                begun = time.perf_counter()
-                following, more = _following(records, source, session) if more else (None, False)
-                only = only and following is None and not more
-                session.batch = session.batch or len(sources) > 1 or not only
-                if item is not None:
-                    session.begin(source, len(sources) if len(sources) > 1 else None)
-                    yield Item(index, source, item, spent, only)
-                index += item is not None or more  # a file that is bad as a whole has no number
-                item = following
+
+    def __init__(self, members: Iterator[Item[T]], origin: Origin[T] | None = None) -> None:
+        self._members, self.origin = members, origin
+
+    @property
+    def several(self) -> bool:
+        """Whether they come from more than one input and do not belong together."""
+        return self.origin is not None and self.origin.inputs.more_than(1)
+
+    def __next__(self) -> Item[T]:
+        return next(self._members)
+
+
+@dataclass(frozen=True)
+class DrawnInputs:
+    """Members of a family as inputs: all, or those of shard k of n."""
+
+    draws: Sequence[Draw]
+    shard: tuple[int, int] = (1, 1)
+
+    def own(self) -> Iterator[Draw]:
+        """Yield the members of the shard."""
+        k, n = self.shard
+        return map(self.draws.__getitem__, range(k - 1, len(self.draws), n))
+
+    def parts(self, size: int) -> Iterator[tuple[int, tuple[Draw, ...]]]:
+        """Yield number and members of the parts of the shard, `size` each."""
+        k, n = self.shard
+        for number in range(k - 1, -(-len(self.draws) // size), n):
+            yield number, tuple(self.draws[number * size : (number + 1) * size])
+
+    def more_than(self, count: int) -> bool:
+        """Return whether there are more than so many."""
+        return len(self.draws) > count
+
+
+def items(inputs: Inputs, read: Callable[[str], Iterator[T]], session: Session) -> Members[T]:
+    """Return the members of every input; one that cannot be read is reported and passed over."""
+    return Members(_items(inputs, read, session), Origin(inputs, read))
+
+
+def _items(inputs: Inputs, read: Callable[[str], Iterator[T]], session: Session) -> Iterator[Item[T]]:
+    session.batch = session.batch or inputs.more_than(1)
+    count = inputs.count() if session.live else None
+    for item in records(inputs.own(), read):
+        session.batch = session.batch or not item.only
+        if isinstance(item.what, Unreadable):
+            session.fail(printable(item.source), item.source, item.what.error)
+        else:
+            session.begin(item.source, count)
+            yield item
+
+
+def records(inputs: Iterable[Numbered | Draw], read: Callable[[Any], Iterator[T]]) -> Iterator[Item[Any]]:
+    """Yield every member of every input, or `Unreadable` in its place."""
+    count = 0
+    for each in inputs:
+        drawn = not isinstance(each, tuple)
+        entry: str | InputError | Draw
+        first: int | None
+        entry, first, step = each if isinstance(each, tuple) else (each, each.index, 0)
+        number = count if first is None else first
+        for what, seconds, only in _told_apart(_entries(entry, read)):
+            yield Item(number, _source(entry), what, seconds, only and not drawn)
+            number = number + step if step else NO_NUMBER
+            # a file that is bad as a whole has no number
+            count += not (only and isinstance(what, Unreadable))
+
+
+def _source(entry: str | InputError | Draw) -> str:
+    return entry if isinstance(entry, str) else entry.source if isinstance(entry, InputError) else entry.kind
+
+
+def _told_apart(entries: Iterator[tuple[Any, float]]) -> Iterator[tuple[Any, float, bool]]:
+    """Yield entries, of which there is at least one, and whether each is the only one."""
+    last, following = next(entries), next(entries, None)
+    only = following is None
+    while True:
+        yield *last, only
+        if following is None:
+            return
+        last, following = following, next(entries, None)
+
+
+def _entries(
+    source: str | InputError | Draw, read: Callable[[Any], Iterator[T]]
+) -> Iterator[tuple[T | Unreadable, float]]:
+    """Yield what an input holds, at least one entry, each with the seconds that it took to read."""
+    if isinstance(source, InputError):
+        yield Unreadable(source), 0.0
+        return
+    left: Iterator[T] | None = None
+    empty = True
+    while True:
+        begun = time.perf_counter()
+        try:
+            left = read(source) if left is None else left
+            entry: T | Unreadable = next(left)
+        except StopIteration:
+            break
+        except BrokenPipeError:
+            raise
+        except Exception as error:
+            entry, left = Unreadable(error), iter(()) if left is None else left
+        empty = False
+        yield entry, time.perf_counter() - begun
+    if empty:
+        remedy = "give a file with a boundary or a grid in it"
+        yield Unreadable(InputError("holds nothing", remedy, source=printable(str(source)))), 0.0
 
 
 def shape_items(
-    sources: Sequence[str], fmt: str | None, session: Session, assembled: Sampling | None = None
-) -> Iterator[Item[Shape]]:
-    """Yield every shape of every source, or the one domain of them all, as `assembled` says."""
-
-    def read(source: str) -> Iterator[Shape]:
-        return read_shapes(source, fmt)
-
-    return (
-        items(sources, read, session) if assembled is None else _assembly(sources, read, assembled, session)
-    )
+    inputs: Inputs, fmt: str | None, session: Session, assembled: Sampling | None = None
+) -> Members[Shape]:
+    """Return the shapes of every input, or the one domain of them all, as `assembled` says."""
+    read = partial(read_shapes, fmt=fmt)
+    if assembled is None:
+        return items(inputs, read, session)
+    return Members(_assembly(inputs, read, assembled, session))
 
 
 def _assembly(
-    sources: Sequence[str], read: Callable[[str], Iterator[Shape]], sampling: Sampling, session: Session
+    inputs: Inputs, read: Callable[[str], Iterator[Shape]], sampling: Sampling, session: Session
 ) -> Iterator[Item[Shape]]:
-    """Yield the one domain that the shapes of all sources make; an error is reported, and nothing is left."""
+    """Yield the one domain that the shapes of all inputs make; an error is reported, and nothing is left."""
     from meshonet.geometry.shapes.assembly import assembled
 
-    label = " + ".join(sources)
+    label = " + ".join(inputs.words)
     with session.member(label):
         begun = time.perf_counter()
         shapes: list[Shape] = []
         names: list[str] = []
-        for source in sources:
+        for source in inputs:
+            if isinstance(source, InputError):
+                raise source
             own = list(read(source))
-            stem = "stdin" if source == "-" else Path(source).stem.replace(":", "")
+            stem = stem_of(source)
             shapes += own
             names += [stem if len(own) == 1 else f"{stem}{k}" for k in range(1, len(own) + 1)]
         domain = assembled(shapes, names, sampling, "+".join(dict.fromkeys(names)))
         session.begin(label)
         yield Item(0, label, domain, time.perf_counter() - begun, called=names[0])
-
-
-def _following(records: Iterator[T], source: str, session: Session) -> tuple[T | None, bool]:
-    """Return the next record, None when it cannot be read, which is said, and whether there may be more."""
-    with session.member(source):
-        item = next(records, None)
-        return item, item is not None
-    return None, True

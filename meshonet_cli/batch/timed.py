@@ -6,7 +6,7 @@ import contextlib
 import math
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import InitVar, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from meshonet_cli.batch.item import Item
@@ -75,37 +75,46 @@ class Timed:
 
 @dataclass
 class Delivered(Timed):
-    """The report of a grid or boundary in a file: `facts` are for JSON, `text` and `notes` for people."""
+    """The report of a grid or boundary in a file: `facts` are for JSON, `text` and `notes` for people.
 
-    what: Grid | Boundary
+    Of `what` it keeps the counts alone, since reports come from other processes.
+    """
+
+    what: InitVar[Grid | Boundary]
     facts: dict[str, Any]
     text: str = ""
     notes: tuple[str, ...] = ()
+    counts: dict[str, int] = field(init=False)
+    topology: str = field(init=False)
+
+    def __post_init__(self, what: Grid | Boundary) -> None:
+        super().__post_init__()
+        self.counts, self.topology = _counts(what), what.topology
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
-        counts = self._counts() | {"topology": self.what.topology}
+        counts = self.counts | {"topology": self.topology}
         notes = {"notes": [with_options(note) for note in self.notes]} if self.notes else {}
         return {**self.member_json(), **counts, **self.facts, **notes, "seconds": self.times_json()}
 
     def lines(self) -> str:
         """Return it for people."""
-        counts = self._counts()
         size = (
             "{ni} x {nj} nodes"
-            if "ni" in counts
+            if "ni" in self.counts
             else "{blocks} blocks, {cells} cells, {interfaces} interfaces"
         )
-        text = f"{size.format(**counts)}, {self.text or self.what.topology}"
+        text = f"{size.format(**self.counts)}, {self.text or self.topology}"
         head = f"{self.item.label} -> {self.output}: {text}, {self.times()}"
         return "\n  ".join([head, *map(with_options, self.notes)])
 
-    def _counts(self) -> dict[str, int]:
-        if self.what.topology != "blocks":
-            return {"ni": self.what.ni, "nj": self.what.nj}
-        blocks: tuple[Block, ...] = getattr(self.what, "blocks", ())
-        cells = sum(math.prod(count - 1 for count in block.counts) for block in blocks)
-        return {"blocks": len(blocks), "cells": cells, "interfaces": len(self.what.connections)}
+
+def _counts(what: Grid | Boundary) -> dict[str, int]:
+    if what.topology != "blocks":
+        return {"ni": what.ni, "nj": what.nj}
+    blocks: tuple[Block, ...] = getattr(what, "blocks", ())
+    cells = sum(math.prod(count - 1 for count in block.counts) for block in blocks)
+    return {"blocks": len(blocks), "cells": cells, "interfaces": len(what.connections)}
 
 
 def part_names(what: Grid | Boundary) -> dict[str, Any]:

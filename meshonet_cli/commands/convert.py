@@ -23,6 +23,7 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 @o.expanded
 def convert(
     formats: o.FileOptions,
+    many: o.InputOptions,
     printing: o.PrintOptions,
     files: Annotated[list[str] | None, typer.Argument(
         metavar="IN... [OUT]", show_default=False,
@@ -77,8 +78,7 @@ def convert(
         remedy = f"name it: meshonet convert {names[0] or 'IN'} OUT"
         raise InputError("there is no file to write", remedy, source="convert")
     return convert_files(
-        sources, target, Conversion(extrude, planes, swap, normalise, coarsen or 1), session,
-        from_format=formats.from_format, to_format=formats.to_format, plot3d=plot3d,
-        skip_existing=formats.skip_existing,
+        many.of(sources), target, Conversion(extrude, planes, swap, normalise, coarsen or 1), formats,
+        session, plot3d=plot3d,
     )
 # fmt: on

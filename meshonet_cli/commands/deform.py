@@ -18,6 +18,7 @@ _option = o.option_of(o.METHOD)
 @o.expanded
 def deform(
     grid: o.Grids,
+    many: o.InputOptions,
     output: o.Output,
     files: o.FileOptions,
     printing: o.PrintOptions,
@@ -43,9 +44,10 @@ def deform(
     from meshonet_cli.deform_batch import write_deformed
 
     return write_deformed(
-        grid, output, printing.session(), wall=wall or (), rotate=rotate or (), shift=shift or (),
+        many.of(grid, grids=True), output, printing.session(), wall=wall or (), rotate=rotate or (),
+        shift=shift or (),
         allow_invalid=allow_invalid, fail_on=fail_on, from_format=files.from_format,
-        to_format=files.to_format, skip_existing=files.skip_existing, engine=workers.chosen(),
-        threads=threads,
+        to_format=files.to_format, skip_existing=files.skip_existing, part_size=files.part_size,
+        engine=workers.chosen(), threads=threads,
     )
 # fmt: on

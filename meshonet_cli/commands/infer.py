@@ -9,6 +9,7 @@ EXAMPLES = (
     "meshonet infer naca:2412 --fail-on 'max_angle>178' --json -o naca2412.h5",
     "meshonet infer airfoil.dat --first-cell 1e-5 --growth 1.15 -o viscous.vts",
     "meshonet infer airfoils/*.dat --res 200 -o 'grids/{stem}.vts'",
+    "meshonet infer airfoils.zip --pick 'naca*' --res 200 -o dataset.h5",
     "meshonet infer plate.geojson --cells 2500 -o plate.cgns",
     "meshonet infer main.dat flap.dat --assemble --far-field 20 -o wing.cgns",
 )
@@ -41,7 +42,8 @@ DeviceName = Annotated[Literal["cpu", "cuda"] | None, _option(
 
 @o.expanded
 def infer(
-    boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
+    boundary: o.Boundaries, output: o.Output, many: o.InputOptions, sampling: o.SamplingOptions,
+    first: o.LayerOptions,
     domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions, printing: o.PrintOptions,
     volume: o.VolumeOptions, workers: o.EngineOptions,
     blocks: o.BlocksName = "auto", walls: o.Walls = None, model: ModelName = None, polish: Polish = "auto",
@@ -72,5 +74,12 @@ def infer(
     )
     session = printing.session()
     return write_grids(
-        boundary, output, request, checks, files, session, assemble=domain.assemble, engine=workers.chosen()
+        many.of(boundary),
+        output,
+        request,
+        checks,
+        files,
+        session,
+        assemble=domain.assemble,
+        engine=workers.chosen(),
     )

@@ -29,6 +29,7 @@ def layout(
         help="File to write, or - for standard output. For several inputs: 'dir/{stem}.json' (also {name}, "
         "{index}).",
     )],
+    many: o.InputOptions,
     blocks: o.DomainOptions,
     printing: o.PrintOptions,
     workers: o.EngineOptions,
@@ -48,7 +49,7 @@ def layout(
 
     first = {"first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds}
     return write_layouts(
-        domain, output, blocks.parameters(walls) | first, far_field, printing.session(),
+        many.of(domain), output, blocks.parameters(walls) | first, far_field, printing.session(),
         assemble=blocks.assemble, from_format=from_format, skip_existing=skip_existing,
         engine=workers.chosen(),
     )

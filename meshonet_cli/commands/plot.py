@@ -25,6 +25,7 @@ def plot(
         "For several inputs: "
         "'dir/{stem}.png' (also {name}, {index}).",
     )],
+    many: o.InputOptions,
     printing: o.PrintOptions,
     metric: Annotated[str, _option(
         "--metric", metavar="METRIC", show_default=True,
@@ -60,7 +61,7 @@ def plot(
     view = None if direction is None else (direction[0], direction[1])
     picture = Picture(None if metric == "none" else metric, box, every, slice_, view)
     return plot_grids(
-        grid, output, picture, printing.session(),
+        many.of(grid, grids=True), output, picture, printing.session(),
         from_format=from_format, to_format=to_format, skip_existing=skip_existing,
     )
 # fmt: on

@@ -20,6 +20,7 @@ _check, _output = o.option_of(o.CHECKS), o.option_of(o.IO)
 @o.expanded
 def quality(
     grid: o.Grids,
+    many: o.InputOptions,
     printing: o.PrintOptions,
     fail_on: o.FailOn = None,
     profile: Annotated[Literal["openfoam", "pointwise", "verdict", "viscous"] | None, _check(
@@ -61,7 +62,7 @@ def quality(
     o.only_with("compare", compare is not None, pair=pair)
     with limited_to(threads):
         return measure_grids(
-            grid, printing.session(),
+            many.of(grid, grids=True), printing.session(),
             fmt=from_format, fail_on=fail_on, profile=profile, compare=compare, pairing=pair or "auto",
             summary=summary, plot=plot, html=html, per_cell=per_cell,
         )

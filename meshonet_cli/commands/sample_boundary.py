@@ -17,8 +17,8 @@ _option = o.option_of(o.SAMPLING)
 # fmt: off
 Source = Annotated[list[str] | None, typer.Argument(
     metavar="SOURCE", show_default=False,
-    help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input. None "
-    "with --family.",
+    help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input; a "
+    "folder or .zip of them, or @FILE, a list of them. None with --family.",
 )]
 FamilyName = Annotated[str | None, _option(
     "--family", metavar="NAME",
@@ -50,12 +50,13 @@ Seed = Annotated[int | None, _option("--seed", metavar="S", min=0, help="Seed of
 def sample_boundary(
     output: o.Output, sampling: o.SamplingOptions, files: o.FileOptions, printing: o.PrintOptions,
     workers: o.EngineOptions,
-    source: Source = None, family: FamilyName = None, count: Count = None, spread: Range = None,
-    seed: Seed = None, split: Split = None, sensors: Sensors = None,
+    many: o.InputOptions, source: Source = None, family: FamilyName = None, count: Count = None,
+    spread: Range = None, seed: Seed = None, split: Split = None, sensors: Sensors = None,
 ) -> int:  # fmt: skip
     """Turn geometry into boundaries of four edges."""
     from meshonet.geometry.errors import InputError
     from meshonet.geometry.families.draw import draws
+    from meshonet_cli.batch.sources import DrawnInputs
     from meshonet_cli.boundary_batch import Sampler, write_boundaries
 
     if bool(source) == bool(family):
@@ -63,10 +64,9 @@ def sample_boundary(
         raise InputError(problem, "give one of them, see meshonet sample-boundary --help")
     o.only_with("family", family is not None, range=spread, split=split, count=count, seed=seed)
     sampler = Sampler(sampling.settings(), sensors)
-    members = (
-        draws(family, 1 if count is None else count, spread, seed or 0, split) if family else source or []
+    inputs = (
+        DrawnInputs(draws(family, 1 if count is None else count, spread, seed or 0, split), many.part())
+        if family
+        else many.of(source or [])
     )
-    return write_boundaries(
-        members, output, sampler, printing.session(), from_format=files.from_format,
-        to_format=files.to_format, skip_existing=files.skip_existing, engine=workers.chosen(),
-    )  # fmt: skip
+    return write_boundaries(inputs, output, sampler, files, printing.session(), engine=workers.chosen())

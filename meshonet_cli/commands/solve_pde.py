@@ -67,7 +67,8 @@ History = Annotated[str | None, o.option_of(o.IO)(
 
 @o.expanded
 def solve_pde(
-    boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
+    boundary: o.Boundaries, output: o.Output, many: o.InputOptions, sampling: o.SamplingOptions,
+    first: o.LayerOptions,
     sides: o.SideOptions, domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions,
     printing: o.PrintOptions, volume: o.VolumeOptions, workers: o.EngineOptions,
     blocks: o.BlocksName = "auto", walls: o.Walls = None,
@@ -93,6 +94,6 @@ def solve_pde(
     )  # fmt: skip
     session = printing.session()
     return write_grids(
-        boundary, output, request, checks, files, session,
+        many.of(boundary), output, request, checks, files, session,
         history=history, assemble=domain.assemble, engine=workers.chosen(),
     )  # fmt: skip

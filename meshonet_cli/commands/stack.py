@@ -24,6 +24,7 @@ def stack(
         "and twist, or sweep and dihedral; or - for standard input.",
     )],
     output: o.Output,
+    many: o.InputOptions,
     printing: o.PrintOptions,
     workers: o.EngineOptions,
     around: Annotated[int | None, _sampling(
@@ -77,8 +78,8 @@ def stack(
     }
     parameters = {name: value for name, value in chosen.items() if value is not None}
     return write_stacks(
-        sections, output, parameters | {"allow_invalid": allow_invalid}, printing.session(), tip=tip,
-        surface=surface, fail_on=fail_on, to_format=to_format, skip_existing=skip_existing,
-        engine=workers.chosen(),
+        many.of(sections, suffixes=(".toml",)), output, parameters | {"allow_invalid": allow_invalid},
+        printing.session(), tip=tip, surface=surface, fail_on=fail_on, to_format=to_format,
+        skip_existing=skip_existing, engine=workers.chosen(),
     )
 # fmt: on

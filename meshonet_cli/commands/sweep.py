@@ -23,6 +23,7 @@ def sweep(
         "grid. Then the path of all: a file of points x y z, one a line, or lines and arcs in TOML.",
     )],
     output: o.Output,
+    many: o.InputOptions,
     printing: o.PrintOptions,
     workers: o.EngineOptions,
     res: Annotated[str | None, _sampling(
@@ -75,8 +76,13 @@ def sweep(
     threads: o.Threads = None,
 ) -> int:
     """Make volumes of pipes and ducts, cross-sections carried along curves."""
+    from meshonet.geometry.errors import InputError
     from meshonet_cli.volume_batch import vector, write_sweeps
 
+    *outlines, path = files
+    if not outlines:
+        remedy = f"name it: meshonet sweep {path} PATH -o pipe.h5"
+        raise InputError("there is no path", remedy, source="sweep")
     section = {
         "cells": cells, "cell_size": cell_size, "walls": walls or (), "layout": layout,
         "first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds, "growth": growth,
@@ -84,7 +90,7 @@ def sweep(
     }
     along = {"planes": planes, "up": vector(up), "twist": twist, "scale": scale}
     return write_sweeps(
-        files, output, res, section, along, printing.session(), fail_on=fail_on, from_format=from_format,
-        to_format=to_format, skip_existing=skip_existing, engine=workers.chosen(),
+        many.of(outlines), path, output, res, section, along, printing.session(), fail_on=fail_on,
+        from_format=from_format, to_format=to_format, skip_existing=skip_existing, engine=workers.chosen(),
     )
 # fmt: on

@@ -17,6 +17,7 @@ _option = o.option_of(o.METHOD)
 @o.expanded
 def tfi(
     boundary: o.Boundaries,
+    many: o.InputOptions,
     output: o.Output,
     sampling: o.SamplingOptions,
     first: o.LayerOptions,
@@ -38,6 +39,6 @@ def tfi(
         "tfi", sampling, checks, first, sides, settings={"blending": blending}, threads=threads
     )
     return write_grids(
-        boundary, output, request, checks, files, printing.session(), engine=workers.chosen()
+        many.of(boundary), output, request, checks, files, printing.session(), engine=workers.chosen()
     )
 # fmt: on

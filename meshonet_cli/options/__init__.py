@@ -19,6 +19,7 @@ from meshonet_cli.options.groups import VOLUME as VOLUME
 from meshonet_cli.options.groups import bad_value as bad_value
 from meshonet_cli.options.groups import only_with as only_with
 from meshonet_cli.options.groups import option_of as option_of
+from meshonet_cli.options.inputs import InputOptions as InputOptions
 from meshonet_cli.options.io import *  # noqa: F403
 from meshonet_cli.options.method import *  # noqa: F403
 from meshonet_cli.options.sampling import *  # noqa: F403

@@ -17,10 +17,12 @@ _option = option_of(IO)
 # fmt: off
 Boundaries = Annotated[list[str], typer.Argument(
     metavar="BOUNDARY", show_default=False,
-    help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input.",
+    help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input; a "
+    "folder or .zip of them, or @FILE, a list of them.",
 )]
 Grids = Annotated[list[str], typer.Argument(
-    metavar="GRID", show_default=False, help="Grid file, or - for standard input.",
+    metavar="GRID", show_default=False,
+    help="Grid file, or - for standard input; a folder of them, or @FILE, a list of them.",
 )]
 Output = Annotated[str, _option(
     "-o", "--output", metavar="FILE",
@@ -35,7 +37,7 @@ To = Annotated[str | None, _option(
     help="Format of the output, when its ending does not say. [default on standard output: hdf5]",
 )]
 SkipExisting = Annotated[bool, _option(
-    "--skip-existing", help="Skip inputs whose output file exists already.",
+    "--skip-existing", help="Skip inputs whose output file, or part of a dataset, exists already.",
 )]
 Threads = Annotated[int | None, _option(
     "--threads", metavar="N", min=1, max=64,
@@ -43,6 +45,12 @@ Threads = Annotated[int | None, _option(
     "divided among --jobs]",
 )]
 AsJson = Annotated[bool, _option("--json", help="Print one JSON object on standard output for each result.")]
+PartSize = Annotated[int | None, _option(
+    "--part-size", metavar="N", min=1, max=1_000_000,
+    help="Write an .h5 dataset in parts of N inputs, out/part-00000.h5 and on, which out.h5 shows as one; "
+    "--skip-existing continues it. [default: in parts of up to 256 MiB where there are more than 10,000 "
+    "inputs, or a --shard]",
+)]
 Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")]
 
 
@@ -53,6 +61,7 @@ class FileOptions:
     from_format: From = None
     to_format: To = None
     skip_existing: SkipExisting = False
+    part_size: PartSize = None
 
 
 @dataclass(frozen=True)

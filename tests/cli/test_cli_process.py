@@ -114,7 +114,7 @@ def test_files_it_may_not_have_are_told_in_a_line(process: Process, tmp_path: Pa
     assert done.stderr == b"error: folder.vts: is a folder; name a file in it\n"
     done = process("tfi", "folder.vts", "-o", "g.vts")
     assert done.returncode == 2
-    assert done.stderr == b"error: folder.vts: is a folder; name a file in it\n"
+    assert done.stderr.startswith(b"error: folder.vts: holds no file that can be read; endings are ")
     if os.geteuid() != 0:  # root may read everything
         duct_h5.chmod(0)
         done = process("tfi", duct_h5, "-o", "g.vts")

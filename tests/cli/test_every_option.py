@@ -51,6 +51,9 @@ FILES = {
     "--skip-existing": (f"{GRID} -o there.h5 -q", "OPTION", "layout"),
 }
 SHAPES = PRINTING | FILES | {
+    "--part-size": ("three.h5 -o made.h5 -q", "OPTION 2", "files"),
+    "--pick": ("@shapes.txt -o made-{stem}.h5 -q", "OPTION *C*", "files"),
+    "--shard": ("@shapes.txt -o made-{stem}.h5 -q", "OPTION 2/2", "files"),
     "--jobs": ("three.h5 -o {name}.h5 -q", "OPTION 2", "workers"),
     "--engine": ("three.h5 -o {name}.h5 -q", "OPTION mpi", "code"),
     "--scheduler": ("three.h5 -o {name}.h5 -q", "OPTION tcp://a:1", "code"),
@@ -154,11 +157,16 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--per-cell": ("grid.h5", "OPTION cells.vts", "files"),
         "--html": ("grid.h5", "OPTION report.html", "files"),
         "--compare": ("grid.h5", "OPTION smooth.h5", "out"),
+        "--pick": ("@grids.txt --summary", "OPTION *oo*", "out"),
+        "--shard": ("@grids.txt --summary", "OPTION 2/2", "out"),
         "--pair": ("bc.h5 --compare cb.h5 --summary", "OPTION order", "out"),
         "--summary": ("grid.h5 smooth.h5", "OPTION", "out"),
         "--threads": ("grid.h5", "OPTION 0", "code"),
     },
     "convert": PRINTING | FILES | {
+        "--part-size": ("bc.h5 -o made.h5 -q", "OPTION 1", "files"),
+        "--pick": ("@grids.txt -o made-{stem}.h5 -q", "OPTION *oo*", "files"),
+        "--shard": ("@grids.txt -o made-{stem}.h5 -q", "OPTION 2/2", "files"),
         "--extrude": ("grid.h5 -o made.p3d", "OPTION 1", "bytes"),
         "--planes": ("grid.h5 -o made.p3d --extrude 1", "OPTION 3", "bytes"),
         "--plot3d": ("grid.h5 -o made.p3d", "OPTION binary", "bytes"),
@@ -171,6 +179,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--output": ("grid.h5 -o made.png -q", "OPTION other.svg", "files"),
         "--from": ("odd.name -o made.png", "OPTION vts", "code"),
         "--to": ("grid.h5 -o made.name", "OPTION png", "code"),
+        "--pick": ("@grids.txt -o made-{stem}.png -q", "OPTION *oo*", "files"),
+        "--shard": ("@grids.txt -o made-{stem}.png -q", "OPTION 2/2", "files"),
         "--skip-existing": ("grid.h5 -o there.png -q", "OPTION", "layout"),
         "--json": ("grid.h5 -o made.png", "OPTION", "prints"),
         "--quiet": ("grid.h5 -o made.png", "OPTION", "says"),
@@ -187,6 +197,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--debug": ("missing.wkt -o made.json", "OPTION", "error"),
         "--output": ("step.wkt -o made.json -q", "OPTION other.json", "files"),
         "--from": ("odd.name -o made.json -q", "OPTION vts", "code"),
+        "--pick": ("@domains.txt -o made-{stem}.json -q", "OPTION *ep", "files"),
+        "--shard": ("@domains.txt -o made-{stem}.json -q", "OPTION 2/2", "files"),
         "--skip-existing": ("step.wkt -o there.json -q", "OPTION", "layout"),
         "--jobs": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION 2", "workers"),
         "--engine": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION mpi", "code"),
@@ -210,6 +222,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--output": (f"{WING} {MADE}", "OPTION other.h5", "files"),
         "--to": (f"{WING} -o made.name", "OPTION hdf5", "code"),
         "--skip-existing": (f"{WING} -o there.h5 -q", "OPTION", "layout"),
+        "--pick": ("@wings.txt --around 49 --span 9 --layers 18 -o made-{stem}.h5 -q", "OPTION w*", "files"),
+        "--shard": ("@wings.txt --around 49 --span 9 --layers 18 -o w-{stem}.h5 -q", "OPTION 2/2", "files"),
         "--jobs": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION 2", "workers"),
         "--engine": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION mpi", "code"),
         "--scheduler": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION tcp://a:1", "code"),
@@ -236,6 +250,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--from": (f"odd.name path.csv {MADE}", "OPTION vts", "code"),
         "--to": (f"{PIPE} -o made.name", "OPTION hdf5", "code"),
         "--skip-existing": (f"{PIPE} -o there.h5 -q", "OPTION", "layout"),
+        "--pick": ("@pipes.txt path.csv --cells 40 -o made-{index}.h5 -q", "OPTION circle.4", "files"),
+        "--shard": ("@pipes.txt path.csv --cells 40 -o made-{index}.h5 -q", "OPTION 2/2", "files"),
         "--jobs": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION 2", "workers"),
         "--engine": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION mpi", "code"),
         "--scheduler": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION tcp://a:1", "code"),
@@ -264,6 +280,9 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--from": ("odd.name --shift south=0,-.1 -o made.h5", "OPTION vts", "code"),
         "--to": (f"{SUNK} -o made.name", "OPTION hdf5", "code"),
         "--skip-existing": (f"{SUNK} -o there.h5 -q", "OPTION", "layout"),
+        "--part-size": ("bc.h5 --shift south=0,-.1 -o made.h5 -q", "OPTION 1", "files"),
+        "--pick": ("@grids.txt --shift south=0,-.1 -o made-{stem}.h5 -q", "OPTION *oo*", "files"),
+        "--shard": ("@grids.txt --shift south=0,-.1 -o made-{stem}.h5 -q", "OPTION 2/2", "files"),
         "--jobs": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION 2", "workers"),
         "--engine": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION mpi", "code"),
         "--scheduler": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION tcp://a:1", "code"),
@@ -310,6 +329,14 @@ airfoil = "naca:0012"
 chord = 0.5
 z = {}
 """
+LISTS = {
+    "shapes": ("duct.h5", "grid.h5"),
+    "grids": ("grid.h5", "smooth.h5"),
+    "domains": ("step.wkt", "tall.wkt"),
+    "wings": ("wing.toml", "short.toml"),
+    "pipes": ("circle:.4", "circle:.5"),
+}
+"""Inputs in lists."""
 ELSEWHERE = {
     ("models", "--debug"): "shipped models do not fail; test_cli_models breaks one",
     ("train", "--initial"): "test_the_quad_operator_learns_around_bodies_from_a_model_that_is_there",
@@ -362,6 +389,8 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     angle, radius = 1.57 + 1.37 * np.cos(t), 0.8 + 0.2 * np.sin(t)
     moon_points = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
     np.savetxt(folder / "moon.csv", moon_points, delimiter=",")
+    for name, lines in LISTS.items():
+        (folder / f"{name}.txt").write_text("\n".join(lines))
     (folder / "path.csv").write_text("0 0 0\n9 0 0\n18 3 0\n")
     cube = np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1)
     Grid.from_nodes(cube).write(folder / "cube.vts")
@@ -406,6 +435,7 @@ def observed(
     after = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     appeared = sorted({path.name for path in folder.iterdir()} - {path.name for path in inputs.iterdir()})
     written = [folder / name for name in appeared] or [folder / name for name in THERE]
+    written = [path for path in written if path.is_file()]
     content = b"".join(path.read_bytes() for path in written if path.suffix != ".h5")
     return {
         "code": done.code,

@@ -284,7 +284,11 @@ def test_standard_output_is_hdf5_unless_said_otherwise() -> None:
         ("a\0b", "null byte.*; check the path"),
         ("x.png", "x.png: png files can only be written; give a grid"),
         ("x.geo", "x.geo: geo files can only be written; give a grid"),
-        ("plain#0", "plain#0: no such file, and of .*plain there is only #train or #test; leave #0 out"),
+        (
+            "plain#a",
+            "plain#a: no such file, and of .*plain there is only #train, #test, #7 or #5:9; leave #a",
+        ),
+        ("x.png#0", "samples of png files have no numbers; leave out what is behind #"),
         ("\x1b[31m.vts", r"\\x1b\[31m.vts: no such file"),
     ],
 )

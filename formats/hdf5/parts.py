@@ -1,0 +1,176 @@
+"""Datasets in parts: files ``out/part-00000.h5``, each a dataset, that ``out.h5`` shows as one.
+
+A part is written whole or not at all, and says of what it was made:
+
+========== ========================================================================================
+request    attribute: digest of the settings of all parts
+part_size  attribute: how many inputs all parts but the last are made of
+size       attribute: counts of nodes and topology, in words
+inputs     dataset of texts: digests of the inputs
+failed     dataset of texts: JSON lists ``[input, member, error, again]`` of members it lacks
+========== ========================================================================================
+
+``out.h5`` has the attributes of the first part and a virtual dataset for each of the parts' datasets: rows of
+the parts one after the other, by paths relative to it. Whoever writes a part can make it again at any time.
+https://docs.hdfgroup.org/archive/support/HDF5/docNewFeatures/NewFeaturesVirtualDatasetDocs.html
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, NamedTuple, NoReturn
+
+from meshonet.formats.hdf5.index import Failed as Failed
+from meshonet.formats.hdf5.index import PartFacts, part_facts, write_index
+from meshonet.formats.hdf5.write import Kind, writing
+from meshonet.formats.output import whole_file
+from meshonet.formats.source import printable
+from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from meshonet.geometry.blocks.boundary import Boundary
+    from meshonet.geometry.blocks.grid import Grid
+
+_NAME = re.compile(r"part-(\d{5,12})\.h5")
+State = Literal["missing", "complete", "extended"]
+
+
+class Input(NamedTuple):
+    """An input as it was named, and a digest of what it holds."""
+
+    text: str
+    digest: str
+
+
+class OtherPartsError(InputError):
+    """The parts that are there are not parts of what is being made."""
+
+
+@dataclass(frozen=True)
+class PartFiles:
+    """The files of a dataset in parts.
+
+    Parameters
+    ----------
+    index : the file that shows the parts as one.
+    request : digest of the settings that all parts are made with (`digest_of`).
+    part_size : how many inputs all parts but the last are made of.
+    """
+
+    index: Path
+    request: str = ""
+    part_size: int = 0
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the parts, beside the index and of its name."""
+        return self.index.with_suffix("")
+
+    def path(self, number: int) -> Path:
+        """Return the file of a part, counted from 0."""
+        return self.folder / f"part-{number:05d}.h5"
+
+    def numbers(self) -> list[int]:
+        """Return the numbers of the parts that are there, in order."""
+        if not self.folder.is_dir():
+            return []
+        names = (_NAME.fullmatch(entry.name) for entry in self.folder.iterdir())
+        return sorted(int(match[1]) for match in names if match)
+
+    def check(self, *, skip_existing: bool) -> None:
+        """Raise OtherPartsError where the parts that are there were made with other settings."""
+        for number in self.numbers()[:1] if skip_existing else ():
+            self.facts(number)
+
+    def refuse(self, number: int) -> NoReturn:
+        """Raise OtherPartsError for a part that is there."""
+        remedy = f"continue with {{skip_existing}}, or remove the parts: rm -r {printable(str(self.folder))}"
+        raise OtherPartsError("is there already", remedy, source=printable(str(self.path(number))))
+
+    def facts(self, number: int) -> PartFacts:
+        """Return what a part says of itself; raises as `state`."""
+        facts = part_facts(self.path(number))
+        if facts.request != self.request:
+            self._refuse(facts.path, "was made with other options or another size of parts")
+        return facts
+
+    def size_there(self) -> int:
+        """Return of how many inputs the parts that are there are made, 0 where there are none."""
+        for number in self.numbers()[:1]:
+            return part_facts(self.path(number)).part_size
+        return 0
+
+    def state(self, number: int, inputs: Sequence[Input]) -> State:
+        """Return whether a part is there: ``complete``, to be ``extended`` or made for the first time.
+
+        A part of the first of `inputs` is to be extended; so is one of which an input failed that has changed
+        since, or that failed for want of memory, say, which may be there now. Raises OtherPartsError: the
+        part was made of other inputs or with other settings; InputError: it cannot be read.
+        """
+        if not self.path(number).exists():
+            return "missing"
+        facts = self.facts(number)
+        if len(facts.inputs) > len(inputs):
+            self._refuse(
+                facts.path, f"was made of {len(facts.inputs)} inputs, of which {len(inputs)} are left"
+            )
+        changed = [new for new, digest in zip(inputs, facts.inputs, strict=False) if new.digest != digest]
+        mended = {row.text for row in facts.failed}
+        for new in changed:
+            if new.text not in mended:
+                self._refuse(facts.path, f"was not made of {printable(new.text)} as it is now, at this place")
+        again = any(row.again for row in facts.failed)
+        return "extended" if changed or again or len(inputs) > len(facts.inputs) else "complete"
+
+    def write(
+        self, number: int, kind: str, samples: Iterable[Boundary | Grid], inputs: Sequence[Input],
+        failed: list[Failed],
+    ) -> int:  # fmt: skip
+        """Write a part, whole or not at all, and return how many samples it holds.
+
+        `failed` gets its entries while `samples` are taken. Raises InputError: samples of different sizes; a
+        place that cannot be written.
+        """
+        count = 0
+        name: Kind = "meshonet-grid" if kind == "grids" else "meshonet-boundary"
+        with (
+            whole_file(str(self.path(number)), make_folder=True) as part,
+            writing(part, name) as writer,
+        ):
+            for sample in samples:
+                writer.append(sample)
+                count += 1
+            digests = [each.digest for each in inputs]
+            facts = {"request": self.request, "part_size": str(self.part_size)}
+            writer.note(facts, digests, list(map(json.dumps, failed)))
+        return count
+
+    def build(self) -> int:
+        """Write the index over the parts that are there and return how many samples it shows, 0 without one.
+
+        Several processes may do so at once: the one that is last sees the parts of all. Raises InputError:
+        parts of different settings or sizes.
+        """
+        numbers, count = None, 0
+        while numbers != (numbers := self.numbers()):
+            parts = [facts for number in numbers if (facts := part_facts(self.path(number))).count]
+            count = sum(facts.count for facts in parts)
+            if count:
+                with whole_file(str(self.index)) as file:
+                    write_index(file, self.index, parts)
+        return count
+
+    def _refuse(self, path: Path, problem: str) -> NoReturn:
+        folder = printable(str(self.folder))
+        remedy = f"write to another name, or remove the old parts: rm -r {folder}"
+        raise OtherPartsError(problem, remedy, source=printable(str(path)))
+
+
+def digest_of(*texts: str) -> str:
+    """Return the digest of texts, in hexadecimal digits."""
+    return hashlib.sha256("\0".join(texts).encode("utf-8", "surrogateescape")).hexdigest()[:32]

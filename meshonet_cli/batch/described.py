@@ -1,0 +1,42 @@
+"""Settings as text: equal for equal settings, also in another process, on another machine, another day."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+WITHOUT_EFFECT = ("threads", "percentiles", "history")
+"""Fields of requests on which no node depends."""
+_MODEL = ".safetensors"
+
+
+def described(value: object) -> str:
+    """Return `value`, made of dataclasses, containers, arrays and plain values, as text.
+
+    Models are described by what their files hold, objects of other classes by their attributes.
+
+    >>> described({"b": (1, 2.5), "a": None})
+    "{'a': None, 'b': (1, 2.5,)}"
+    """
+    if isinstance(value, str) and value.endswith(_MODEL) and Path(value).is_file():
+        return f"{value!r} {hashlib.sha256(Path(value).read_bytes()).hexdigest()}"
+    if value is None or isinstance(value, bool | int | float | complex | str | bytes):
+        return repr(value)
+    if isinstance(value, np.ndarray):
+        return f"{value.dtype}{value.shape}{hashlib.sha256(value.tobytes()).hexdigest()}"
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(sorted(f"{described(k)}: {described(v)}" for k, v in value.items())) + "}"
+    if isinstance(value, tuple | list):
+        return "(" + "".join(f"{described(each)}, " for each in value).strip(" ") + ")"
+    if isinstance(value, type) or (callable(value) and hasattr(value, "__qualname__")):
+        return f"{value.__module__}.{value.__qualname__}"
+    if dataclasses.is_dataclass(value):
+        facts = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+    else:
+        facts = vars(value) if hasattr(value, "__dict__") else {"value": str(value)}
+    kept = {name: fact for name, fact in facts.items() if name not in WITHOUT_EFFECT}
+    return f"{type(value).__qualname__}{described(kept)}"
