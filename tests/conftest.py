@@ -31,6 +31,7 @@ def eager_threads(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "client(program): runs a program that is not from PyPI")
+    config.addinivalue_line("markers", "browser: opens a page in Chromium")
     config.addinivalue_line("markers", "solver(program): runs a program that Debian does not have either")
 
 
@@ -43,6 +44,8 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
             if os.environ.get("MESHONET_CLIENTS"):
                 pytest.fail(missing)
             pytest.skip(missing)
+    if any(item.iter_markers("browser")) and not (shutil.which("chromedriver") and shutil.which("chromium")):
+        pytest.skip("no browser: apt-get install chromium chromium-driver")
     for mark in item.iter_markers("solver"):
         if shutil.which(str(mark.args[0])) is None:
             pytest.skip(f"{mark.args[0]} is not installed")
