@@ -225,11 +225,11 @@ def pictures(folder: Path) -> None:
         reduce(path, 560)
 
 
-def reduce(path: Path, width: int = 1100) -> None:
-    """Rewrite a picture with at most `width` pixels a row and 96 colours: a fifth of the bytes."""
+def reduce(path: Path, width: int = 860) -> None:
+    """Rewrite a picture with at most `width` pixels a row and 64 colours: an eighth of the bytes."""
     picture = Image.open(path).convert("RGB")
     picture.thumbnail((width, width), Image.Resampling.LANCZOS)
-    picture.quantize(96, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
+    picture.quantize(64, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def meshonet(*words: object) -> None:
