@@ -312,3 +312,11 @@ def combine_along(
 def volume_lines(
     nodes: Floats, axis: int, low: Floats | None, high: Floats | None, reach: float, threads: int
 ) -> None: ...  # fmt: skip
+
+# deformation
+def blend_motions(
+    places: Floats, areas: Floats, motions: Floats, near: float, points: Floats, threads: int, moved: Floats
+) -> None: ...
+def blend_transposed(
+    places: Floats, areas: Floats, near: float, points: Floats, pull: Floats, gathered: Floats
+) -> None: ...

@@ -15,6 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from meshonet.api.convert import convert as convert
+    from meshonet.api.deform import deform as deform
+    from meshonet.api.deform import rotation as rotation
+    from meshonet.api.derivatives import deform_derivative as deform_derivative
+    from meshonet.api.derivatives import optimum_derivative as optimum_derivative
     from meshonet.api.files import read as read
     from meshonet.api.files import read_all as read_all
     from meshonet.api.files import write as write
@@ -32,6 +36,7 @@ if TYPE_CHECKING:
     from meshonet.api.sweep import sweep as sweep
     from meshonet.api.train import train as train
     from meshonet.geometry.blocks.boundary import Boundary as Boundary
+    from meshonet.geometry.blocks.connection import Motion as Motion
     from meshonet.geometry.blocks.grid import Grid as Grid
     from meshonet.geometry.domain.domain import Domain as Domain
     from meshonet.geometry.errors import InputError as InputError
@@ -55,6 +60,8 @@ __version__ = "0.1.0"
 
 _MODULES = {
     "meshonet.api.convert": ("convert",),
+    "meshonet.api.deform": ("deform", "rotation"),
+    "meshonet.api.derivatives": ("deform_derivative", "optimum_derivative"),
     "meshonet.api.files": ("read", "read_all", "write"),
     "meshonet.api.grid": ("grid", "infer", "sample_boundary", "sample_family", "solve_pde", "tfi"),
     "meshonet.api.layout": ("layout",),
@@ -65,6 +72,7 @@ _MODULES = {
     "meshonet.api.sweep": ("sweep",),
     "meshonet.api.train": ("train",),
     "meshonet.geometry.blocks.boundary": ("Boundary",),
+    "meshonet.geometry.blocks.connection": ("Motion",),
     "meshonet.geometry.blocks.grid": ("Grid",),
     "meshonet.geometry.domain.domain": ("Domain",),
     "meshonet.geometry.errors": ("InputError", "MeshonetError", "NoValidGridError", "SolverError"),

@@ -21,6 +21,7 @@ SCRIPTS = {
     "wings": "wings",
     "volumes": "volumes",
     "engines": "engines",
+    "deform": "deform",
     "kershaw": "kershaw",
     "blocks": "blocks",
 }

@@ -2,67 +2,90 @@
 
     python examples/shape-optimisation/throat.py [-o throat.vts]
 
-The duct is 3 long and 1 high; its top comes down to 0.6 half way. Six waves shape the wall between. The grid
-operator is differentiable, so the gradient of what the cells look like reaches the six numbers, and Adam
-moves them. Needs torch: pip install 'meshonet[train]'.
+The duct is 3 long and 1 high; its top comes down to 0.6 half way. Six waves shape the wall between. For each
+shape the variational grid is made; what the nodes' places do to the skewness of the cells is taken back to
+the boundary through the optimum, by one solve (`meshonet.optimum_derivative`), and on to the six numbers,
+which Adam moves.
 """
 
 from __future__ import annotations
 
 import argparse
-import math
 from pathlib import Path
 
-import torch
-from torch import Tensor
+import numpy as np
 
-from meshonet.formats.vtk.vts import write_grids
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.solvers.neural.differentiable import QuadGrids
+import meshonet
+from meshonet.geometry.arrays import Floats
 
 LENGTH, HEIGHT, THROAT = 3.0, 1.0, 0.6
-NODES = 121, 41
+NODES = 61, 21
 WAVES = 6
-TYPE = torch.float32
+RATE = 0.02
 
 
-def edges(shape: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """Return south, north (1, ni, 2), west and east (1, nj, 2) of the duct of `shape` (WAVES,)."""
-    t, s = (torch.linspace(0.0, 1.0, n, dtype=TYPE) for n in NODES)
-    waves = [torch.sin((2 * k + 1) * math.pi * t) * (-1.0) ** k for k in range(WAVES)]
-    bump = (shape[:, None] * torch.stack(waves)).sum(0)
-    top = HEIGHT - (HEIGHT - THROAT) * bump / bump[NODES[0] // 2]
-    south, north = torch.stack([LENGTH * t, 0.0 * t], -1), torch.stack([LENGTH * t, top], -1)
-    west = torch.stack([0.0 * s, HEIGHT * s], -1)
-    return south[None], north[None], west[None], west[None] + torch.tensor([LENGTH, 0.0], dtype=TYPE)
+def waves() -> Floats:
+    """Return the waves (WAVES, ni) that shape the top."""
+    t = np.linspace(0.0, 1.0, NODES[0])
+    return np.stack([np.sin((2 * k + 1) * np.pi * t) * (-1.0) ** k for k in range(WAVES)])
 
 
-def skewness(nodes: Tensor) -> Tensor:
-    """Return the mean of cos² of the angles at the cells' corners of `nodes` (1, ni, nj, 2)."""
-    u, v = nodes.diff(dim=1), nodes.diff(dim=2)
-    corners = [(p, q) for p in (u[:, :, :-1], u[:, :, 1:]) for q in (v[:, :-1], v[:, 1:])]
-    return torch.stack(
-        [((p * q).sum(-1) ** 2 / ((p * p).sum(-1) * (q * q).sum(-1))).mean() for p, q in corners]
-    ).mean()
+def top(shape: Floats) -> tuple[Floats, Floats]:
+    """Return heights (ni,) of the top of `shape` (WAVES,), and their derivatives (WAVES, ni)."""
+    each = waves()
+    bump, half = shape @ each, NODES[0] // 2
+    part = bump / bump[half]
+    slopes = (each - part * each[:, half, None]) / bump[half]
+    return HEIGHT - (HEIGHT - THROAT) * part, -(HEIGHT - THROAT) * slopes
 
 
-def optimise(steps: int) -> tuple[list[float], Tensor]:
-    """Return the skewness before each step and after the last, and the last grid's nodes (ni, nj, 2)."""
-    torch.set_num_threads(1)  # tensors are small
-    grids = QuadGrids("quad-general", dtype=TYPE)
-    shape = torch.zeros(WAVES, dtype=TYPE)
+def boundary(heights: Floats) -> meshonet.Boundary:
+    """Return the four sides of the duct with a top of these heights (ni,)."""
+    t, s = (np.linspace(0.0, 1.0, n) for n in NODES)
+    south, north = np.stack([LENGTH * t, 0.0 * t], axis=1), np.stack([LENGTH * t, heights], axis=1)
+    west = np.stack([0.0 * s, HEIGHT * s], axis=1)
+    return meshonet.Boundary(south, north, west, west + np.array([LENGTH, 0.0]))
+
+
+def skewness(nodes: Floats) -> tuple[float, Floats]:
+    """Return the mean of cos² of the angles at the corners of cells, and its derivative by `nodes`."""
+    slope, total = np.zeros_like(nodes), 0.0
+    u, v = np.diff(nodes, axis=0), np.diff(nodes, axis=1)
+    weight = 1.0 / (4 * u[:, :-1, 0].size)
+    for j in (0, 1):
+        for i in (0, 1):
+            p, q = u[:, j : u.shape[1] - 1 + j], v[i : v.shape[0] - 1 + i]
+            r, pp, qq = ((a * b).sum(axis=-1, keepdims=True) for a, b in ((p, q), (p, p), (q, q)))
+            total += weight * float((r**2 / (pp * qq)).sum())
+            by_p = weight * 2.0 * r / (pp * qq) * (q - r / pp * p)
+            by_q = weight * 2.0 * r / (pp * qq) * (p - r / qq * q)
+            rows, columns = slice(i, i + by_q.shape[0]), slice(j, j + by_p.shape[1])
+            slope[1:, columns] += by_p
+            slope[:-1, columns] -= by_p
+            slope[rows, 1:] += by_q
+            slope[rows, :-1] -= by_q
+    return total, slope
+
+
+def optimise(steps: int) -> tuple[list[float], meshonet.Grid]:
+    """Return the skewness before each step and after the last, and the last grid."""
+    shape, mean, square = np.zeros(WAVES), np.zeros(WAVES), np.zeros(WAVES)
     shape[0] = 1.0
-    shape.requires_grad_()
-    optimiser = torch.optim.Adam([shape], lr=0.02)
     found = []
-    for _ in range(steps):
-        optimiser.zero_grad()
-        skew = skewness(grids(*edges(shape)))
-        skew.backward()
-        optimiser.step()
-        found.append(float(skew.detach()))
-    nodes = grids(*edges(shape)).detach()
-    return [*found, float(skewness(nodes))], nodes[0]
+    for number in range(steps + 1):
+        heights, slopes = top(shape)
+        made = meshonet.solve_pde(boundary(heights), method="variational")
+        derivative = meshonet.optimum_derivative(made)
+        skew, by_nodes = skewness(derivative.grid.nodes)
+        found.append(skew)
+        if number == steps:
+            break
+        by_shape = slopes @ derivative.transposed(by_nodes)[:, -1, 1]
+        mean = 0.9 * mean + 0.1 * by_shape
+        square = 0.999 * square + 0.001 * by_shape**2
+        size = np.sqrt(square / (1.0 - 0.999 ** (number + 1))) + 1e-8
+        shape = shape - RATE * mean / (1.0 - 0.9 ** (number + 1)) / size
+    return found, derivative.grid
 
 
 def main() -> None:
@@ -71,12 +94,12 @@ def main() -> None:
     parser.add_argument("-o", "--output", type=Path, help="grid file to write")
     parser.add_argument("--steps", type=int, default=60)
     options = parser.parse_args()
-    found, nodes = optimise(options.steps)
+    found, grid = optimise(options.steps)
     print(
         f"mean of cos² at the corners: {found[0]:.5f} at first, {found[-1]:.5f} after {options.steps} steps"
     )
     if options.output:
-        write_grids(options.output, [Grid.from_nodes(nodes.double().numpy())])
+        grid.write(options.output)
 
 
 if __name__ == "__main__":

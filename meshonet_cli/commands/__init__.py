@@ -46,6 +46,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("layout", "Split domains into blocks and write these."),
     Command("stack", "Make volumes around wings and blades, and in ducts, from sections."),
     Command("sweep", "Make volumes of pipes and ducts, cross-sections carried along curves."),
+    Command("deform", "Make grids follow a changed boundary, their layers as they were."),
     Command("quality", "Measure grids: folded cells, angles, skewness."),
     Command("convert", "Turn files from one format into another."),
     Command("plot", "Draw grids, coloured by a quality metric."),

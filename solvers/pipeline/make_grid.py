@@ -19,6 +19,7 @@ from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.geometry.threads import limited_to
+from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.method import Method
 from meshonet.solvers.pipeline.fallback import guard, refuse_folded
 from meshonet.solvers.pipeline.request import GridRequest
@@ -254,7 +255,11 @@ def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, flo
 
 
 def judged(
-    solution: Solution, seconds: dict[str, float], request: GridRequest | StackRequest, *, remedy: str
+    solution: Solution,
+    seconds: dict[str, float],
+    request: GridRequest | StackRequest | DeformRequest,
+    *,
+    remedy: str,
 ) -> Result:
     """Return a solution with its quality, whose time is added to `seconds` by stage.
 

@@ -36,6 +36,7 @@ Effect = tuple[str, str, str]
 THERE = ("there.h5", "there.png", "there.json")
 BODY, GRID, LAYERS = "naca:2412 --res 41x15", "grid.h5", "naca:2412 --res 61x41 --first-cell 1e-3"
 MADE = "-o made.h5 -q"
+SUNK = "grid.h5 --shift south=0,-.1"
 PLATE = f"naca:2412 --res 61x41 --y-plus 100 --reynolds 1e5 {MADE}"
 
 PRINTING = {
@@ -253,6 +254,24 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--growth": (f"{PIPE} --first-cell .001 {MADE}", "OPTION 1.5", "nodes"),
         "--fail-on": (f"{PIPE} {MADE}", "OPTION max_angle>90.5", "code"),
         "--allow-invalid": (f"folded.h5 path.csv {MADE}", "OPTION", "code"),
+    },
+    "deform": {
+        "--json": (f"{SUNK} -o made.h5", "OPTION", "prints"),
+        "--quiet": (f"{SUNK} -o made.h5", "OPTION", "says"),
+        "--debug": (f"missing.h5 --shift south=0,-.1 {MADE}", "OPTION", "error"),
+        "--output": (f"{SUNK} {MADE}", "OPTION other.h5", "files"),
+        "--from": ("odd.name --shift south=0,-.1 -o made.h5", "OPTION vts", "code"),
+        "--to": (f"{SUNK} -o made.name", "OPTION hdf5", "code"),
+        "--skip-existing": (f"{SUNK} -o there.h5 -q", "OPTION", "layout"),
+        "--jobs": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION 2", "workers"),
+        "--engine": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION mpi", "code"),
+        "--scheduler": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION tcp://a:1", "code"),
+        "--threads": (f"{SUNK} {MADE} --threads 2", "OPTION 0", "code"),
+        "--wall": (f"grid.h5 --shift north=0,.1 {MADE}", "OPTION south=c.vts", "nodes"),
+        "--rotate": (f"{SUNK} {MADE}", "OPTION north=2@0,1", "nodes"),
+        "--shift": (f"{SUNK} {MADE}", "OPTION north=0,.1", "nodes"),
+        "--fail-on": (f"{SUNK} {MADE}", "OPTION max_angle>90.5", "code"),
+        "--allow-invalid": (f"grid.h5 --rotate south=180@1,0 {MADE}", "OPTION", "code"),
     },
     "models": {
         "--json": ("", "OPTION", "out"),

@@ -1,0 +1,264 @@
+"""Grids that follow random changes of their walls, beside inverse-distance weighting: folds, layers, time.
+
+    python benchmarks/bench_deform.py --airfoils FOLDER [--bodies FOLDER] [--count 500]
+        [--page docs/benchmarks/deform.md]
+
+FOLDER of airfoils holds ``*.dat``; that of bodies the elements of a multi-element airfoil, one of them called
+``*flap*.dat``, which is turned.
+"""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import meshonet
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import MeshonetError
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.threads import limited_to
+from meshonet.kernels._native import blend_motions
+from meshonet.solvers.deformation.deform import deform
+from meshonet.solvers.deformation.motions import Turning, affine, turns_in_plane
+from meshonet.solvers.deformation.outer import NodeTable, elements_of, first_heights
+from meshonet.solvers.deformation.sources import areas_of
+from meshonet.solvers.deformation.targets import NewWall, targets_of
+
+HEAD = """# Deformed grids: folds, layers, time
+
+<!-- made by python benchmarks/bench_deform.py --page docs/benchmarks/deform.md -->
+
+Read this page to see what `meshonet deform` keeps of a grid, and how quick it is, beside inverse-distance
+weighting (IDW). How to use it is in [deform](../guide/deform.md).
+
+Moves are drawn at random (seed {seed}). *airfoils*: thickness times 0.9 to 1.1, camber changed by up to 2 %
+of the chord, of sections in viscous C grids of 250 x 100 nodes, y+ 1 at Reynolds number 6e6. *flap*: turned
+by up to 10 degrees either way, about a place near its nose, beside a slat and a main element: some 25,000
+cells in blocks, first cells of 1e-5.
+
+- *moves*: those whose new outline is valid; others ({refused}) are left out. *folded*: grids with folded
+  cells, and how many cells in the worst one.
+- *first cell*: largest relative change of the height of a first cell, over all wall nodes and moves.
+- *angle*: largest change of the grid's largest angle, in degrees.
+- *CPU ms*: processor time from grid and outline in memory to grid in memory, median / 90th percentile, one
+  thread of {machine}, while other programs used the machine.
+- *IDW*: displacements alone, weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996). *IDW, rotations*: with
+  rotations and the weights of Luke, Collins and Blades (J. Comput. Phys. 231 (2012) 586-601). Both by
+  the same kernel, all boundary nodes, without anything done about folds.
+
+"""
+TAIL = """
+`meshonet deform` weighs in the same way, with exponents for the plane, every wall node and far nodes in
+groups, in a compiled kernel. It tests what comes out, and where cells fold it goes the way in steps
+({steps} of these moves needed that).
+"""
+SEED = 20261122
+COLUMNS = "moves", "method", "folded", "first cell", "angle", "CPU ms"
+
+
+@dataclass(frozen=True, eq=False)
+class Move:
+    """A grid and the new place of a wall."""
+
+    kind: str
+    grid: Grid
+    walls: Mapping[str, NewWall] | NewWall
+
+
+@dataclass
+class Figures:
+    """Of one method over all moves of a kind."""
+
+    folded: list[int]
+    height: list[float]
+    angle: list[float]
+    seconds: list[float]
+
+    def row(self, kind: str, name: str) -> tuple[str, ...]:
+        """Return a row of the table."""
+        grids = np.count_nonzero(self.folded)
+        folds = f"{grids}, worst {max(self.folded)} cells" if grids else "0"
+        median, late = (1000 * np.percentile(self.seconds, part) for part in (50, 90))
+        return (
+            f"{kind} ({len(self.folded)})", name, folds, f"{max(self.height):.1e}",
+            f"{max(self.angle):.1f}", f"{median:.1f} / {late:.1f}",
+        )  # fmt: skip
+
+
+def sections(folder: Path) -> Iterator[tuple[Airfoil, Grid]]:
+    """Yield sections and their viscous C grids."""
+    for path in sorted(folder.glob("*.dat")):
+        try:
+            (section,) = meshonet.read_all(path)
+            if isinstance(section, Airfoil):
+                body = section.normalised()
+                settings = {"res": (250, 100), "topology": "c", "y_plus": 1, "reynolds": 6e6}
+                yield body, meshonet.grid(body, **settings)
+        except MeshonetError as error:
+            print(f"left out: {error}", file=sys.stderr)
+
+
+def changed(body: Airfoil, random: np.random.Generator) -> Airfoil:
+    """Return the section with another thickness and camber; raises InputError where it crosses itself."""
+    points = body.curve.points[1 if body.blunt else 0 :]
+    x, y = points.T
+    nose = int(np.argmin(x))
+    lower, upper = (np.argsort(x[part]) + part.start for part in (slice(0, nose + 1), slice(nose, len(x))))
+    middle = 0.5 * (np.interp(x, x[lower], y[lower]) + np.interp(x, x[upper], y[upper]))
+    thick, camber = random.uniform(0.9, 1.1), random.uniform(-0.02, 0.02)
+    moved = middle + thick * (y - middle) + 4.0 * camber * x * (1.0 - x)
+    return Airfoil(np.stack([x, moved], axis=1), body.name)
+
+
+def moves(airfoils: Path, bodies: Path | None, count: int) -> Iterator[Move | None]:
+    """Yield moves, None for one whose outline is not valid."""
+    random = np.random.default_rng(SEED)
+    known = list(sections(airfoils))
+    flaps = 0 if bodies is None else count // 5
+    valid = 0
+    while valid < count - flaps:
+        body, grid = known[valid % len(known)]
+        try:
+            yield Move("airfoils", grid, changed(body, random))
+            valid += 1
+        except MeshonetError:
+            yield None
+    if bodies is None:
+        return
+    files = sorted(bodies.glob("*.dat"), reverse=True)
+    grid = meshonet.grid([str(path) for path in files], assemble=True, first_cell=1e-5)
+    (name,) = (path.stem for path in files if "flap" in path.stem)
+    nose = min((p for line in _lines(grid, name) for p in line), key=lambda point: point[0])
+    for _ in range(flaps):
+        about = nose + random.uniform(-0.01, 0.01, 2)
+        yield Move("flap", grid, {name: meshonet.rotation(random.uniform(-10, 10), tuple(about))})
+
+
+def _lines(grid: Grid, name: str) -> list[Floats]:
+    table = NodeTable.of(grid)
+    return [table.nodes[piece.numbers] for piece in table.pieces if piece.patch.name == name]
+
+
+def ours(move: Move) -> tuple[Grid, bool]:
+    """Return the grid, and whether it took more than one step."""
+    solution = deform(move.grid, move.walls)
+    return solution.grid, bool(solution.path)
+
+
+def weighted(move: Move, *, rotations: bool) -> tuple[Grid, bool]:
+    """Return the grid by inverse-distance weighting over all boundary nodes."""
+    table = NodeTable.of(move.grid)
+    targets = targets_of(table, move.walls)
+    nodes, outer = table.nodes, np.flatnonzero(table.outer)
+    edges = elements_of(table.pieces, 2)
+    area = areas_of(nodes, edges)[outer]
+    turn = np.zeros(len(nodes))
+    if rotations:
+        moving = edges[targets.moved[edges].all(axis=1)]
+        turn = Turning.of(nodes, moving).angles(nodes, targets.nodes)
+    motion = affine(nodes[outer], targets.nodes[outer], turns_in_plane(turn[outer]))
+    shifts = targets.nodes[outer] - nodes[outer]
+    size = float(np.sqrt(((nodes - nodes.mean(axis=0)) ** 2).sum(axis=1).max()))
+    stiff = max(0.1, 5.0 * float(np.abs(shifts - shifts.mean(axis=0)).max()) / size)
+    inner = np.flatnonzero(~table.outer)
+    moved = np.empty((3, len(inner)))
+    near = size * stiff**2.5 if rotations else 0.0
+    blend_motions(_in_space(nodes[outer]), area, _lifted(motion), near, _in_space(nodes[inner]), 1, moved)
+    made = targets.nodes.copy()
+    made[inner] += moved[:2].T
+    return Grid(table.with_nodes(made), move.grid.patches, move.grid.connections), False
+
+
+def _in_space(points: Floats) -> Floats:
+    """Return points (n, 2) of the plane as (3, n): the kernel for space has the exponents 3 and 5."""
+    return np.stack([*points.T, np.zeros(len(points))])
+
+
+def _lifted(motion: Floats) -> Floats:
+    """Return motions (6, n) of the plane as (12, n) of space."""
+    space = np.zeros((12, motion.shape[1]))
+    space[[0, 1, 3, 4, 6, 7]] = motion
+    return space
+
+
+METHODS: dict[str, Callable[[Move], tuple[Grid, bool]]] = {
+    "deform": ours,
+    "IDW": lambda move: weighted(move, rotations=False),
+    "IDW, rotations": lambda move: weighted(move, rotations=True),
+}
+
+
+def judged(move: Move, made: Grid) -> tuple[int, float, float]:
+    """Return folded cells, the largest change of a first cell and that of the largest angle."""
+    table = NodeTable.of(move.grid)
+    walls = [piece for piece in table.pieces if piece.patch.kind in ("wall", "other")]
+    before, after = (first_heights(grid, walls) for grid in (move.grid, made))
+    folded = sum(count_folded(block.nodes) for block in made.blocks)
+    angles = [grid.quality()["max_angle"].max for grid in (move.grid, made)]
+    return folded, float(np.abs(after / before - 1.0).max()), angles[1] - angles[0]
+
+
+def measured(airfoils: Path, bodies: Path | None, count: int) -> tuple[list[tuple[str, ...]], int, int]:
+    """Return the rows of the table, how many moves were refused and how many took several steps."""
+    figures: dict[tuple[str, str], Figures] = {}
+    refused = several = 0
+    for move in moves(airfoils, bodies, count):
+        if move is None:
+            refused += 1
+            continue
+        for name, method in METHODS.items():
+            begun = time.process_time()
+            made, stepped = method(move)
+            spent = time.process_time() - begun
+            several += stepped
+            folded, height, angle = judged(move, made)
+            own = figures.setdefault((move.kind, name), Figures([], [], [], []))
+            for values, value in zip(
+                (own.folded, own.height, own.angle, own.seconds), (folded, height, angle, spent), strict=True
+            ):
+                values.append(value)  # type: ignore[arg-type]
+    return [own.row(*key) for key, own in figures.items()], refused, several
+
+
+def table_of(rows: Sequence[Sequence[str]]) -> str:
+    """Return rows as a table."""
+    lines = [COLUMNS, ["---"] * len(COLUMNS), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
+
+
+def machine() -> str:
+    """Return what the processor is called."""
+    info = Path("/proc/cpuinfo")
+    lines = info.read_text(encoding="utf-8").splitlines() if info.exists() else []
+    names = [line for line in lines if line.startswith("model name")]
+    return names[0].partition(":")[2].strip() if names else platform.machine()
+
+
+def main() -> None:
+    """Measure, print, and write the page when asked."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--airfoils", type=Path, required=True)
+    parser.add_argument("--bodies", type=Path)
+    parser.add_argument("--count", type=int, default=500)
+    parser.add_argument("--page", type=Path)
+    options = parser.parse_args()
+    with limited_to(1):
+        rows, refused, several = measured(options.airfoils, options.bodies, options.count)
+    text = table_of(rows)
+    print(text, f"{refused} refused, {several} in several steps")
+    if options.page:
+        head = HEAD.format(seed=SEED, refused=refused, machine=machine())
+        options.page.write_text(head + text + TAIL.format(steps=several), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,141 @@
+#include "blend.h"
+#include "clones.h"
+#include "team.h"
+#include <math.h>
+
+enum { LEAST = 64 }; /* points that are worth a thread of their own */
+static const double TINY = 1e-280;
+
+/* 1/r^2 with a guard for a point on a place, which then has all the weight that counts. */
+MESHONET_INLINE double inverse_square(double square) { return 1.0 / (square > 1e-140 ? square : 1e-140); }
+
+MESHONET_INLINE void blend2(const BlendSources *from, double px, double py, double *restrict u, double *restrict v)
+{
+    const ptrdiff_t n = from->n;
+    const double *restrict x = from->place, *restrict y = x + n, *restrict area = from->area;
+    const double *restrict a = from->motion, *restrict b = a + n, *restrict xx = b + n, *restrict xy = xx + n,
+                           *restrict yx = xy + n, *restrict yy = yx + n;
+    const double near2 = from->near2;
+    double sum = TINY, su = 0.0, sv = 0.0;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t k = 0; k < n; k++) {
+        const double dx = px - x[k], dy = py - y[k], inverse = inverse_square(dx * dx + dy * dy);
+        const double weight = area[k] * inverse * (1.0 + near2 * inverse);
+        sum += weight;
+        su += weight * (a[k] + xx[k] * px + xy[k] * py);
+        sv += weight * (b[k] + yx[k] * px + yy[k] * py);
+    }
+    *u = su / sum, *v = sv / sum;
+}
+
+MESHONET_INLINE double weight3(double square, double area, double near2)
+{
+    const double inverse = inverse_square(square);
+    return area * inverse * sqrt(inverse) * (1.0 + near2 * inverse);
+}
+
+MESHONET_INLINE void blend3(const BlendSources *from, const double *p, double *restrict out)
+{
+    const ptrdiff_t n = from->n;
+    const double *restrict x = from->place, *restrict y = x + n, *restrict z = y + n, *restrict area = from->area;
+    const double *restrict m = from->motion;
+    const double near2 = from->near2, px = p[0], py = p[1], pz = p[2];
+    double sum = TINY, su = 0.0, sv = 0.0, sw = 0.0;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t k = 0; k < n; k++) {
+        const double dx = px - x[k], dy = py - y[k], dz = pz - z[k];
+        const double weight = weight3(dx * dx + dy * dy + dz * dz, area[k], near2);
+        sum += weight;
+        su += weight * (m[k] + m[3 * n + k] * px + m[4 * n + k] * py + m[5 * n + k] * pz);
+        sv += weight * (m[n + k] + m[6 * n + k] * px + m[7 * n + k] * py + m[8 * n + k] * pz);
+        sw += weight * (m[2 * n + k] + m[9 * n + k] * px + m[10 * n + k] * py + m[11 * n + k] * pz);
+    }
+    out[0] = su / sum, out[1] = sv / sum, out[2] = sw / sum;
+}
+
+typedef struct {
+    const BlendSources *from;
+    const double *x;
+    ptrdiff_t m;
+    double *moved;
+} BlendJob;
+
+MESHONET_CLONES
+static void blend_share(const BlendJob *job, ptrdiff_t first, ptrdiff_t last)
+{
+    const ptrdiff_t m = job->m;
+    const double *x = job->x;
+    double *moved = job->moved;
+    if (job->from->axes == 2) {
+        for (ptrdiff_t i = first; i < last; i++)
+            blend2(job->from, x[i], x[m + i], moved + i, moved + m + i);
+        return;
+    }
+    for (ptrdiff_t i = first; i < last; i++) {
+        const double p[3] = {x[i], x[m + i], x[2 * m + i]};
+        double d[3];
+        blend3(job->from, p, d);
+        for (int axis = 0; axis < 3; axis++)
+            moved[axis * m + i] = d[axis];
+    }
+}
+
+static void blend_work(void *data, Member member)
+{
+    const BlendJob *job = data;
+    ptrdiff_t first, last;
+    team_share(job->m, member, &first, &last);
+    blend_share(job, first, last);
+}
+
+void blend_motions(const BlendSources *from, const double *x, ptrdiff_t m, int threads, double *moved)
+{
+    BlendJob job = {from, x, m, moved};
+    const ptrdiff_t most = m / LEAST + 1;
+    team_run(most < threads ? (int)most : threads, blend_work, &job);
+}
+
+MESHONET_CLONES
+void blend_transposed(const BlendSources *from, const double *x, const double *pull, ptrdiff_t m, double *gathered)
+{
+    const ptrdiff_t n = from->n;
+    const int axes = from->axes;
+    const double *restrict sx = from->place, *restrict sy = sx + n, *restrict area = from->area;
+    const double near2 = from->near2;
+    for (ptrdiff_t k = 0; k < n * (axes + axes * axes); k++)
+        gathered[k] = 0.0;
+    for (ptrdiff_t i = 0; i < m; i++) {
+        double p[3] = {0}, g[3] = {0};
+        for (int axis = 0; axis < axes; axis++)
+            p[axis] = x[axis * m + i], g[axis] = pull[axis * m + i];
+        if (g[0] == 0.0 && g[1] == 0.0 && g[2] == 0.0)
+            continue;
+        double sum = TINY;
+        for (int pass = 0; pass < 2; pass++) {
+            const double scale = pass ? 1.0 / sum : 0.0;
+            double total = 0.0;
+            MESHONET_INDEPENDENT
+            for (ptrdiff_t k = 0; k < n; k++) {
+                const double dx = p[0] - sx[k], dy = p[1] - sy[k];
+                double square = dx * dx + dy * dy, weight;
+                if (axes == 3) {
+                    const double dz = p[2] - sx[2 * n + k];
+                    weight = weight3(square + dz * dz, area[k], near2);
+                } else {
+                    const double inverse = inverse_square(square);
+                    weight = area[k] * inverse * (1.0 + near2 * inverse);
+                }
+                total += weight;
+                if (!pass)
+                    continue;
+                for (int row = 0; row < axes; row++) {
+                    const double share = scale * weight * g[row];
+                    gathered[row * n + k] += share;
+                    for (int column = 0; column < axes; column++)
+                        gathered[(axes + row * axes + column) * n + k] += share * p[column];
+                }
+            }
+            sum = pass ? sum : sum + total;
+        }
+    }
+}

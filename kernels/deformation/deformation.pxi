@@ -1,0 +1,45 @@
+cdef extern from "deformation/blend.h":
+    ctypedef struct BlendSources:
+        ptrdiff_t n
+        int axes
+        const double *place
+        const double *area
+        const double *motion
+        double near2
+    void c_blend_motions "blend_motions"(const BlendSources *sources, const double *x, ptrdiff_t m, int threads,
+                                        double *moved) nogil
+    void c_blend_transposed "blend_transposed"(const BlendSources *sources, const double *x, const double *pull,
+                                               ptrdiff_t m, double *gathered) nogil
+
+
+cdef BlendSources blend_sources(places, areas, double near) except *:
+    """Return places (d, n) with areas (n,), without motions."""
+    cdef BlendSources sources
+    sources.axes, sources.n, sources.near2 = places.shape[0], places.shape[1], near * near
+    if sources.axes not in (2, 3):
+        raise ValueError(f"places of shape {places.shape}")
+    sources.place = reads(places, (sources.axes, sources.n))
+    sources.area = reads(areas, (sources.n,))
+    sources.motion = NULL
+    return sources
+
+
+def blend_motions(places, areas, motions, double near, points, int threads, moved):
+    """Fill moved (d, m) with the motions (d + d², n) of places (d, n), weighted, at points (d, m)."""
+    cdef BlendSources sources = blend_sources(places, areas, near)
+    cdef ptrdiff_t m = points.shape[1]
+    sources.motion = reads(motions, (sources.axes * (sources.axes + 1), sources.n))
+    cdef Read x = reads(points, (sources.axes, m))
+    cdef Written to = fills(moved, (sources.axes, m))
+    with nogil:
+        c_blend_motions(&sources, x, m, threads, to)
+
+
+def blend_transposed(places, areas, double near, points, pull, gathered):
+    """Fill gathered (d + d², n) with what pull (d, m) at points (d, m) does to the motions; see `blend_motions`."""
+    cdef BlendSources sources = blend_sources(places, areas, near)
+    cdef ptrdiff_t m = points.shape[1]
+    cdef Read x = reads(points, (sources.axes, m)), force = reads(pull, (sources.axes, m))
+    cdef Written to = fills(gathered, (sources.axes * (sources.axes + 1), sources.n))
+    with nogil:
+        c_blend_transposed(&sources, x, force, m, to)

@@ -1,0 +1,73 @@
+"""`meshonet.deform`."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+
+from meshonet.api.files import read
+from meshonet.api.quality import single_grid
+from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.deformation.request import DeformRequest
+from meshonet.solvers.deformation.targets import NewWall
+from meshonet.solvers.pipeline.deformations import make_deformed
+
+AnyWall: TypeAlias = NewWall | str | Path
+"""A file with an outline or a grid, a designation ``naca:2412``, or what these hold, nodes, or a motion."""
+
+
+def deform(
+    grid: Grid | str | Path,
+    wall: AnyWall | Mapping[str, AnyWall],
+    *,
+    allow_invalid: bool = False,
+    threads: int | None = None,
+) -> Grid:
+    """Return a grid that follows a changed boundary, its layers as they were.
+
+    Parameters
+    ----------
+    grid : a planar grid or a volume, or a file that holds one.
+    wall : the new shape of its only wall, or of several by name. An outline takes nodes at the same share of
+        arc length between its features; the boundary of another grid, or nodes (n, d), is taken node by node;
+        a `meshonet.Motion` moves the wall as it is. A whole grid without a name gives all its boundary.
+    allow_invalid : return a grid with folded cells too.
+    threads : of kernels; None is one a core.
+
+    Raises InputError: a file, wall or shape that cannot be used, a starting grid with folded cells;
+    NoValidGridError: cells are folded, with the worst places.
+
+    >>> import meshonet
+    >>> start = meshonet.grid("naca:0012", res=(81, 31), te="wedge")
+    >>> moved = deform(start, "naca:2412")
+    >>> moved.quality().folded
+    0
+    """
+    request = DeformRequest(allow_invalid, threads=threads)
+    return make_deformed(single_grid(grid), read_walls(wall), request).grid
+
+
+def read_walls(wall: AnyWall | Mapping[str, AnyWall]) -> NewWall | dict[str, NewWall]:
+    """Return new walls with those read that are files."""
+    return {name: _read(new) for name, new in wall.items()} if isinstance(wall, Mapping) else _read(wall)
+
+
+def _read(wall: AnyWall) -> NewWall:
+    return read(wall) if isinstance(wall, str | Path) else wall
+
+
+def rotation(degrees: float, about: Sequence[float] = (0.0, 0.0)) -> Motion:
+    """Return the motion that turns the plane counter-clockwise about a point (2,).
+
+    >>> rotation(90, about=(1, 0))(np.array([[2.0, 0.0]])).round(12).tolist()
+    [[1.0, 1.0]]
+    """
+    if not np.isfinite([degrees, *about]).all() or len(about) != 2:
+        raise InputError(f"a turn of {degrees} about {tuple(about)}", "give an angle and a point (x, y)")
+    sine, cosine = float(np.sin(np.radians(degrees))), float(np.cos(np.radians(degrees)))
+    x, y = about
+    shift = x - cosine * x + sine * y, y - sine * x - cosine * y
+    return Motion(shift, ((cosine, -sine), (sine, cosine)))

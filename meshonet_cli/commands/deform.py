@@ -1,0 +1,51 @@
+"""``meshonet deform``."""
+
+from typing import Annotated
+
+from meshonet_cli import options as o
+
+EXAMPLES = (
+    "meshonet deform grid.vts --wall naca:0014 -o moved.vts",
+    "meshonet deform grid.vts --rotate wall=-5@0.25,0 --shift wall=0,0.01 -o turned.cgns",
+    "meshonet infer main.dat flap.dat --assemble --cells 2000 -o two.cgns && meshonet deform two.cgns "
+    "--wall main=airfoil.dat --rotate flap=-5@1.1,-0.1 -o moved.cgns",
+    "meshonet deform wing.cgns --shift bottom=0,0,-0.1 -o deeper.cgns",
+)
+_option = o.option_of(o.METHOD)
+
+
+# fmt: off
+@o.expanded
+def deform(
+    grid: o.Grids,
+    output: o.Output,
+    files: o.FileOptions,
+    printing: o.PrintOptions,
+    workers: o.EngineOptions,
+    wall: Annotated[list[str] | None, _option(
+        "--wall", metavar="[NAME=]FILE",
+        help="New shape of a wall: an outline, naca:2412, or a grid with as many nodes there, taken node by "
+        "node. NAME is needed where there are several walls; it may be any part of the boundary. Repeatable.",
+    )] = None,
+    rotate: Annotated[list[str] | None, _option(
+        "--rotate", metavar="NAME=DEGREES@X,Y",
+        help="Turn a wall counter-clockwise about a point of the plane. Repeatable.",
+    )] = None,
+    shift: Annotated[list[str] | None, _option(
+        "--shift", metavar="NAME=DX,DY[,DZ]",
+        help="Shift a wall, after its turn when it has one. Repeatable.",
+    )] = None,
+    allow_invalid: o.AllowInvalid = False,
+    fail_on: o.FailOn = None,
+    threads: o.Threads = None,
+) -> int:
+    """Make grids follow a changed boundary, their layers as they were."""
+    from meshonet_cli.deform_batch import write_deformed
+
+    return write_deformed(
+        grid, output, printing.session(), wall=wall or (), rotate=rotate or (), shift=shift or (),
+        allow_invalid=allow_invalid, fail_on=fail_on, from_format=files.from_format,
+        to_format=files.to_format, skip_existing=files.skip_existing, engine=workers.chosen(),
+        threads=threads,
+    )
+# fmt: on

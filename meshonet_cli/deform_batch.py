@@ -1,0 +1,131 @@
+"""The grids of `deform`, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from meshonet.api.deform import rotation
+from meshonet.api.files import read
+from meshonet.formats.registry import read_grids
+from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.gates import need_percentiles, parse_gates
+from meshonet.solvers.deformation.request import DeformRequest
+from meshonet.solvers.deformation.targets import NewWall
+from meshonet.solvers.pipeline.deformations import make_deformed
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.executors.engine import HERE, Engine
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import deliver, one_by_one, prepare
+from meshonet_cli.batch.sources import items
+from meshonet_cli.grid_batch import judging, reported
+from meshonet_cli.options.groups import bad_value
+from meshonet_cli.report.grid import Report
+from meshonet_cli.session import Session
+
+
+def write_deformed(
+    sources: Sequence[str], output: str, session: Session, *, wall: Sequence[str] = (),
+    rotate: Sequence[str] = (), shift: Sequence[str] = (), allow_invalid: bool = False,
+    fail_on: Sequence[str] | None = None, from_format: str | None = None, to_format: str | None = None,
+    skip_existing: bool = False, engine: Engine = HERE, threads: int | None = None,
+) -> int:  # fmt: skip
+    """Write the grids of `sources` with walls in their new places and return the exit code."""
+    walls = walls_of(wall, rotate, shift)
+    percentiles = need_percentiles(parse_gates(fail_on))
+    make = _Deformed(walls, DeformRequest(allow_invalid, percentiles, engine.threads(threads)))
+    destination = Destination(output, to_format, "grids")
+    prepare(sources, destination, session)
+    members = items(sources, lambda source: read_grids(source, from_format), session)
+    written = judging(session, fail_on)
+    deliver(
+        members, one_by_one(make), destination, session, written, skip_existing=skip_existing, engine=engine
+    )
+    return session.finish()
+
+
+@dataclass(frozen=True)
+class _Deformed:
+    """Makes the deformed grids."""
+
+    walls: Mapping[str, NewWall] | NewWall
+    request: DeformRequest
+
+    def __call__(self, item: Item[Grid]) -> tuple[Grid, Report]:
+        return reported(item, make_deformed(item.what, self.walls, self.request))  # type: ignore[arg-type]
+
+
+def walls_of(
+    wall: Sequence[str], rotate: Sequence[str], shift: Sequence[str]
+) -> Mapping[str, NewWall] | NewWall:
+    """Return the new walls that options describe, by name or the only one.
+
+    Raises InputError: words that are none, a wall that is named twice, a file that cannot be read.
+    """
+    if not (wall or rotate or shift):
+        raise InputError("nothing is moved", "give {wall}, {rotate} or {shift}", source="deform")
+    named = [text.partition("=") for text in wall]
+    if len(wall) == 1 and not named[0][1] and not (rotate or shift):
+        return _read(wall[0], wall[0])
+    walls: dict[str, NewWall] = {}
+    for text, (name, _, file) in zip(wall, named, strict=True):
+        if not (name and file):
+            raise bad_value(text, "NAME=FILE", "name the wall of each file, as flap=flap.dat", "wall")
+        _put(walls, name, _read(file, text), "wall")
+    motions: dict[str, Motion] = {}
+    for text in rotate:
+        name, motion = _turn(text)
+        _put(motions, name, motion, "rotate")
+    for name, motion in _shifts(shift).items():
+        turn = motions.get(name, Motion())
+        first = turn.shift or (0.0,) * len(motion.shift)
+        if len(first) != len(motion.shift):
+            raise InputError(f"{name!r} is turned in the plane", "shift it by DX,DY", parameter="shift")
+        moved = tuple(a + b for a, b in zip(first, motion.shift, strict=True))
+        motions[name] = Motion(moved, turn.turn)
+    for name, motion in motions.items():
+        _put(walls, name, motion, "rotate" if motion.turn else "shift")
+    return walls
+
+
+def _put(walls: dict[str, NewWall] | dict[str, Motion], name: str, new: NewWall, option: str) -> None:
+    if name in walls:
+        raise InputError(f"{name!r} is moved twice", "name every wall once", parameter=option)
+    walls[name] = new  # type: ignore[assignment]
+
+
+def _read(file: str, text: str) -> NewWall:
+    if not file.strip():
+        raise bad_value(text, "a file", "give the new shape of a wall", "wall")
+    return read(file)
+
+
+def _turn(text: str) -> tuple[str, Motion]:
+    name, _, rest = text.partition("=")
+    degrees, _, about = rest.partition("@")
+    numbers = _numbers([degrees, *about.split(",")])
+    if not name or len(numbers) != 3:
+        raise bad_value(text, "NAME=DEGREES@X,Y", "use e.g. flap=-5@0.9,0.02", "rotate")
+    return name, rotation(numbers[0], numbers[1:])
+
+
+def _shifts(texts: Sequence[str]) -> dict[str, Motion]:
+    motions: dict[str, Motion] = {}
+    for text in texts:
+        name, _, rest = text.partition("=")
+        numbers = _numbers(rest.split(","))
+        if not name or len(numbers) not in (2, 3):
+            raise bad_value(text, "NAME=DX,DY", "use e.g. flap=0.01,-0.02", "shift")
+        _put(motions, name, Motion(tuple(numbers)), "shift")
+    return motions
+
+
+def _numbers(words: Sequence[str]) -> list[float]:
+    """Return words as finite numbers, none where one of them is not."""
+    try:
+        numbers = [float(word) for word in words]
+    except ValueError:
+        return []
+    return numbers if all(abs(number) < 1e12 for number in numbers) else []

@@ -1,0 +1,1 @@
+"""Given grids that follow a changed boundary."""

@@ -1,0 +1,57 @@
+"""Does a moved wall cross the rest of the boundary, or lie beyond it: no grid can follow it there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.polygon.self_intersection import find_crossings
+from meshonet.solvers.deformation.outer import NodeTable, Piece, lines_of
+from meshonet.solvers.deformation.targets import Targets
+
+_MOST = 4096
+
+
+def check_apart(table: NodeTable, targets: Targets) -> None:
+    """Raise InputError, with the place, when planar walls in their new places cross other boundaries.
+
+    Sides that slide are left out: where they end is not known before.
+    """
+    moved = targets.moved
+    walls = [piece for piece in table.pieces if moved[piece.numbers].all()]
+    rest = [piece for piece in table.pieces if not moved[piece.numbers].any()]
+    lines = [*lines_of(walls), *lines_of(rest)]
+    path = np.concatenate([targets.nodes[line] for line in lines])
+    joints = set((np.cumsum([len(line) for line in lines]) - 1).tolist())
+    numbers = np.concatenate(lines)
+    for crossing in find_crossings(path, closed=False, limit=_MOST):
+        a, b = crossing.first, crossing.second
+        if a in joints or b in joints or set(numbers[a : a + 2]) & set(numbers[b : b + 2]):
+            continue
+        names = dict.fromkeys(_name(table.pieces, numbers[k : k + 2]) for k in (a, b))
+        at = f"({crossing.x:.6g}, {crossing.y:.6g})"
+        raise InputError(f"{' and '.join(names)} cross at {at}", "keep them apart", parameter="wall")
+    for line in lines_of(walls):
+        closed = [other for other in lines if other[0] == other[-1] and other[0] != line[0]]
+        for other in closed if line[0] == line[-1] else ():
+            before = _around(table.nodes[other], table.nodes[line[0]])
+            if _around(targets.nodes[other], targets.nodes[line[0]]) != before:
+                name, beyond = (_name(table.pieces, each[:2]) for each in (line, other))
+                raise InputError(
+                    f"{name} is moved to the other side of {beyond}", "keep it", parameter="wall"
+                )
+
+
+def _name(pieces: Sequence[Piece], edge: Indices) -> str:
+    names = [piece.patch.name for piece in pieces if np.isin(edge, piece.numbers).all()]
+    return names[0] if names else "a side"
+
+
+def _around(line: Floats, point: Floats) -> int:
+    """Return how often a closed line (n, 2) goes round a point (2,)."""
+    way = (line - point) @ np.array([1.0, 1j])
+    return round(float(np.angle(way[1:] / way[:-1]).sum()) / (2.0 * np.pi))

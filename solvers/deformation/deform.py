@@ -1,0 +1,116 @@
+"""Grids that follow a changed boundary, layers as they were.
+
+The displacement of the boundary is carried inside by `meshonet.solvers.deformation.follow`. Where cells fold
+the way is gone in steps, each a smooth map of the last one's grid; where that does not suffice, folded cells
+are repaired, and then all nodes but those of layers optimised.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError, MeshonetError
+from meshonet.geometry.quality.measure import count_folded, worst_cells_of
+from meshonet.solvers.deformation.crossings import check_apart
+from meshonet.solvers.deformation.follow import Follow, sliding_notes
+from meshonet.solvers.deformation.outer import NodeTable, first_heights
+from meshonet.solvers.deformation.targets import NewWall, Targets, targets_of
+from meshonet.solvers.solution import Outcome, Solution
+
+METHOD = "deformation"
+STEPS = 2, 4, 8
+"""In how many steps the way is gone, tried in turn while cells are folded."""
+
+
+def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
+    """Return `grid` with `walls` in their new places, and notes of what was done.
+
+    Raises InputError: a surface, a starting grid with folded cells, a wall that the grid does not have, what
+    cannot be its new shape, walls that cross.
+    """
+    begun = time.perf_counter()
+    table = NodeTable.of(grid)
+    folded = _folded(grid)
+    if folded:
+        where = worst_cells_of(grid, 1)[0]
+        raise InputError(f"{folded} cells of the starting grid are folded, ({where})", "give a valid grid")
+    targets = targets_of(table, walls)
+    follow = Follow.of(table, targets.moved)
+    made, path = _made(follow, targets)
+    outcome = Outcome.FOLDED if _folded(made) else Outcome.DONE
+    notes = (*targets.notes, *sliding_notes(follow, targets.nodes), *_layers(table, made, targets))
+    made = made.with_provenance(method=METHOD, walls=",".join(targets.names))
+    seconds = {"grid": time.perf_counter() - begun}
+    return Solution(made, METHOD, path=path, notes=notes, outcome=outcome, seconds=seconds)
+
+
+def _folded(grid: Grid) -> int:
+    return sum(count_folded(block.nodes) for block in grid.blocks)
+
+
+def _made(follow: Follow, targets: Targets) -> tuple[Grid, tuple[str, ...]]:
+    """Return the first grid without folded cells, or that with the fewest, and the stages it took."""
+    tried: list[tuple[int, Grid, tuple[str, ...]]] = []
+    for made, path in _ways(follow, targets):
+        tried.append((_folded(made), made, path))
+        if not tried[-1][0]:
+            break
+    return min(tried, key=lambda each: each[0])[1:]
+
+
+def _ways(follow: Follow, targets: Targets) -> Iterator[tuple[Grid, tuple[str, ...]]]:
+    made = _in_steps(follow, targets, 1)
+    yield made, ()
+    if made.form == "plane":
+        check_apart(follow.table, targets)
+    for steps in STEPS:
+        made = _in_steps(follow, targets, steps)
+        yield made, (f"{steps} steps",)
+    yield from _mended(made)
+
+
+def _in_steps(follow: Follow, targets: Targets, steps: int) -> Grid:
+    """Return the grid after so many equal steps."""
+    table = now = follow.table
+    for number in range(1, steps + 1):
+        part = number / steps
+        to = targets.nodes if part == 1.0 else table.nodes + part * (targets.nodes - table.nodes)
+        step = follow if number == 1 else Follow.of(now, targets.moved)
+        nodes = step.nodes_to(to)
+        now = replace(now, nodes=nodes, grid=replace(table.grid, blocks=now.with_nodes(nodes)))
+    return now.grid
+
+
+def _mended(grid: Grid) -> Iterator[tuple[Grid, tuple[str, ...]]]:
+    """Yield `grid`, which has folded cells, repaired around them, and with all but layers optimised."""
+    if grid.form == "plane" and len(grid.blocks) == 1:
+        from meshonet.solvers.energy.repair import repair
+
+        nodes = grid.nodes.copy(order="K")
+        repair(nodes, grid.periodic)
+        yield grid.with_nodes(nodes, finite=True), ("repair",)
+    with contextlib.suppress(MeshonetError):
+        if grid.form == "plane":
+            from meshonet.solvers.smoothing.smooth import smooth
+
+            yield smooth(grid).grid, ("smoothing",)
+        else:
+            from meshonet.solvers.smoothing.volumes import smooth_volumes
+
+            yield smooth_volumes(grid).grid, ("smoothing",)
+
+
+def _layers(table: NodeTable, after: Grid, targets: Targets) -> tuple[str, ...]:
+    """Return a note of the largest change of a first cell's height at the moved walls."""
+    pieces = [piece for piece in table.pieces if piece.patch.name in targets.names]
+    walls = [piece for piece in pieces if piece.patch.kind == "wall"] or pieces
+    old, new = (first_heights(grid, walls) for grid in (table.grid, after))
+    change = float(np.abs(new / old - 1.0).max())
+    names = ", ".join(dict.fromkeys(piece.patch.name for piece in walls))
+    return (f"first cells at {names}: heights changed by at most {100 * change:.2g} %",)

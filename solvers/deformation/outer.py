@@ -1,0 +1,136 @@
+"""The nodes of a grid in one table, and the pieces of its outer boundary in numbers of these.
+
+::
+
+      the domain is on the left of a piece in the plane,        of a volume, pieces are rectangles
+      so that those around a body run clockwise                 of nodes (m, n)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.blocks.block import Block, face_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.shared_nodes import shared_nodes
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices
+
+_BACKWARDS = ("north", "west")
+"""Sides whose nodes ascend with the domain on the right."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A stretch of the outer boundary: the patch it belongs to, and its nodes (n,) or (n, m)."""
+
+    patch: Patch
+    numbers: Indices
+
+
+@dataclass(frozen=True, eq=False)
+class NodeTable:
+    """All nodes of a grid, those that blocks share once."""
+
+    grid: Grid
+    nodes: Floats
+    """(n, d)"""
+    numbers: tuple[Indices, ...]
+    """Of the nodes of each block."""
+
+    @classmethod
+    def of(cls, grid: Grid) -> NodeTable:
+        """Return the table of a planar grid or of a volume.
+
+        Raises InputError: a surface.
+        """
+        if grid.form == "surface":
+            raise InputError("a surface has no cells that could follow it", "give a planar grid or a volume")
+        numbers = shared_nodes([block.counts for block in grid.blocks], grid.connections)
+        if len(grid.blocks) == 1 and not grid.connections:
+            return cls(grid, np.ascontiguousarray(grid.nodes.reshape(-1, grid.nodes.shape[-1])), numbers)
+        nodes = np.empty((1 + max(int(number.max()) for number in numbers), grid.blocks[0].nodes.shape[-1]))
+        for block, number in zip(grid.blocks, numbers, strict=True):
+            nodes[number] = block.nodes
+        return cls(grid, nodes, numbers)
+
+    def with_nodes(self, nodes: Floats) -> tuple[Block, ...]:
+        """Return the blocks with other nodes (n, d)."""
+        planes = np.moveaxis(nodes, -1, 0)
+        blocks = []
+        for number in self.numbers:
+            filled = np.stack([plane[number] for plane in planes])
+            blocks.append(Block(np.moveaxis(filled, 0, -1), finite=True))
+        return tuple(blocks)
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """Of the whole outer boundary."""
+        return tuple(self.piece(patch) for patch in self.grid.outer_patches())
+
+    def piece(self, patch: Patch) -> Piece:
+        """Return the nodes of a patch."""
+        face = face_of(self.numbers[patch.block], patch.side)
+        span = patch.range(face.shape)
+        numbers = face[tuple(slice(first, last + 1) for first, last in span)]
+        if numbers.ndim == 1 and patch.side in _BACKWARDS:
+            numbers = numbers[::-1]
+        return Piece(patch, numbers)
+
+    @cached_property
+    def outer(self) -> NDArray[np.bool_]:
+        """Which nodes (n,) are on the outer boundary."""
+        on = np.zeros(len(self.nodes), dtype=bool)
+        for piece in self.pieces:
+            on[piece.numbers.ravel()] = True
+        return on
+
+
+def lines_of(pieces: Sequence[Piece]) -> list[Indices]:
+    """Return the numbers (n,) of connected lines of planar pieces, in order; closed ones repeat the first."""
+    left = [piece.numbers for piece in pieces]
+    lines = []
+    while left:
+        line = left.pop(0)
+        joined = True
+        while joined and line[0] != line[-1]:
+            joined = False
+            for k, other in enumerate(left):
+                if other[0] == line[-1] or other[-1] == line[0]:
+                    ends = (line, other) if other[0] == line[-1] else (other, line)
+                    line, joined = np.concatenate([ends[0], ends[1][1:]]), True
+                    del left[k]
+                    break
+        lines.append(line)
+    return lines
+
+
+def elements_of(pieces: Sequence[Piece], dimension: int) -> Indices:
+    """Return the edges (m, 2) of pieces in the plane, or the quadrilaterals (m, 4) of those in space."""
+    if dimension == 2:
+        parts = [np.stack([p.numbers[:-1], p.numbers[1:]], axis=1) for p in pieces]
+    else:
+        parts = [
+            np.stack([n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]], axis=-1).reshape(-1, 4)
+            for n in (p.numbers for p in pieces)
+        ]
+    return np.concatenate(parts) if parts else np.empty((0, 2 * (dimension - 1)), dtype=np.intp)
+
+
+def first_heights(grid: Grid, pieces: Sequence[Piece]) -> Floats:
+    """Return the distances (n,) of the first nodes off pieces of the boundary from the piece's own."""
+    heights = []
+    for piece in pieces:
+        patch, (axis, end) = piece.patch, piece.patch.place
+        nodes = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
+        at = tuple(slice(first, last + 1) for first, last in patch.range(nodes.shape[1:-1]))
+        own, beside = (nodes[-1], nodes[-2]) if end else (nodes[0], nodes[1])
+        heights.append(norms(beside[at] - own[at]).ravel())
+    return np.concatenate(heights)

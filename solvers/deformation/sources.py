@@ -1,0 +1,97 @@
+"""What of the outer boundary moves, slides and stays, and which of its nodes count as sources.
+
+Of boundaries far from everything that moves, whose cells are large, not every node is needed: they are taken
+in groups, small beside their distance and beside the cells there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.deformation.outer import NodeTable, Piece, elements_of, first_heights
+
+REACH = 0.1
+"""Length of a group, in distances from what moves."""
+CELLS = 2.0
+"""The same, in heights of the thinnest cell at the piece."""
+
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Sources:
+    """The outer boundary of a table, with respect to nodes that are moved."""
+
+    moved: Bools
+    """(n,)"""
+    areas: Floats
+    """(n,) lengths or areas that outer nodes stand for, 0 of nodes that do not count."""
+    elements: Indices
+    """Edges (m, 2) or quadrilaterals (m, 4) of which all nodes are moved."""
+    sliding: tuple[Piece, ...]
+    """Pieces that stay but touch nodes that are moved."""
+    slides: Bools
+    """(n,) their nodes that no other piece holds."""
+
+    @property
+    def fixed(self) -> Indices:
+        """Numbers of the sources that neither move nor slide."""
+        return np.flatnonzero((self.areas > 0.0) & ~self.moved & ~self.slides)
+
+
+def sources_of(table: NodeTable, moved: Bools) -> Sources:
+    """Return what the nodes `moved` (n,) make of the outer boundary of `table`."""
+    elements = elements_of(table.pieces, table.nodes.shape[1])
+    areas = areas_of(table.nodes, elements)
+    stays = [piece for piece in table.pieces if not moved[piece.numbers].all()]
+    touching = [piece for piece in stays if moved[piece.numbers].any()]
+    slides, still = np.zeros(len(moved), dtype=bool), np.zeros(len(moved), dtype=bool)
+    for piece in touching:
+        slides[piece.numbers.ravel()] = True
+    for piece in stays:
+        if not moved[piece.numbers].any():
+            still[piece.numbers.ravel()] = True
+            _group(table, piece, moved, areas)
+    slides &= ~moved & ~still
+    return Sources(moved, areas, elements[moved[elements].all(axis=1)], tuple(touching), slides)
+
+
+def areas_of(nodes: Floats, elements: Indices) -> Floats:
+    """Return the share (n,) of edges or quadrilaterals that their nodes have, in equal parts."""
+    corners = nodes[elements]
+    if elements.shape[1] == 2:
+        size = norms(corners[:, 1] - corners[:, 0])
+    else:
+        size = 0.5 * norms(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]))
+    each = np.repeat(size / elements.shape[1], elements.shape[1])
+    return np.bincount(elements.ravel(), each, len(nodes)).astype(np.float64, copy=False)
+
+
+def _group(table: NodeTable, piece: Piece, moved: Bools, areas: Floats) -> None:
+    """Give the areas of a group of nodes of a piece to the first of them, the others none, in place."""
+    if piece.patch.kind == "wall":
+        return
+    nodes = table.nodes[piece.numbers]
+    box = np.stack([table.nodes[moved].min(axis=0), table.nodes[moved].max(axis=0)])
+    away = norms(nodes - np.clip(nodes, *box)).min()
+    size = min(REACH * float(away), CELLS * float(first_heights(table.grid, [piece]).min()))
+    if size <= 1e-9 * float(np.ptp(nodes.reshape(-1, nodes.shape[-1]), axis=0).max()):
+        return
+    labels: Indices = np.zeros(nodes.shape[:-1], dtype=np.intp)
+    for axis in range(nodes.ndim - 1):
+        steps = norms(np.diff(nodes, axis=axis))
+        longest = steps.max(axis=tuple(k for k in range(steps.ndim) if k != axis))
+        group = np.floor(np.concatenate([[0.0], np.cumsum(longest)]) / size).astype(np.intp)
+        first = np.cumsum(np.append(True, np.diff(group) > 0)) - 1
+        shape = [-1 if k == axis else 1 for k in range(labels.ndim)]
+        labels = labels * (int(first[-1]) + 1) + first.reshape(shape)
+    _, leading, own = np.unique(labels.ravel(), return_index=True, return_inverse=True)
+    numbers = piece.numbers.ravel()
+    total = np.bincount(own.ravel(), areas[numbers])
+    areas[numbers] = 0.0
+    areas[numbers[leading]] = total

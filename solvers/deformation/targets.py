@@ -1,0 +1,240 @@
+"""Where the nodes of walls go: what a user says of them, as a place for each node."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.polygon.self_intersection import find_crossings
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.domain_shape import DomainShape
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.solvers.deformation.outer import NodeTable, Piece, lines_of
+from meshonet.solvers.deformation.outline import on_line, on_outline
+
+NewWall: TypeAlias = Shape | Grid | Motion | Floats | Sequence[Floats]
+"""An outline, another grid whose boundary is taken node by node, a rigid motion, or nodes.
+
+Nodes are one array (n, 2) for each line of the wall in the plane, from the grid's first node on or to it,
+or (m, n, d) for each of its patches in space; fewer or more points (n, 2) are an outline.
+"""
+
+SAME = 1e-9
+"""Part of the wall's extent by which two pieces may disagree on a node that they share."""
+
+
+@dataclass(frozen=True, eq=False)
+class Targets:
+    """Which nodes (n,) of a table are moved, where all nodes (n, d) go that are, and notes."""
+
+    moved: NDArray[np.bool_]
+    nodes: Floats
+    names: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+
+
+def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> Targets:
+    """Return where the nodes of walls go; without a name it is those of the only wall, or of all patches.
+
+    Raises InputError: a wall that the grid does not have, or what cannot be its new shape.
+    """
+    moved, nodes = np.zeros(len(table.nodes), dtype=bool), table.nodes.copy()
+    notes: list[str] = []
+    named = list(_named(table, walls))
+    for name, new, pieces in named:
+        for numbers, places in _placed(table, pieces, name, new, notes):
+            at, to = numbers.ravel(), places.reshape(-1, nodes.shape[1])
+            _check(name, table.nodes[at], nodes[at], to, moved[at])
+            moved[at], nodes[at] = True, to
+        names = dict.fromkeys(piece.patch.name for _, _, pieces in named for piece in pieces)
+    return Targets(moved, nodes, tuple(names), tuple(dict.fromkeys(notes)))
+
+
+def _named(
+    table: NodeTable, walls: Mapping[str, NewWall] | NewWall
+) -> Iterator[tuple[str, NewWall, list[Piece]]]:
+    """Yield names, new shapes and pieces of the walls that are meant."""
+    if isinstance(walls, Mapping):
+        if not walls:
+            raise InputError("no wall is named", "give the new shape of one", parameter="wall")
+        for name, new in walls.items():
+            yield name, new, _pieces(table, name)
+        return
+    own = list(dict.fromkeys(patch.name for patch in table.grid.walls()))
+    whole = isinstance(walls, Boundary) and not walls.around_body
+    if whole or (isinstance(walls, Grid) and walls.form != "surface"):
+        theirs = {patch.name for patch in _patches(walls)}  # type: ignore[arg-type]
+        for name in dict.fromkeys(piece.patch.name for piece in table.pieces):
+            if name in theirs:
+                yield name, walls, _pieces(table, name)
+        return
+    if len(own) == 1 or (own and isinstance(walls, Grid)):
+        yield own[0], walls, [piece for piece in table.pieces if piece.patch.name in own]
+        return
+    count = f"the grid has {len(own)} walls: {', '.join(own)}" if own else "no part of the boundary is a wall"
+    raise InputError(count, "name one: {wall} NAME=FILE", parameter="wall")
+
+
+def _patches(new: Grid | Boundary) -> Sequence[Any]:
+    return new.outer_patches() if isinstance(new, Grid) else new.patches
+
+
+def _pieces(table: NodeTable, name: str) -> list[Piece]:
+    pieces = [piece for piece in table.pieces if piece.patch.name == name]
+    if not pieces:
+        names = ", ".join(dict.fromkeys(piece.patch.name for piece in table.pieces))
+        raise InputError(f"the grid has no {name!r}", f"name one of its boundary: {names}", parameter="wall")
+    return pieces
+
+
+def _placed(
+    table: NodeTable, pieces: Sequence[Piece], name: str, new: NewWall, notes: list[str]
+) -> Iterator[tuple[NDArray[np.intp], Floats]]:
+    """Yield numbers (...) and new places (..., d) of the nodes of the pieces of a wall."""
+    if isinstance(new, Motion):
+        for piece in pieces:
+            yield piece.numbers, new(table.nodes[piece.numbers])
+        return
+    if isinstance(new, Grid):
+        yield from _of_grid(table, pieces, name, new)
+        return
+    if table.nodes.shape[1] == 3:
+        parts = [piece.numbers for piece in pieces]
+        arrays = _arrays(new, name)
+        if [part.shape for part in parts] != [array.shape[:-1] for array in arrays]:
+            sizes = ", ".join(" x ".join(map(str, part.shape)) for part in parts)
+            problem = f"{name!r} has patches of {sizes} nodes, and its new shape others"
+            raise InputError(problem, "give as many nodes, in order", parameter="wall")
+        yield from zip(parts, arrays, strict=True)
+        return
+    lines = lines_of(pieces)
+    shapes = _arrays(new, name) if isinstance(new, np.ndarray | Sequence) else [new] * len(lines)
+    if len(lines) != len(shapes) or (len(lines) > 1 and not isinstance(new, np.ndarray | Sequence)):
+        problem = f"{name!r} consists of {len(lines)} separate lines, and {len(shapes)} new ones are given"
+        raise InputError(problem, "give the nodes of each", parameter="wall")
+    for line, shape in zip(lines, shapes, strict=True):
+        wall = table.nodes[line]
+        places, said = _on(wall, shape, name)
+        notes += said
+        _check_outline(places, name)
+        yield line, places
+
+
+def _arrays(new: Any, name: str) -> list[Floats]:
+    arrays = [new] if isinstance(new, np.ndarray) else list(new) if isinstance(new, Sequence) else []
+    if not arrays or any(not isinstance(array, np.ndarray) for array in arrays):
+        problem = f"{type(new).__name__} is no new shape of {name!r} in space"
+        raise InputError(problem, "give a grid or surface with as many nodes", parameter="wall")
+    arrays = [np.asarray(array, dtype=np.float64) for array in arrays]
+    for array in arrays:
+        if not np.isfinite(array).all():
+            raise InputError(f"a new node of {name!r} is not finite", "give numbers", parameter="wall")
+    return arrays
+
+
+def _of_grid(
+    table: NodeTable, pieces: Sequence[Piece], name: str, new: Grid
+) -> Iterator[tuple[NDArray[np.intp], Floats]]:
+    if new.form == "surface":
+        others = [block.nodes for block in new.blocks]
+    else:
+        theirs = NodeTable.of(new)
+        others = [theirs.nodes[each.numbers] for each in theirs.pieces if each.patch.name == name]
+    sizes = [piece.numbers.shape for piece in pieces]
+    if sizes != [other.shape[:-1] for other in others] or others[0].shape[-1] != table.nodes.shape[1]:
+        own, given = (
+            ", ".join(" x ".join(map(str, size)) for size in each)
+            for each in (sizes, [other.shape[:-1] for other in others])
+        )
+        problem = f"{name!r} has {own} nodes, and {given or 'none'} in the other grid"
+        raise InputError(problem, "use a grid with the same nodes there", parameter="wall")
+    for piece, other in zip(pieces, others, strict=True):
+        yield piece.numbers, other
+
+
+def _on(wall: Floats, shape: Any, name: str) -> tuple[Floats, tuple[str, ...]]:
+    """Return the nodes of one line of a wall (n, 2) on its new shape, and notes."""
+    closed = bool((wall[0] == wall[-1]).all())
+    if isinstance(shape, np.ndarray):
+        if shape.ndim != 2 or shape.shape[1] != 2 or len(shape) < 2:
+            problem = f"nodes of shape {shape.shape} for {name!r}"
+            raise InputError(problem, "give (n, 2) points", parameter="wall")
+        if len(shape) == len(wall):
+            return _in_order(wall, shape, closed=closed), ()
+        if not closed:
+            return on_line(wall, shape)
+        from meshonet.geometry.shapes.closed_curve import closed_curve
+
+        return on_outline(wall, closed_curve(shape, name))
+    if isinstance(shape, Boundary):
+        return _on_boundary(wall, shape, name, closed=closed)
+    if isinstance(shape, DomainShape):
+        return _on_loops(wall, shape, name, closed=closed)
+    if not isinstance(shape, Airfoil | Outline):
+        raise InputError(f"{type(shape).__name__} is no outline", "give a closed curve", parameter="wall")
+    return on_outline(wall, shape) if closed else on_line(wall, shape.curve.points)
+
+
+def _in_order(wall: Floats, nodes: Floats, *, closed: bool) -> Floats:
+    """Return new `nodes` (n, 2) of either direction in the wall's; a closed one repeats its first."""
+    if closed:
+        nodes = np.concatenate([nodes[:-1], nodes[:1]])
+        backwards = (polygon_area(wall[:-1]) > 0) != (polygon_area(nodes[:-1]) > 0)
+    else:
+        apart = [float(np.abs(wall[[0, -1]] - ends).sum()) for ends in (nodes[[0, -1]], nodes[[-1, 0]])]
+        backwards = apart[1] < apart[0]
+    return np.ascontiguousarray(nodes[::-1]) if backwards else nodes
+
+
+def _on_loops(wall: Floats, shape: DomainShape, name: str, *, closed: bool) -> tuple[Floats, tuple[str, ...]]:
+    loops: Sequence[Loop] = shape.domain.loops
+    if len(loops) != 1:
+        problem = f"the new shape of {name!r} has {len(loops)} closed curves"
+        raise InputError(problem, "give a file with one", parameter="wall")
+    points = loops[0].curve.points
+    return on_outline(wall, Outline(points, name)) if closed else on_line(wall, points)
+
+
+def _on_boundary(wall: Floats, new: Boundary, name: str, *, closed: bool) -> tuple[Floats, tuple[str, ...]]:
+    """Return the nodes of a wall on the edge of a boundary that has its name, or on the body of one."""
+    parts = [patch for patch in new.patches if patch.name == name]
+    if new.around_body:
+        line = new.south[new.wake : len(new.south) - new.wake]
+    elif len(parts) == 1:
+        line = getattr(new, parts[0].side)[parts[0].start : parts[0].stop + 1]
+        line = line[::-1] if parts[0].side in ("north", "west") else line
+    else:
+        names = ", ".join(patch.name for patch in new.patches)
+        raise InputError(f"the new boundary has no {name!r}", f"it has {names}", parameter="wall")
+    return _on(wall, np.ascontiguousarray(line), name) if closed or len(line) else (wall, ())
+
+
+def _check(name: str, old: Floats, before: Floats, after: Floats, known: NDArray[np.bool_]) -> None:
+    """Raise InputError where nodes that another piece has moved already go elsewhere."""
+    extent = float(np.ptp(old, axis=0).max())
+    apart = np.abs(before - after).max(axis=1)
+    if known.any() and apart[known].max() > SAME * extent:
+        x = ", ".join(f"{value:.6g}" for value in old[known][int(np.argmax(apart[known]))])
+        problem = f"two walls put the node at ({x}) at places {apart[known].max():.3g} apart"
+        raise InputError(problem, f"have {name!r} end where its neighbour does", parameter="wall")
+
+
+def _check_outline(nodes: Floats, name: str) -> None:
+    """Raise InputError where the new outline crosses itself."""
+    closed = bool((nodes[0] == nodes[-1]).all())
+    crossings = find_crossings(nodes[:-1] if closed else nodes, closed=closed, limit=1)
+    if crossings:
+        at = f"({crossings[0].x:.6g}, {crossings[0].y:.6g})"
+        raise InputError(f"the new {name!r} crosses itself at {at}", "correct it", parameter="wall")

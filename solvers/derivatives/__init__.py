@@ -1,0 +1,1 @@
+"""Derivatives of a grid's nodes by nodes of its boundary."""

@@ -1,0 +1,88 @@
+"""The Jacobian of equations on a lattice, by differences of many nodes at once.
+
+::
+
+    1 2 3 1 2 3      Nodes of one number are so far apart that no equation sees two of them. With a stencil
+    4 5 6 4 5 6      of `reach` nodes each way (2 reach + 1)² numbers suffice, whatever the size of the grid.
+    7 8 9 7 8 9
+
+Curtis, Powell, Reid, J. Inst. Maths. Applics. 13 (1974) 117-119.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.polygon.corners import Indices
+
+STEP = 1e-5
+"""Difference, in lengths of the shortest edge at a node; errors are about its square."""
+
+Equations = Callable[[Floats], Floats]
+"""From nodes (2, ni, nj) to as many numbers, of which those at inner nodes count."""
+
+
+@dataclass(frozen=True, eq=False)
+class Jacobian:
+    """Entries of the derivative of equations at inner nodes by the coordinates of all nodes."""
+
+    rows: Indices
+    """(m,) equations: counted through (2, ni, nj)."""
+    columns: Indices
+    """(m,) coordinates, counted likewise."""
+    values: Floats
+    """(m,)"""
+    size: int
+
+    def times(self, x: Floats) -> Floats:
+        """Return J x of x (size,)."""
+        return np.bincount(self.rows, self.values * x[self.columns], self.size).astype(float, copy=False)
+
+    def transposed_times(self, y: Floats) -> Floats:
+        """Return Jᵀ y of y (size,)."""
+        return np.bincount(self.columns, self.values * y[self.rows], self.size).astype(float, copy=False)
+
+
+def jacobian(equations: Equations, nodes: Floats, reach: int) -> Jacobian:
+    """Return the Jacobian at `nodes` (2, ni, nj) of equations that see `reach` nodes each way."""
+    _, ni, nj = nodes.shape
+    step, period = STEP * shortest_edges(nodes), 2 * reach + 1
+    number = np.arange(nodes.size).reshape(nodes.shape)
+    equation = number[:, 1:-1, 1:-1]
+    parts: list[tuple[Indices, Indices, Floats]] = []
+    for a in range(period):
+        for b in range(period):
+            i, j = np.meshgrid(_seen(a, period, ni), _seen(b, period, nj), indexing="ij")
+            there = (i >= 0) & (i < ni) & (j >= 0) & (j < nj)
+            i, j = i[there], j[there]
+            for axis in (0, 1):
+                ahead, back = nodes.copy(), nodes.copy()
+                ahead[axis, a::period, b::period] += step[a::period, b::period]
+                back[axis, a::period, b::period] -= step[a::period, b::period]
+                change = (equations(ahead) - equations(back))[:, 1:-1, 1:-1]
+                for row in (0, 1):
+                    values = change[row][there] / (2.0 * step[i, j])
+                    parts.append((equation[row][there], number[axis, i, j], values))
+    rows, columns, values = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return Jacobian(rows, columns, values, nodes.size)
+
+
+def _seen(first: int, period: int, n: int) -> Indices:
+    """Return which of the nodes `first`, `first` + `period` ... each inner one of n nodes sees."""
+    return first + period * np.round((np.arange(1, n - 1) - first) / period).astype(np.intp)
+
+
+def shortest_edges(nodes: Floats) -> Floats:
+    """Return the shortest edge (ni, nj) at each of `nodes` (2, ni, nj)."""
+    shortest = np.full(nodes.shape[1:], np.inf)
+    for axis in (0, 1):
+        edge = np.hypot(*np.diff(nodes, axis=axis + 1))
+        ends = np.moveaxis(shortest, axis, 0)
+        edge = np.moveaxis(edge, axis, 0)
+        np.minimum(ends[1:], edge, out=ends[1:])
+        np.minimum(ends[:-1], edge, out=ends[:-1])
+    return shortest

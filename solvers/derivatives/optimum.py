@@ -1,0 +1,248 @@
+"""Derivatives of a grid that solves equations, by its boundary, without solving them again.
+
+With F(x, b) = 0 at the inner nodes x, b the boundary, dx = -F_x⁻¹ F_b db; and what a functional pulls x by,
+p, pulls b by -F_bᵀ F_x⁻ᵀ p: one solve for a functional, whatever the number of boundary nodes. F is the
+gradient of the variational functional (`meshonet.solvers.energy.functional`), whose F_x is symmetric, or
+Winslow's equations, whose is not: its factors are those of ((1, F_x), (F_xᵀ, 0)).
+
+The ratio a of the functional follows from the boundary, and is differentiated too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import variational_energy
+from meshonet.solvers.derivatives.lattice import Equations, Jacobian, jacobian, shortest_edges
+from meshonet.solvers.energy.functional import Weights, aspect_of
+from meshonet.solvers.sparse import Factor, SparseMatrix, SparsePattern
+
+STEPS = 20  # of Newton's method, to the optimum itself
+STILL = 1e-11
+"""Move of a node, in its shortest edges, below which these end."""
+_NEAR = 0.5  # of its shortest edge, that a node of a grid near the optimum moves by at the most
+_SHIFT = 1e-9  # of the second diagonal of the system that is not symmetric
+_REFINED = 3
+_REACH = {"variational": 2, "winslow": 1}
+
+
+class OptimumDerivative:
+    """The derivative of a four-sided grid's inner nodes by the nodes of its rim.
+
+    Parameters
+    ----------
+    grid : near the minimum of the variational functional, or the solution of Winslow's equations, inside its
+        rim, which is fixed; Newton's method takes it there.
+    method : ``variational`` or ``winslow``.
+    weights : of the functional; None is what `solve_pde` minimises.
+
+    Raises InputError: an O grid, many blocks, a volume, an unknown method; SolverError: the grid is far from
+    the solution.
+    """
+
+    grid: Grid
+    """The solution itself."""
+
+    def __init__(self, grid: Grid, method: str = "variational", weights: Weights | None = None) -> None:
+        if grid.topology not in ("quad", "c"):
+            raise InputError(f"topology {grid.topology}", "give a grid of one block whose rim is fixed")
+        if method not in _REACH:
+            problem = f"method {method!r} has no derivative"
+            raise InputError(problem, "use variational or winslow", parameter="method")
+        self._method, self._weights = method, weights or _weights(grid)
+        nodes = np.array(np.moveaxis(grid.nodes, -1, 0), order="C")
+        self._inner = _inner_numbers(nodes)
+        self._aspect = aspect_of(grid.nodes)
+        self._systems = _Systems(self._inner, nodes.size, symmetric=method == "variational")
+        self._approach(nodes)
+        self.grid = grid.with_nodes(np.moveaxis(nodes, 0, -1))
+        self._by_aspect = self._aspect_term(nodes)
+
+    def along(self, moves: Floats) -> Floats:
+        """Return the moves (ni, nj, 2) of all nodes when those of the rim make `moves` (ni, nj, 2).
+
+        What `moves` has at inner nodes does not count. One solve.
+        """
+        rim = np.array(np.moveaxis(moves, -1, 0), dtype=np.float64, order="C")
+        rim[:, 1:-1, 1:-1] = 0.0
+        right = self._jacobian.times(rim.ravel())
+        right += self._by_aspect * float(self._aspect_slope @ rim.ravel())
+        rim.ravel()[self._inner] = -self._solve(right[self._inner])
+        return np.ascontiguousarray(np.moveaxis(rim, 0, -1))
+
+    def transposed(self, pull: Floats) -> Floats:
+        """Return the derivative (ni, nj, 2) of a functional by the rim, zero inside.
+
+        `pull` (ni, nj, 2) is its derivative by all nodes, as if each could move alone. One solve.
+        """
+        flat = np.array(np.moveaxis(pull, -1, 0), dtype=np.float64, order="C")
+        adjoint = np.zeros(flat.size)
+        adjoint[self._inner] = self._solve(flat.ravel()[self._inner], transposed=True)
+        back = self._jacobian.transposed_times(adjoint)
+        back += self._aspect_slope * float(self._by_aspect @ adjoint)
+        result = flat - back.reshape(flat.shape)
+        result[:, 1:-1, 1:-1] = 0.0
+        return np.ascontiguousarray(np.moveaxis(result, 0, -1))
+
+    def _approach(self, nodes: Floats) -> None:
+        """Move `nodes` (2, ni, nj) to the solution and linearise there.
+
+        Newton's method, with one derivative as long as moves fall to a quarter each.
+        """
+        edges, before, fresh = shortest_edges(nodes), np.inf, False
+        for _ in range(STEPS):
+            if not fresh and before > STILL * 1e3:
+                self._linearise(nodes)
+                fresh = True
+            residual = self._equations(self._aspect)(nodes).ravel()[self._inner]
+            move = np.zeros(nodes.size)
+            move[self._inner] = -self._solve(residual)
+            size = float((np.abs(move.reshape(nodes.shape)) / edges).max())
+            if not size < _NEAR:
+                problem = (
+                    f"the grid is no solution by {self._method}: nodes move by {size:.2g} of their cells"
+                )
+                raise SolverError(problem)
+            nodes += move.reshape(nodes.shape)
+            if size < STILL:
+                break
+            fresh = fresh and size < 0.25 * before
+            before = size
+        self._linearise(nodes)
+
+    def _equations(self, aspect: float) -> Equations:
+        if self._method == "winslow":
+            return winslow_residual
+        terms = aspect, self._weights.shape, self._weights.smoothness, 0.0, False, None
+
+        def gradient(nodes: Floats) -> Floats:
+            values = np.empty_like(nodes)
+            variational_energy(nodes, *terms, values)
+            return values
+
+        return gradient
+
+    def _linearise(self, nodes: Floats) -> None:
+        self._jacobian = jacobian(self._equations(self._aspect), nodes, _REACH[self._method])
+        self._system = self._systems(self._jacobian)
+
+    def _solve(self, right: Floats, *, transposed: bool = False) -> Floats:
+        return self._system.solve(right, transposed=transposed)
+
+    def _aspect_term(self, nodes: Floats) -> Floats:
+        """Return the derivative of the equations by a, and keep that of a by the nodes."""
+        self._aspect_slope = np.zeros(nodes.size)
+        if self._method == "winslow":
+            return np.zeros(nodes.size)
+        self._aspect_slope = aspect_slope(nodes).ravel()
+        step = 1e-6 * self._aspect
+        ahead, back = (self._equations(self._aspect + sign * step)(nodes) for sign in (1, -1))
+        return np.asarray((ahead - back).ravel() / (2.0 * step))
+
+
+def _weights(grid: Grid) -> Weights:
+    from meshonet.solvers.energy.variational import WEIGHTS
+
+    return WEIGHTS[grid.topology]
+
+
+def _inner_numbers(nodes: Floats) -> Indices:
+    return np.arange(nodes.size).reshape(nodes.shape)[:, 1:-1, 1:-1].ravel()
+
+
+def aspect_slope(nodes: Floats) -> Floats:
+    """Return the derivative (2, ni, nj) of `meshonet.solvers.energy.functional.aspect_of`."""
+    slope = np.zeros_like(nodes)
+    walls, sides = nodes[:, :, :: nodes.shape[2] - 1], nodes[:, :: nodes.shape[1] - 1]
+    along, across = np.diff(walls, axis=1), np.diff(sides, axis=2)
+    aspect = float(np.sqrt((across**2).mean() / (along**2).mean()))
+    for way, axis, sign, view in (
+        (along, 1, -1.0, slope[:, :, :: nodes.shape[2] - 1]),
+        (across, 2, 1.0, slope[:, :: nodes.shape[1] - 1]),
+    ):
+        part = sign * aspect * way / (way**2).sum()
+        first, last = [slice(None)] * 3, [slice(None)] * 3
+        first[axis], last[axis] = slice(0, -1), slice(1, None)
+        view[tuple(last)] += part
+        view[tuple(first)] -= part
+    return slope
+
+
+def winslow_residual(nodes: Floats) -> Floats:
+    """Return the left side of Winslow's equations at inner nodes of (2, ni, nj), central differences.
+
+    α x_ξξ - 2β x_ξη + γ x_ηη with α = x_η·x_η, β = x_ξ·x_η, γ = x_ξ·x_ξ; Winslow, J. Comput. Phys. 1 (1966).
+    """
+    residual = np.zeros_like(nodes)
+    west, east, south, north = (
+        nodes[:, :-2, 1:-1],
+        nodes[:, 2:, 1:-1],
+        nodes[:, 1:-1, :-2],
+        nodes[:, 1:-1, 2:],
+    )
+    middle = nodes[:, 1:-1, 1:-1]
+    xi, eta = 0.5 * (east - west), 0.5 * (north - south)
+    mixed = 0.25 * (nodes[:, 2:, 2:] - nodes[:, 2:, :-2] - nodes[:, :-2, 2:] + nodes[:, :-2, :-2])
+    alpha, beta, gamma = (eta**2).sum(axis=0), (xi * eta).sum(axis=0), (xi**2).sum(axis=0)
+    residual[:, 1:-1, 1:-1] = (
+        alpha * (east - 2.0 * middle + west) - 2.0 * beta * mixed + gamma * (north - 2.0 * middle + south)
+    )
+    return residual
+
+
+@dataclass(frozen=True, eq=False)
+class _System:
+    """The factored derivative of the equations by the inner nodes."""
+
+    matrix: SparseMatrix
+    factor: Factor
+    scale: Floats | None
+    """(n,) of the equations; None of a symmetric system."""
+
+    def solve(self, right: Floats, *, transposed: bool) -> Floats:
+        """Return x of A x = right, or of Aᵀ x = right, both (n,)."""
+        if self.scale is None:
+            return self.factor.refine(self.matrix, right, 1)
+        zero = np.zeros(len(right))
+        if transposed:
+            both = self.factor.refine(self.matrix, np.concatenate([zero, right]), _REFINED)
+            return np.asarray(self.scale * both[: len(right)])
+        both = self.factor.refine(self.matrix, np.concatenate([self.scale * right, zero]), _REFINED)
+        return np.asarray(both[len(right) :])
+
+
+class _Systems:
+    """Makes systems of Jacobians with the same places, those of `inner` unknowns among `size`."""
+
+    def __init__(self, inner: Indices, size: int, *, symmetric: bool) -> None:
+        self._own = np.full(size, -1, dtype=np.intp)
+        self._own[inner] = np.arange(len(inner))
+        self._symmetric, self._n = symmetric, len(inner)
+        self._pattern: SparsePattern | None = None
+
+    def __call__(self, entries: Jacobian) -> _System:
+        kept = self._own[entries.columns] >= 0
+        rows, columns = self._own[entries.rows[kept]], self._own[entries.columns[kept]]
+        values = entries.values[kept]
+        if self._symmetric:
+            lower = rows >= columns
+            self._pattern = self._pattern or SparsePattern(self._n, rows[lower], columns[lower])
+            matrix = self._pattern.matrix(values[lower])
+            return _System(matrix, matrix.factor(), None)
+        return self._augmented(rows, columns, values)
+
+    def _augmented(self, rows: Indices, columns: Indices, values: Floats) -> _System:
+        n, one, largest = self._n, np.arange(self._n), np.zeros(self._n)
+        np.maximum.at(largest, rows, np.abs(values))
+        scale = 1.0 / largest
+        if self._pattern is None:
+            places = (np.concatenate([one, rows, n + one]), np.concatenate([one, n + columns, n + one]))
+            self._pattern = SparsePattern(2 * n, *places)
+        entries = [np.concatenate([np.ones(n), scale[rows] * values, np.full(n, -s)]) for s in (0.0, _SHIFT)]
+        return _System(self._pattern.matrix(entries[0]), self._pattern.factor(entries[1]), scale)

@@ -1,0 +1,28 @@
+"""Grids that follow their walls: deformed and measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.threads import limited_to
+from meshonet.solvers.deformation.deform import deform
+from meshonet.solvers.deformation.request import DeformRequest
+from meshonet.solvers.deformation.targets import NewWall
+from meshonet.solvers.pipeline.make_grid import Result, judged
+
+_REMEDY = "go part of the way first, or make the grid of the new shape anew"
+
+
+def make_deformed(
+    grid: Grid, walls: Mapping[str, NewWall] | NewWall, request: DeformRequest | None = None
+) -> Result:
+    """Return `grid` with its walls in their new places, measured.
+
+    Raises InputError: see `meshonet.solvers.deformation.deform.deform`; NoValidGridError: cells are folded,
+    which is not allowed.
+    """
+    request = request or DeformRequest()
+    with limited_to(request.threads):
+        solution = deform(grid, walls)
+        return judged(solution, dict(solution.seconds), request, remedy=_REMEDY)
