@@ -48,7 +48,7 @@ SPEED = """
 ## Speed and memory
 
 The command is `meshonet infer sections --res 200x100 --part-size {size} -q -o grids.h5`.
-The folder has {count:,} airfoils. Seconds are wall-clock, from the start of the program to its end; processor
+The folder has {count} airfoils. Seconds are wall-clock, from the start of the program to its end; processor
 seconds are those of all its processes. Memory is the most that each process had at a time, with workers in
 brackets. The last column says whether all nodes are those of one process, byte for byte.
 
@@ -58,7 +58,7 @@ brackets. The last column says whether all nodes are those of one process, byte 
 DEATHS = """
 ## Deaths
 
-The same command for {count:,} airfoils in parts of {size}. A process is killed (SIGKILL) when a third of the
+The same command for {count} airfoils in parts of {size}. A process is killed (SIGKILL) when a third of the
 parts are there. The parts that are there when the command has ended are whole; where some are missing, the
 same command with `--skip-existing` makes them.
 
@@ -302,11 +302,11 @@ def main() -> None:
     parser.add_argument("--scratch", type=Path, help="folder for the datasets [default: the system's]")
     parser.add_argument("--page", type=Path)
     given = parser.parse_args()
-    tables = [HEAD.rstrip("\n")]
+    tables, load = [HEAD.rstrip("\n")], os.getloadavg()[0]
     known = contours(given.airfoils)
     sizes = {given.count: min(500, max(given.count // 10, 1)), given.deaths: max(given.deaths // 20, 1)}
     for text, rows, count in ((SPEED, speed_rows, given.count), (DEATHS, death_rows, given.deaths)):
-        table = [text.format(count=count, size=sizes[count]).rstrip("\n")]
+        table = [text.format(count=f"{count:,}", size=sizes[count]).rstrip("\n")]
         with TemporaryDirectory(dir=given.scratch) as scratch:
             folder = Path(scratch)
             write_sections(folder / "sections", count, known)
@@ -315,6 +315,8 @@ def main() -> None:
                 table.append(row)
         tables.append("\n".join(table))
     machine = f"Measured on {os.cpu_count()} cores, {platform.processor() or platform.machine()}."
+    if load > 0.3:
+        machine += f"\nOther programs ran on them (load {load:.1f}): compare processor seconds, not seconds."
     page = "\n".join([*tables, TAIL.rstrip("\n"), "", machine, ""])
     if given.page:
         given.page.write_text(page, encoding="utf-8")
