@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find kernels -name '*.py*' -o -name '*.pxi' -o -name '*.h' -o -name '*.c' ! -name _native.c)
 
-.PHONY: help demo test test-fast test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs tutorials gallery site wheel clean
+.PHONY: help demo test test-fast test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs tutorials gallery site wheel dist man clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
@@ -20,6 +20,7 @@ help:
 	@echo 'make site    the documentation site: build/site/index.html'
 	@echo 'make tutorials  every page of docs/tutorials, compared with what it prints, and its pictures (needs OpenFOAM)'
 	@echo 'make gallery  docs/gallery/domains.md: the blocks of thirty domains, with pictures'
+	@echo 'make dist    what is uploaded: wheel and source distribution, checked, and the manual page'
 	@echo 'make wheel   dist/meshonet-*.whl for this platform, and the source distribution'
 
 # --- environments: a stamp stands for what is installed in $(VENV)
@@ -188,6 +189,14 @@ site: $(VENV)/.documenting
 wheel: $(BIN)/python
 	$(PIP) build
 	$(BIN)/python -m build --outdir dist
+
+dist: wheel man
+	$(PIP) twine
+	$(BIN)/python -m twine check --strict dist/*.whl dist/*.tar.gz
+
+man: $(VENV)/.installed
+	@mkdir -p dist
+	$(BIN)/python -m meshonet_cli.man > dist/meshonet.1
 
 clean:
 	rm -rf build demo *.egg-info $(VENV)/.installed $(VENV)/.developing $(VENV)/.documenting

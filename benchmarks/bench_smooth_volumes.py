@@ -1,11 +1,12 @@
 """Folded grids of many blocks in space, smoothed: what becomes of them, and what an iteration costs.
 
-    python benchmarks/bench_smooth_volumes.py [--size 0.6]
+    python benchmarks/bench_smooth_volumes.py [--size 0.6] [--surfaces DIRECTORY]
 
 Nodes inside of a shell of six blocks, a bent pipe of five, and extruded blocks of the plane are moved at
 random by up to `size` times the shortest edge at them. Printed are folded cells, the mean deviation from 90
 degrees and the least scaled Jacobian of the grid, of what was made of it, and of that smoothed; processor
-seconds; and nanoseconds of one thread for a node and an iteration of the descent.
+seconds; and nanoseconds of one thread for a node and an iteration of the descent. Blocks marched off the
+`--surfaces` (a folder as of ``bench_marching.py``) are smoothed as they are: how far first cells change too.
 """
 
 from __future__ import annotations
@@ -20,15 +21,19 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
+from bench_marching import Case, cases_of
 from block_grids import butterfly, o_ring
-from volume_shapes import bend, perturbed, shell
+from joined_volumes import bend, perturbed, shell
 
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.surface.surface import surface_of
 from meshonet.geometry.threads import limited_to
 from meshonet.geometry.volume.hex_mesh import hex_mesh_of
 from meshonet.solvers.energy.hexes import SHAPE, SMOOTHNESS, HexProblem
+from meshonet.solvers.hyperbolic.volume.march import march_surface
 from meshonet.solvers.smoothing.volume_spacing import wanted_edges
 from meshonet.solvers.smoothing.volumes import smooth_volumes
 
@@ -58,11 +63,33 @@ def cost(grid: Grid) -> float:
     return 1e9 * (time.process_time() - begun) / (done * len(mesh.nodes))
 
 
+def first_cells(grid: Grid) -> Floats:
+    """Return the lengths of the first steps off a surface."""
+    steps = [block.nodes[:, :, 1] - block.nodes[:, :, 0] for block in grid.blocks]
+    return np.concatenate([np.linalg.norm(step, axis=-1).ravel() for step in steps])
+
+
+def marched(case: Case) -> str:
+    """Return a line about blocks marched off a surface and smoothed, with 20 iterations."""
+    grid = march_surface(surface_of(case.grid), case.march).grid
+    begun = time.process_time()
+    with limited_to(1):
+        smoothed = smooth_volumes(grid, iterations=ITERATIONS).grid
+    seconds = time.process_time() - begun
+    old, new = first_cells(grid), first_cells(smoothed)
+    nodes = sum(block.nodes[..., 0].size for block in grid.blocks)
+    became = "  ".join(figures(each) for each in (grid, smoothed))
+    change = 100.0 * float(np.abs(new / old - 1.0).max())
+    return f"{case.name:24} {became} {nodes:8} {seconds:7.2f}  first cells within {change:.2g} %"
+
+
 def main() -> None:
     """Print a line for each shape."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--size", type=float, default=0.6)
-    size = parser.parse_args().size
+    parser.add_argument("--surfaces", type=Path)
+    chosen = parser.parse_args()
+    size = chosen.size
     print(f"{'folded, mean, least of':24} {'grid':>19}  {'spoilt':>19}  {'smoothed':>19}  nodes       s  ns")
     for name, make in SHAPES.items():
         grid = make()
@@ -75,6 +102,8 @@ def main() -> None:
         best = min(cost(perturbed(grid, 0.1)) for _ in range(3))
         became = "  ".join(figures(each) for each in (grid, spoilt, smoothed))
         print(f"{name:24} {became} {nodes:6} {seconds:7.2f} {best:3.0f}")
+    for case in cases_of(chosen.surfaces) if chosen.surfaces else ():
+        print(marched(case))
 
 
 if __name__ == "__main__":

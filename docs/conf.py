@@ -26,6 +26,8 @@ extensions = [
 ]
 exclude_patterns = ["**/README*"]
 nitpicky = True
+nitpick_ignore_regex = [("py:obj", ".*")]  # `names` in docstrings: links where there is a page
+default_role = "autolink"
 suppress_warnings = ["config.cache"]  # the scraper below is a function
 
 # --- pages
@@ -79,6 +81,7 @@ sphinx_gallery_conf = {
     "image_scrapers": (written_pictures,),
     "within_subsection_order": "FileNameSortKey",
     "show_memory": False,
+    "write_computation_times": False,
     "show_signature": False,
     "download_all_examples": False,
     "copyfile_regex": r".*\.(toml|dat|csv)",

@@ -11,7 +11,7 @@ from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.source import Source, open_source, printable
 from meshonet.formats.table import TABLE
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError, MeshonetError, in_source
+from meshonet.geometry.errors import InputError, MeshonetError, in_source, meant
 from meshonet.geometry.shapes.shape import Shape
 
 Kind = Literal["grids", "boundaries", "layouts"]
@@ -49,7 +49,8 @@ def format_named(name: str) -> Format:
         record = TABLE[family]
         variant = record.with_options(f"{own}:{options}")
         return variant if options else replace(variant, read_grids=record.read_grids)
-    raise InputError(f"format {name!r} is not known", "use one of " + ", ".join(TABLE))
+    remedy = meant(word, TABLE) + "use one of " + ", ".join(TABLE)
+    raise InputError(f"format {name!r} is not known", remedy)
 
 
 def formats() -> tuple[Format, ...]:
@@ -89,7 +90,8 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
         claimed = _by_suffix(suffix)
         if not claimed:
             what = f"ending {suffix!r} is not known" if suffix else "name has no ending to tell the format by"
-            remedy = f"choose the format with {{to_format}}; {_known()}"
+            near = meant(suffix, (end for record in TABLE.values() for end in record.suffixes))
+            remedy = f"{near}choose the format with {{to_format}}; {_known()}"
             raise InputError(f"its {what}", remedy, source=printable(path_text))
     for record in claimed:
         if getattr(record, f"write_{kind}") is not None:

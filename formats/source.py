@@ -1,6 +1,7 @@
 """Where bytes come from: a file, standard input, or memory, under the name the user gave it."""
 
 import io
+import itertools
 import mmap
 import stat
 import sys
@@ -8,11 +9,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, meant
 
 SPLITS = ("train", "test")
 HEAD_BYTES = 65536
 """How much of a file a format sees when it is asked whether the file is one of its own."""
+_MOST_NAMES = 10_000
+"""Names of files that are looked at for the nearest."""
+_LIKENESS = 0.75
+"""Of names of files, which share their endings."""
 _MAPPED = 1 << 24
 LARGEST = 1e150
 """Coordinates in files must be below this, so that areas and their sums are finite."""
@@ -122,10 +127,19 @@ def _selected(text: str) -> tuple[str, str]:
 def _missing(text: str) -> InputError:
     name, mark, kept = text.rpartition("#")
     if not (mark and Path(name).is_file()):
-        return InputError("no such file", "check the path", source=printable(text))
+        return InputError("no such file", _beside(Path(text)) or "check the path", source=printable(text))
     splits = " or ".join(f"#{split}" for split in SPLITS)
     problem = f"no such file, and of {printable(name)} there is only {splits}"
     return InputError(problem, f"leave #{printable(kept)} out", source=printable(text))
+
+
+def _beside(path: Path) -> str:
+    """Return a question whether the file of the nearest name in the folder was meant, if one is near."""
+    try:
+        names = [entry.name for entry in itertools.islice(path.parent.iterdir(), _MOST_NAMES)]
+    except (OSError, ValueError):
+        return ""
+    return printable(meant(path.name, names, _LIKENESS).rstrip())
 
 
 def _opened(text: str) -> Source:

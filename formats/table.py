@@ -178,6 +178,10 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format("png", ".png", "picture of a grid", "", write_grids=later(_DRAW, kind="png")),
     _format("svg", ".svg", "picture of a grid, lines as vectors", "", write_grids=later(_DRAW, kind="svg")),
+    _format(
+        "html", ".html .htm", "interactive page of a grid, for browsers", "figure.page.page:write_grids",
+        blocks="kept", space=_BOTH,
+    ),
     _format("pdf", ".pdf", "picture of a grid, lines as vectors", "", write_grids=later(_DRAW, kind="pdf")),
     _format(
         "meshio", " ".join(_MESHIO), "surfaces of viewers, decks of solid mechanics, without patches",

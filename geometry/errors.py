@@ -9,7 +9,7 @@
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -48,6 +48,22 @@ class InputError(MeshonetError):
         parts = (self.source, parameter, self.place, spelled(self.problem, spelling))
         text = ": ".join(part for part in parts if part)
         return f"{text}; {spelled(self.remedy, spelling)}" if self.remedy else text
+
+
+def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
+    """Return a question for whoever wrote `word` and may have meant one of `known`; nothing if none is near.
+
+    `likeness` is the part of their letters that is alike at the least.
+
+    >>> meant("max_angel", ["max_angle", "min_angle"])
+    "did you mean 'max_angle'? "
+    >>> meant("beauty", ["max_angle", "min_angle"])
+    ''
+    """
+    from difflib import get_close_matches
+
+    near = get_close_matches(word, list(known), n=1, cutoff=likeness)
+    return f"did you mean {near[0]!r}? " if near else ""
 
 
 @contextmanager

@@ -68,7 +68,7 @@ class MultigridLevel:
 # energy
 def variational_energy(
     z: Floats, aspect: float, shape: float, smoothness: float, epsilon: float, periodic: bool,
-    relief: Floats | None, gradient: Floats,
+    relief: Floats | None, gradient: Floats, threads: int = 1,
 ) -> tuple[float, float]: ...  # fmt: skip
 def newton(z: Floats, aspect: float, shape: float, smoothness: float, most: int, won: float = 0.0) -> int: ...
 
@@ -82,7 +82,7 @@ class Stiffness:
 class VariationalDescent:
     def __init__(
         self, ni: int, nj: int, periodic: bool, rows: tuple[Modes, Modes], columns: tuple[Modes, Modes],
-        scale: Floats, rest: float,
+        scale: Floats, rest: float, threads: int = 1,
     ) -> None: ...  # fmt: skip
     def steer(self, stiffness: Stiffness, along: Floats, across: Floats) -> None: ...
     def run(
@@ -280,7 +280,9 @@ def solids_run(
     nodes: Floats, volumes: Floats, summary: Floats, where: Whole, keep: int, kept: Floats, brackets: Floats,
     counts: Whole, caught: Floats, held: Whole, threads: int,
 ) -> None: ...  # fmt: skip
-def solids_lines(nodes: Floats, threads: int, summary: Floats, where: Whole) -> None: ...
+def solids_lines(
+    nodes: Floats, threads: int, summary: Floats, where: Whole, values: NDArray[np.float32] | None = None,
+) -> None: ...  # fmt: skip
 def solids_rows(nodes: Floats, volumes: Floats, rows: Whole, values: Floats) -> None: ...
 
 # volumes
@@ -292,6 +294,9 @@ def volume_energy(
     x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
     threads: int, gradient: Floats,
 ) -> tuple[float, float]: ...  # fmt: skip
+def closed_node(
+    walls: tuple[tuple[Floats, int, int], ...], ranges: tuple[tuple[int, int], ...], threads: int
+) -> int: ...
 def volume_jacobians(x: Floats, over: tuple[float, float, float], threads: int, least: Floats) -> None: ...
 
 class VolumeDescent:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from meshonet.api.deform import rotation as rotation
     from meshonet.api.derivatives import deform_derivative as deform_derivative
     from meshonet.api.derivatives import optimum_derivative as optimum_derivative
+    from meshonet.api.doctor import doctor as doctor
     from meshonet.api.files import read as read
     from meshonet.api.files import read_all as read_all
     from meshonet.api.files import write as write
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from meshonet.api.models import models as models
     from meshonet.api.plot import plot as plot
     from meshonet.api.quality import quality as quality
+    from meshonet.api.quality import quality_page as quality_page
     from meshonet.api.stack import stack as stack
     from meshonet.api.sweep import sweep as sweep
     from meshonet.api.train import train as train
@@ -62,12 +64,13 @@ _MODULES = {
     "meshonet.api.convert": ("convert",),
     "meshonet.api.deform": ("deform", "rotation"),
     "meshonet.api.derivatives": ("deform_derivative", "optimum_derivative"),
+    "meshonet.api.doctor": ("doctor",),
     "meshonet.api.files": ("read", "read_all", "write"),
     "meshonet.api.grid": ("grid", "infer", "sample_boundary", "sample_family", "solve_pde", "tfi"),
     "meshonet.api.layout": ("layout",),
     "meshonet.api.models": ("models",),
     "meshonet.api.plot": ("plot",),
-    "meshonet.api.quality": ("quality",),
+    "meshonet.api.quality": ("quality", "quality_page"),
     "meshonet.api.stack": ("stack",),
     "meshonet.api.sweep": ("sweep",),
     "meshonet.api.train": ("train",),

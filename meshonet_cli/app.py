@@ -17,6 +17,7 @@ A batch ends with the greatest code of its members: 3 is worse than 2, and 2 is 
 import contextlib
 import io
 import os
+import re
 import sys
 from collections.abc import Sequence
 from itertools import pairwise
@@ -154,8 +155,21 @@ def _explained(error: Exception, name: str) -> str:
         return explained(error)
     context = getattr(error, "ctx", None)
     page = f"{context.command_path} --help" if context else f"{name} --help"
-    message = " ".join(usage().split()).rstrip(".")
+    message = _nearest(error, " ".join(usage().split()).rstrip("."))
     return f"{message[:1].lower()}{message[1:]}; see {page}"
+
+
+def _nearest(error: Exception, message: str) -> str:
+    """Return the parser's message with the nearest option or choice."""
+    from meshonet.geometry.errors import meant
+
+    if hasattr(error, "possibilities"):  # of those that there are, for an option that there is not
+        option: str = getattr(error, "option_name", "")
+        near = meant(option, error.possibilities or ())
+        return f"no such option {option}{'; ' + near.rstrip() if near else ''}"
+    choice = re.search(r"'([^']*)' is not one of (.*)", message)
+    near = meant(choice[1], re.findall(r"'([^']*)'", choice[2])) if choice else ""
+    return f"{message}; {near.rstrip()}" if near else message
 
 
 def _interrupted() -> int:

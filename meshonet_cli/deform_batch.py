@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from meshonet.api.deform import rotation
-from meshonet.api.files import read
+from meshonet.api.files import only, read_all
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
@@ -99,7 +99,9 @@ def _put(walls: dict[str, NewWall] | dict[str, Motion], name: str, new: NewWall,
 def _read(file: str, text: str) -> NewWall:
     if not file.strip():
         raise bad_value(text, "a file", "give the new shape of a wall", "wall")
-    return read(file)
+    nothing = "holds nothing", "give a file with the new shape of a wall"
+    several = "holds several shapes", "give a file with one"
+    return only(read_all(file), file, nothing, several)
 
 
 def _turn(text: str) -> tuple[str, Motion]:

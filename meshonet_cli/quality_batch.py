@@ -6,12 +6,14 @@ from functools import partial
 
 from meshonet.api.quality import quality
 from meshonet.formats.figure.picture import Picture
+from meshonet.formats.figure.report.report import QualityPage
+from meshonet.formats.output import whole_file
 from meshonet.formats.registry import format_for_output, read_grids
 from meshonet.formats.vtk.metrics import write_metrics
 from meshonet.geometry.blocks.match_grids import GridMatcher, Pairing
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.blocks import BLOCK_FIGURES
-from meshonet.geometry.quality.gates import parse_gates
+from meshonet.geometry.quality.gates import Gate, parse_gates
 from meshonet.geometry.quality.report import COMPARED
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.sources import items
@@ -24,13 +26,13 @@ from meshonet_cli.session import Session
 def measure_grids(
     sources: Sequence[str], session: Session, *, fmt: str | None = None, fail_on: Sequence[str] | None = None,
     profile: str | None = None, compare: str | None = None, pairing: Pairing = "auto", summary: bool = False,
-    plot: str | None = None, per_cell: str | None = None,
+    plot: str | None = None, html: str | None = None, per_cell: str | None = None,
 ) -> int:  # fmt: skip
     """Measure every grid of `sources`, print the reports and return the exit code.
 
     `fail_on` are gates, `profile` names thresholds, `compare` is a file of reference grids, matched by
     `pairing`. `summary` prints one table over all; `plot` and `per_cell` are pictures and files of metrics to
-    write.
+    write, `html` is a page about all grids.
     """
     gates = parse_gates(fail_on, (*BLOCK_FIGURES, *(COMPARED if compare else ())))
     outputs = [picture_file(plot, None, Picture())] if plot else []
@@ -39,6 +41,7 @@ def measure_grids(
         destination.check_room(sources)
         if destination.text == "-":
             raise InputError("standard output has the table", "write to a file", source="-")
+    page = _page(html, gates) if html else None
     references = GridMatcher(read_grids(compare), pairing) if compare else None
     rows: list[tuple[str, Mapping[str, float]]] = []
     for item in items(sources, lambda source: read_grids(source, fmt), session):
@@ -61,9 +64,21 @@ def measure_grids(
             else:
                 session.show(measured)
             session.gate(item.label, measured.report.broken(gates))
+            if page:
+                page.add(item.label, measured.report)
     if rows and summary:
         session.conclude(Summary(rows))
+    if page and html and rows:
+        with whole_file(html) as part:
+            page.write(part)
     return session.finish()
+
+
+def _page(output: str, gates: Sequence[Gate]) -> QualityPage:
+    """Return a page to collect reports for, which is to be written to `output`."""
+    if format_for_output(output).name != "html":
+        raise InputError("a report is a page", "name it FILE.html", parameter="html", source=output)
+    return QualityPage(gates)
 
 
 def _metrics_file(output: str) -> Destination:

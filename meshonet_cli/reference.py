@@ -2,7 +2,7 @@
 
 import contextlib
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from meshonet_cli import app
 from meshonet_cli.commands import COMMANDS
@@ -28,10 +28,15 @@ def reference() -> str:
 
 def _block(*words: str) -> tuple[str, ...]:
     """Return what ``--help`` prints as a block of Markdown."""
+    return "```text", help_text(words, WIDTH), "```", ""
+
+
+def help_text(words: Sequence[str], width: int) -> str:
+    """Return what ``--help`` prints behind `words`, in lines of `width` at the most."""
     arguments = [*words, "--help"]
     with contextlib.redirect_stdout(io.StringIO()) as printed:
-        app.application().main(arguments, prog_name="meshonet", standalone_mode=False, terminal_width=WIDTH)
-    return "```text", printed.getvalue().rstrip(), "```", ""
+        app.application().main(arguments, prog_name="meshonet", standalone_mode=False, terminal_width=width)
+    return printed.getvalue().rstrip()
 
 
 def _table(docstring: str) -> Iterator[str]:

@@ -21,7 +21,10 @@ SCRIPTS = {
     "wings": "wings",
     "volumes": "volumes",
     "engines": "engines",
+    "threads": "threads",
+    "gpu": "gpu",
     "deform": "deform",
+    "pages": "pages",
     "kershaw": "kershaw",
     "blocks": "blocks",
 }

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from pathlib import Path
 from statistics import median
 
 import pytest
+
+import meshonet
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -74,3 +77,25 @@ def test_pictures_are_small() -> None:
     assert sum(path.stat().st_size for path in kept) < 3 * 2**20
     for name in re.findall(r"!\[[^\]]*\]\(([^)]*)\)", (ROOT / "README.md").read_text()):
         assert (ROOT / name).stat().st_size < 200_000
+
+
+def parameters(function: object) -> set[str]:
+    """Return the names of the section Parameters of a numpydoc docstring."""
+    section = (inspect.getdoc(function) or "").partition("Parameters\n----------\n")[2].split("\n\n")[0]
+    heads = [line.partition(" : ")[0] for line in section.splitlines() if not line.startswith(" ")]
+    return {name.strip("* ") for head in heads for name in head.split(",")}
+
+
+@pytest.mark.parametrize("name", [n for n in meshonet.__all__ if inspect.isfunction(getattr(meshonet, n))])
+def test_a_public_function_documents_its_parameters_and_what_it_returns(name: str) -> None:
+    function = getattr(meshonet, name)
+    doc = inspect.getdoc(function) or ""
+    signature = inspect.signature(function)
+    assert "as of `grid`" in doc or parameters(function) == set(signature.parameters)
+    if signature.return_annotation not in (None, "None"):
+        assert re.search(r"^(Returns|Yields)\n-+$", doc, flags=re.MULTILINE)
+
+
+@pytest.mark.parametrize("name", meshonet.__all__[1:])
+def test_the_reference_lists_every_public_name(name: str) -> None:
+    assert re.search(rf"\b{name}\b", (DOCS / "reference" / "api.md").read_text())

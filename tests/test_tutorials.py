@@ -9,7 +9,7 @@ import pytest
 import run_tutorials as tutorials
 
 PAGES = tutorials.PAGES
-SMALL: dict[str, dict[str, str]] = {}
+SMALL = {"operator": {"COUNT": "12", "EPOCHS": "2"}}
 """Smaller values of what a page exports, where its own take long; what it prints is not compared then."""
 
 
@@ -30,17 +30,16 @@ def test_the_steps_of_a_tutorial_run_and_print_what_it_shows(page: Path, tmp_pat
     check(page, tutorials.run(page, tmp_path, small, quick=True), compared=not small)
 
 
-WITH_FLOW = [page for page in PAGES if any(step.needs == "simpleFoam" for step in tutorials.steps_of(page))]
+WITH_OTHERS = [page for page in PAGES if any(step.needs for step in tutorials.steps_of(page))]
 
 
 @pytest.mark.client("simpleFoam")
-@pytest.mark.parametrize("page", WITH_FLOW, ids=name_of)
-def test_the_flow_of_a_tutorial_is_computed_and_its_figures_are_those_shown(
-    page: Path, tmp_path: Path
-) -> None:
-    results = tutorials.run(page, tmp_path)
-    assert len(results) == len(tutorials.steps_of(page))
-    check(page, results)
+@pytest.mark.parametrize("page", WITH_OTHERS, ids=name_of)
+def test_whole_tutorials_run_with_flow_solvers_and_checkers(page: Path, tmp_path: Path) -> None:
+    for step in tutorials.steps_of(page):
+        if not tutorials.is_there(step.needs):
+            pytest.skip(f"{step.needs} is not installed")
+    check(page, tutorials.run(page, tmp_path))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
@@ -71,6 +70,8 @@ def test_the_index_lists_every_tutorial() -> None:
         ("a\n...", "a\nb", True),
         ("cd 0.0129", "cd 0.0130", True),
         ("folded 0", "folded 1", False),
+        ("131 degrees at i=197, j=0", "131 degrees at i=2, j=0", True),
+        ("box_ratio 231 12, 13, 0 pass", "box_ratio 232 2, 3, 1 pass", True),
     ],
 )
 def test_what_is_printed_is_compared_by_words_and_by_numbers(shown: str, printed: str, same: bool) -> None:

@@ -2,6 +2,7 @@
 
     python docs/tutorials/run_tutorials.py [PAGE...]             say where a page and its commands differ
     python docs/tutorials/run_tutorials.py --pictures [PAGE...]  and draw its pictures again
+    python docs/tutorials/run_tutorials.py --fill [PAGE...]      and write what is printed into empty blocks
 
 A page may hold blocks of `bash` and `python`, which are run; blocks of `text` behind them, which are what is
 printed (a line `...` stands for any lines); blocks of `toml` that begin with `# NAME.toml`, which are files.
@@ -25,11 +26,12 @@ ROOT = Path(__file__).parents[2]
 FOLDER = Path(__file__).parent
 PAGES = sorted(set(FOLDER.glob("*.md")) - {FOLDER / "index.md"})
 TOLERANCE = 0.02
-WIDTH, COLOURS = 800, 32
+WIDTH, COLOURS = 800, 64
 _BLOCK = re.compile(
     r"(?:^<!-- needs: (\S+) -->\n)?^```(bash|python|text|toml)\n(.*?)^```$", re.DOTALL | re.MULTILINE
 )
 _TIME = re.compile(r"\d[\d.]* (ms|s|min)\b")
+_PLACE = re.compile(r"\b(block|i|j|k)=\d+|(?<=\s)\d+(?:, \d+)+(?=\s|$)")
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?(?![\w])")
 _SETTING = re.compile(r"^export (\w+)=(\S+)$", re.MULTILINE)
 
@@ -148,8 +150,11 @@ def differences(expected: str, printed: str) -> list[str]:
 
 
 def same_line(one: str, other: str) -> bool:
-    """Return whether lines have the same words, and numbers that are as good as equal; times are let pass."""
-    one, other = (_TIME.sub("TIME", " ".join(line.split())) for line in (one, other))
+    """Return whether lines have the same words, and numbers that are as good as equal.
+
+    Times are let pass, and where a worst cell is: others may be as bad.
+    """
+    one, other = (_PLACE.sub("PLACE", _TIME.sub("TIME", " ".join(line.split()))) for line in (one, other))
     if _NUMBER.sub("#", one) != _NUMBER.sub("#", other):
         return False
     return all(map(_close, _NUMBER.findall(one), _NUMBER.findall(other)))
@@ -163,6 +168,22 @@ def _close(one: str, other: str) -> bool:
     return abs(a - b) <= max(TOLERANCE * abs(a), 1.01 * unit)
 
 
+def fill(page: Path, results: list[Result]) -> None:
+    """Write what the steps of a page printed into those of its blocks of text that are empty."""
+    printed = iter(result.printed for result in results)
+    last = ""
+
+    def filled(block: re.Match[str]) -> str:
+        nonlocal last
+        if block[2] != "text":
+            last = next(printed, "")
+        elif not block[3] and last.strip():
+            return f"```text\n{last.strip(chr(10))}\n```"
+        return block[0]
+
+    page.write_text(_BLOCK.sub(filled, page.read_text(encoding="utf-8")), encoding="utf-8")
+
+
 def keep_pictures(page: Path, folder: Path) -> None:
     """Put the pictures of a page that was run beside it, small."""
     from PIL import Image
@@ -173,7 +194,8 @@ def keep_pictures(page: Path, folder: Path) -> None:
             size = (WIDTH, round(picture.height * WIDTH / picture.width))
             picture = picture.resize(size, Image.Resampling.LANCZOS)
         (FOLDER / "img").mkdir(exist_ok=True)
-        picture.quantize(COLOURS, dither=Image.Dither.NONE).save(FOLDER / "img" / name, optimize=True)
+        few = picture.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+        few.save(FOLDER / "img" / name, optimize=True)
 
 
 def main() -> int:
@@ -181,14 +203,17 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Run tutorials, compare what they print with their pages.")
     parser.add_argument("pages", nargs="*", type=Path, default=PAGES)
     parser.add_argument("--pictures", action="store_true", help="keep the pictures in docs/tutorials/img")
+    parser.add_argument("--fill", action="store_true", help="write what is printed into empty blocks of text")
     parser.add_argument("--verbose", action="store_true", help="show all that is printed")
-    told = parser.parse_args()
+    options = parser.parse_args()
     wrong = 0
-    for page in told.pages:
+    for page in options.pages:
         with tempfile.TemporaryDirectory() as name:
             results = run(page, Path(name))
-            wrong += report(page, results, told.verbose)
-            if told.pictures and not results[-1].status:
+            wrong += report(page, results, options.verbose)
+            if options.fill:
+                fill(page, results)
+            if options.pictures and not results[-1].status:
                 keep_pictures(page, Path(name))
     return min(wrong, 1)
 

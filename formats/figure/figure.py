@@ -18,6 +18,7 @@ from meshonet.formats.figure.blocks import (
     shown_counts,
 )
 from meshonet.formats.figure.layers import (
+    DOTS,
     INK,
     Box,
     Colouring,
@@ -38,8 +39,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-DOTS = 160
-"""Dots an inch of the picture."""
 _NAME = 48
 """Letters of a grid's name that fit above a view."""
 

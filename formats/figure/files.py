@@ -4,20 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import BinaryIO
 
-from meshonet.formats.figure.figure import DOTS, draw
-from meshonet.formats.figure.layers import Colouring
+from meshonet.formats.figure.figure import draw
+from meshonet.formats.figure.layers import DOTS, Colouring
 from meshonet.formats.figure.space import draw_in_space
-from meshonet.formats.figure.view import View, flat_box
+from meshonet.formats.figure.view import View, check_flat, flat_box
 from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
 
 _WHOLE = View()
 
 
 def write(
-    path: Path, grid: Grid, kind: str = "png", colouring: Colouring | None = None, view: View = _WHOLE
+    path: Path | BinaryIO,
+    grid: Grid,
+    kind: str = "png",
+    colouring: Colouring | None = None,
+    view: View = _WHOLE,
+    dots: int = DOTS,
 ) -> None:
     """Draw `grid` into a file of `kind` ``png``, ``svg`` or ``pdf``; the same input gives the same bytes.
 
@@ -28,14 +33,11 @@ def write(
     dates: dict[str, dict[str, str | None]] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
     with mpl.rc_context({"svg.hashsalt": "meshonet", "svg.fonttype": "none"}):
         if grid.form == "plane":
-            for name, value in (("slice", view.slice), ("seen_from", view.seen_from)):
-                if value is not None:
-                    remedy = f"leave {{{name}}} out"
-                    raise InputError("the grid is in the plane", remedy, parameter=name)
+            check_flat(view)
             figure = draw(grid, colouring, flat_box(view.zoom), view.every)
         else:
             figure = draw_in_space(grid, colouring, view)
-        figure.savefig(path, format=kind, dpi=DOTS, metadata=dates.get(kind))
+        figure.savefig(path, format=kind, dpi=dots, metadata=dates.get(kind))
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, kind: str) -> None:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 Box = tuple[float, float, float, float]
 """x0, x1, y0, y1 in the grid's unit."""
 
+DOTS = 160
+"""Dots an inch of a picture."""
 INK = "#1b2733"
 _BODY = "#e8eaed"
 _LINE_GAP = 6.0

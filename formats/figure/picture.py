@@ -4,16 +4,18 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
+from meshonet.formats.figure.layers import DOTS
 from meshonet.formats.figure.slices import parse_slice
 from meshonet.formats.format import Format, only_one
 from meshonet.formats.registry import format_for_output
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import ALL_NAMES, metric_of
 
-KINDS = ("png", "svg", "pdf")
+KINDS = ("png", "svg", "pdf", "html")
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,7 @@ class Picture:
 
     def __post_init__(self) -> None:
         if self.metric not in (*ALL_NAMES, None):
-            known = "use none or one of " + ", ".join(ALL_NAMES)
+            known = meant(str(self.metric), ALL_NAMES) + "use none or one of " + ", ".join(ALL_NAMES)
             raise InputError(f"metric {self.metric!r} is not known", known, parameter="metric")
         zoom = self.zoom or (0, 1, 0, 1)
         pairs = list(zip(zoom[::2], zoom[1::2], strict=False))
@@ -56,21 +58,29 @@ class Picture:
             problem = f"every {self.every}-th line cannot be drawn"
             raise InputError(problem, "use 1 or more", parameter="every")
 
-    def draw(self, kind: str, path: Path, grids: Iterable[Grid]) -> None:
-        """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``."""
+    def draw(self, kind: str, path: Path | BinaryIO, grids: Iterable[Grid], dots: int = DOTS) -> None:
+        """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``, or as an ``html`` page.
+
+        Pages go to a path only, pictures also to an open file; `dots` are those an inch of a ``png``.
+        """
         from meshonet.formats.figure.files import write
         from meshonet.formats.figure.layers import Colouring
+        from meshonet.formats.figure.page.page import write_page
         from meshonet.formats.figure.view import View
 
         grid = only_one(grids, "a picture")
+        part = None if self.slice is None else parse_slice(self.slice)
+        view = View(self.zoom, self.every, part, self.seen_from)
+        if kind == "html" and isinstance(path, Path):
+            write_page(path, grid, self.metric, view)
+            return
         colouring = None
         if self.metric is not None:
             metric = metric_of(grid, self.metric)
             label = f"{metric.name} ({metric.unit})" if metric.unit else metric.name
             values = tuple(per_cell_of_blocks(grid, metric.name))
             colouring = Colouring(values, label, worst_is_low=metric.worst == "min")
-        part = None if self.slice is None else parse_slice(self.slice)
-        write(path, grid, kind, colouring, View(self.zoom, self.every, part, self.seen_from))
+        write(path, grid, kind, colouring, view, dots)
 
 
 def picture_format(output: str, to_format: str | None = None) -> Format:
@@ -80,5 +90,5 @@ def picture_format(output: str, to_format: str | None = None) -> Format:
     """
     record = format_for_output(output, to_format or ("png" if output == "-" else None))
     if record.name not in KINDS:
-        raise InputError(f"{record.name} is no picture", "use .png, .svg or .pdf", source=output)
+        raise InputError(f"{record.name} is no picture", "use .png, .svg, .pdf or .html", source=output)
     return record

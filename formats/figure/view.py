@@ -42,6 +42,13 @@ class View:
         return np.array([right, np.cross(towards, right), towards])
 
 
+def check_flat(view: View) -> None:
+    """Raise InputError for what only grids in space have: a slice, a direction that they are seen from."""
+    for name, value in (("slice", view.slice), ("seen_from", view.seen_from)):
+        if value is not None:
+            raise InputError("the grid is in the plane", f"leave {{{name}}} out", parameter=name)
+
+
 def flat_box(zoom: tuple[float, ...] | None) -> Box | None:
     """Return the box of a flat picture; raise InputError for one in space."""
     if zoom is None:

@@ -30,7 +30,9 @@ def split(
     Of the `share` that are tested at least one is, and at least two are trained on. `low` extrapolates to low
     values of the parameter.
 
-    Raises InputError: an unknown way, fewer than three members, or all with the same parameter.
+    A random split does without parameters.
+
+    Raises InputError: an unknown way, fewer than three members, or no different parameters where they count.
 
     >>> split([0.3, 0.1, 0.2], "extrapolation")
     ('test', 'train', 'train')
@@ -39,8 +41,10 @@ def split(
         raise InputError(f"split {way!r} is not known", "use " + ", ".join(WAYS))
     n = len(parameters)
     values = np.asarray(parameters, dtype=np.float64)
-    if n < 3 or np.ptp(values) == 0 or not np.isfinite(values).all():
-        raise InputError(f"{n} members cannot be split", "give at least 3, of different parameters")
+    if n < 3:
+        raise InputError(f"{n} members cannot be split", "give at least 3")
+    if way != "random" and (np.ptp(values) == 0 or not np.isfinite(values).all()):
+        raise InputError(f"members without different parameters have no {way}", "split them at random")
     count = min(max(1, round(share * n)), n - 2)
     order = np.argsort(values, kind="stable")
     if way == "random":

@@ -70,15 +70,18 @@ LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")
 
 
 def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
-    """Return the figures of a grid of blocks; of volumes, their `quality` is measured unless it is known."""
+    """Return the figures of a grid of blocks; of volumes, their `quality` is measured unless it is known.
+
+    Lines of volumes have percentiles where their quality has.
+    """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
 
         angles = solid_deviation(quality or measure_volumes(grid, percentiles=True))
         sizes = tuple(block.counts for block in grid.blocks)
-        return BlockFigures(
-            sizes, node_count(sizes, grid.connections), len(grid.connections), None, angles, solid_lines(grid)
-        )
+        count = node_count(sizes, grid.connections)
+        run = solid_lines(grid, percentiles=angles.p99 is not None)
+        return BlockFigures(sizes, count, len(grid.connections), None, angles, run)
     nodes = vertices(grid)
     irregular = [(nodes.place(int(node)), int(nodes.valence[node])) for node in nodes.irregular]
     sizes = tuple(block.counts for block in grid.blocks)

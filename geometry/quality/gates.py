@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.quality.metrics import ALL_NAMES
 from meshonet.geometry.quality.summary import Quality
 
@@ -31,8 +31,8 @@ class Gate:
     limit: float
     """In the metric's unit."""
 
-    def broken(self, quality: Quality, more: Mapping[str, float] = NO_MORE) -> str | None:
-        """Return a line for the user if `quality`, or a figure of `more`, is beyond the limit, else None.
+    def figure(self, quality: Quality, more: Mapping[str, float] = NO_MORE) -> float:
+        """Return what the gate looks at, of `quality` or a figure of `more`.
 
         Raises InputError: a metric or count that these cells do not have.
         """
@@ -46,9 +46,21 @@ class Gate:
             known = ", ".join(name for name, figure in counts.items() if figure is not None)
             remedy = f"use {known}, " + ", ".join((*quality.metrics, *more))
             raise InputError(f"this grid has no {self.metric}", remedy, parameter="fail_on")
-        if not COMPARE[self.compare](value, self.limit):
+        return float(value)
+
+    def beyond(self, value: float) -> bool:
+        """Say whether a figure is beyond the limit."""
+        return bool(COMPARE[self.compare](value, self.limit))
+
+    def broken(self, quality: Quality, more: Mapping[str, float] = NO_MORE) -> str | None:
+        """Return a line for the user if the `figure` is beyond the limit, else None.
+
+        Raises InputError: a metric or count that these cells do not have.
+        """
+        value = self.figure(quality, more)
+        if not self.beyond(value):
             return None
-        what = f"{self.metric}.{self.statistic}" if has_statistics else self.metric
+        what = f"{self.metric}.{self.statistic}" if self.metric in ALL_NAMES else self.metric
         return f"{what} is {value:.6g}, and {{fail_on}} '{self.text}'"
 
 
@@ -75,7 +87,8 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
         )
     metric, statistic, compare = match[1], match[2], match[3]
     if metric not in (*ALL_NAMES, *COUNTS, *more):
-        known = "use one of " + ", ".join(("folded", *ALL_NAMES, "bezier_folded", *more))
+        names = ("folded", *ALL_NAMES, "bezier_folded", *more)
+        known = meant(metric, names) + "use one of " + ", ".join(names)
         raise InputError(f"metric {metric!r} is not known", known, parameter="fail_on")
     if statistic and (statistic not in _STATISTICS or metric not in ALL_NAMES):
         known = "one of " + ", ".join(_STATISTICS) if metric in ALL_NAMES else f"no statistic with {metric}"

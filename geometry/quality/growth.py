@@ -8,9 +8,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, norms, percentiles_of
 from meshonet.geometry.blocks.grid import Grid
+
+Singles = NDArray[np.float32]
 
 ROWS = 128
 """Columns of nodes processed at a time, so that large grids need little memory besides their own."""
@@ -24,7 +27,7 @@ class Extreme:
     """Greatest and mean value of something over a grid, and the node or cell (i, j) of the greatest.
 
     In a grid of many blocks the place is (block, i, j), in a volume (block, i, j, k); there is the 99th
-    percentile too, but of volumes.
+    percentile too.
     """
 
     max: float
@@ -47,12 +50,15 @@ class Growth:
 
 
 class Tally:
-    """Extreme of values that come part by part; with their percentile when they are `kept`."""
+    """Extreme of values that come part by part; with their percentile when they are `kept`.
+
+    Kept values may be in single precision.
+    """
 
     def __init__(self, *, kept: bool = False) -> None:
         self._max, self._total, self._count = -np.inf, 0.0, 0
         self._at: tuple[int, ...] = (0, 0)
-        self._values: list[Floats] | None = [] if kept else None
+        self._values: list[Floats | Singles] | None = [] if kept else None
 
     def add(self, i: int, j: int, values: Floats, block: int | None = None) -> None:
         """Add values (m, n) of the nodes or cells from (i, j) on."""
@@ -77,9 +83,16 @@ class Tally:
         self._count += count
 
     def add_all(self, other: "Tally") -> None:
-        """Add what another one holds; its values are not kept."""
+        """Add what another one holds, its values where both keep them."""
         if other._count:
             self.add_summed(other._max, other._total, other._count, other._at)
+        if self._values is not None and other._values is not None:
+            self._values.extend(other._values)
+
+    def keep(self, values: Singles) -> None:
+        """Keep values that were added summed."""
+        if self._values is not None and values.size:
+            self._values.append(values.ravel())
 
     @property
     def extreme(self) -> Extreme | None:

@@ -53,11 +53,22 @@ class QualityReport:
 
     def broken(self, gates: Sequence[Gate]) -> list[str]:
         """Return a line for each gate, and each check of the profile, that is not met."""
+        more = self._beside(gates)
+        lines = [line for gate in gates if (line := gate.broken(self.quality, more))]
+        return lines + (self.profile.failures() if self.profile else [])
+
+    def judged(self, gates: Sequence[Gate]) -> list[tuple[Gate, float, bool]]:
+        """Return for each gate the figure that it looks at, and whether that is beyond its limit."""
+        more = self._beside(gates)
+        figures = [gate.figure(self.quality, more) for gate in gates]
+        return [(gate, value, gate.beyond(value)) for gate, value in zip(gates, figures, strict=True)]
+
+    def _beside(self, gates: Sequence[Gate]) -> dict[str, float]:
+        """Return the figures beside the metrics that gates may name."""
         more = self.comparison.figures() if self.comparison else {}
         if any(gate.metric in BLOCK_FIGURES for gate in gates):
             more |= self.figures.blocks.figures()
-        lines = [line for gate in gates if (line := gate.broken(self.quality, more))]
-        return lines + (self.profile.failures() if self.profile else [])
+        return more
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as what JSON can hold."""

@@ -95,14 +95,66 @@ void blend_motions(const BlendSources *from, const double *x, ptrdiff_t m, int t
     team_run(most < threads ? (int)most : threads, blend_work, &job);
 }
 
-MESHONET_CLONES
-void blend_transposed(const BlendSources *from, const double *x, const double *pull, ptrdiff_t m, double *gathered)
+MESHONET_INLINE void gather2(const BlendSources *from, const double *p, const double *g, double *restrict weight,
+                             double *restrict to)
 {
     const ptrdiff_t n = from->n;
-    const int axes = from->axes;
-    const double *restrict sx = from->place, *restrict sy = sx + n, *restrict area = from->area;
+    const double *restrict x = from->place, *restrict y = x + n, *restrict area = from->area;
+    const double near2 = from->near2, px = p[0], py = p[1];
+    double sum = TINY;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t k = 0; k < n; k++) {
+        const double dx = px - x[k], dy = py - y[k], inverse = inverse_square(dx * dx + dy * dy);
+        weight[k] = area[k] * inverse * (1.0 + near2 * inverse);
+        sum += weight[k];
+    }
+    const double u = g[0] / sum, v = g[1] / sum;
+    double *restrict a = to, *restrict b = a + n, *restrict xx = b + n, *restrict xy = xx + n, *restrict yx = xy + n,
+                     *restrict yy = yx + n;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t k = 0; k < n; k++) {
+        const double du = u * weight[k], dv = v * weight[k];
+        a[k] += du, b[k] += dv;
+        xx[k] += du * px, xy[k] += du * py;
+        yx[k] += dv * px, yy[k] += dv * py;
+    }
+}
+
+MESHONET_INLINE void gather3(const BlendSources *from, const double *p, const double *g, double *restrict weight,
+                             double *restrict to)
+{
+    const ptrdiff_t n = from->n;
+    const double *restrict x = from->place, *restrict y = x + n, *restrict z = y + n, *restrict area = from->area;
     const double near2 = from->near2;
-    for (ptrdiff_t k = 0; k < n * (axes + axes * axes); k++)
+    double sum = TINY;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t k = 0; k < n; k++) {
+        const double dx = p[0] - x[k], dy = p[1] - y[k], dz = p[2] - z[k];
+        weight[k] = weight3(dx * dx + dy * dy + dz * dz, area[k], near2);
+        sum += weight[k];
+    }
+    for (int row = 0; row < 3; row++) {
+        const double pull = g[row] / sum;
+        double *restrict a = to + row * n;
+        MESHONET_INDEPENDENT
+        for (ptrdiff_t k = 0; k < n; k++)
+            a[k] += pull * weight[k];
+        for (int column = 0; column < 3; column++) {
+            double *restrict b = to + (3 + 3 * row + column) * n;
+            const double arm = pull * p[column];
+            MESHONET_INDEPENDENT
+            for (ptrdiff_t k = 0; k < n; k++)
+                b[k] += arm * weight[k];
+        }
+    }
+}
+
+MESHONET_CLONES
+void blend_transposed(const BlendSources *from, const double *x, const double *pull, ptrdiff_t m, double *weight,
+                      double *gathered)
+{
+    const int axes = from->axes;
+    for (ptrdiff_t k = 0; k < from->n * (axes + axes * axes); k++)
         gathered[k] = 0.0;
     for (ptrdiff_t i = 0; i < m; i++) {
         double p[3] = {0}, g[3] = {0};
@@ -110,32 +162,9 @@ void blend_transposed(const BlendSources *from, const double *x, const double *p
             p[axis] = x[axis * m + i], g[axis] = pull[axis * m + i];
         if (g[0] == 0.0 && g[1] == 0.0 && g[2] == 0.0)
             continue;
-        double sum = TINY;
-        for (int pass = 0; pass < 2; pass++) {
-            const double scale = pass ? 1.0 / sum : 0.0;
-            double total = 0.0;
-            MESHONET_INDEPENDENT
-            for (ptrdiff_t k = 0; k < n; k++) {
-                const double dx = p[0] - sx[k], dy = p[1] - sy[k];
-                double square = dx * dx + dy * dy, weight;
-                if (axes == 3) {
-                    const double dz = p[2] - sx[2 * n + k];
-                    weight = weight3(square + dz * dz, area[k], near2);
-                } else {
-                    const double inverse = inverse_square(square);
-                    weight = area[k] * inverse * (1.0 + near2 * inverse);
-                }
-                total += weight;
-                if (!pass)
-                    continue;
-                for (int row = 0; row < axes; row++) {
-                    const double share = scale * weight * g[row];
-                    gathered[row * n + k] += share;
-                    for (int column = 0; column < axes; column++)
-                        gathered[(axes + row * axes + column) * n + k] += share * p[column];
-                }
-            }
-            sum = pass ? sum : sum + total;
-        }
+        if (axes == 2)
+            gather2(from, p, g, weight, gathered);
+        else
+            gather3(from, p, g, weight, gathered);
     }
 }

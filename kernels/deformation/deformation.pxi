@@ -9,7 +9,7 @@ cdef extern from "deformation/blend.h":
     void c_blend_motions "blend_motions"(const BlendSources *sources, const double *x, ptrdiff_t m, int threads,
                                         double *moved) nogil
     void c_blend_transposed "blend_transposed"(const BlendSources *sources, const double *x, const double *pull,
-                                               ptrdiff_t m, double *gathered) nogil
+                                               ptrdiff_t m, double *weight, double *gathered) nogil
 
 
 cdef BlendSources blend_sources(places, areas, double near) except *:
@@ -41,5 +41,7 @@ def blend_transposed(places, areas, double near, points, pull, gathered):
     cdef ptrdiff_t m = points.shape[1]
     cdef Read x = reads(points, (sources.axes, m)), force = reads(pull, (sources.axes, m))
     cdef Written to = fills(gathered, (sources.axes * (sources.axes + 1), sources.n))
+    room = np.empty(sources.n)
+    cdef Written weight = fills(room, (sources.n,))
     with nogil:
-        c_blend_transposed(&sources, x, force, m, to)
+        c_blend_transposed(&sources, x, force, m, weight, to)

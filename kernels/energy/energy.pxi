@@ -35,15 +35,16 @@ cdef extern from "energy/variational.h":
         const float *across_t
     ctypedef struct Descent:
         ptrdiff_t ni, nj, first
+        int threads
         Weights weights
         Spectrum spectrum
         Space space
         Written z
         Steps steps
-    size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj) nogil
+    size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj, int threads) nogil
     double c_variational_energy "variational_energy"(
-        const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights, double *gx, double *gy,
-        double *smallest, double *work) nogil
+        const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights, int threads, double *gx,
+        double *gy, double *smallest, double *work) nogil
     size_t band_floats(Band *b, ptrdiff_t mi, ptrdiff_t mj) nogil
     int band_factor(const Band *b, const double *z, const Weights *weights, double *unit) nogil
     int newton_steps(const Band *b, double *z, const Weights *weights, int most, double won, double *room,
@@ -64,7 +65,7 @@ cdef Weights weights_of(double aspect, double shape, double smoothness, double e
 
 
 def variational_energy(z, double aspect, double shape, double smoothness, double epsilon, bint periodic, relief,
-                       gradient):
+                       gradient, int threads=1):
     """Return (value, smallest corner Jacobian) for the planes z (2, ni, nj); fill `gradient` likewise.
 
     It is zero at fixed nodes: those of the rim, or with `periodic` rows of the first and the last column. The other
@@ -75,12 +76,13 @@ def variational_energy(z, double aspect, double shape, double smoothness, double
     cdef double total, smallest = 0.0
     cdef Read x = reads(z, (2, ni, nj))
     cdef Written g = fills(gradient, (2, ni, nj))
-    work = np.empty(variational_workspace(ni, nj))
+    threads = min(max(threads, 1), 64)
+    work = np.empty(variational_workspace(ni, nj, threads))
     cdef Written room = fills(work, work.shape)
     if relief is not None:
         weights.relief = reads(relief, (ni,))
     with nogil:
-        total = c_variational_energy(x, x + ni * nj, ni, nj, &weights, g, g + ni * nj, &smallest, room)
+        total = c_variational_energy(x, x + ni * nj, ni, nj, &weights, threads, g, g + ni * nj, &smallest, room)
     return total, smallest
 
 
@@ -95,7 +97,7 @@ def newton(z, double aspect, double shape, double smoothness, int most, double w
         raise ValueError("planes without inner nodes")
     columns = np.empty(band_floats(&band, ni - 2, nj - 2), np.float32)
     moves = np.empty(2 * band.mi * band.mj + band.width, np.float32)
-    room = np.empty(6 * ni * nj + variational_workspace(ni, nj))
+    room = np.empty(6 * ni * nj + variational_workspace(ni, nj, 1))
     band.column = fills_single(columns)
     cdef float *to = fills_single(moves)
     cdef Written work = fills(room, room.shape)
@@ -157,7 +159,8 @@ cdef class VariationalDescent:
     cdef Descent state
     cdef object held
 
-    def __init__(self, ptrdiff_t ni, ptrdiff_t nj, bint periodic, tuple rows, tuple columns, scale, float rest):
+    def __init__(self, ptrdiff_t ni, ptrdiff_t nj, bint periodic, tuple rows, tuple columns, scale, float rest,
+                 int threads=1):
         cdef size_t doubles = 0, floats = 0
         cdef Spectrum *s = &self.state.spectrum
         s.xi.even, s.xi.odd = (<Modes?>rows[0]).half, (<Modes?>rows[1]).half
@@ -171,7 +174,7 @@ cdef class VariationalDescent:
         factors = np.concatenate([_padded(scale[..., :split]), _padded(scale[..., split:])], axis=-1)
         s.scale, s.rest = reads_single(factors, factors.shape), rest
         self.state.ni, self.state.nj, self.state.first = ni, nj, 0 if periodic else 1
-        self.state.weights.periodic = periodic
+        self.state.weights.periodic, self.state.threads = periodic, min(max(threads, 1), 64)
         descent_sizes(&self.state, &doubles, &floats)
         room, small = np.empty(doubles), np.empty(floats, np.float32)
         descent_place(&self.state, fills(room, room.shape), fills_single(small))

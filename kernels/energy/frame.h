@@ -7,16 +7,23 @@
 #pragma once
 #include "hessian.h"
 #include "spectral.h"
+#include "team.h"
 
-/* Sᵀ gradient, (mi, mj) to the unknowns of coordinate c; `values` holds ROWS mj floats. */
+/* Rows of nodes whose part in Sᵀ gradient is summed at a time. */
+#define BLOCK_ROWS (20 * ROWS)
+
+MESHONET_INLINE ptrdiff_t space_blocks(ptrdiff_t mi) { return (mi + BLOCK_ROWS - 1) / BLOCK_ROWS; }
+
+/* Sᵀ gradient, a block of rows of (mi, mj) to (SPACE, SPACE); `values` holds ROWS mj floats. */
 MESHONET_CLONES
-void space_restrict(const Space *s, const double *restrict gradient, ptrdiff_t mi, ptrdiff_t mj, int c,
-                    float *restrict values, float *restrict unknowns)
+static void restrict_block(const Space *s, const double *restrict gradient, ptrdiff_t mi, ptrdiff_t mj, ptrdiff_t block,
+                           float *restrict values, float *restrict found)
 {
+    const ptrdiff_t end = (block + 1) * BLOCK_ROWS < mi ? (block + 1) * BLOCK_ROWS : mi;
     Lanes total[SPACE][SPACE / LANES];
     memset(total, 0, sizeof total);
-    for (ptrdiff_t i = 0; i < mi; i += ROWS) {
-        const ptrdiff_t rows = mi - i < ROWS ? mi - i : ROWS;
+    for (ptrdiff_t i = block * BLOCK_ROWS; i < end; i += ROWS) {
+        const ptrdiff_t rows = end - i < ROWS ? end - i : ROWS;
         Lanes sum[ROWS][SPACE / LANES];
         memset(sum, 0, sizeof sum);
         for (ptrdiff_t k = 0; k < rows * mj; k++)
@@ -33,23 +40,31 @@ void space_restrict(const Space *s, const double *restrict gradient, ptrdiff_t m
                 for (int v = 0; v < SPACE / LANES; v++)
                     total[l][v] += s->along[(i + r) * SPACE + l] * sum[r][v];
     }
-    float found[SPACE][SPACE];
-    memcpy(found, total, sizeof found);
-    for (ptrdiff_t l = 0; l < s->band.mi; l++)
-        for (ptrdiff_t k = 0; k < s->band.mj; k++)
-            unknowns[2 * (l * s->band.mj + k) + c] = (float)s->unit * found[l][k];
+    memcpy(found, total, sizeof total);
 }
 
-/* result += S unknowns of coordinate c. */
-MESHONET_INLINE void from_space(const Space *s, const float *restrict unknowns, ptrdiff_t mi, ptrdiff_t mj, int c,
-                                float *restrict result)
+/* The sums of all blocks to the unknowns of coordinate c. */
+static void restrict_sum(const Space *s, const float *blocks, ptrdiff_t count, int c, float *unknowns)
+{
+    for (ptrdiff_t l = 0; l < s->band.mi; l++)
+        for (ptrdiff_t k = 0; k < s->band.mj; k++) {
+            float total = 0.0f;
+            for (ptrdiff_t b = 0; b < count; b++)
+                total += blocks[(b * SPACE + l) * SPACE + k];
+            unknowns[2 * (l * s->band.mj + k) + c] = (float)s->unit * total;
+        }
+}
+
+/* result += S unknowns of coordinate c, in rows `first` to before `last`. */
+MESHONET_INLINE void from_space(const Space *s, const float *restrict unknowns, ptrdiff_t first, ptrdiff_t last,
+                                ptrdiff_t mj, int c, float *restrict result)
 {
     float total[SPACE][SPACE];
     memset(total, 0, sizeof total);
     for (ptrdiff_t l = 0; l < s->band.mi; l++)
         for (ptrdiff_t k = 0; k < s->band.mj; k++)
             total[l][k] = unknowns[2 * (l * s->band.mj + k) + c];
-    for (ptrdiff_t i = 0; i < mi; i++) {
+    for (ptrdiff_t i = first; i < last; i++) {
         const float *restrict along = s->along + i * SPACE;
         float *restrict row = result + i * mj, v[SPACE];
         memset(v, 0, sizeof v);
@@ -89,22 +104,34 @@ MESHONET_INLINE void out_of_frame(const Descent *d, const float *restrict x, con
         rx[j] = fx[j] * x[j] - fy[j] * y[j], ry[j] = fx[j] * y[j] + fy[j] * x[j];
 }
 
-/* result = P gradient. Rows i and mi - 1 - i are folded together. */
-MESHONET_CLONES
-static void precondition(void *problem, const double *restrict gradient, float *restrict result)
+/* Floats that a member of the team needs: four rows, a panel, rows of a product. */
+MESHONET_INLINE ptrdiff_t member_floats(const Spectrum *s)
 {
-    const Descent *d = problem;
+    return PANEL * DEPTH + ROWS * s->mj;
+}
+
+/* P gradient, by a team. */
+typedef struct {
+    const Descent *d;
+    const double *gradient;
+    float *result, *w, *spare, *blocks, *room;
+} Preconditioning;
+
+/* Turn the gradient into frames and fold it: rows i and mi - 1 - i, `first` to before `last`, together. */
+MESHONET_CLONES
+static void fold_rows(const Preconditioning *p, ptrdiff_t first, ptrdiff_t last, float *packed)
+{
+    const Descent *d = p->d;
     const Spectrum *s = &d->spectrum;
-    const ptrdiff_t mi = s->mi, mj = s->mj, width = values_of(&s->eta), modes = modes_of(&s->eta);
-    float *w = d->transform, *packed = w + 6 * mi * (width > modes ? width : modes);
+    const ptrdiff_t mi = s->mi, mj = s->mj, width = values_of(&s->eta);
     float *a[2] = {packed, packed + mj}, *b[2] = {packed + 2 * mj, packed + 3 * mj};
-    for (ptrdiff_t i = 0; i < s->xi.even.nodes; i++) {
+    for (ptrdiff_t i = first; i < last; i++) {
         const ptrdiff_t other = mi - 1 - i;
-        into_frame(d, gradient, i, a[0], a[1]);
+        into_frame(d, p->gradient, i, a[0], a[1]);
         if (other > i)
-            into_frame(d, gradient, other, b[0], b[1]);
+            into_frame(d, p->gradient, other, b[0], b[1]);
         for (int c = 0; c < 2; c++) {
-            float *rows = w + c * mi * width;
+            float *rows = p->w + c * mi * width;
             if (other > i) {
                 mix(a[c], b[c], mj);
                 fold(b[c], &s->eta, rows + (s->xi.even.nodes + i) * width);
@@ -112,40 +139,112 @@ static void precondition(void *problem, const double *restrict gradient, float *
             fold(a[c], &s->eta, rows + i * width);
         }
     }
-    divide(s, w, w + 2 * mi * (width > modes ? width : modes), packed);
-    for (ptrdiff_t i = 0; i < s->xi.even.nodes; i++) {
+}
+
+/* The way back. */
+MESHONET_CLONES
+static void unfold_rows(const Preconditioning *p, ptrdiff_t first, ptrdiff_t last, float *packed)
+{
+    const Descent *d = p->d;
+    const Spectrum *s = &d->spectrum;
+    const ptrdiff_t mi = s->mi, mj = s->mj, width = values_of(&s->eta);
+    float *a[2] = {packed, packed + mj}, *b[2] = {packed + 2 * mj, packed + 3 * mj};
+    for (ptrdiff_t i = first; i < last; i++) {
         const ptrdiff_t other = mi - 1 - i;
         for (int c = 0; c < 2; c++) {
-            const float *rows = w + c * mi * width;
+            const float *rows = p->w + c * mi * width;
             unfold(rows + i * width, &s->eta, a[c]);
             if (other > i) {
                 unfold(rows + (s->xi.even.nodes + i) * width, &s->eta, b[c]);
                 mix(a[c], b[c], mj);
             }
         }
-        out_of_frame(d, a[0], a[1], i, result);
+        out_of_frame(d, a[0], a[1], i, p->result);
         if (other > i)
-            out_of_frame(d, b[0], b[1], other, result);
+            out_of_frame(d, b[0], b[1], other, p->result);
     }
+}
+
+MESHONET_CLONES
+static void add_space(const Preconditioning *p, ptrdiff_t first, ptrdiff_t last)
+{
+    const Space *space = &p->d->space;
+    const ptrdiff_t mi = p->d->spectrum.mi, mj = p->d->spectrum.mj;
+    for (int c = 0; c < 2; c++)
+        from_space(space, space->unknowns, first, last, mj, c, p->result + c * mi * mj);
+}
+
+static void precondition_share(void *data, Member member)
+{
+    const Preconditioning *p = data;
+    const Spectrum *s = &p->d->spectrum;
+    float *own = p->room + member.rank * member_floats(s);
+    ptrdiff_t first, last;
+    team_share(s->xi.even.nodes, member, &first, &last);
+    fold_rows(p, first, last, own);
+    team_wait(member);
+    divide(s, p->w, p->spare, own, member);
+    team_wait(member);
+    unfold_rows(p, first, last, own);
+}
+
+/* Sᵀ of one coordinate of the gradient. */
+typedef struct {
+    const Preconditioning *p;
+    int coordinate;
+} Restriction;
+
+static void restrict_share(void *data, Member member)
+{
+    const Restriction *r = data;
+    const Preconditioning *p = r->p;
+    const ptrdiff_t mi = p->d->spectrum.mi, mj = p->d->spectrum.mj;
+    float *own = p->room + member.rank * member_floats(&p->d->spectrum);
+    ptrdiff_t first, last;
+    team_share(space_blocks(mi), member, &first, &last);
+    for (ptrdiff_t k = first; k < last; k++)
+        restrict_block(&p->d->space, p->gradient + r->coordinate * mi * mj, mi, mj, k, own,
+                       p->blocks + k * SPACE * SPACE);
+}
+
+static void space_share(void *data, Member member)
+{
+    const Preconditioning *p = data;
+    ptrdiff_t first, last;
+    team_share(p->d->spectrum.mi, member, &first, &last);
+    add_space(p, first, last);
+}
+
+/* result = P gradient. */
+static void precondition(void *problem, const double *gradient, float *result)
+{
+    const Descent *d = problem;
     const Space *space = &d->space;
+    const Spectrum *s = &d->spectrum;
+    const ptrdiff_t width = values_of(&s->eta), modes = modes_of(&s->eta), wide = width > modes ? width : modes;
+    float *w = d->transform, *blocks = w + 6 * s->mi * wide, *room = blocks + SPACE * SPACE * space_blocks(s->mi);
+    Preconditioning p = {d, gradient, result, w, w + 2 * s->mi * wide, blocks, room};
+    team_run(d->threads, precondition_share, &p);
     if (space->band.mi == 0)
         return;
-    for (int c = 0; c < 2; c++)
-        space_restrict(space, gradient + c * mi * mj, mi, mj, c, packed, space->unknowns);
+    for (int c = 0; c < 2; c++) {
+        Restriction r = {&p, c};
+        team_run(d->threads, restrict_share, &r);
+        restrict_sum(space, blocks, space_blocks(s->mi), c, space->unknowns);
+    }
     solve_band(&space->band, space->unknowns);
-    for (int c = 0; c < 2; c++)
-        from_space(space, space->unknowns, mi, mj, c, result + c * mi * mj);
+    team_run(d->threads, space_share, &p);
 }
 
 /* The step along xi at each free node, from both directions: (p + q) / 2 with p = √a x_ξ and q = -i x_η / √a by centred
    differences, or the longer of the two where they oppose each other, in folded places. */
 MESHONET_CLONES
-static void set_frame(Descent *d)
+static void frame_rows(const Descent *d, ptrdiff_t first, ptrdiff_t last)
 {
     const ptrdiff_t nj = d->nj, nodes = d->ni * nj, mi = d->spectrum.mi, mj = d->spectrum.mj, n = mi * mj;
     const double *x = d->z, *y = d->z + nodes;
     const double along = 0.5 * sqrt(d->weights.aspect), across = 0.5 / sqrt(d->weights.aspect);
-    for (ptrdiff_t i = 0; i < mi; i++) {
+    for (ptrdiff_t i = first; i < last; i++) {
         const ptrdiff_t at = d->first + i, west = at > 0 ? at - 1 : d->ni - 2;
         for (ptrdiff_t j = 1; j <= mj; j++) {
             const ptrdiff_t k = at * nj + j, w = west * nj + j, e = (at + 1) * nj + j;
@@ -160,18 +259,58 @@ static void set_frame(Descent *d)
     }
 }
 
-/* The largest move of `direction`, in cells. */
-MESHONET_CLONES
-static double largest_move(void *problem)
+static void frame_share(void *data, Member member)
 {
-    const Descent *d = problem;
+    const Descent *d = data;
+    ptrdiff_t first, last;
+    team_share(d->spectrum.mi, member, &first, &last);
+    frame_rows(d, first, last);
+}
+
+static void set_frame(Descent *d)
+{
+    team_run(d->threads, frame_share, d);
+}
+
+/* The square of the largest move of `direction`, in cells, at free nodes `first` to before `last`. */
+MESHONET_CLONES
+static float largest_of(const Descent *d, ptrdiff_t first, ptrdiff_t last)
+{
     const ptrdiff_t n = d->spectrum.mi * d->spectrum.mj;
     const float *restrict fx = d->frame, *restrict fy = d->frame + n;
     const float *restrict dx = d->steps.direction, *restrict dy = dx + n;
     float most = 0.0f;
-    for (ptrdiff_t k = 0; k < n; k++) {
+    for (ptrdiff_t k = first; k < last; k++) {
         const float move = (dx[k] * dx[k] + dy[k] * dy[k]) / (fx[k] * fx[k] + fy[k] * fy[k] + 1e-36f);
         most = move > most ? move : most;
     }
+    return most;
+}
+
+typedef struct {
+    const Descent *d;
+    float most[TEAM_MOST]; /* of each thread */
+} Largest;
+
+static void largest_share(void *data, Member member)
+{
+    Largest *l = data;
+    ptrdiff_t first, last;
+    team_share(l->d->spectrum.mi, member, &first, &last);
+    float most = 0.0f;
+    for (ptrdiff_t i = first; i < last; i++) { /* row by row: whatever the share, they are rounded alike */
+        const float row = largest_of(l->d, i * l->d->spectrum.mj, (i + 1) * l->d->spectrum.mj);
+        most = row > most ? row : most;
+    }
+    l->most[member.rank] = most;
+}
+
+static double largest_move(void *problem)
+{
+    Largest l = {problem, {0.0f}};
+    float most = 0.0f;
+    team_run(l.d->threads, largest_share, &l);
+    for (int k = 0; k < TEAM_MOST; k++)
+        most = l.most[k] > most ? l.most[k] : most;
     return sqrt((double)most);
 }

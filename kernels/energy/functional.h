@@ -93,17 +93,25 @@ MESHONET_INLINE void push_row(const double *restrict x, const double *restrict y
         gx[j + next] += fx[j], gy[j + next] += fy[j];
 }
 
-/* The edge length term of one family of edges, (rows, n) of them; those along xi (`next` > 1) wrap around when
-   periodic. `length` and `inverse` hold rows * n doubles, `force` 3 n. */
-MESHONET_INLINE double family(const double *x, const double *y, ptrdiff_t nj, ptrdiff_t rows, ptrdiff_t n,
-                              ptrdiff_t next, int periodic, double by_i, double by_j, double *gx, double *gy,
-                              double *length, double *inverse, double *restrict force)
+/* One family of edges, (rows, n) of them; those along xi (`next` > 1) wrap around when periodic. `length` and
+   `inverse` hold rows * n doubles. */
+typedef struct {
+    ptrdiff_t nj, rows, n, next;
+    int periodic;
+    double by_i, by_j;
+    double *length, *inverse;
+} Family;
+
+/* The edge length terms of rows `first` to before `last` of a family, to the gradient of the nodes from row `first` on.
+   `length` and `inverse` hold the measures of all rows, `force` room for 3 n. */
+MESHONET_INLINE void length_rows(const double *x, const double *y, const Family *f, const int next, ptrdiff_t first,
+                                 ptrdiff_t last, double *gx, double *gy, double *energies, double *restrict force)
 {
-    const int along_i = next > 1;
-    double energy = 0.0;
-    for (ptrdiff_t i = 0; i < rows; i++)
-        measure_row(x + i * nj, y + i * nj, next, n, length + i * n, inverse + i * n);
-    for (ptrdiff_t i = 0; i < rows; i++) {
+    const ptrdiff_t n = f->n, nj = f->nj, rows = f->rows;
+    const double by_i = f->by_i, by_j = f->by_j;
+    const double *length = f->length, *inverse = f->inverse;
+    const int along_i = next != 1, periodic = f->periodic;
+    for (ptrdiff_t i = first; i < last; i++, gx += nj, gy += nj) {
         const double *restrict l = length + i * n;
         const double *restrict west = i > 0 ? l - n : along_i && periodic ? length + (rows - 1) * n : l;
         const double *restrict east = i < rows - 1 ? l + n : along_i && periodic ? length : l;
@@ -116,8 +124,8 @@ MESHONET_INLINE double family(const double *x, const double *y, ptrdiff_t nj, pt
             force[j] = 2.0 * by_i * ((l[j] - west[j]) - d);
         }
         if (along_i) {
-            const double first = east[0] - l[0], last = east[n - 1] - l[n - 1];
-            sum_i -= 0.5 * (first * first + last * last);
+            const double start = east[0] - l[0], end = east[n - 1] - l[n - 1];
+            sum_i -= 0.5 * (start * start + end * end);
         }
         MESHONET_INDEPENDENT
         for (ptrdiff_t j = 0; j < n - 1; j++) {
@@ -131,10 +139,9 @@ MESHONET_INLINE double family(const double *x, const double *y, ptrdiff_t nj, pt
             force[0] -= 2.0 * on_rim * (l[1] - l[0]);
             force[n - 1] += 2.0 * on_rim * (l[n - 1] - l[n - 2]);
         }
-        energy += by_i * sum_i + on_rim * sum_j;
-        push_row(x + i * nj, y + i * nj, next, n, force, inverse + i * n, gx + i * nj, gy + i * nj);
+        energies[i] = by_i * sum_i + on_rim * sum_j;
+        push_row(x + i * nj, y + i * nj, along_i ? nj : 1, n, force, inverse + i * n, gx, gy);
     }
-    return energy;
 }
 
 /* Take away from the energy what the corners at nodes (i, 0) do not keep of their angle terms, w over the number of

@@ -11,6 +11,7 @@
 #pragma once
 #include "clones.h"
 #include "panel.h"
+#include "team.h"
 #include "variational.h"
 #include <string.h>
 
@@ -113,7 +114,7 @@ MESHONET_INLINE void mix(float *restrict a, float *restrict b, ptrdiff_t n)
     }
 }
 
-/* Rows times the modes of both halves, or back. */
+/* `rows` rows times the modes of both halves, or back. */
 static void along_rows(const float *w, const Transform *t, float *to, ptrdiff_t rows, int back, float *packed)
 {
     const ptrdiff_t nodes = values_of(t), modes = modes_of(t);
@@ -128,29 +129,51 @@ static void along_rows(const float *w, const Transform *t, float *to, ptrdiff_t 
     }
 }
 
-/* Replace the folded planes w (2, mi, values of eta) by what they are divided by the symbol. */
-MESHONET_INLINE void divide(const Spectrum *s, float *restrict w, float *restrict spare, float *packed)
+/* This thread's of `rows` rows, in the groups that products take. */
+static void rows_of(ptrdiff_t rows, Member member, ptrdiff_t *first, ptrdiff_t *last)
 {
-    const ptrdiff_t mi = s->mi, width = modes_of(&s->eta), nodes = values_of(&s->eta);
-    float *restrict right = spare, *restrict both = spare + 2 * mi * (width > nodes ? width : nodes);
-    const float *scale = s->scale;
-    along_rows(w, &s->eta, right, 2 * mi, 0, packed);
+    team_share((rows + ROWS - 1) / ROWS, member, first, last);
+    *first *= ROWS, *last = *last * ROWS < rows ? *last * ROWS : rows;
+}
+
+/* Divide the transforms along eta, planes (2, mi, width), by the symbol: columns `first` to before `last`. */
+static void divide_columns(const Spectrum *s, float *right, float *both, ptrdiff_t first, ptrdiff_t last, float *packed)
+{
+    const ptrdiff_t mi = s->mi, width = modes_of(&s->eta), n = last - first;
+    const float *scale = s->scale + first;
     for (int c = 0; c < 2; c++) {
-        float *restrict rows = right + c * mi * width;
+        float *rows = right + c * mi * width + first;
         for (int odd = 0; odd < 2; odd++) {
             const Half *h = odd ? &s->xi.odd : &s->xi.even;
-            product(h->q_t, padded(h->nodes), rows, width, both, width, h->modes, h->nodes, width, packed);
-            for (ptrdiff_t k = 0; k < h->modes * width; k++)
-                both[k] *= scale[k];
-            product(h->q, padded(h->modes), both, width, rows, width, h->nodes, h->modes, width, packed);
+            product(h->q_t, padded(h->nodes), rows, width, both + first, width, h->modes, h->nodes, n, packed);
+            for (ptrdiff_t k = 0; k < h->modes; k++)
+                for (ptrdiff_t j = 0; j < n; j++)
+                    both[k * width + first + j] *= scale[k * width + j];
+            product(h->q, padded(h->modes), both + first, width, rows, width, h->nodes, h->modes, n, packed);
             scale += h->modes * width, rows += h->nodes * width;
         }
     }
+}
+
+/* Replace the folded planes w (2, mi, values of eta) by what they are divided by the symbol, as one of a team. */
+static void divide(const Spectrum *s, float *restrict w, float *restrict spare, float *packed, Member member)
+{
+    const ptrdiff_t mi = s->mi, width = modes_of(&s->eta), nodes = values_of(&s->eta);
+    float *restrict right = spare, *restrict both = spare + 2 * mi * (width > nodes ? width : nodes);
+    ptrdiff_t first, last, from, to;
+    rows_of(2 * mi, member, &first, &last);
+    along_rows(w + first * nodes, &s->eta, right + first * width, last - first, 0, packed);
+    team_wait(member);
+    team_share(width / PANEL, member, &from, &to);
+    divide_columns(s, right, both, PANEL * from, PANEL * to, packed);
+    team_wait(member);
+    const ptrdiff_t start = first * nodes, end = last * nodes;
     if (s->rest > 0.0f) { /* some modes are left out: rest (w - Q Qᵀ w), the second part in the scale already */
-        along_rows(right, &s->eta, both, 2 * mi, 1, packed);
-        for (ptrdiff_t k = 0; k < 2 * mi * nodes; k++)
-            w[k] = s->rest * w[k] + both[k];
+        along_rows(right + first * width, &s->eta, both + start, last - first, 1, packed);
+        for (ptrdiff_t r = start; r < end; r += nodes)
+            for (ptrdiff_t k = r; k < r + nodes; k++)
+                w[k] = s->rest * w[k] + both[k];
     } else {
-        along_rows(right, &s->eta, w, 2 * mi, 1, packed);
+        along_rows(right + first * width, &s->eta, w + start, last - first, 1, packed);
     }
 }

@@ -8,52 +8,102 @@
    NIPS 27 (2014). */
 #include "steps.h"
 #include "clones.h"
+#include "team.h"
 #include <math.h>
 #include <string.h>
 
 #define TRIES 25  /* lengths of a step that are tried */
 #define IDLE 2    /* small changes in a row that count as standing still; one may come from a short step */
 #define CHUNK 2048 /* values of every row of the table that are read together */
+#define SPAN (64 * CHUNK) /* values of vectors that one sum is over; these are added in their order */
+#define ROUND 256  /* sums of threads that are kept until they are added */
 
-/* Products of every row of the table (2 count, n) with v. */
+/* Products of the rows of a table with a vector, by a team. */
+typedef struct {
+    const float *table;
+    int rows;
+    const double *v;
+    ptrdiff_t n;
+    double *products, parts[ROUND][2 * PAIRS];
+} Products;
+
 MESHONET_CLONES
-static void row_products(const float *table, int rows, const double *v, ptrdiff_t n, double *products)
+static void chunk_products(const Products *p, ptrdiff_t start, double *products)
 {
-    for (int r = 0; r < rows; r++)
-        products[r] = 0.0;
-    for (ptrdiff_t start = 0; start < n; start += CHUNK) {
-        const ptrdiff_t stop = start + CHUNK < n ? start + CHUNK : n;
-        for (int r = 0; r < rows; r++) {
-            const float *restrict row = table + r * n;
-            double sum = 0.0;
-            for (ptrdiff_t k = start; k < stop; k++)
-                sum += (double)row[k] * v[k];
-            products[r] += sum;
-        }
+    const ptrdiff_t n = p->n, stop = start + CHUNK < n ? start + CHUNK : n;
+    const double *v = p->v;
+    for (int r = 0; r < p->rows; r++) {
+        const float *restrict row = p->table + r * n;
+        double sum = 0.0;
+        for (ptrdiff_t k = start; k < stop; k++)
+            sum += (double)row[k] * v[k];
+        products[r] = sum;
     }
 }
 
-/* direction = Σ share[r] row r - scale steepest. */
-MESHONET_CLONES
-static void row_sum(const float *table, int rows, const float *share, const float *restrict steepest, float scale,
-                    ptrdiff_t n, float *restrict direction)
+static void products_share(void *data, Member member)
 {
-    for (ptrdiff_t start = 0; start < n; start += CHUNK) {
-        const ptrdiff_t stop = start + CHUNK < n ? start + CHUNK : n;
-        for (ptrdiff_t k = start; k < stop; k++)
-            direction[k] = -scale * steepest[k];
-        for (int r = 0; r < rows; r++) {
-            const float *restrict row = table + r * n, factor = share[r];
-            for (ptrdiff_t k = start; k < stop; k++)
-                direction[k] += factor * row[k];
-        }
+    Products *p = data;
+    const ptrdiff_t chunks = (p->n + CHUNK - 1) / CHUNK;
+    for (ptrdiff_t start = 0; start < chunks; start += ROUND) {
+        const ptrdiff_t count = chunks - start < ROUND ? chunks - start : ROUND;
+        ptrdiff_t first, last;
+        team_share(count, member, &first, &last);
+        for (ptrdiff_t k = first; k < last; k++)
+            chunk_products(p, (start + k) * CHUNK, p->parts[k]);
+        team_wait(member);
+        for (ptrdiff_t k = 0; member.rank == 0 && k < count; k++)
+            for (int r = 0; r < p->rows; r++)
+                p->products[r] += p->parts[k][r];
+        team_wait(member);
     }
+}
+
+/* Products of every row of the table (rows, n) with v. */
+static void row_products(const float *table, int rows, const double *v, ptrdiff_t n, int threads, double *products)
+{
+    Products p;
+    p.table = table, p.rows = rows, p.v = v, p.n = n, p.products = products;
+    memset(products, 0, (size_t)rows * sizeof *products);
+    team_run(threads, products_share, &p);
+}
+
+/* A new direction, by a team. */
+typedef struct {
+    const Steps *s;
+    const float *share;
+    float scale;
+} Sum;
+
+/* direction = Σ share[r] row r - scale steepest, in a chunk. */
+MESHONET_CLONES
+static void chunk_sum(const Sum *sum, ptrdiff_t start)
+{
+    const Steps *s = sum->s;
+    const ptrdiff_t n = s->n, stop = start + CHUNK < n ? start + CHUNK : n;
+    const float *restrict steepest = s->steepest, scale = sum->scale;
+    float *restrict direction = s->direction;
+    for (ptrdiff_t k = start; k < stop; k++)
+        direction[k] = -scale * steepest[k];
+    for (int r = 0; r < 2 * s->count; r++) {
+        const float *restrict row = s->table + r * n, factor = sum->share[r];
+        for (ptrdiff_t k = start; k < stop; k++)
+            direction[k] += factor * row[k];
+    }
+}
+
+static void sum_share(void *data, Member member)
+{
+    const Sum *sum = data;
+    ptrdiff_t first, last;
+    team_share((sum->s->n + CHUNK - 1) / CHUNK, member, &first, &last);
+    for (ptrdiff_t k = first; k < last; k++)
+        chunk_sum(sum, k * CHUNK);
 }
 
 /* The direction -H g from the gradient and P g, and its slope. */
 static double choose_direction(Steps *s)
 {
-    const ptrdiff_t n = s->n;
     const int count = s->count, *order = s->order;
     const double *products = s->products;
     double alpha[PAIRS], rest[PAIRS], scale = 1.0, slope;
@@ -77,47 +127,117 @@ static double choose_direction(Steps *s)
     }
     for (int k = 0; k < count; k++)
         share[2 * order[k]] = (float)-rest[k], share[2 * order[k] + 1] = (float)(scale * alpha[k]);
-    row_sum(s->table, 2 * count, share, s->steepest, (float)scale, n, s->direction);
-    row_products(s->direction, 1, s->gradient, n, &slope);
+    Sum sum = {s, share, (float)scale};
+    team_run(s->threads, sum_share, &sum);
+    row_products(s->direction, 1, s->gradient, s->n, s->threads, &slope);
     return slope;
 }
 
-/* Add the step, whose slope was `slope`, the gradient's change y and P y, unless the functional bends down along the
-   step; then the products of all rows with the new gradient. Those with y are the changes of these. */
+/* What a step and the gradient's change have in common, summed by a team. */
+typedef struct {
+    double steps, changes, curvature, turned;
+} Change;
+
+typedef struct {
+    Steps *s;
+    float factor;
+    int slot; /* of the table, or -1 */
+    Change change, parts[ROUND];
+} Remembered;
+
 MESHONET_CLONES
-static void remember(Steps *s, double factor, double slope)
+static Change span_change(const Steps *s, ptrdiff_t start, ptrdiff_t stop)
 {
-    const ptrdiff_t n = s->n;
     const double *restrict old = s->gradient, *restrict fresh = s->fresh;
-    double before[2 * PAIRS], steps = 0.0, changes = 0.0, curvature = 0.0, turned = 0.0;
     const float *restrict step = s->direction;
-    for (ptrdiff_t k = 0; k < n; k++) {
+    double steps = 0.0, changes = 0.0, curvature = 0.0, turned = 0.0;
+    for (ptrdiff_t k = start; k < stop; k++) {
         const double p = (double)step[k], y = fresh[k] - old[k];
         steps += p * p, changes += y * y, curvature += p * y;
         turned += old[k] * (double)(s->turned[k] - s->steepest[k]);
     }
-    const int bends = curvature > 1e-12 * sqrt(steps * changes);
-    int slot = s->count;
+    return (Change){steps, changes, curvature, turned};
+}
+
+static ptrdiff_t end_of_span(const Steps *s, ptrdiff_t k)
+{
+    return (k + 1) * SPAN < s->n ? (k + 1) * SPAN : s->n;
+}
+
+static void change_share(void *data, Member member)
+{
+    Remembered *r = data;
+    const ptrdiff_t spans = (r->s->n + SPAN - 1) / SPAN;
+    for (ptrdiff_t start = 0; start < spans; start += ROUND) {
+        const ptrdiff_t count = spans - start < ROUND ? spans - start : ROUND;
+        ptrdiff_t first, last;
+        team_share(count, member, &first, &last);
+        for (ptrdiff_t k = first; k < last; k++)
+            r->parts[k] = span_change(r->s, (start + k) * SPAN, end_of_span(r->s, start + k));
+        team_wait(member);
+        for (ptrdiff_t k = 0; member.rank == 0 && k < count; k++) {
+            r->change.steps += r->parts[k].steps, r->change.changes += r->parts[k].changes;
+            r->change.curvature += r->parts[k].curvature, r->change.turned += r->parts[k].turned;
+        }
+        team_wait(member);
+    }
+}
+
+/* The step and the change of P gradient into the table. */
+MESHONET_CLONES
+static void span_kept(const Steps *s, ptrdiff_t start, ptrdiff_t stop, float factor, int slot)
+{
+    const float *restrict step = s->direction;
+    float *restrict moves = s->table + 2 * slot * s->n, *restrict z = moves + s->n;
+    for (ptrdiff_t k = start; k < stop; k++)
+        moves[k] = factor * step[k], z[k] = s->turned[k] - s->steepest[k];
+}
+
+static void kept_share(void *data, Member member)
+{
+    const Remembered *r = data;
+    ptrdiff_t first, last;
+    team_share((r->s->n + SPAN - 1) / SPAN, member, &first, &last);
+    for (ptrdiff_t k = first; k < last; k++)
+        span_kept(r->s, k * SPAN, end_of_span(r->s, k), r->factor, r->slot);
+}
+
+/* Add the step, whose slope was `slope`, the gradient's change y and P y, unless the functional bends down along the
+   step; then the products of all rows with the new gradient. Those with y are the changes of these. */
+static void remember(Steps *s, double factor, double slope)
+{
+    double before[2 * PAIRS];
+    Remembered r = {.s = s, .factor = (float)factor, .slot = s->count};
+    team_run(s->threads, change_share, &r);
+    const int bends = r.change.curvature > 1e-12 * sqrt(r.change.steps * r.change.changes);
     memcpy(before, s->products, sizeof before);
     if (bends) {
         if (s->count == PAIRS) {
-            slot = s->order[0];
+            r.slot = s->order[0];
             memmove(s->order, s->order + 1, (PAIRS - 1) * sizeof *s->order);
             s->count--;
         }
-        s->order[s->count++] = slot;
-        float *restrict moves = s->table + 2 * slot * n, *restrict z = moves + n;
-        for (ptrdiff_t k = 0; k < n; k++)
-            moves[k] = (float)factor * step[k], z[k] = s->turned[k] - s->steepest[k];
-        before[2 * slot] = factor * slope, before[2 * slot + 1] = turned;
+        s->order[s->count++] = r.slot;
+        team_run(s->threads, kept_share, &r);
+        before[2 * r.slot] = factor * slope, before[2 * r.slot + 1] = r.change.turned;
     }
-    row_products(s->table, 2 * s->count, fresh, n, s->products);
+    row_products(s->table, 2 * s->count, s->fresh, s->n, s->threads, s->products);
     for (int k = 0; bends && k < s->count; k++) {
-        const int other = s->order[k];
+        const int slot = r.slot, other = s->order[k];
         s->sy[slot][other] = 0.0;
         s->sy[other][slot] = s->products[2 * other] - before[2 * other];
         s->yz[slot][other] = s->yz[other][slot] = s->products[2 * other + 1] - before[2 * other + 1];
     }
+}
+
+/* The gradient and P gradient of the step are those here now. */
+static void copy_share(void *data, Member member)
+{
+    Steps *s = data;
+    ptrdiff_t first, last;
+    team_share(s->n, member, &first, &last);
+    memcpy(s->gradient + first, s->fresh + first, (size_t)(last - first) * sizeof *s->gradient);
+    memcpy(s->steepest + first, s->turned + first, (size_t)(last - first) * sizeof *s->steepest);
 }
 
 double shorter(double rise, double slope)
@@ -181,8 +301,7 @@ int steps_take(Steps *s)
     s->value = value, s->smallest = low;
     s->precondition(s->problem, s->fresh, s->turned);
     remember(s, factor, slope);
-    memcpy(s->gradient, s->fresh, (size_t)s->n * sizeof *s->gradient);
-    memcpy(s->steepest, s->turned, (size_t)s->n * sizeof *s->steepest);
+    team_run(s->threads, copy_share, s);
     /* small steps that still gain, or that were cut short, say nothing of the distance to the minimum */
     const int small = factor * largest < s->still && (factor > 0.4 || largest < s->still);
     s->idle = small && gain < s->gain * value ? s->idle + 1 : 0;

@@ -9,6 +9,7 @@ enum { GOES_ON, SETTLED, STUCK };
 /* A descent under way, over n unknowns that `problem` holds. */
 typedef struct {
     ptrdiff_t n;
+    int threads; /* that work on the table, with the same result for any number */
     double *gradient, *fresh;                    /* (n,) here, and where a step was tried */
     float *direction, *steepest, *turned, *table; /* (n,); the table has 2 PAIRS rows */
     double sy[PAIRS][PAIRS], yz[PAIRS][PAIRS];

@@ -4,51 +4,179 @@
 #include "frame.h"
 #include "functional.h"
 #include "hessian.h"
+#include "team.h"
 
 #define TRIES 25  /* lengths of a step of Newton's method that are tried */
 #define GAIN 1e-4 /* part of the value that such a change wins at the most */
 
-size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj)
+#define ROWS_EACH 13 /* rows of a member of the team: nine of forces, two pairs of gradients */
+
+size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj, int threads)
 {
-    return (size_t)(2 * ni * nj + 9 * nj);
+    return (size_t)(2 * ni * nj + 6 * ni) + (size_t)threads * (size_t)(ROWS_EACH * nj);
+}
+
+/* What a team works on. */
+typedef struct {
+    const double *x, *y;
+    ptrdiff_t ni, nj;
+    double *gx, *gy;
+    Factors at_corner, at_centre;
+    Family along, across; /* edges along xi and along eta, in the same room */
+    int regular;
+    double *cells, *least, *lengths, *spare; /* of each row, (ni); twice that in spare */
+    double *rows;
+} Task;
+
+/* Terms of rows `first` to before `last`, of cells or of edges, to the gradient of the nodes from row `first` on, and
+   the energy and the smallest Jacobian of each row. */
+typedef void (*Terms)(const Task *t, ptrdiff_t first, ptrdiff_t last, double *gx, double *gy, double *energies,
+                      double *least, double *rows);
+
+MESHONET_CLONES
+static void corner_terms(const Task *t, ptrdiff_t first, ptrdiff_t last, double *gx, double *gy, double *energies,
+                         double *least, double *rows)
+{
+    const ptrdiff_t nj = t->nj;
+    const Factors at_corner = t->at_corner, at_centre = t->at_centre;
+    const CellRow r = {rows,          rows + nj,     rows + 2 * nj, rows + 3 * nj, rows + 4 * nj,
+                       rows + 5 * nj, rows + 6 * nj, rows + 7 * nj, rows + 8 * nj};
+    for (ptrdiff_t i = first; i < last; i++, gx += nj, gy += nj) {
+        const double *xa = t->x + i * nj, *ya = t->y + i * nj;
+        double low = INFINITY;
+        if (t->regular)
+            energies[i] = cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &at_corner, &at_centre, 1, &r);
+        else
+            energies[i] = cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &at_corner, &at_centre, 0, &r);
+        for (ptrdiff_t j = 0; j < nj - 1; j++)
+            low = r.least[j] < low ? r.least[j] : low;
+        least[i] = low;
+        scatter(r.sx, r.nx, r.wx, r.ex, gx, gx + nj, nj - 1);
+        scatter(r.sy, r.ny, r.wy, r.ey, gy, gy + nj, nj - 1);
+    }
 }
 
 MESHONET_CLONES
+static void along_terms(const Task *t, ptrdiff_t first, ptrdiff_t last, double *gx, double *gy, double *energies,
+                        double *least, double *rows)
+{
+    (void)least;
+    length_rows(t->x, t->y, &t->along, 2, first, last, gx, gy, energies, rows);
+}
+
+MESHONET_CLONES
+static void across_terms(const Task *t, ptrdiff_t first, ptrdiff_t last, double *gx, double *gy, double *energies,
+                         double *rows)
+{
+    length_rows(t->x, t->y, &t->across, 1, first, last, gx, gy, energies, rows);
+}
+
+/* Terms of rows between two rows of nodes, to the nodes in rows `first` to before `last`, which are this member's. Rows
+   between two members' nodes are looked at by both, for the sake of their own. */
+static void to_own_nodes(const Task *t, Terms terms, ptrdiff_t first, ptrdiff_t last, double *energies, double *rows)
+{
+    const ptrdiff_t nj = t->nj;
+    const size_t line = (size_t)nj * sizeof(double);
+    double *px = rows + 9 * nj, *py = px + 2 * nj, *least = t->least; /* pairs of rows */
+    double *spare = t->spare, *spare_least = spare + t->ni;
+    if (first > 0 && first < last) {
+        memset(px, 0, 4 * line);
+        terms(t, first - 1, first, px, py, spare, spare_least, rows);
+        for (ptrdiff_t j = 0; j < nj; j++)
+            t->gx[first * nj + j] += px[nj + j], t->gy[first * nj + j] += py[nj + j];
+    }
+    const ptrdiff_t whole = last < t->ni ? last - 1 : last == t->ni && first < last ? t->ni - 1 : first;
+    if (first < whole)
+        terms(t, first, whole, t->gx + first * nj, t->gy + first * nj, energies, least, rows);
+    if (first < last && last < t->ni) {
+        memcpy(px, t->gx + whole * nj, line), memcpy(py, t->gy + whole * nj, line);
+        memset(px + nj, 0, line), memset(py + nj, 0, line);
+        terms(t, whole, last, px, py, energies, least, rows);
+        memcpy(t->gx + whole * nj, px, line), memcpy(t->gy + whole * nj, py, line);
+    }
+}
+
+static double *member_rows(const Task *t, Member member)
+{
+    return t->rows + (size_t)member.rank * (size_t)(ROWS_EACH * t->nj);
+}
+
+static void corner_share(void *data, Member member)
+{
+    const Task *t = data;
+    ptrdiff_t first, last;
+    team_share(t->ni, member, &first, &last);
+    memset(t->gx + first * t->nj, 0, (size_t)((last - first) * t->nj) * sizeof *t->gx);
+    memset(t->gy + first * t->nj, 0, (size_t)((last - first) * t->nj) * sizeof *t->gy);
+    to_own_nodes(t, corner_terms, first, last, t->cells, member_rows(t, member));
+}
+
+MESHONET_CLONES
+static void measure_rows(const Task *t, const Family *f, ptrdiff_t first, ptrdiff_t last)
+{
+    for (ptrdiff_t i = first; i < last && i < f->rows; i++)
+        measure_row(t->x + i * t->nj, t->y + i * t->nj, f->next, f->n, f->length + i * f->n, f->inverse + i * f->n);
+}
+
+static void along_share(void *data, Member member)
+{
+    const Task *t = data;
+    ptrdiff_t first, last;
+    team_share(t->ni, member, &first, &last);
+    measure_rows(t, &t->along, first, last);
+    team_wait(member);
+    to_own_nodes(t, along_terms, first, last, t->lengths, member_rows(t, member));
+}
+
+static void across_share(void *data, Member member)
+{
+    const Task *t = data;
+    const ptrdiff_t nj = t->nj;
+    ptrdiff_t first, last;
+    team_share(t->ni, member, &first, &last);
+    measure_rows(t, &t->across, first, last);
+    team_wait(member);
+    across_terms(t, first, last, t->gx + first * nj, t->gy + first * nj, t->lengths, member_rows(t, member));
+}
+
+/* The sum of n values, one after another; volatile, or the compiler would take several at a time. */
+static double in_order(const double *values, ptrdiff_t n)
+{
+    volatile double sum = 0.0;
+    for (ptrdiff_t k = 0; k < n; k++)
+        sum += values[k];
+    return sum;
+}
+
 double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights,
-                          double *gx, double *gy, double *smallest, double *work)
+                          int threads, double *gx, double *gy, double *smallest, double *work)
 {
     const double cells = (double)(ni - 1) * (double)(nj - 1), eps = weights->epsilon;
     const double one = 1.0 / (12.0 * cells), two = 8.0 * one, rest = 0.5 * (1.0 - weights->shape);
     const double along = rest * weights->aspect, across = rest / weights->aspect;
-    const Factors at_corner = {one * along, one * across, one * weights->shape, eps * eps};
-    const Factors at_centre = {two * along, two * across, two * weights->shape, 16.0 * eps * eps};
-    double *rows = work + 2 * ni * nj;
-    const CellRow r = {rows,          rows + nj,     rows + 2 * nj, rows + 3 * nj, rows + 4 * nj,
-                       rows + 5 * nj, rows + 6 * nj, rows + 7 * nj, rows + 8 * nj};
-    double energy = 0.0, low = INFINITY;
-    memset(gx, 0, (size_t)(ni * nj) * sizeof(double));
-    memset(gy, 0, (size_t)(ni * nj) * sizeof(double));
-    for (ptrdiff_t i = 0; i < ni - 1; i++) {
-        const double *xa = x + i * nj, *ya = y + i * nj;
-        if (eps > 0.0)
-            energy += cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &at_corner, &at_centre, 1, &r);
-        else
-            energy += cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &at_corner, &at_centre, 0, &r);
-        for (ptrdiff_t j = 0; j < nj - 1; j++)
-            low = r.least[j] < low ? r.least[j] : low;
-        scatter(r.sx, r.nx, r.wx, r.ex, gx + i * nj, gx + (i + 1) * nj, nj - 1);
-        scatter(r.sy, r.ny, r.wy, r.ey, gy + i * nj, gy + (i + 1) * nj, nj - 1);
-    }
+    const double by_i = weights->smoothness / cells * (double)((ni - 1) * (ni - 1));
+    const double by_j = weights->smoothness / cells * (double)((nj - 1) * (nj - 1));
+    double *sums = work + 2 * ni * nj, low = INFINITY;
+    Task t = {
+        x, y, ni, nj, gx, gy,
+        {one * along, one * across, one * weights->shape, eps * eps},
+        {two * along, two * across, two * weights->shape, 16.0 * eps * eps},
+        {nj, ni - 1, nj, nj, weights->periodic, by_i, by_j, work, work + ni * nj},
+        {nj, ni, nj - 1, 1, weights->periodic, by_i, by_j, work, work + ni * nj},
+        eps > 0.0, sums, sums + ni, sums + 2 * ni, sums + 3 * ni, sums + 6 * ni,
+    };
+    team_run(threads, corner_share, &t);
+    double energy = in_order(t.cells, ni - 1);
+    for (ptrdiff_t i = 0; i < ni - 1; i++)
+        low = t.least[i] < low ? t.least[i] : low;
     *smallest = low;
     if (!(eps > 0.0) && !(low > 0.0))
         return INFINITY;
     if (weights->smoothness > 0.0) {
-        const double by_i = weights->smoothness / cells * (double)((ni - 1) * (ni - 1));
-        const double by_j = weights->smoothness / cells * (double)((nj - 1) * (nj - 1));
-        double *length = work, *inverse = work + ni * nj;
-        const int p = weights->periodic;
-        energy += family(x, y, nj, ni - 1, nj, nj, p, by_i, by_j, gx, gy, length, inverse, rows);
-        energy += family(x, y, nj, ni, nj - 1, 1, p, by_i, by_j, gx, gy, length, inverse, rows);
+        team_run(threads, along_share, &t);
+        energy += in_order(t.lengths, ni - 1);
+        team_run(threads, across_share, &t);
+        energy += in_order(t.lengths, ni);
     }
     if (weights->relief && !(eps > 0.0))
         energy -= relieve(x, y, ni, nj, weights, one * weights->shape, gx, gy);
@@ -102,7 +230,7 @@ static int newton_step(const Band *b, double *z, const Weights *weights, double 
         memcpy(at, z, 2 * (size_t)nodes * sizeof *z);
         for (ptrdiff_t k = 0; k < n; k++)
             at[place_of(b, k)] += factor * (double)moves[k];
-        const double found = variational_energy(at, at + nodes, ni, nj, weights, fresh, fresh + nodes, &low, work);
+        const double found = variational_energy(at, at + nodes, ni, nj, weights, 1, fresh, fresh + nodes, &low, work);
         if (found <= *value + 1e-4 * factor * slope) {
             *value = found;
             memcpy(z, at, 2 * (size_t)nodes * sizeof *z);
@@ -117,7 +245,7 @@ static int newton_step(const Band *b, double *z, const Weights *weights, double 
 int newton_steps(const Band *b, double *z, const Weights *weights, int most, double won, double *room, float *moves)
 {
     const ptrdiff_t ni = b->mi + 2, nj = b->mj + 2, nodes = ni * nj;
-    double low, value = variational_energy(z, z + nodes, ni, nj, weights, room, room + nodes, &low, room + 6 * nodes);
+    double low, value = variational_energy(z, z + nodes, ni, nj, weights, 1, room, room + nodes, &low, room + 6 * nodes);
     double before = value;
     int done = 0;
     while (done < most && newton_step(b, z, weights, &value, room, room + 2 * nodes, moves)) {
@@ -134,60 +262,108 @@ void descent_sizes(const Descent *d, size_t *doubles, size_t *floats)
     const Spectrum *s = &d->spectrum;
     const ptrdiff_t nodes = values_of(&s->eta), modes = modes_of(&s->eta), free_nodes = s->mi * s->mj;
     const size_t widest = (size_t)(nodes > modes ? nodes : modes);
-    *doubles = 4 * (size_t)(d->ni * d->nj) + variational_workspace(d->ni, d->nj) + 4 * (size_t)free_nodes;
-    *floats = 2 * (size_t)free_nodes + steps_floats(2 * free_nodes) + 6 * (size_t)s->mi * widest + PANEL * DEPTH +
-              (size_t)(ROWS * s->mj);
+    *doubles = 4 * (size_t)(d->ni * d->nj) + variational_workspace(d->ni, d->nj, d->threads) + 4 * (size_t)free_nodes;
+    *floats = 2 * (size_t)free_nodes + steps_floats(2 * free_nodes) + 6 * (size_t)s->mi * widest +
+              (size_t)d->threads * (size_t)member_floats(s) + (size_t)(SPACE * SPACE * space_blocks(s->mi));
 }
 
 void descent_place(Descent *d, double *doubles, float *floats)
 {
     const ptrdiff_t nodes = d->ni * d->nj, n = 2 * d->spectrum.mi * d->spectrum.mj;
     d->full = doubles, d->work = d->full + 4 * nodes;
-    double *gradient = d->work + variational_workspace(d->ni, d->nj);
+    double *gradient = d->work + variational_workspace(d->ni, d->nj, d->threads);
     d->frame = floats;
     steps_place(&d->steps, n, gradient, gradient + n, floats + n);
+    d->steps.threads = d->threads;
     d->transform = floats + n + steps_floats(n);
 }
 
-/* Planes of z moved by `factor` directions. */
+/* A step that a team tries. */
+typedef struct {
+    const Descent *d;
+    double factor;
+} Try;
+
+/* Rows `first` to before `last` of planes of z, moved by `factor` directions. */
 MESHONET_CLONES
-static void move(const Descent *d, double factor, double *restrict to)
+static void move_rows(const Descent *d, double factor, ptrdiff_t first, ptrdiff_t last)
 {
     const ptrdiff_t nj = d->nj, nodes = d->ni * nj, mi = d->spectrum.mi, mj = d->spectrum.mj;
-    memcpy(to, d->z, 2 * (size_t)nodes * sizeof *to);
-    for (int c = 0; c < 2; c++) {
-        for (ptrdiff_t i = 0; i < mi; i++) {
-            const float *restrict step = d->steps.direction + (c * mi + i) * mj;
-            double *restrict row = to + c * nodes + (d->first + i) * nj + 1;
+    for (int c = 0; c < 2 && first < last; c++) {
+        double *to = d->full + c * nodes;
+        memcpy(to + first * nj, d->z + c * nodes + first * nj, (size_t)((last - first) * nj) * sizeof *to);
+        for (ptrdiff_t i = first; i < last; i++) {
+            const ptrdiff_t k = i - d->first;
+            if (k < 0 || k >= mi)
+                continue;
+            const float *restrict step = d->steps.direction + (c * mi + k) * mj;
+            double *restrict row = to + i * nj + 1;
             for (ptrdiff_t j = 0; j < mj; j++)
                 row[j] += factor * (double)step[j];
         }
-        if (d->weights.periodic)
-            memcpy(to + c * nodes + (d->ni - 1) * nj, to + c * nodes, (size_t)nj * sizeof *to);
     }
+}
+
+static void move_share(void *data, Member member)
+{
+    const Try *t = data;
+    ptrdiff_t first, last;
+    team_share(t->d->ni, member, &first, &last);
+    move_rows(t->d, t->factor, first, last);
+}
+
+/* Planes of z moved by `factor` directions. */
+static void move(const Descent *d, double factor)
+{
+    const ptrdiff_t nj = d->nj, last = (d->ni - 1) * nj;
+    Try t = {d, factor};
+    team_run(d->threads, move_share, &t);
+    for (int c = 0; c < 2 && d->weights.periodic; c++) {
+        double *to = d->full + c * d->ni * nj;
+        memcpy(to + last, to, (size_t)nj * sizeof *to);
+    }
+}
+
+/* The gradient at free nodes. */
+static void fresh_share(void *data, Member member)
+{
+    const Descent *d = data;
+    const ptrdiff_t nodes = d->ni * d->nj, mi = d->spectrum.mi, mj = d->spectrum.mj;
+    const double *g = d->full + 2 * nodes;
+    ptrdiff_t first, last;
+    team_share(mi, member, &first, &last);
+    for (int c = 0; c < 2; c++)
+        for (ptrdiff_t i = first; i < last; i++)
+            memcpy(d->steps.fresh + (c * mi + i) * mj, g + c * nodes + (d->first + i) * d->nj + 1,
+                   (size_t)mj * sizeof *g);
 }
 
 static double attempt(void *problem, double factor, double *smallest)
 {
     Descent *d = problem;
-    const ptrdiff_t nodes = d->ni * d->nj, mi = d->spectrum.mi, mj = d->spectrum.mj;
+    const ptrdiff_t nodes = d->ni * d->nj;
     const double *at = factor > 0.0 ? d->full : d->z;
     double *g = d->full + 2 * nodes;
     if (factor > 0.0)
-        move(d, factor, d->full);
+        move(d, factor);
     const double value =
-        variational_energy(at, at + nodes, d->ni, d->nj, &d->weights, g, g + nodes, smallest, d->work);
-    for (int c = 0; c < 2; c++)
-        for (ptrdiff_t i = 0; i < mi; i++)
-            memcpy(d->steps.fresh + (c * mi + i) * mj, g + c * nodes + (d->first + i) * d->nj + 1,
-                   (size_t)mj * sizeof *g);
+        variational_energy(at, at + nodes, d->ni, d->nj, &d->weights, d->threads, g, g + nodes, smallest, d->work);
+    team_run(d->threads, fresh_share, d);
     return value;
+}
+
+static void keep_share(void *data, Member member)
+{
+    const Descent *d = data;
+    ptrdiff_t first, last;
+    team_share(2 * d->ni * d->nj, member, &first, &last);
+    memcpy(d->z + first, d->full + first, (size_t)(last - first) * sizeof *d->z);
 }
 
 static void keep(void *problem)
 {
-    Descent *d = problem;
-    memcpy(d->z, d->full, 2 * (size_t)(d->ni * d->nj) * sizeof *d->z);
+    const Descent *d = problem;
+    team_run(d->threads, keep_share, problem);
 }
 
 void descent_start(Descent *d)

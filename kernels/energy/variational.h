@@ -52,6 +52,7 @@ typedef struct {
 /* A descent under way. The free nodes are those of rows `first` to `first` + mi - 1, columns 1 to mj. */
 typedef struct {
     ptrdiff_t ni, nj, first;
+    int threads; /* that work on it, with the same result for any number */
     Weights weights;
     Spectrum spectrum;
     Space space;
@@ -60,12 +61,12 @@ typedef struct {
     Steps steps;              /* the unknowns are planes (2, mi, mj) */
 } Descent;
 
-size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj);
+size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj, int threads);
 
 /* Return the functional of the nodes x, y (ni, nj); its gradient in gx, gy, zero on the rim; the smallest corner
    Jacobian. */
 double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights,
-                          double *gx, double *gy, double *smallest, double *work);
+                          int threads, double *gx, double *gy, double *smallest, double *work);
 
 /* Shape the band, and return how many floats its columns take; vectors take 2 mi mj + width. */
 size_t band_floats(Band *b, ptrdiff_t mi, ptrdiff_t mj);
@@ -75,7 +76,7 @@ size_t band_floats(Band *b, ptrdiff_t mi, ptrdiff_t mj);
 int band_factor(const Band *b, const double *z, const Weights *weights, double *unit);
 
 /* Steps of Newton's method from z (2, mi + 2, mj + 2), in place, `most` at the most, none after one that lowers the
-   functional by less than `won` of it; returns how many. `room` holds three times as much as z and the workspace,
+   functional by less than `won` of it; returns how many. `room` holds three times as much as z and the workspace of a thread,
    `moves` a vector of the band. */
 int newton_steps(const Band *b, double *z, const Weights *weights, int most, double won, double *room, float *moves);
 

@@ -30,7 +30,8 @@ static const double CALM = 0.25;
 /* What `even` grows by for each unit that neighbouring edges differ too much. */
 static const double EVENING = 15.0;
 
-#define WIDE 1024 /* nodes of a level from which on it is eliminated from both ends */
+#define WIDE 1024 /* nodes of a level from which on it is eliminated from both ends, and worked on in blocks */
+#define BLOCK 256 /* nodes: whatever the share, a loop runs over the same ones, and rounds them alike */
 
 typedef struct {
     double a, b, c, d; /* a b / c d */
@@ -119,6 +120,13 @@ MESHONET_INLINE void widen(const March *m, ptrdiff_t n, const double *widening, 
 typedef struct {
     ptrdiff_t from, to;
 } Nodes;
+
+/* Block k of a level. */
+MESHONET_INLINE Nodes block_of(ptrdiff_t k, ptrdiff_t n)
+{
+    const ptrdiff_t each = n < WIDE ? n : BLOCK;
+    return (Nodes){k * each, (k + 1) * each < n ? (k + 1) * each : n};
+}
 
 /* Unit edges and their lengths. */
 MESHONET_INLINE void measure_edges(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
@@ -367,7 +375,8 @@ MESHONET_INLINE void solve_closed(const Task *t, Member member, Nodes own, doubl
     if (last && middle < k)
         substitute_closed(m, known, k, 1);
     team_wait(member);
-    add_closed(m, x, y, n, own, x + n, y + n);
+    for (ptrdiff_t k = own.from; k < own.to; k++)
+        add_closed(m, x, y, n, block_of(k, n), x + n, y + n);
 }
 
 MESHONET_INLINE void solve_open(const Task *t, Member member, double *x, double *y)
@@ -405,13 +414,14 @@ static void march(void *data, Member member)
     const int closed = t->ends == NULL;
     double *x = t->x, *y = t->y;
     double height = 0.0;
-    Nodes own;
-    team_share(n, member, &own.from, &own.to);
+    Nodes own; /* blocks */
+    team_share(n < WIDE ? 1 : (n + BLOCK - 1) / BLOCK, member, &own.from, &own.to);
     for (ptrdiff_t level = 0; level < levels; level++, x += n, y += n) {
         const double step = t->steps[level];
         const ptrdiff_t risen = level + 1 < settings->rise ? level + 1 : settings->rise;
         const double growth = sqrt((double)risen / (double)levels);
-        measure_edges(&m, x, y, n, own, closed);
+        for (ptrdiff_t k = own.from; k < own.to; k++)
+            measure_edges(&m, x, y, n, block_of(k, n), closed);
         team_wait(member);
         if (member.rank == 0) {
             const double calm = fmin((double)level / (CALM * (double)levels), 1.0);
@@ -422,7 +432,8 @@ static void march(void *data, Member member)
         }
         team_wait(member);
         height += step;
-        assemble(&m, own, level == 0, growth, settings->bend * step * height, settings);
+        for (ptrdiff_t k = own.from; k < own.to; k++)
+            assemble(&m, block_of(k, n), level == 0, growth, settings->bend * step * height, settings);
         team_wait(member);
         if (closed)
             solve_closed(t, member, own, x, y);

@@ -31,7 +31,8 @@ typedef struct {
     const SolidNodes *nodes;
     double *summary;
     int64_t *where;
-    int failed; /* by any thread */
+    float *values; /* or none */
+    int failed;    /* by any thread */
 } Lines;
 
 /* Take `count` values from (i, j, k) on into measure `m` of a plane. */
@@ -42,6 +43,12 @@ static void take(const Lines *lines, ptrdiff_t m, const double *row, ptrdiff_t c
     if (count < 1)
         return;
     values_reduce(row, count, &low, &high, &sum);
+    if (lines->values) {
+        const ptrdiff_t nj = lines->nodes->nj, nk = lines->nodes->nk;
+        float *to = lines->values + ((m * lines->nodes->ni + at[0]) * nj + at[1]) * nk + at[2];
+        for (ptrdiff_t k = 0; k < count; k++)
+            to[k] = (float)row[k];
+    }
     summary[1] += sum;
     if (high <= summary[0])
         return;
@@ -86,9 +93,9 @@ static void of_planes(void *data, Member member)
     free(growth);
 }
 
-int solids_lines(const SolidNodes *nodes, int threads, double *summary, int64_t *where)
+int solids_lines(const SolidNodes *nodes, int threads, double *summary, int64_t *where, float *values)
 {
-    Lines lines = {nodes, summary, where, 0};
+    Lines lines = {nodes, summary, where, values, 0};
     for (ptrdiff_t k = 0; k < nodes->ni * 6; k++) {
         summary[2 * k] = -1;
         summary[2 * k + 1] = 0;

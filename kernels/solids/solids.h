@@ -62,5 +62,6 @@ int solids_rows(const SolidNodes *nodes, const double *volumes, const int64_t *r
 
 /* Grid lines through the nodes (i, j, k): how their steps grow, the larger over the smaller, and by how many degrees
    they bend. For each plane i, axis and of these two the greatest, -1 without nodes, and the sum, (ni, 3, 2, 2), and
-   the node of the greatest, (ni, 3, 2, 3). Returns 0 when there is no memory. */
-int solids_lines(const SolidNodes *nodes, int threads, double *summary, int64_t *where);
+   the node of the greatest, (ni, 3, 2, 3); `values`, if any, takes all, (3, 2, ni, nj, nk). Returns 0 when there is no
+   memory. */
+int solids_lines(const SolidNodes *nodes, int threads, double *summary, int64_t *where, float *values);

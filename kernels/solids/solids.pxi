@@ -22,7 +22,8 @@ cdef extern from "solids/solids.h":
     int c_solids_run "solids_run"(const SolidRun *run, int threads) nogil
     int c_solids_rows "solids_rows"(const SolidNodes *nodes, const double *volumes, const int64_t *rows, ptrdiff_t n,
                                     double *values) nogil
-    int c_solids_lines "solids_lines"(const SolidNodes *nodes, int threads, double *summary, int64_t *where) nogil
+    int c_solids_lines "solids_lines"(const SolidNodes *nodes, int threads, double *summary, int64_t *where,
+                                         float *values) nogil
 
 
 cdef SolidNodes solid_nodes(nodes) except *:
@@ -109,13 +110,19 @@ def solids_rows(nodes, volumes, rows, values):
         raise MemoryError
 
 
-def solids_lines(nodes, int threads, summary, where):
-    """Fill summary (ni, 3, 2, 2) and where (ni, 3, 2, 3) with growth and bend along the axes; ``solids/solids.h``."""
+def solids_lines(nodes, int threads, summary, where, values=None):
+    """Fill summary (ni, 3, 2, 2) and where (ni, 3, 2, 3) with growth and bend along the axes; ``solids/solids.h``.
+
+    `values` (3, 2, ni, nj, nk) takes them all, at nodes between two others of the line.
+    """
     cdef SolidNodes block = solid_nodes(nodes)
     cdef Written to = fills(summary, (block.ni, 3, 2, 2))
     cdef int64_t *places = fills_long(where, (block.ni, 3, 2, 3))
     cdef int done
+    cdef float *every = NULL if values is None else fills_single(values)
+    if values is not None and values.shape != (3, 2, *nodes.shape[:3]):
+        raise ValueError(f"an array of shape {values.shape}")
     with nogil:
-        done = c_solids_lines(&block, threads, to, places)
+        done = c_solids_lines(&block, threads, to, places, every)
     if not done:
         raise MemoryError

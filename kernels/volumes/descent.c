@@ -231,42 +231,69 @@ MESHONET_INLINE ptrdiff_t place_of(const Descent3 *d, ptrdiff_t i, ptrdiff_t j)
     return ((i + 1) * d->f.n2 + j + 1) * d->f.n3 + 1;
 }
 
-MESHONET_CLONES
-static void move(const Descent3 *d, double factor)
+/* Copies between all nodes and inner ones, by rows of inner nodes. */
+typedef struct {
+    Descent3 *d;
+    double factor;
+    void (*row)(Descent3 *d, double factor, ptrdiff_t from, ptrdiff_t to);
+} Copies;
+
+static void copy_share(void *data, Member member)
 {
+    const Copies *copies = data;
+    Descent3 *d = copies->d;
     const ptrdiff_t nodes = d->f.n1 * d->f.n2 * d->f.n3, inner = d->m[0] * d->m[1] * d->m[2];
-    memcpy(d->trial, d->x, 3 * (size_t)nodes * sizeof *d->trial);
+    ptrdiff_t first, last;
+    team_share(d->m[0], member, &first, &last);
     for (ptrdiff_t c = 0; c < 3; c++)
-        for (ptrdiff_t i = 0; i < d->m[0]; i++)
-            for (ptrdiff_t j = 0; j < d->m[1]; j++) {
-                const float *restrict step = d->steps.direction + c * inner + (i * d->m[1] + j) * d->m[2];
-                double *restrict to = d->trial + c * nodes + place_of(d, i, j);
-                for (ptrdiff_t k = 0; k < d->m[2]; k++)
-                    to[k] += factor * (double)step[k];
-            }
+        for (ptrdiff_t i = first; i < last; i++)
+            for (ptrdiff_t j = 0; j < d->m[1]; j++)
+                copies->row(d, copies->factor, c * inner + (i * d->m[1] + j) * d->m[2], c * nodes + place_of(d, i, j));
+}
+
+static void copy_rows(Descent3 *d, double factor, void (*row)(Descent3 *, double, ptrdiff_t, ptrdiff_t))
+{
+    Copies copies = {d, factor, row};
+    team_run(d->f.threads, copy_share, &copies);
+}
+
+MESHONET_CLONES
+static void moved_row(Descent3 *d, double factor, ptrdiff_t from, ptrdiff_t to)
+{
+    const float *restrict step = d->steps.direction + from;
+    const double *restrict x = d->x + to;
+    double *restrict trial = d->trial + to;
+    for (ptrdiff_t k = 0; k < d->m[2]; k++)
+        trial[k] = x[k] + factor * (double)step[k];
+}
+
+static void gradient_row(Descent3 *d, double factor, ptrdiff_t to, ptrdiff_t from)
+{
+    (void)factor;
+    memcpy(d->steps.fresh + to, d->g + from, (size_t)d->m[2] * sizeof *d->g);
+}
+
+static void kept_row(Descent3 *d, double factor, ptrdiff_t from, ptrdiff_t to)
+{
+    (void)factor, (void)from;
+    memcpy(d->x + to, d->trial + to, (size_t)d->m[2] * sizeof *d->x);
 }
 
 static double attempt(void *problem, double factor, double *smallest)
 {
     Descent3 *d = problem;
-    const ptrdiff_t nodes = d->f.n1 * d->f.n2 * d->f.n3, inner = d->m[0] * d->m[1] * d->m[2];
     if (factor > 0.0)
-        move(d, factor);
+        copy_rows(d, factor, moved_row);
     const double value = volume_energy(&d->f, factor > 0.0 ? d->trial : d->x, d->g, smallest, d->room);
     if (factor > 0.0 && !(d->f.epsilon > 0.0) && *smallest < CLOSER * d->steps.smallest)
         return INFINITY; /* a node this near the barrier would hold up all steps that follow */
-    for (ptrdiff_t c = 0; c < 3; c++)
-        for (ptrdiff_t i = 0; i < d->m[0]; i++)
-            for (ptrdiff_t j = 0; j < d->m[1]; j++)
-                memcpy(d->steps.fresh + c * inner + (i * d->m[1] + j) * d->m[2], d->g + c * nodes + place_of(d, i, j),
-                       (size_t)d->m[2] * sizeof *d->g);
+    copy_rows(d, 0.0, gradient_row);
     return value;
 }
 
 static void keep(void *problem)
 {
-    Descent3 *d = problem;
-    memcpy(d->x, d->trial, 3 * (size_t)(d->f.n1 * d->f.n2 * d->f.n3) * sizeof *d->x);
+    copy_rows(problem, 0.0, kept_row);
 }
 
 /* In cells. */
@@ -289,6 +316,7 @@ void descent3_start(Descent3 *d)
     Steps *s = &d->steps;
     s->problem = d, s->attempt = attempt, s->keep = keep, s->precondition = precondition;
     s->largest_move = largest_move;
+    memcpy(d->trial, d->x, 3 * (size_t)(d->f.n1 * d->f.n2 * d->f.n3) * sizeof *d->trial); /* nodes that never move */
     descent3_renew(d);
     steps_start(s);
 }

@@ -261,3 +261,39 @@ def volume_lines(nodes, int axis, low, high, double reach, int threads):
         failed = c_volume_lines(x, before, n, after, first, last, reach, threads)
     if failed:
         raise MemoryError
+
+
+cdef extern from "volumes/near_faces.h":
+    ctypedef struct Wall3:
+        Read nodes
+        ptrdiff_t n, m
+        int axis, end
+    ptrdiff_t c_closed_node "closed_node"(const Wall3 *walls, int count, const ptrdiff_t *first, const ptrdiff_t *last,
+                                          int threads) nogil
+
+
+def closed_node(tuple walls, tuple ranges, int threads):
+    """Return the number, in order, of the first node in `ranges` that has no place next to `walls`, or -1.
+
+    `walls`: at most three (nodes (n, m, 3), axis, end), across different axes; `ranges`: first and last (excluded) of
+    inner nodes along each direction.
+    """
+    cdef Wall3 faces[3]
+    cdef ptrdiff_t first[3]
+    cdef ptrdiff_t last[3]
+    cdef ptrdiff_t found
+    cdef int count = len(walls), k, e
+    if not 1 <= count <= 3:
+        raise ValueError("one to three walls")
+    for k in range(3):
+        first[k], last[k] = ranges[k]
+    for k, (nodes, axis, end) in enumerate(walls):
+        faces[k].n, faces[k].m = nodes.shape[:2]
+        faces[k].nodes, faces[k].axis, faces[k].end = reads(nodes, (faces[k].n, faces[k].m, 3)), axis, end
+        sizes = [faces[k].n, faces[k].m]
+        for e, size in zip([each for each in range(3) if each != axis], sizes):
+            if first[e] < 1 or last[e] > size - 1:
+                raise ValueError("a range beyond the inner nodes")
+    with nogil:
+        found = c_closed_node(faces, count, first, last, min(max(threads, 1), 64))
+    return found

@@ -30,16 +30,31 @@ def deform(
 
     Parameters
     ----------
-    grid : a planar grid or a volume, or a file that holds one.
-    wall : the new shape of its only wall, or of several by name. An outline takes nodes at the same share of
-        arc length between its features; the boundary of another grid, or nodes (n, d), is taken node by node;
-        a `meshonet.Motion` moves the wall as it is. A whole grid without a name gives all its boundary.
-    allow_invalid : return a grid with folded cells too.
-    threads : of kernels; None is one a core.
+    grid : Grid, str or Path
+        A planar grid or a volume, or a file that holds one.
+    wall : str, Path, Grid, Boundary, Motion or array, or dict of these by name
+        The new shape of its only wall, or of several by name. An outline takes nodes at the same share of arc
+        length between its features; the boundary of another grid, or nodes (n, d), is taken node by node; a
+        `meshonet.Motion` moves the wall as it is. A whole grid without a name gives all its boundary.
+    allow_invalid : bool, optional
+        Return a grid with folded cells too.
+    threads : int, optional
+        Threads of kernels; None is one a core.
 
-    Raises InputError: a file, wall or shape that cannot be used, a starting grid with folded cells;
-    NoValidGridError: cells are folded, with the worst places.
+    Returns
+    -------
+    Grid
+        A grid that follows a changed boundary, its layers as they were.
 
+    Raises
+    ------
+    InputError
+        A file, wall or shape that cannot be used, a starting grid with folded cells.
+    NoValidGridError
+        Cells are folded, with the worst places.
+
+    Examples
+    --------
     >>> import meshonet
     >>> start = meshonet.grid("naca:0012", res=(81, 31), te="wedge")
     >>> moved = deform(start, "naca:2412")
@@ -62,6 +77,20 @@ def _read(wall: AnyWall) -> NewWall:
 def rotation(degrees: float, about: Sequence[float] = (0.0, 0.0)) -> Motion:
     """Return the motion that turns the plane counter-clockwise about a point (2,).
 
+    Parameters
+    ----------
+    degrees : float
+        The angle.
+    about : tuple of 2 float, optional
+        The point that stays where it is.
+
+    Returns
+    -------
+    Motion
+        The motion that turns the plane counter-clockwise about a point (2,).
+
+    Examples
+    --------
     >>> rotation(90, about=(1, 0))(np.array([[2.0, 0.0]])).round(12).tolist()
     [[1.0, 1.0]]
     """

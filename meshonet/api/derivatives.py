@@ -16,17 +16,31 @@ def deform_derivative(
 ) -> DeformationDerivative:
     """Return the deformed grid with the derivative of its nodes by those of the walls.
 
-    Parameters
-    ----------
-    grid : a planar grid, or a file that holds one.
-    wall : as of `meshonet.deform`.
-
     What is returned has the ``grid``; the numbers of the ``walls``' nodes by name; ``along(moves)``, the
     moves of all nodes when walls' make `moves` (n, 2) by name; and ``transposed(pull)``, the derivative of a
     functional by the walls' nodes from that by all nodes (ni, nj, 2).
 
-    Raises InputError: as `meshonet.deform`, and a volume; NoValidGridError: cells fold in one step.
+    Parameters
+    ----------
+    grid : Grid, str or Path
+        A planar grid, or a file that holds one.
+    wall : str, Path, Grid, Boundary, Motion or array, or dict of these by name
+        As of `meshonet.deform`.
 
+    Returns
+    -------
+    DeformationDerivative
+        The deformed grid with the derivative of its nodes by those of the walls.
+
+    Raises
+    ------
+    InputError
+        As `meshonet.deform`, and a volume.
+    NoValidGridError
+        Cells fold in one step.
+
+    Examples
+    --------
     >>> import numpy as np, meshonet
     >>> start = meshonet.grid("naca:0012", res=(81, 31), te="wedge")
     >>> derivative = deform_derivative(start, "naca:1412")
@@ -42,19 +56,33 @@ def optimum_derivative(
 ) -> OptimumDerivative:
     """Return the derivative of a four-sided grid that solves equations by the nodes of its rim.
 
-    Parameters
-    ----------
-    grid : one block with a fixed rim, near the solution by `method`, or a file that holds it.
-    method : ``variational`` or ``winslow``.
-    weights : of the variational functional; None is what `meshonet.solve_pde` minimises.
-
     What is returned has the ``grid``, the solution to rounding; ``along(moves)``, the moves (ni, nj, 2) of
     all nodes when those of the rim make `moves`; and ``transposed(pull)``, the derivative of a functional by
     the rim from that by all nodes. Each takes one solve with factors that are kept.
 
-    Raises InputError: an O grid, several blocks, a volume, an unknown method; SolverError: the grid is far
-    from the solution.
+    Parameters
+    ----------
+    grid : Grid, str or Path
+        One block with a fixed rim, near the solution by `method`, or a file that holds it.
+    method : str, optional
+        ``variational`` or ``winslow``.
+    weights : Weights, optional
+        Of the variational functional; None is what `meshonet.solve_pde` minimises.
 
+    Returns
+    -------
+    OptimumDerivative
+        The derivative of a four-sided grid that solves equations by the nodes of its rim.
+
+    Raises
+    ------
+    InputError
+        An O grid, several blocks, a volume, an unknown method.
+    SolverError
+        The grid is far from the solution.
+
+    Examples
+    --------
     >>> import numpy as np, meshonet
     >>> x, y = np.meshgrid(np.linspace(0, 2, 17), np.linspace(0, 1, 9), indexing="ij")
     >>> duct = meshonet.solve_pde(Grid.from_nodes(np.stack([x, y], axis=-1)), res=(17, 9), method="winslow")

@@ -27,6 +27,13 @@ T = TypeVar("T")
 def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
     """Return the grid of a file, or the shape of one without grids or of a designation ``naca:2412``.
 
+    Parameters
+    ----------
+    path : str or Path
+        File, or a designation ``naca:2412``.
+    from_format : str, optional
+        Format, when neither ending nor content says.
+
     Returns
     -------
     Grid or shape
@@ -58,6 +65,13 @@ def only(records: Iterator[T], source: str, nothing: tuple[str, str], several: t
 def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Grid | Shape]:
     """Return an iterator over the grids of a file, or over the shapes of one without grids.
 
+    Parameters
+    ----------
+    path : str or Path
+        File, or a designation ``naca:2412``.
+    from_format : str, optional
+        Format, when neither ending nor content says.
+
     Returns
     -------
     iterator of Grid or shape
@@ -88,6 +102,8 @@ def write(what: Grid | Boundary | Layout, path: str | Path, *, to_format: str | 
 
     Parameters
     ----------
+    what : Grid, Boundary or Layout
+        What to write.
     path : str or Path
         File to write; its ending says the format.
     to_format : str, optional

@@ -4,18 +4,72 @@ from typing import Any
 
 from meshonet.solvers.neural.registry import described, shipped
 
+_USES = {
+    "airfoil-o": "O grids around airfoils, conformal",
+    "hole-o": "O grids around bodies with corners, variational",
+    "hole-winslow": "O grids around bodies with corners, Winslow's",
+    "quad-general": "four-sided domains, variational",
+    "quad-winslow": "four-sided domains, Winslow's",
+}
+_SPEEDS = {
+    "airfoil-o": "10 ms at 800 x 800",
+    "hole-o": "3 ms at 129 x 65",
+    "hole-winslow": "3 ms at 129 x 65",
+    "quad-general": "2 ms at 65 x 65",
+    "quad-winslow": "2 ms at 65 x 65",
+}
+"""About, on a core, without reading and writing: docs/benchmarks."""
+_HEADS = {"variational": "relative L2 from variational grids", "winslow": "relative L2 from Winslow's grids"}
+_FIRST_HEAD = ("hole-o", "quad-general")
 
-def models() -> list[dict[str, Any]]:
-    """Return what each shipped operator says of itself: name, topology, training, held-out figures.
+
+def models(name: str | None = None) -> list[dict[str, Any]]:
+    """Return what each shipped operator says of itself: name, use, topology, training, held-out figures.
+
+    Parameters
+    ----------
+    name : str, optional
+        The operator that is wanted alone; None gives all.
 
     Returns
     -------
     list of dict
         What each shipped operator says of itself: name, topology, training, held-out figures.
 
+    Raises
+    ------
+    InputError
+        No operator of this name.
+
     Examples
     --------
     >>> sorted(model["name"] for model in models())
     ['airfoil-o', 'hole-o', 'hole-winslow', 'quad-general', 'quad-winslow']
+    >>> models("quad-general")[0]["use"]
+    'four-sided domains, variational'
     """
-    return [dict(described(name)) for name in shipped()]
+    names = shipped() if name is None else (name,)
+    return [_facts(each) for each in names]
+
+
+def _facts(name: str) -> dict[str, Any]:
+    facts = dict(described(name))
+    return {
+        "name": facts.pop("name"),
+        "use": _USES.get(name, ""),
+        "speed": _SPEEDS.get(name, ""),
+        "error": _error(name, facts),
+        **facts,
+    }
+
+
+def _error(name: str, facts: dict[str, Any]) -> str:
+    """Return the median error over held-out domains in words, as far as the file tells it."""
+    figures = facts.get("figures", {})
+    if "strips" in figures:
+        return f"{figures['network']['median']:.1e} rad of the lift, {figures['strips']} airfoils held out"
+    head = "variational" if name in _FIRST_HEAD else "winslow"
+    if head not in figures:
+        return ""
+    median = figures[head]["relative_l2"]["median"]
+    return f"{median:.1e} {_HEADS[head]}, {figures['domains']} domains held out"

@@ -26,7 +26,7 @@ def plot(
     grid : Grid, str or Path
         A grid, or a file that holds one.
     output : str or Path
-        Picture to write, ``.png``, ``.svg`` or ``.pdf``.
+        Picture to write, ``.png``, ``.svg`` or ``.pdf``, or an interactive page, ``.html``.
     metric : str, optional
         Colours the cells; None draws lines only.
     zoom : tuple of float, optional
@@ -39,7 +39,7 @@ def plot(
     seen_from : tuple of 2 float, optional
         Azimuth and elevation in degrees that a picture in space is seen from.
     to_format : str, optional
-        ``png``, ``svg`` or ``pdf``, when the ending does not say.
+        ``png``, ``svg``, ``pdf`` or ``html``, when the ending does not say.
 
     Raises
     ------

@@ -1,10 +1,16 @@
-"""`meshonet.quality`."""
+"""`meshonet.quality` and `meshonet.quality_page`."""
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from meshonet.api.files import only
-from meshonet.formats.registry import read_grids
+from meshonet.formats.figure.report.report import QualityPage
+from meshonet.formats.output import whole_file
+from meshonet.formats.registry import format_for_output, read_grids
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.blocks import BLOCK_FIGURES
+from meshonet.geometry.quality.gates import parse_gates
 from meshonet.geometry.quality.report import QualityReport, quality_report
 from meshonet.geometry.threads import limited_to
 
@@ -49,6 +55,46 @@ def quality(
     reference = None if compare is None else single_grid(compare)
     with limited_to(threads):
         return quality_report(grid, profile, reference)
+
+
+def quality_page(
+    grids: Iterable[Grid | str | Path], output: str | Path, *,
+    profile: str | None = None, fail_on: Sequence[str] = (),
+) -> bool:  # fmt: skip
+    """Write the quality of grids as one page, and return whether all of them pass.
+
+    Parameters
+    ----------
+    grids : iterable of Grid, str or Path
+        Grids, or files that hold one each.
+    output : str or Path
+        Page to write, ``.html``.
+    profile : str, optional
+        Thresholds to judge by, as for `quality`.
+    fail_on : sequence of str
+        Gates, ``max_angle>170`` for instance.
+
+    Returns
+    -------
+    bool
+        Whether no cell is folded, no gate broken and no check of the profile failed.
+
+    Raises
+    ------
+    InputError
+        As `quality`; something that is no gate; an output that cannot be written.
+    """
+    gates = parse_gates(fail_on, BLOCK_FIGURES)
+    if format_for_output(str(output)).name != "html":
+        raise InputError("a report is a page", "name it FILE.html", parameter="output", source=str(output))
+    page = QualityPage(gates)
+    for number, source in enumerate(grids):
+        grid = single_grid(source)
+        label = str(source) if isinstance(source, str | Path) else grid.name or f"grid {number}"
+        page.add(label, quality(grid, profile=profile))
+    with whole_file(str(output)) as part:
+        page.write(part)
+    return page.passed
 
 
 def single_grid(grid: Grid | str | Path) -> Grid:

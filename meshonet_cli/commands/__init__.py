@@ -51,4 +51,5 @@ COMMANDS: tuple[Command, ...] = (
     Command("convert", "Turn files from one format into another."),
     Command("plot", "Draw grids, coloured by a quality metric."),
     Command("models", "List the operators that are shipped."),
+    Command("doctor", "Say what is installed, whether it works, and what could be added."),
 )

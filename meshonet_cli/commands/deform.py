@@ -7,7 +7,7 @@ from meshonet_cli import options as o
 EXAMPLES = (
     "meshonet deform grid.vts --wall naca:0014 -o moved.vts",
     "meshonet deform grid.vts --rotate wall=-5@0.25,0 --shift wall=0,0.01 -o turned.cgns",
-    "meshonet infer main.dat flap.dat --assemble --cells 2000 -o two.cgns && meshonet deform two.cgns "
+    "meshonet infer main.dat flap.dat --assemble --cells 1200 -o two.cgns && meshonet deform two.cgns "
     "--wall main=airfoil.dat --rotate flap=-5@1.1,-0.1 -o moved.cgns",
     "meshonet deform wing.cgns --shift bottom=0,0,-0.1 -o deeper.cgns",
 )

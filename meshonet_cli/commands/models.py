@@ -1,25 +1,45 @@
 """``meshonet models``."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
+
+import typer
 
 from meshonet_cli import options as o
 
-EXAMPLES = ("meshonet models", "meshonet models --json")
+EXAMPLES = ("meshonet models", "meshonet models quad-general", "meshonet models --json")
 
 
-def models(as_json: o.AsJson = False, debug: o.Debug = False) -> int:
+def models(
+    name: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="NAME", show_default=False, help="Model to tell all of: recipe and figures."),
+    ] = None,
+    as_json: o.AsJson = False,
+    debug: o.Debug = False,
+) -> int:
     """List the operators that are shipped."""
     from meshonet.api.models import models as described
     from meshonet_cli.session import Session
 
     session = Session(as_json=as_json, debug=debug)
-    for facts in described():
-        if as_json:
-            session.result(facts)
-        else:
-            session.print(model_text(facts))
+    facts = [model for each in name for model in described(each)] if name else described()
+    if as_json:
+        for model in facts:
+            session.result(model)
+    else:
+        session.print("\n".join(map(model_text, facts)) if name else models_table(facts))
     return session.finish()
+
+
+def models_table(models: list[dict[str, Any]]) -> str:
+    """Return a line a model: what it is for, how fast, how good."""
+    rows = [["model", "for", "takes", "median error"]]
+    rows += [[model["name"], model["use"], model["speed"], model["error"]] for model in models]
+    widths = [max(len(row[k]) for row in rows) for k in range(4)]
+    lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
+    more = "meshonet models NAME tells all of one; meshonet infer --model NAME makes grids by it"
+    return "\n".join([*(line.rstrip() for line in lines), "", more])
 
 
 def model_text(facts: Mapping[str, Any]) -> str:

@@ -8,6 +8,7 @@ EXAMPLES = (
     "meshonet plot grid.vts -o grid.png",
     "meshonet plot grid.vts --zoom 0.9,1.1,-0.1,0.1 --every 1 --metric skewness -o edge.svg",
     "meshonet plot wing.cgns --slice y=.5 -o slice.png",
+    "meshonet plot wing.cgns -o wing.html",
 )
 _BOX = ("a box", "x0,x1,y0,y1", "zoom")
 _DIRECTION = ("a direction", "azimuth and elevation in degrees, e.g. -125,25", "seen_from")
@@ -20,7 +21,8 @@ def plot(
     grid: o.Grids,
     output: Annotated[str, _output(
         "-o", "--output", metavar="PICTURE",
-        help="Picture to write, .png, .svg or .pdf, or - for standard output. For several inputs: "
+        help="Picture to write, .png, .svg or .pdf, or an interactive page, .html; - for standard output. "
+        "For several inputs: "
         "'dir/{stem}.png' (also {name}, {index}).",
     )],
     printing: o.PrintOptions,
@@ -46,7 +48,7 @@ def plot(
     from_format: o.From = None,
     to_format: Annotated[str | None, _output(
         "--to", metavar="FORMAT",
-        help="png, svg or pdf, when the ending does not say. [default on standard output: png]",
+        help="png, svg, pdf or html, when the ending does not say. [default on standard output: png]",
     )] = None,
     skip_existing: o.SkipExisting = False,
 ) -> int:

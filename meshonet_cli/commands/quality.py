@@ -8,6 +8,7 @@ EXAMPLES = (
     "meshonet quality grid.vts",
     "meshonet quality grid.vts --fail-on 'max_angle>179' --fail-on 'folded>0' --json",
     "meshonet quality grid.vts --profile openfoam",
+    "meshonet quality grid.vts --profile openfoam --html report.html",
     "meshonet quality grid.vts --per-cell metrics.vts",
     "meshonet quality grid.vts --compare other.vts",
     "meshonet quality grids/*.vts --compare grid.vts --summary --fail-on 'relative_l2>0.01'",
@@ -28,6 +29,11 @@ def quality(
     )] = None,
     plot: Annotated[str | None, _output(
         "--plot", metavar="F.png", help="Draw the grid, coloured by max_angle.",
+    )] = None,
+    html: Annotated[str | None, _output(
+        "--html", metavar="F.html",
+        help="Write a report as one page, with pictures, histograms, worst places, and what --fail-on and "
+        "--profile find; of more than 20 grids the worst are shown.",
     )] = None,
     per_cell: Annotated[str | None, _output(
         "--per-cell", metavar="F.vts", help="Write every metric of every cell; of many blocks to an F.vtm.",
@@ -57,6 +63,6 @@ def quality(
         return measure_grids(
             grid, printing.session(),
             fmt=from_format, fail_on=fail_on, profile=profile, compare=compare, pairing=pair or "auto",
-            summary=summary, plot=plot, per_cell=per_cell,
+            summary=summary, plot=plot, html=html, per_cell=per_cell,
         )
 # fmt: on

@@ -72,8 +72,17 @@ class NodeTable:
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """Of the whole outer boundary."""
-        return tuple(self.piece(patch) for patch in self.grid.outer_patches())
+        """Of the whole outer boundary, nameless periodic sides included."""
+        periodic = [
+            Patch("", side, *span[0], across=span[1] if span[1:] else None, block=block)
+            for each in self.grid.connections
+            if each.transform is not None
+            for block, side, span in (
+                (each.block, each.side, each.range),
+                (each.donor, each.donor_side, each.donor_range),
+            )
+        ]
+        return tuple(self.piece(patch) for patch in (*self.grid.outer_patches(), *periodic))
 
     def piece(self, patch: Patch) -> Piece:
         """Return the nodes of a patch."""

@@ -49,12 +49,12 @@ def sources_of(table: NodeTable, moved: Bools) -> Sources:
     elements = elements_of(table.pieces, table.nodes.shape[1])
     areas = areas_of(table.nodes, elements)
     stays = [piece for piece in table.pieces if not moved[piece.numbers].all()]
-    touching = [piece for piece in stays if moved[piece.numbers].any()]
+    touching = [piece for piece in stays if piece.patch.name and moved[piece.numbers].any()]
     slides, still = np.zeros(len(moved), dtype=bool), np.zeros(len(moved), dtype=bool)
     for piece in touching:
         slides[piece.numbers.ravel()] = True
     for piece in stays:
-        if not moved[piece.numbers].any():
+        if piece not in touching:
             still[piece.numbers.ravel()] = True
             _group(table, piece, moved, areas)
     slides &= ~moved & ~still

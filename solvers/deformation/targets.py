@@ -58,7 +58,12 @@ def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> Targ
             at, to = numbers.ravel(), places.reshape(-1, nodes.shape[1])
             _check(name, table.nodes[at], nodes[at], to, moved[at])
             moved[at], nodes[at] = True, to
-        names = dict.fromkeys(piece.patch.name for _, _, pieces in named for piece in pieces)
+    for piece in table.pieces:
+        own = piece.numbers
+        if not piece.patch.name and (nodes[own] != table.nodes[own]).any():
+            problem = "a wall is moved where it ends on a periodic side"
+            raise InputError(problem, "keep its ends, or make the grid anew", parameter="wall")
+    names = dict.fromkeys(piece.patch.name for _, _, pieces in named for piece in pieces)
     return Targets(moved, nodes, tuple(names), tuple(dict.fromkeys(notes)))
 
 
@@ -94,7 +99,7 @@ def _patches(new: Grid | Boundary) -> Sequence[Any]:
 def _pieces(table: NodeTable, name: str) -> list[Piece]:
     pieces = [piece for piece in table.pieces if piece.patch.name == name]
     if not pieces:
-        names = ", ".join(dict.fromkeys(piece.patch.name for piece in table.pieces))
+        names = ", ".join(dict.fromkeys(piece.patch.name for piece in table.pieces if piece.patch.name))
         raise InputError(f"the grid has no {name!r}", f"name one of its boundary: {names}", parameter="wall")
     return pieces
 
@@ -104,6 +109,12 @@ def _placed(
 ) -> Iterator[tuple[NDArray[np.intp], Floats]]:
     """Yield numbers (...) and new places (..., d) of the nodes of the pieces of a wall."""
     if isinstance(new, Motion):
+        dimension = table.nodes.shape[1]
+        if len(new.shift) not in (0, dimension) or len(new.turn) not in (0, dimension):
+            problem = (
+                f"the motion of {name!r} is not in the {'plane' if dimension == 2 else 'space'} of the grid"
+            )
+            raise InputError(problem, f"give {dimension} coordinates")
         for piece in pieces:
             yield piece.numbers, new(table.nodes[piece.numbers])
         return

@@ -12,6 +12,7 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import Modes, VariationalDescent
 from meshonet.solvers.energy.functional import Weights, aspect_of
 
@@ -66,7 +67,7 @@ def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights)
     scale = (ni - 1) * (nj - 1) / np.stack(symbol)
     left_out = (ni - 1 if periodic else ni - 2) * (nj - 2) > scale[0].size
     rest = float(scale.min()) if left_out else 0.0
-    return VariationalDescent(ni, nj, periodic, rows, columns, scale - rest, rest)
+    return VariationalDescent(ni, nj, periodic, rows, columns, scale - rest, rest, threads_for(ni * nj))
 
 
 Halves: TypeAlias = tuple[Modes, Modes]

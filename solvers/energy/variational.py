@@ -55,6 +55,7 @@ ROUGH = 3.0
 
 MOST = 1000  # iterations on a coarser level at the most
 WEAKER = 3  # how often the edge length term may be made weaker, to a fourth each time
+SPARE_DEGREES = 0.5  # by which a weaker term has to better Winslow's angles: finer levels take some back
 EASY = 1.7  # value of the functional, 1 on squares, up to which a minimum is the only one
 WEIGHTS = {"quad": Weights(), "o": AROUND, "c": WAKE}  # of the functional, by topology
 
@@ -149,9 +150,11 @@ def _coarsest(
     periodic = boundary.periodic
     nodes, iterations, valid = _descended(start, weights, still, most, periodic, easy, first)
     best = nodes, weights, iterations, valid
-    for _ in range(WEAKER):
+    for k in range(WEAKER):
         if not valid or all(value <= limit for value, limit in zip(angles(nodes), limits, strict=True)):
             return nodes, weights, iterations, valid
+        if k == 0:
+            limits[0] -= SPARE_DEGREES
         weights = replace(weights, smoothness=0.25 * weights.smoothness)
         nodes = nodes.copy(order="K")
         more, valid = descend(nodes, weights, still, most, periodic=periodic, first=first)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from meshonet.geometry.arrays import Topology
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, meant
 from meshonet.solvers.neural.model_file import OURS, PAPER, QUAD, STRIP, Kind, read_model
 from meshonet.solvers.neural.operator import Operator
 
@@ -68,8 +68,9 @@ def model_path(name: str) -> Path:
         return path
     if name in NEVER:
         raise InputError(f"there is no model {name!r}", NEVER[name])
-    known = ", ".join((BASE, *shipped()))
-    raise InputError(f"no model {name!r}", f"use a .safetensors file or one of: {known}")
+    known = (BASE, *shipped())
+    remedy = f"{meant(name, known)}use a .safetensors file or one of: {', '.join(known)}"
+    raise InputError(f"no model {name!r}", remedy)
 
 
 def load(name: str | Path) -> Operator:
@@ -129,7 +130,9 @@ def architecture(name: str, topology: Topology, settings: Mapping[str, Any] | No
     80
     """
     if name not in ARCHITECTURES:
-        raise InputError(f"model {name!r} is not known", "use one of " + ", ".join(MODELS))
+        raise InputError(
+            f"model {name!r} is not known", meant(name, MODELS) + "use one of " + ", ".join(MODELS)
+        )
     module, made = ARCHITECTURES[name]
     cls = getattr(importlib.import_module(f"{__package__}.models.{module}"), made)
     defaults = {field.name: field.default for field in dataclasses.fields(cls)}

@@ -78,6 +78,13 @@ class Result:
 def make_grid(shape: Shape, request: GridRequest) -> Result:
     """Return the grid of `shape` that `request` describes.
 
+    Parameters
+    ----------
+    shape : shape
+        Shape to sample, such as an airfoil or a `Boundary`.
+    request : GridRequest
+        How to make the grid.
+
     Returns
     -------
     Result
@@ -103,6 +110,13 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
 
     Shapes are read as results are taken, and a few ahead (`MOST_TOGETHER`, `MOST_NODES`) when the method
     solves many faster in one call. They do not change one another's grids but in the last digits.
+
+    Parameters
+    ----------
+    shapes : iterable of shape
+        Shapes to sample.
+    request : GridRequest
+        How to make all of the grids.
 
     Yields
     ------

@@ -15,11 +15,13 @@ def check_corners(faces: SixFaces) -> None:
     At a node of an edge of the volume the three edges of a cell that meet there lie in the two faces. If
     their Jacobian is not positive the cell is folded.
     """
-    worst, total, negative = [], 0, 0
+    check_hand(faces)
+    worst = []
+    negative = 0
     for side, second in edges():
         scaled = _jacobians(faces, side, second)
         bad = ~(scaled > 0)
-        total, negative = total + scaled.size, negative + int(bad.sum())
+        negative += int(bad.sum())
         if bad.any():
             segment, end = np.unravel_index(int(np.where(bad, scaled, 1.0).argmin()), scaled.shape)
             worst.append((float(scaled[segment, end]), side, second, int(segment + end)))
@@ -30,8 +32,6 @@ def check_corners(faces: SixFaces) -> None:
             problem = f"wherever node {at_node} is, the faces next to it fold a cell"
             raise InputError(problem, "change the faces there", place=_near(faces, place))
         return
-    if negative == total:
-        raise InputError("the volume is left-handed", "reverse one of its directions")
     least, side, second, at = min(worst)
     node = faces.edge(side, second)[at]
     index = _index(faces, side, second, at)
@@ -41,6 +41,18 @@ def check_corners(faces: SixFaces) -> None:
         f"{least:.3g}, {negative} such corners), whatever the nodes inside are"
     )
     raise InputError(problem, "change the faces there", place=place_of(node))
+
+
+def check_hand(faces: SixFaces) -> None:
+    """Raise InputError where the cells at all eight corners of the volume are left-handed."""
+    steps = [np.diff(np.stack(faces.edges_along(axis)), axis=1)[:, [0, -1]] for axis in range(3)]
+    places = np.array(list(np.ndindex(2, 2, 2))).T
+    edges = []
+    for axis, step in enumerate(steps):
+        first, second = (place for each, place in enumerate(places) if each != axis)
+        edges.append(step[first + 2 * second, places[axis]])
+    if (np.linalg.det(np.stack(edges, axis=-1)) < 0).all():
+        raise InputError("the volume is left-handed", "reverse one of its directions")
 
 
 def _near(faces: SixFaces, place: tuple[int, int, int]) -> str:

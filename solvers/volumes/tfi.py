@@ -7,6 +7,7 @@ from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.tfi import Blending
 from meshonet.solvers.solution import Solution
+from meshonet.solvers.volumes.edge_corners import check_hand
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import arc_laws, uniform_laws
 
@@ -18,12 +19,13 @@ def tfi(faces: SixFaces, *, blending: Blending = "arclength") -> Solution:
     that nodes crowd inside where they do along the edges; ``linear`` goes by node numbers. Folds are possible
     wherever faces are bent.
 
-    Raises InputError: an edge of no length; an unknown `blending`.
+    Raises InputError: an edge of no length; an unknown `blending`; a left-handed volume.
     """
     begun = time.perf_counter()
     if blending not in get_args(Blending):
         remedy = "use " + "/".join(get_args(Blending))
         raise InputError(f"blending {blending!r} is not known", remedy, parameter="blending")
+    check_hand(faces)
     laws = arc_laws(faces) if blending == "arclength" else uniform_laws(faces.counts)
     grid = faces.grid(interpolate(faces, laws), {"method": "tfi", "blending": blending})
     return Solution(grid, "tfi", seconds={"grid": time.perf_counter() - begun})

@@ -16,6 +16,7 @@ INPUTS = {
     "convert": ("grid.vts", "made.vts"),
     "plot": ("grid.vts", "-o", "made.png"),
     "models": (),
+    "doctor": (),
     "layout": ("step.wkt", "-o", "made.json"),
     "stack": ("wing.toml", "--around", "49", "--span", "9", "--layers", "18", "-o", "made.h5"),
     "deform": ("grid.vts", "--shift", "south=0,-0.1", "-o", "made.h5"),

@@ -15,6 +15,8 @@ SECTION = ("naca:0012", "--res", "81x33", "--topology", "c", "--first-cell", "1e
 @pytest.fixture(autouse=True)
 def start(meshonet: Meshonet) -> None:
     assert meshonet("infer", *SECTION, "-o", "start.h5").code == 0
+    square = "0,0\n1,0\n1,1\n0,1\n0,0\n"
+    Path("two.csv").write_text(square + "\n" + square.replace("0,", "5,").replace("1,", "6,"))
 
 
 def only(path: str) -> Grid:
@@ -93,6 +95,7 @@ def test_a_batch_names_its_failures(meshonet: Meshonet) -> None:
         (("--shift", "wall=1,2,3", "--rotate", "wall=5@0,0"), "is turned in the plane"),
         (("--shift", "tail=1,2"), "has no 'tail'"),
         (("--wall", "missing.dat"), "missing.dat"),
+        (("--wall", "two.csv"), "two.csv: holds several shapes; give a file with one"),
     ],
 )
 def test_bad_words_get_a_line(meshonet: Meshonet, words: tuple[str, ...], says: str) -> None:

@@ -15,7 +15,10 @@ def grid_vts(meshonet: Meshonet, body_h5: Path) -> Path:
     return Path("grid.vts")
 
 
-@pytest.mark.parametrize(("name", "start"), [("g.png", b"\x89PNG"), ("g.svg", b"<?xml"), ("g.pdf", b"%PDF")])
+@pytest.mark.parametrize(
+    ("name", "start"),
+    [("g.png", b"\x89PNG"), ("g.svg", b"<?xml"), ("g.pdf", b"%PDF"), ("g.html", b"<!doctype html>")],
+)
 def test_a_grid_becomes_a_picture(meshonet: Meshonet, grid_vts: Path, name: str, start: bytes) -> None:
     done = meshonet("plot", grid_vts, "-o", name)
     assert (done.code, done.out) == (0, "")
@@ -56,7 +59,7 @@ def test_a_batch_becomes_one_picture_each(meshonet: Meshonet, three_h5: Path) ->
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("-o", "g.vts"), "g.vts: vts is no picture; use .png, .svg or .pdf"),
+        (("-o", "g.vts"), "g.vts: vts is no picture; use .png, .svg, .pdf or .html"),
         (("-o", "g.png", "--metric", "beauty"), "--metric: metric 'beauty' is not known; use none or one of"),
         (("-o", "g.png", "--zoom", "1,0,0,1"), "--zoom: '1,0,0,1' is not a box; use x0,x1,y0,y1"),
         (("-o", "g.png", "--zoom", "a"), "--zoom: 'a' is not a box"),

@@ -138,7 +138,7 @@ def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
     ("words", "told"),
     [
         (("--per-cell", "cells.h5"), "only .vts and .vtm files hold metrics; name it FILE.vts"),
-        (("--plot", "grid.vts"), "vts is no picture; use .png, .svg or .pdf"),
+        (("--plot", "grid.vts"), "vts is no picture; use .png, .svg, .pdf or .html"),
         (("--compare", "missing.vts"), "missing.vts: no such file"),
         (("--pair", "name"), "--pair without --compare; give --compare as well, or drop --pair"),
         (("--profile",), "option '--profile' requires an argument; see meshonet quality --help"),
@@ -249,3 +249,26 @@ def test_compare_refuses_other_sizes(meshonet: Meshonet, tmp_path: Path, grid_vt
     done = meshonet("quality", grid_vts, "--compare", "other.vts")
     assert done.code == 2
     assert "21x11 nodes are not comparable with 31x11" in done.err
+
+
+def test_a_batch_becomes_one_page(meshonet: Meshonet, three_h5: Path) -> None:
+    meshonet("tfi", three_h5, "-o", "grids.h5", "-q")
+    done = meshonet("quality", "grids.h5", "--html", "q.html", "--fail-on", "max_angle>20", "--summary")
+    assert done.code == 1
+    page = Path("q.html").read_text()
+    assert page.count("<article") == 3
+    assert page.count("not max_angle&gt;20") == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [("q.png", "q.png: --html: a report is a page; name it FILE.html"), ("none/q.html", "none")],
+)
+def test_a_page_that_cannot_be_written_is_refused(
+    meshonet: Meshonet, three_h5: Path, name: str, told: str
+) -> None:
+    meshonet("tfi", three_h5, "-o", "grids.h5", "-q")
+    done = meshonet("quality", "grids.h5", "--html", name)
+    assert done.code == 2
+    assert told in done.err
+    assert not Path(name).exists()

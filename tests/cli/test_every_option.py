@@ -152,6 +152,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--profile": ("grid.h5", "OPTION viscous", "out"),
         "--plot": ("grid.h5", "OPTION grid.png", "files"),
         "--per-cell": ("grid.h5", "OPTION cells.vts", "files"),
+        "--html": ("grid.h5", "OPTION report.html", "files"),
         "--compare": ("grid.h5", "OPTION smooth.h5", "out"),
         "--pair": ("bc.h5 --compare cb.h5 --summary", "OPTION order", "out"),
         "--summary": ("grid.h5 smooth.h5", "OPTION", "out"),
@@ -274,6 +275,9 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--allow-invalid": (f"grid.h5 --rotate south=180@1,0 {MADE}", "OPTION", "code"),
     },
     "models": {
+        "--json": ("", "OPTION", "out"),
+    },
+    "doctor": {
         "--json": ("", "OPTION", "out"),
     },
     "train": {

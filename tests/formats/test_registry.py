@@ -29,7 +29,7 @@ EVERY = (*formats(), *map(format_named, VARIANTS))
 BOTH_WAYS = [row.name for row in EVERY if row.write_grids and row.read_grids]
 BOUNDARIES = [row.name for row in formats() if row.write_boundaries and row.read_shapes]
 CHECKED_ELSEWHERE = {
-    "gmsh", "su2", "geo", "nmf", "openfoam", "vtu", "meshio", "png", "svg", "pdf",
+    "gmsh", "su2", "geo", "nmf", "openfoam", "vtu", "meshio", "png", "svg", "pdf", "html",
 }  # fmt: skip
 """Formats that no grid is read from; each has a test file with a reader of somebody else's."""
 
@@ -314,7 +314,9 @@ def test_what_cannot_be_written_is_named_with_its_remedy(path: str, told: str) -
 
 
 def test_an_unknown_format_name_lists_the_known_ones() -> None:
-    with pytest.raises(InputError, match="format 'cgsn' is not known; use one of hdf5, vts"):
+    with pytest.raises(
+        InputError, match=r"format 'cgsn' is not known; did you mean 'cgns'\? use one of hdf5, vts"
+    ):
         format_named("cgsn")
 
 

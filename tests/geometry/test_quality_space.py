@@ -22,6 +22,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.gates import parse_gates
+from meshonet.geometry.quality.growth import ratios
 from meshonet.geometry.quality.report import quality_report
 
 GROWTH = 1.2
@@ -57,6 +58,16 @@ def test_a_shell_has_its_first_cell_growth_and_angle(split: int) -> None:
     assert [result.verdict for result in report.profile.results if result.check.figure == "wall_growth"] == [
         "pass"
     ]
+
+
+def test_growth_of_volumes_has_its_percentile() -> None:
+    nodes = lattice((0, 5, 9), (0, 4, 8), (0, 6, 7))
+    nodes = nodes + np.random.default_rng(0).uniform(-0.2, 0.2, nodes.shape)
+    every = np.concatenate([ratios(np.moveaxis(nodes, axis, 0)).ravel() for axis in range(3)])
+    lines = block_figures(Grid.from_nodes(nodes)).lines
+    assert lines.growth_inside.p99 == pytest.approx(np.percentile(every, 99), rel=1e-6)
+    assert lines.growth_inside.mean < lines.growth_inside.p99 < lines.growth_inside.max
+    assert lines.bend_inside.p99 > lines.bend_inside.mean
 
 
 def test_growth_across_faces_is_found_where_blocks_meet() -> None:

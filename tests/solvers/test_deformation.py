@@ -132,6 +132,23 @@ def test_blocks_stay_joined_bit_by_bit() -> None:
     assert left == pytest.approx(single.nodes[:31], abs=1e-3)  # far sides are grouped otherwise
 
 
+def test_periodic_sides_stay_and_match() -> None:
+    passage = channel()
+    whole = ((0, 60),)
+    up = Connection(0, "south", whole, 0, "north", whole, (1,), Motion((0.0, 1.0)))
+    nodes = passage.nodes.copy()
+    nodes[:, :, 1] = np.linspace(0, 1, 31)
+    start = Grid(Grid.from_nodes(nodes).blocks, (Patch("end", "west", 0, 30),), (up,))
+    end = nodes[0] + np.stack([0.2 * np.sin(np.pi * nodes[0, :, 1]), 0 * nodes[0, :, 1]], axis=1)
+    with pytest.raises(InputError, match="ends on a periodic side"):
+        meshonet.deform(start, {"end": end + np.array([0.1, 0])})
+    end[[0, -1]] = nodes[0, [0, -1]]
+    made = meshonet.deform(start, {"end": end})
+    assert np.array_equal(made.nodes[:, 0], nodes[:, 0])
+    assert np.array_equal(made.nodes[:, -1], nodes[:, -1])
+    assert made.nodes[1, 15, 0] > nodes[1, 15, 0] + 0.15
+
+
 def test_a_volume_follows_its_floor_and_keeps_flat_sides() -> None:
     start = volume()
     floor = start.nodes[:, :, 0].copy()
@@ -183,6 +200,7 @@ def test_corners_stay_corners() -> None:
     [
         ({"roof": bump(0.1)}, "has no 'roof'; name one of its boundary: south, east"),
         ({}, "no wall is named"),
+        ({"south": Motion((0.0, 0.0, 1.0))}, "not in the plane of the grid; give 2 coordinates"),
         ({"south": bump(np.nan)}, "not finite"),
         ({"south": np.zeros((4, 3))}, "nodes of shape"),
         ({"south": bump(0.0, 0.1), "west": channel().nodes[0]}, "two walls put the node"),

@@ -2,6 +2,7 @@
 
 from functools import partial
 
+import near_faces_reference
 import numpy as np
 import pytest
 from volume_shapes import bent_pipe, bump, mapped, random_domain, skewed
@@ -13,6 +14,7 @@ from meshonet.geometry.threads import limited_to
 from meshonet.kernels._native import volume_energy
 from meshonet.solvers.solution import Outcome
 from meshonet.solvers.volumes.functional import inverse_lengths
+from meshonet.solvers.volumes.near_faces import closed_place
 from meshonet.solvers.volumes.tfi import tfi
 from meshonet.solvers.volumes.variational import variational
 from meshonet.solvers.volumes.winslow import winslow
@@ -181,9 +183,22 @@ def test_faces_that_leave_no_place_for_a_node_are_refused() -> None:
         variational(SixFaces.of_block(nodes))
 
 
-def test_left_handed_volumes_are_refused() -> None:
+@pytest.mark.parametrize("seed", range(6))
+def test_places_next_to_faces_are_those_of_the_reference(seed: int) -> None:
+    nodes = mapped(skewed, (7, 8, 9))
+    nodes += np.random.default_rng(seed).normal(scale=0.02, size=nodes.shape)
+    faces = SixFaces.of_block(nodes)
+    places = [closed_place(faces)]
+    for threads in (1, 3):
+        with limited_to(threads):
+            places.append(closed_place(faces))
+    assert places == [near_faces_reference.closed_place(faces)] * 3
+
+
+@pytest.mark.parametrize("solve", SOLVERS)
+def test_left_handed_volumes_are_refused(solve) -> None:
     with pytest.raises(InputError, match="left-handed"):
-        variational(SixFaces.of_block(mapped(skewed, (5, 5, 5))[::-1]))
+        solve(SixFaces.of_block(mapped(skewed, (5, 5, 5))[::-1]))
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from block_grids import butterfly, o_ring
 from joined_volumes import bend, joined, perturbed, shell
+from surface_shapes import cube, grid_of
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import PLACES, Block
@@ -15,7 +16,9 @@ from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.surface.surface import surface_of
 from meshonet.geometry.volume.hex_mesh import hex_mesh_of, with_nodes
+from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_surface
 from meshonet.solvers.smoothing.volumes import smooth_volumes
 from meshonet.solvers.solution import Outcome
 
@@ -85,6 +88,14 @@ def test_first_cells_at_walls_keep_their_heights() -> None:
     smoothed = smooth_volumes(grid)
     assert not smoothed.notes
     np.testing.assert_allclose(first_cells(smoothed.grid, *walls), first_cells(grid, *walls), rtol=1e-9)
+
+
+def test_marched_blocks_keep_their_first_cells() -> None:
+    grid = march_surface(surface_of(grid_of(cube(8))), VolumeMarch(1e-3, 17, 4.0)).grid
+    walls = [(k, "bottom") for k in range(6)]
+    smoothed = smooth_volumes(grid, iterations=20).grid
+    assert np.abs(smoothed.blocks[0].nodes - grid.blocks[0].nodes).max() > 1e-3
+    np.testing.assert_allclose(first_cells(smoothed, *walls), first_cells(grid, *walls), rtol=1e-2)
 
 
 def test_angles_of_a_shell_improve_across_its_interfaces() -> None:

@@ -65,6 +65,14 @@ def test_threads_change_no_bit_around_a_body(
     assert several == [single, single]
 
 
+@pytest.mark.parametrize("ni", [1200, 1447])
+def test_threads_change_no_bit_of_a_march_whose_levels_are_eliminated_from_both_ends(
+    eager_threads: None, ni: int
+) -> None:
+    single, *several = (made(naca(ni, 61), "hyperbolic", count, first_cell=1e-4) for count in (1, 2, 3))
+    assert several == [single, single]
+
+
 def test_more_threads_than_rows_do_no_harm(eager_threads: None) -> None:
     assert made(bump(17, 9), "winslow", 50, **FULL) == made(bump(17, 9), "winslow", 1, **FULL)
 

@@ -41,9 +41,15 @@ def test_three_members_leave_two_to_train_on(way: str) -> None:
 def test_what_cannot_be_split_is_refused() -> None:
     with pytest.raises(InputError, match="split 'halves' is not known; use interpolation, extrapolation"):
         split(SHUFFLED, "halves")
-    for members in ([0.1, 0.2], [0.3, 0.3, 0.3], [0.1, np.nan, 0.2]):
-        with pytest.raises(InputError, match="cannot be split; give at least 3, of different parameters"):
-            split(members, "random")
+    with pytest.raises(InputError, match="2 members cannot be split; give at least 3"):
+        split([0.1, 0.2], "random")
+    for members in ([0.3, 0.3, 0.3], [0.1, np.nan, 0.2]):
+        with pytest.raises(InputError, match="without different parameters have no interpolation"):
+            split(members, "interpolation")
+
+
+def test_a_random_split_needs_no_parameters() -> None:
+    assert sorted(split([np.nan] * 12, "random")) == ["test"] * 2 + ["train"] * 10
 
 
 def test_the_paper_extrapolates_two_families_to_low_values() -> None:

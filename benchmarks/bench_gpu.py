@@ -1,0 +1,168 @@
+"""Everything that needs a GPU: training, batched operators, equality with the CPU, memory.
+
+    python benchmarks/bench_gpu.py [--device cuda] [--quick] [--page docs/benchmarks/gpu.md]
+
+One command under eight minutes. Without a CUDA device it says so on the page; `--device cpu --quick` runs
+all of it in seconds on a CPU, to see that it works.
+"""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import torch
+
+import meshonet
+from meshonet.formats.hdf5.write import write_grids
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import MeshonetError
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.energy.variational import solve as variational
+from meshonet.solvers.neural.devices import Device
+from meshonet.solvers.neural.inference import infer_many
+
+HEAD = """# GPU
+
+<!-- made by python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md -->
+
+Read this page to see what a GPU wins in training and in making many grids at once. How to use one is in
+[threads and GPUs](../guide/threads-and-gpu.md). `python benchmarks/bench_gpu.py --page
+docs/benchmarks/gpu.md` fills it in, in less than eight minutes:
+
+- training: shapes a second of `meshonet`, `fno2d` and `quad`, at two batch sizes, with and without
+  `--amp` and `--compile`, without the first epochs, and the most memory in use;
+- operators: grids a second of `airfoil-o`, `quad-general` and `hole-o` in batches, at 65 x 65 and 200 x 200
+  nodes, from boundaries in memory to nodes in memory, and the most memory in use;
+- equality: the largest distance of a node from that of the same operator on the CPU in double precision.
+  It has to be below 1e-10 of the domain.
+"""
+
+NONE = "No GPU was available when this page was made: there are no figures yet."
+EQUAL = 1e-10
+"""The largest distance of nodes from those of the CPU."""
+
+FAMILIES = {"airfoil-o": "procedural", "quad-general": "four-sided", "hole-o": "bodies"}
+"""Operators, and the families of boundaries that they are given."""
+TRAINED = {"meshonet": (30, 240), "fno2d": (30, 120), "quad": (16, 64)}
+"""Models and the batch sizes that they are trained with."""
+
+
+def shapes_for(name: str, count: int, n: int) -> list[Boundary]:
+    """Return boundaries that an operator is for, n x n nodes each."""
+    return meshonet.sample_family(FAMILIES[name], count, res=(n, n), seed=1)
+
+
+def most_memory(device: Device, act: Callable[[], object]) -> str:
+    """Run and return the most memory that was in use on the device, in MB; a dash on a CPU."""
+    if device == "cpu":
+        act()
+        return "-"
+    torch.cuda.reset_peak_memory_stats()
+    act()
+    return f"{torch.cuda.max_memory_allocated() / 1e6:.0f}"
+
+
+def operator_rows(device: Device, sizes: Sequence[int], count: int) -> Iterator[str]:
+    """Yield the rows of batched operators."""
+    yield "| operator | nodes | grids | grids a second | MB | farthest node from the CPU's |"
+    yield "| --- | --- | --- | --- | --- | --- |"
+    for name in FAMILIES:
+        for n in sizes:
+            given = shapes_for(name, count, n)
+            few = given[:8]
+            here = infer_many(few, name, device="cpu")
+            there = infer_many(few, name, device=device)
+            apart = max(
+                float(np.abs(a.grid.nodes - b.grid.nodes).max() / np.ptp(a.grid.nodes))
+                for a, b in zip(here, there, strict=True)
+            )
+            infer_many(given, name, device=device)  # warm
+            begun = time.perf_counter()
+            memory = most_memory(device, partial(infer_many, given, name, device=device))
+            rate = count / (time.perf_counter() - begun)
+            verdict = f"{apart:.0e}" if apart <= EQUAL else f"{apart:.0e}: TOO FAR"
+            yield f"| `{name}` | {n} x {n} | {count} | {rate:.0f} | {memory} | {verdict} |"
+
+
+def datasets(folder: Path, count: int, n: int) -> dict[str, list[str]]:
+    """Write what the models are trained on; return the files of each."""
+    edges = meshonet.sample_family("arch", count, res=(n, n), seed=1)
+    smooth, best = [winslow(b).grid for b in edges], [variational(b).grid for b in edges]
+    for name, grids in (("winslow", smooth), ("variational", best)):
+        write_grids(str(folder / f"{name}.h5"), grids)
+    both = [str(folder / "winslow.h5"), str(folder / "variational.h5")]
+    return {"meshonet": both[:1], "fno2d": both[:1], "quad": both}
+
+
+def training_rows(
+    device: Device, folder: Path, count: int, n: int, epochs: int, quick: bool
+) -> Iterator[str]:
+    """Yield the rows of training."""
+    files = datasets(folder, count, n)
+    yield "| model | batch | amp | compile | shapes a second | MB |"
+    yield "| --- | --- | --- | --- | --- | --- |"
+    ways = ((False, False),) if quick else ((False, False), (True, False), (False, True))
+    for model, batches in TRAINED.items():
+        for batch, (amp, compiled) in product(batches[:1] if quick else batches, ways):
+            plan = {"epochs": epochs, "batch": min(batch, count - 4), "amp": amp, "compiled": compiled}
+            words = f"{'on' if amp else 'off'} | {'on' if compiled else 'off'}"
+            try:
+                speed, memory = trained(files[model], model, device, folder, plan)
+            except (MeshonetError, RuntimeError) as error:
+                speed, memory = str(error).splitlines()[0], "-"
+            yield f"| `{model}` | {plan['batch']} | {words} | {speed} | {memory} |"
+
+
+def trained(
+    files: Sequence[str], model: str, device: Device, folder: Path, plan: Mapping[str, object]
+) -> tuple[str, str]:
+    """Train and return shapes a second in the second half of the epochs, and the most memory."""
+    marks: list[tuple[int, float]] = []
+    act = partial(
+        meshonet.train, files, folder / "model.safetensors", model=model, held_out=4, log_every=1,
+        report=lambda progress: marks.append((progress.seen, progress.seconds)), device=device, **plan,
+    )  # fmt: skip
+    memory = most_memory(device, act)
+    (first, begun), (last, ended) = marks[len(marks) // 2 - 1], marks[-1]
+    return f"{(last - first) / (ended - begun):.0f}", memory
+
+
+def page(device: Device, quick: bool) -> str:
+    """Return the page."""
+    if device == "cuda" and not torch.cuda.is_available():
+        return f"{HEAD}\n{NONE}\n"
+    machine = torch.cuda.get_device_name() if device == "cuda" else platform.processor() or "CPU"
+    sizes, count, n = ((33,), 4, 33) if quick else ((65, 200), 256, 65)
+    shapes, epochs = (8, 2) if quick else (260, 12)
+    with tempfile.TemporaryDirectory() as folder:
+        made = list(operator_rows(device, sizes, count))
+        fitted = list(training_rows(device, Path(folder), shapes, n, epochs, quick))
+    parts = "\n".join(["## Operators\n", *made, "\n## Training\n", *fitted])
+    return f"{HEAD}\n{machine}, torch {torch.__version__}.\n\n{parts}\n"
+
+
+def main(words: Sequence[str] | None = None) -> str:
+    """Print the page, or write it; return it."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--device", choices=("cuda", "cpu"), default="cuda")
+    parser.add_argument("--quick", action="store_true", help="seconds, on few shapes")
+    parser.add_argument("--page", type=Path)
+    chosen = parser.parse_args(words)
+    text = page(chosen.device, chosen.quick)
+    if chosen.page:
+        chosen.page.write_text(text, encoding="utf-8")
+    else:
+        print(text)
+    return text
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,100 @@
+"""What a page says of a metric: its values as whole numbers, their distribution, the worst places."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.metrics import Metric
+
+BARS = 48
+"""Bars of a histogram."""
+LEVELS = 65535
+"""Steps that values are rounded to between the least and the greatest."""
+_RATIO = 50.0
+"""99th over 1st percentile from which a scale is logarithmic."""
+_CANDIDATES = 20_000
+"""Cells, the worst ones, among which places are looked for."""
+_NEAR = 3
+_NEAR_PART = 0.06
+"""Worst places are further apart than this many cells, and this part of the cells along some direction."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """A scale of values from `low` to `high`, logarithmic if `log`; `start` and `stop` have 98 % of them."""
+
+    low: float
+    high: float
+    log: bool
+    start: float
+    stop: float
+
+    def parts(self, values: Floats) -> Floats:
+        """Return where values are on the scale, 0 at `low` and 1 at `high`."""
+        turn = np.log if self.log else np.positive
+        low, high = turn(self.low), turn(self.high)
+        return np.asarray((turn(values) - low) / max(high - low, 1e-300))
+
+
+def scale_of(values: Floats) -> Scale:
+    """Return the scale of values (n,)."""
+    low, high = float(values.min()), float(values.max())
+    start, stop = (float(value) for value in np.percentile(values, (1, 99)))
+    log = low > 0 and stop > _RATIO * start
+    stop = max(stop, start + 1e-9 * abs(start) + 1e-30)
+    return Scale(low, high, log, start, stop)
+
+
+def histogram(values: Floats, scale: Scale) -> list[int]:
+    """Return how many of the values (n,) are in each of `BARS` equal parts of what `scale` shows.
+
+    The first and the last bar have what lies beyond too.
+    """
+    first, last = scale.parts(np.array([scale.start, scale.stop]))
+    part = (scale.parts(values) - first) / max(last - first, 1e-300)
+    bar = np.clip((part * BARS).astype(np.int64), 0, BARS - 1)
+    return np.bincount(bar, minlength=BARS).tolist()
+
+
+def worst_places(
+    values: Sequence[Floats], metric: Metric, most: int = 10
+) -> Iterator[tuple[int, tuple[int, ...], float]]:
+    """Yield block, cell and value of the worst cells, worst first, no two of them side by side.
+
+    `values` are those of the cells of each block.
+    """
+    every = np.concatenate([cells.ravel() for cells in values])
+    badness = every if metric.worst == "min" else -every
+    count = min(len(every), _CANDIDATES)
+    order = np.argpartition(badness, count - 1)[:count]
+    order = order[np.argsort(badness[order], kind="stable")]
+    ends = np.cumsum([cells.size for cells in values])
+    chosen: dict[int, list[NDArray[Any]]] = {}
+    shown = 0
+    for cell in order.tolist():
+        block = int(np.searchsorted(ends, cell, side="right"))
+        cells = values[block]
+        at = np.array(np.unravel_index(cell - (int(ends[block]) - cells.size), cells.shape))
+        beside = chosen.setdefault(block, [])
+        near = np.maximum(_NEAR, _NEAR_PART * np.array(cells.shape))
+        if any((np.abs(at - other) <= near).all() for other in beside):
+            continue
+        beside.append(at)
+        yield block, tuple(at.tolist()), float(every[cell])
+        shown += 1
+        if shown == most:
+            return
+
+
+def corners_of(grid: Grid, block: int, cell: tuple[int, ...]) -> Floats:
+    """Return the corners (4, d) or (8, 3) of a cell, in the order of their indices, the last one fastest."""
+    nodes = grid.blocks[block].nodes
+    part = nodes[tuple(slice(index, index + 2) for index in cell)]
+    return part.reshape(-1, nodes.shape[-1])

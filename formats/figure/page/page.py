@@ -1,0 +1,131 @@
+"""The interactive page of a grid, written to a file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshonet.formats.figure.page.document import document, file_text
+from meshonet.formats.figure.page.packing import Packed
+from meshonet.formats.figure.page.scene import Scene, scene_of
+from meshonet.formats.figure.slices import Slice, cut, layers
+from meshonet.formats.figure.view import SEEN_FROM, View, check_flat
+from meshonet.formats.format import only_one
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.metrics import metric_of
+
+_PROGRAM = (
+    "unpack.js",
+    "camera.js",
+    "lattice.js",
+    "cut.js",
+    "shaders.js",
+    "painter.js",
+    "panel.js",
+    "main.js",
+)
+"""Files of the program, in this order."""
+_BODY = """{body}
+<script type="application/json" id="facts">{facts}</script>
+{numbers}
+<script type="module">
+{program}
+</script>"""
+
+
+def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: View | None = None) -> None:
+    """Write the page of `grid`; it begins with the cells coloured by `metric` and with a `view`.
+
+    Raises InputError: a metric that these cells do not have; a view that shows nothing, or that the grid does
+    not have.
+    """
+    start = _start(grid, metric, view or View())
+    scene = scene_of(grid)
+    path.write_text(page_text(grid.name, scene, start), encoding="utf-8")
+
+
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write the page of the one grid of `grids`."""
+    write_page(path, only_one(grids, "a page"))
+
+
+def page_text(name: str, scene: Scene, start: dict[str, Any]) -> str:
+    """Return the page of a scene; `start` is what it shows first."""
+    facts = scene.facts | {"name": name, "start": start, "colours": _colours()}
+    body = _BODY.format(
+        body=own_file("body.html"),
+        facts=_json(facts),
+        numbers="\n".join(_data(key, value) for key, value in scene.numbers.items()),
+        program="\n".join(own_file(part) for part in _PROGRAM),
+    )
+    return document(name or "grid", own_file("page.css"), body)
+
+
+def own_file(name: str) -> str:
+    """Return a file of this folder."""
+    return file_text("meshonet.formats.figure.page", name)
+
+
+def _start(grid: Grid, metric: str | None, view: View) -> dict[str, Any]:
+    if grid.form == "plane":
+        check_flat(view)
+    if metric is not None:
+        metric_of(grid, metric)
+    return {
+        "metric": metric,
+        "zoom": None if view.zoom is None else _zoom(grid, view.zoom),
+        "every": view.every,
+        "slice": None if view.slice is None else _slice(grid, view.slice),
+        "seen_from": list(view.seen_from or SEEN_FROM),
+    }
+
+
+def _zoom(grid: Grid, zoom: tuple[float, ...]) -> list[float]:
+    """Return a box; raise InputError for one of another kind, or that has nothing of the grid."""
+    nodes = [block.nodes.reshape(-1, block.nodes.shape[-1]) for block in grid.blocks]
+    box_low, box_high = np.array(zoom[::2]), np.array(zoom[1::2])
+    if len(box_low) != nodes[0].shape[-1]:
+        remedy = "use x0,x1,y0,y1" if grid.form == "plane" else "use x0,x1,y0,y1,z0,z1"
+        raise InputError("the box is not one of this grid", remedy, parameter="zoom")
+    low, high = (
+        np.min([part.min(axis=0) for part in nodes], 0),
+        np.max([part.max(axis=0) for part in nodes], 0),
+    )
+    if (box_low > high).any() or (box_high < low).any():
+        spans = ", ".join(f"{x} {a:.4g} to {b:.4g}" for x, a, b in zip("xyz", low, high, strict=False))
+        raise InputError(f"zoom {zoom} shows none of the grid", f"it spans {spans}", parameter="zoom")
+    return list(zoom)
+
+
+def _slice(grid: Grid, at: Slice) -> dict[str, Any]:
+    """Return which slice is shown first; raise InputError for one that the grid does not have."""
+    if grid.form != "volume":
+        raise InputError("a surface has no slices", "slice volumes", parameter="slice")
+    if at.index is None:
+        cut(grid, at, None)
+        return {"name": "xyz"[at.direction], "at": at.coordinate}
+    layers(grid, at, None)
+    most = max(block.counts[at.direction] for block in grid.blocks)
+    return {"name": "ijk"[at.direction], "at": at.index % most}
+
+
+def _colours() -> str:
+    """Return the 256 colours of the scale, light to dark, as hexadecimal digits."""
+    import matplotlib as mpl
+
+    table = mpl.colormaps["YlGnBu"](np.linspace(0.0, 1.0, 256))[:, :3]
+    return np.rint(255 * table).astype(np.uint8).tobytes().hex()
+
+
+def _json(facts: dict[str, Any]) -> str:
+    return json.dumps(facts, separators=(",", ":")).replace("</", "<\\/")
+
+
+def _data(name: str, numbers: Packed) -> str:
+    size = f'data-count="{numbers.count}" data-width="{numbers.width}"'
+    return f'<script type="text/plain" id="{name}" {size}>{numbers.text}</script>'

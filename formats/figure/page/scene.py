@@ -1,0 +1,230 @@
+"""What a page holds of a grid: lattices of nodes, sheets of cells to show, metrics, worst places.
+
+::
+
+    lattice   the nodes of a block; of a volume that is too large for a page, those of a patch
+    sheet     a layer of cells of a lattice that is drawn: a block of the plane, a patch of a volume
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from meshonet.formats.figure.page.cells import (
+    LEVELS,
+    Scale,
+    corners_of,
+    histogram,
+    scale_of,
+    worst_places,
+)
+from meshonet.formats.figure.page.packing import Packed, packed, rounding_step, shortest_edge
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.vertices import irregular_points
+from meshonet.geometry.quality.measure import per_cell_of_blocks
+from meshonet.geometry.quality.metrics import Metric, metrics_of
+
+MOST_NODES = 1_500_000
+"""Nodes of a volume that are in a page; of a larger one it has the outer boundary alone."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lattice:
+    """Nodes (ni, nj, d) or (ni, nj, nk, 3) of a block, or of a patch of it.
+
+    `start` are the cell's indices in the block of the lattice's first cell; a patch has `fixed`, the
+    direction across it.
+    """
+
+    block: int
+    nodes: Floats
+    start: tuple[int, ...]
+    fixed: int | None = None
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Nodes along each direction."""
+        return self.nodes.shape[:-1]
+
+    def facts(self) -> dict[str, Any]:
+        """Return what the page's program needs to know."""
+        facts: dict[str, Any] = {"block": self.block, "counts": list(self.counts), "start": list(self.start)}
+        return facts if self.fixed is None else facts | {"fixed": self.fixed}
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A layer of a lattice: `axis` is the direction across it, None where the lattice is a layer itself.
+
+    `node` is its index along `axis`, `ranges` the first and last node along the others.
+    """
+
+    lattice: int
+    part: str
+    kind: str
+    axis: int | None
+    node: int
+    ranges: tuple[tuple[int, int], ...]
+
+    def facts(self) -> dict[str, Any]:
+        """Return what the page's program needs to know."""
+        return dict(vars(self))
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """All of a page: facts for JSON, and numbers."""
+
+    facts: dict[str, Any]
+    numbers: dict[str, Packed] = field(default_factory=dict)
+
+
+def scene_of(grid: Grid) -> Scene:
+    """Return the scene of a grid, with all of its metrics."""
+    lattices, sheets = _whole(grid) if _fits(grid) else _shell(grid)
+    low = np.min([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).min(axis=0) for lattice in lattices], 0)
+    high = np.max([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).max(axis=0) for lattice in lattices], 0)
+    extent = float((high - low).max()) or 1.0
+    step = rounding_step(min(shortest_edge(lattice.nodes, extent) for lattice in lattices), extent)
+    numbers = {
+        name: packed(_counted([lattice.nodes[..., axis] for lattice in lattices], float(low[axis]), step))
+        for axis, name in enumerate("xyz"[: len(low)])
+    }
+    metrics = []
+    for metric in metrics_of(grid):
+        values = [np.asarray(cells) for cells in per_cell_of_blocks(grid, metric.name)]
+        scale = scale_of(np.concatenate([cells.ravel() for cells in values]))
+        metrics.append(_metric(grid, metric, values, scale))
+        numbers[metric.name] = packed(_levels([_of(lattice, values) for lattice in lattices], scale))
+    cells = sum(int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks)
+    facts = {
+        "form": grid.form,
+        "cells": cells,
+        "blocks": [list(block.counts) for block in grid.blocks],
+        "box": [low.tolist(), high.tolist()],
+        "step": step,
+        "whole": _fits(grid),
+        "lattices": [lattice.facts() for lattice in lattices],
+        "sheets": [sheet.facts() for sheet in sheets],
+        "metrics": metrics,
+        "walls": _walls(grid),
+        **(_edges(grid) if grid.form == "plane" else {}),
+    }
+    return Scene(facts, numbers)
+
+
+def _walls(grid: Grid) -> list[list[float]] | None:
+    """Return the lowest and highest coordinates of walls; None without any."""
+    nodes = [
+        _of_patch(grid, patch).nodes.reshape(-1, grid.blocks[0].nodes.shape[-1]) for patch in grid.walls()
+    ]
+    if not nodes:
+        return None
+    every = np.concatenate(nodes)
+    return [every.min(axis=0).tolist(), every.max(axis=0).tolist()]
+
+
+def _edges(grid: Grid) -> dict[str, Any]:
+    """Return the outer boundary in the plane, and the vertices where other than four cells meet."""
+    edges = [
+        {"block": patch.block, "axis": patch.place[0], "end": patch.place[1], "start": patch.start,
+         "stop": patch.stop, "name": patch.name, "kind": patch.kind}
+        for patch in grid.outer_patches()
+    ]  # fmt: skip
+    points, cells = irregular_points(grid)
+    vertices = [{"x": x, "y": y, "cells": int(n)} for (x, y), n in zip(points.tolist(), cells, strict=True)]
+    return {"edges": edges, "vertices": vertices}
+
+
+def _fits(grid: Grid) -> bool:
+    nodes = sum(int(np.prod(block.counts)) for block in grid.blocks)
+    return grid.form != "volume" or nodes <= MOST_NODES
+
+
+def _whole(grid: Grid) -> tuple[list[Lattice], list[Sheet]]:
+    """Return every block, and its cells or its patches to show."""
+    lattices = [
+        Lattice(number, block.nodes, (0,) * len(block.counts)) for number, block in enumerate(grid.blocks)
+    ]
+    if grid.form != "volume":
+        every = [
+            Sheet(number, f"block {number}", "block", None, 0, tuple((0, n - 1) for n in block.counts))
+            for number, block in enumerate(grid.blocks)
+        ]
+        return lattices, every
+    sheets = []
+    for patch in grid.outer_patches():
+        axis, end = patch.place
+        last = grid.blocks[patch.block].counts[axis] - 1
+        ranges = patch.range(grid.face(patch.block, patch.side).shape[:-1])
+        sheets.append(Sheet(patch.block, patch.name, patch.kind, axis, last if end else 0, ranges))
+    return lattices, sheets
+
+
+def _shell(grid: Grid) -> tuple[list[Lattice], list[Sheet]]:
+    """Return the patches of a volume, each as a lattice and a sheet of its own."""
+    lattices, sheets = [], []
+    for number, patch in enumerate(grid.outer_patches()):
+        lattices.append(_of_patch(grid, patch))
+        ranges = tuple((0, count - 1) for count in lattices[-1].counts)
+        sheets.append(Sheet(number, patch.name, patch.kind, None, 0, ranges))
+    return lattices, sheets
+
+
+def _of_patch(grid: Grid, patch: Patch) -> Lattice:
+    axis, end = PLACES[patch.side]
+    nodes = grid.face(patch.block, patch.side)
+    spans = patch.range(nodes.shape[:-1])
+    start = [first for first, _ in spans]
+    start.insert(axis, grid.blocks[patch.block].counts[axis] - 2 if end else 0)
+    part = nodes[tuple(slice(first, last + 1) for first, last in spans)]
+    return Lattice(patch.block, part, tuple(start), axis)
+
+
+def _of(lattice: Lattice, values: Sequence[Floats]) -> Floats:
+    """Return the values of the cells of a lattice, of those of every block."""
+    cells = values[lattice.block]
+    if lattice.fixed is None:
+        return cells
+    at: list[Any] = [slice(first, None) for first in lattice.start]
+    at[lattice.fixed] = lattice.start[lattice.fixed]
+    rows, columns = (count - 1 for count in lattice.counts)
+    return np.asarray(cells[tuple(at)][:rows, :columns])
+
+
+def _counted(planes: Sequence[Floats], low: float, step: float) -> Any:
+    """Return coordinates in steps from the lowest, of every lattice behind one another."""
+    return np.concatenate([np.rint((plane - low) / step).astype(np.int64).ravel() for plane in planes])
+
+
+def _levels(values: Sequence[Floats], scale: Scale) -> Any:
+    every = np.concatenate([cells.ravel() for cells in values])
+    return np.rint(scale.parts(every) * LEVELS).astype(np.int64)
+
+
+def _metric(grid: Grid, metric: Metric, values: Sequence[Floats], scale: Scale) -> dict[str, Any]:
+    every = np.concatenate([cells.ravel() for cells in values])
+    worst = [
+        {"block": block, "at": list(cell), "value": value, "corners": corners_of(grid, block, cell).tolist()}
+        for block, cell, value in worst_places(values, metric)
+    ]
+    return {
+        "name": metric.name,
+        "unit": metric.unit,
+        "about": metric.short,
+        "low": metric.worst == "min",
+        "log": scale.log,
+        "min": scale.low,
+        "mean": float(every.mean()),
+        "max": scale.high,
+        "limits": [scale.start, scale.stop],
+        "histogram": histogram(every, scale),
+        "worst": worst,
+    }

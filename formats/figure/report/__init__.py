@@ -1,0 +1,1 @@
+"""The quality of grids as a page to read and to print."""

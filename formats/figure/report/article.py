@@ -1,0 +1,164 @@
+"""What a report says of one grid."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from meshonet.formats.figure.page.cells import corners_of, scale_of, worst_places
+from meshonet.formats.figure.picture import Picture
+from meshonet.formats.figure.report.charts import histogram_svg
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.gates import Gate
+from meshonet.geometry.quality.measure import per_cell_of_blocks
+from meshonet.geometry.quality.metrics import Metric, metrics_of
+from meshonet.geometry.quality.report import QualityReport
+
+_WORST = 3
+"""Worst places of a metric that are listed."""
+_DOTS = 110
+"""Dots an inch of pictures."""
+_VERDICTS = {"fail": "FAIL", "warn": "warning", "pass": "pass", "none": "no figure"}
+
+
+def article(label: str, report: QualityReport, gates: Sequence[Gate], number: int) -> str:
+    """Return the part of a page about one grid, called `label`; links lead to it by its `number`."""
+    grid = report.grid
+    verdicts = _gates(report, gates) + _profile(report)
+    values = {m.name: [np.asarray(v) for v in per_cell_of_blocks(grid, m.name)] for m in metrics_of(grid)}
+    parts = [
+        f"<h2>{html.escape(label)}</h2>",
+        f"<p>{html.escape(size_words(report))}</p>",
+        '<div class="top">',
+        f'<img alt="The grid, coloured by its largest angle" src="{_picture(grid)}">',
+        f"<div>{verdicts or _table(['', ''], [['folded cells', _folded(report)]])}{_walls(report)}</div>",
+        "</div>",
+        "<h3>Metrics</h3>",
+        _metrics(report),
+        "<h3>How many cells have which value</h3>",
+        f'<div class="charts">{_charts(grid, values, gates)}</div>',
+        "<h3>Worst places</h3>",
+        _worst(grid, values),
+    ]
+    return f'<article id="grid-{number}">\n' + "\n".join(parts) + "\n</article>"
+
+
+def size_words(report: QualityReport) -> str:
+    """Return counts of blocks, nodes and cells, and how many cells are folded."""
+    grid, quality = report.grid, report.quality
+    folded = f"{quality.folded:,} folded" if quality.folded else "none folded"
+    if len(grid.blocks) == 1:
+        counts = " x ".join(str(count) for count in grid.blocks[0].counts)
+        return f"{counts} nodes, {quality.cells:,} cells, {folded}"
+    return f"{len(grid.blocks)} blocks, {quality.cells:,} cells, {folded}"
+
+
+def passed(report: QualityReport, gates: Sequence[Gate]) -> bool:
+    """Say whether no gate and no check of the profile is broken, and no cell folded."""
+    return not report.broken(gates) and not report.quality.folded
+
+
+def verdict(name: str, words: str = "") -> str:
+    """Return ``pass``, ``warn`` or ``fail`` as a word in its colour."""
+    return f'<span class="{name}">{words or _VERDICTS.get(name, name)}</span>'
+
+
+def _picture(grid: Grid) -> str:
+    """Return a picture of the grid as an address that holds it."""
+    data = io.BytesIO()
+    Picture().draw("png", data, [grid], dots=_DOTS)
+    return "data:image/png;base64," + base64.b64encode(data.getvalue()).decode("ascii")
+
+
+def _folded(report: QualityReport) -> str:
+    return verdict("fail", f"{report.quality.folded:,}") if report.quality.folded else verdict("pass", "none")
+
+
+def _gates(report: QualityReport, gates: Sequence[Gate]) -> str:
+    if not gates:
+        return ""
+    rows = [
+        [html.escape(f"not {gate.text}"), f"{value:.4g}", verdict("fail" if broken else "pass")]
+        for gate, value, broken in report.judged(gates)
+    ]
+    return _table(["gate", "is", ""], rows)
+
+
+def _profile(report: QualityReport) -> str:
+    if report.profile is None:
+        return ""
+    rows = []
+    for result in report.profile.results:
+        limits = ", ".join(f"{x.level} {x.compare} {x.value:g}" for x in result.check.limits)
+        value = "-" if result.value is None else f"{result.value:.4g}"
+        rows.append([result.check.figure, value, html.escape(limits), verdict(result.verdict)])
+    return _table([f"profile {report.profile.name}", "is", "limits", ""], rows)
+
+
+def _walls(report: QualityReport) -> str:
+    rows = [
+        [html.escape(row.name), *(f"{v:.4g}" for v in (row.height.min, row.height.mean, row.height.max))]
+        for row in report.figures.wall_rows
+    ]
+    return _table(["first cell at", "min", "mean", "max"], rows) if rows else ""
+
+
+def _metrics(report: QualityReport) -> str:
+    rows = []
+    for metric in metrics_of(report.grid):
+        row = report.quality[metric.name]
+        figures = (row.min, row.p01, row.mean, row.p99, row.max)
+        rows.append([_name(metric), *("-" if v is None else f"{v:.4g}" for v in figures), metric.short])
+    return _table(["metric", "min", "1 %", "mean", "99 %", "max", "what it is"], rows, words=6)
+
+
+def _charts(grid: Grid, values: dict[str, list[Any]], gates: Sequence[Gate]) -> str:
+    figures = []
+    for metric in metrics_of(grid):
+        every = np.concatenate([cells.ravel() for cells in values[metric.name]])
+        limits = [gate.limit for gate in gates if gate.metric == metric.name]
+        chart = histogram_svg(every, scale_of(every), limits)
+        figures.append(f"<figure><figcaption>{_name(metric)}</figcaption>{chart}</figure>")
+    return "".join(figures)
+
+
+def _worst(grid: Grid, values: dict[str, list[Any]]) -> str:
+    rows = []
+    for metric in metrics_of(grid):
+        (block, cell, value), *others = worst_places(values[metric.name], metric, _WORST)
+        centre = corners_of(grid, block, cell).mean(axis=0)
+        at = ", ".join(f"{name} {x:.6g}" for name, x in zip("xyz", centre, strict=False))
+        row = [_name(metric), f"{value:.4g}", _place(grid, block, cell), at]
+        row += [f"{value:.4g} at {_place(grid, block, cell)}" for block, cell, value in others]
+        rows.append(row + [""] * (_WORST + 3 - len(row)))
+    return _table(["metric", "worst", "cell", "centre", "next", "and"], rows)
+
+
+def _place(grid: Grid, block: int, cell: tuple[int, ...]) -> str:
+    place = ", ".join(f"{name} {k}" for name, k in zip("ijk", cell, strict=False))
+    return f"block {block}, {place}" if len(grid.blocks) > 1 else place
+
+
+def _name(metric: Metric) -> str:
+    unit = f" <span>({metric.unit})</span>" if metric.unit else ""
+    return metric.name.replace("_", " ") + unit
+
+
+def _table(head: Iterable[str], rows: Iterable[Sequence[str]], words: int | None = None) -> str:
+    """Return a table; cells are HTML, the column `words` has text that may wrap."""
+
+    def row(tag: str, cells: Iterable[str]) -> str:
+        kinds = (' class="words"' if k == words else "" for k in range(99))
+        return (
+            "<tr>"
+            + "".join(f"<{tag}{kind}>{c}</{tag}>" for kind, c in zip(kinds, cells, strict=False))
+            + "</tr>"
+        )
+
+    body = "\n".join(row("td", cells) for cells in rows)
+    return f"<table><thead>{row('th', head)}</thead>\n<tbody>{body}</tbody></table>"

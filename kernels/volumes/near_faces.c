@@ -1,0 +1,138 @@
+/* Half-spaces that an inner node next to faces must be in, and whether they have a point in common.
+
+   At a node q of a face the corners of four cells have one edge inside, to the node p next to it, and two in the face, with
+   the normal n: they are open where n·(p - q) > 0. By Helly's theorem half-spaces have no point in common exactly when
+   four of them have none; by Farkas' lemma four have none when λ >= 0 with Σ λ n = 0 has Σ λ n·q >= 0, and λ of four
+   normals are the determinants of three of them. */
+#include "near_faces.h"
+#include "corner3.h"
+#include "team.h"
+
+#define ROUNDING 1e-12
+#define PLAINLY 0.05 /* product of the sum of four unit normals with each of them: they have a common side */
+#define FLAT 1e-4    /* sum of four determinants below which normals are too nearly in a plane to tell anything */
+#define CHUNK 256    /* nodes that a thread takes at a time */
+
+typedef struct {
+    Vector3 normal;
+    double bound; /* of normal · p */
+} Half;
+
+typedef struct {
+    const Wall3 *walls;
+    int count;
+    const ptrdiff_t *first, *last;
+    Vector3 centre;
+    ptrdiff_t found[TEAM_MOST];
+} Search;
+
+static Vector3 from_to(const double *from, const double *to)
+{
+    return (Vector3){to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+}
+
+/* The four half-spaces of the node of a wall at (p, q). */
+MESHONET_INLINE void half_spaces(const Wall3 *wall, ptrdiff_t p, ptrdiff_t q, Vector3 centre, Half *halves)
+{
+    const double *here = wall->nodes + 3 * (p * wall->m + q);
+    const double inwards = (wall->end ? -1.0 : 1.0) * (wall->axis == 1 ? -1.0 : 1.0);
+    const Vector3 place = {here[0] - centre.x, here[1] - centre.y, here[2] - centre.z};
+    for (int a = 0; a < 2; a++)
+        for (int b = 0; b < 2; b++) {
+            const Vector3 along = from_to(here, here + (a ? 3 : -3) * wall->m), across = from_to(here, here + (b ? 3 : -3));
+            const Vector3 n = cross3(along, across);
+            const double sign = a == b ? inwards : -inwards, length = sqrt(dot3(n, n));
+            const double by = sign / (length > 1e-300 ? length : 1e-300);
+            Half *half = halves + 2 * a + b;
+            half->normal = (Vector3){by * n.x, by * n.y, by * n.z};
+            half->bound = dot3(half->normal, place);
+        }
+}
+
+static int plainly_open(const Half *h)
+{
+    Vector3 sum = {0.0, 0.0, 0.0};
+    for (int k = 0; k < 4; k++)
+        sum.x += h[k].normal.x, sum.y += h[k].normal.y, sum.z += h[k].normal.z;
+    for (int k = 0; k < 4; k++)
+        if (!(dot3(sum, h[k].normal) > PLAINLY))
+            return 0;
+    return 1;
+}
+
+static double determinant(const Half *a, const Half *b, const Half *c)
+{
+    return dot3(a->normal, cross3(b->normal, c->normal));
+}
+
+static int four_are_apart(const Half *a, const Half *b, const Half *c, const Half *d)
+{
+    double share[4] = {determinant(b, c, d), -determinant(a, c, d), determinant(a, b, d), -determinant(a, b, c)};
+    const double bound[4] = {a->bound, b->bound, c->bound, d->bound};
+    double total = share[0] + share[1] + share[2] + share[3], sum = 0.0, size = 0.0;
+    const double sign = total < 0.0 ? -1.0 : 1.0;
+    for (int k = 0; k < 4; k++) {
+        if (sign * share[k] < 0.0)
+            return 0;
+        sum += sign * share[k] * bound[k], size += sign * share[k] * fabs(bound[k]);
+    }
+    return sign * total > FLAT && sum >= -ROUNDING * size;
+}
+
+/* Opposite half-spaces, as of plane faces. */
+static int two_are_apart(const Half *a, const Half *b)
+{
+    return dot3(a->normal, b->normal) < -1.0 + ROUNDING && a->bound + b->bound >= -ROUNDING * fabs(a->bound);
+}
+
+static int closed(const Half *halves, int count)
+{
+    for (int a = 0; a < count; a++)
+        for (int b = a + 1; b < count; b++) {
+            if (two_are_apart(halves + a, halves + b))
+                return 1;
+            for (int c = b + 1; c < count; c++)
+                for (int d = c + 1; d < count; d++)
+                    if (four_are_apart(halves + a, halves + b, halves + c, halves + d))
+                        return 1;
+        }
+    return 0;
+}
+
+static int closed_at(const Search *s, ptrdiff_t number)
+{
+    const ptrdiff_t m2 = s->last[1] - s->first[1], m3 = s->last[2] - s->first[2];
+    const ptrdiff_t at[3] = {s->first[0] + number / (m2 * m3), s->first[1] + number / m3 % m2, s->first[2] + number % m3};
+    Half halves[12];
+    for (int w = 0; w < s->count; w++) {
+        const Wall3 *wall = s->walls + w;
+        half_spaces(wall, at[wall->axis == 0], at[wall->axis == 2 ? 1 : 2], s->centre, halves + 4 * w);
+    }
+    return !(s->count == 1 && plainly_open(halves)) && closed(halves, 4 * s->count);
+}
+
+static void search(void *data, Member member)
+{
+    Search *s = data;
+    ptrdiff_t first, last, count = 1;
+    for (int e = 0; e < 3; e++)
+        count *= s->last[e] - s->first[e];
+    team_share((count + CHUNK - 1) / CHUNK, member, &first, &last);
+    s->found[member.rank] = -1;
+    for (ptrdiff_t k = first * CHUNK; k < last * CHUNK && k < count && s->found[member.rank] < 0; k++)
+        if (closed_at(s, k))
+            s->found[member.rank] = k;
+}
+
+ptrdiff_t closed_node(const Wall3 *walls, int count, const ptrdiff_t *first, const ptrdiff_t *last, int threads)
+{
+    const double *corner = walls[0].nodes;
+    Search s = {walls, count, first, last, {corner[0], corner[1], corner[2]}, {0}};
+    for (int k = 0; k < TEAM_MOST; k++)
+        s.found[k] = -1;
+    team_run(threads, search, &s);
+    for (int k = 0; k < TEAM_MOST; k++)
+        if (s.found[k] >= 0)
+            return s.found[k];
+    return -1;
+}

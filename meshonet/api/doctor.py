@@ -1,0 +1,167 @@
+"""`meshonet.doctor`."""
+
+from __future__ import annotations
+
+import platform
+import re
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+
+from meshonet.geometry.threads import cores, thread_count
+
+ADDS = {
+    "train": "training of models, gradients, GPUs: meshonet train, infer --device",
+    "dxf": "DXF drawings as domains",
+    "pyvista": "grid.to_pyvista()",
+    "dask": "batches on many machines: --engine dask",
+    "mpi": "batches on many machines: --engine mpi",
+}
+"""What extras add."""
+_FOR_DEVELOPERS = ("test", "lint", "docs")
+_LEVELS = (
+    ("x86-64-v4", {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"}),
+    ("x86-64-v3", {"avx2", "bmi2", "fma", "movbe"}),
+)
+"""Instruction sets that kernels are compiled for, and flags of processors that have them."""
+_REQUIREMENT = re.compile(r"([\w.-]+)\s*(?:\[[^]]*\])?\s*([^;]*)(?:;.*extra\s*==\s*['\"]([\w-]+)['\"])?")
+_LIMIT = re.compile(r"(>=|<)\s*([\d.]+)")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something that was looked at: its group, what it is, whether it is well, and what to do if it is not.
+
+    `well` is None where it is neither well nor ill, as an extra that is not installed.
+    """
+
+    group: str
+    name: str
+    value: str
+    well: bool | None = True
+    remedy: str = ""
+
+
+def doctor() -> list[Finding]:
+    """Return what is installed, whether it works, and what each extra adds and how to get it.
+
+    Returns
+    -------
+    list of Finding
+        Each with a group, a name, a value, whether it is well (None where it is neither well nor ill) and a
+        remedy.
+
+    Examples
+    --------
+    >>> [finding.value for finding in doctor() if finding.name == "a grid"][0].startswith("41 x 11 nodes")
+    True
+    """
+    return [*_program(), *_packages(), *_extras()]
+
+
+def _program() -> Iterator[Finding]:
+    from meshonet import __version__
+    from meshonet.solvers.neural.registry import shipped
+
+    yield Finding("program", "meshonet", f"{__version__}, in {Path(__file__).parents[1]}")
+    yield Finding("program", "python", f"{platform.python_version()}, {sys.executable}")
+    yield Finding("program", "system", f"{platform.system()} {platform.machine()}")
+    yield Finding("program", "kernels", f"compiled, {instructions()}")
+    yield Finding("program", "threads", f"{thread_count()} of {cores()} cores")
+    names = shipped()
+    remedy = "install meshonet again: files of it are missing"
+    yield Finding("program", "models", ", ".join(names) or "none", bool(names), "" if names else remedy)
+    yield _grid()
+
+
+def _grid() -> Finding:
+    """Make a grid and say how that went."""
+    from meshonet.api.grid import infer
+
+    begun = time.perf_counter()
+    try:
+        grid = infer("naca:0012", res=(41, 11))
+    except Exception as error:  # whatever it is, this is where it is told
+        remedy = "install meshonet again; meshonet infer naca:0012 -o g.vts --debug shows more"
+        return Finding("program", "a grid", f"failed: {type(error).__name__}: {error}", False, remedy)
+    spent = 1e3 * (time.perf_counter() - begun)
+    folded = grid.quality().folded
+    return Finding("program", "a grid", f"{grid.ni} x {grid.nj} nodes in {spent:.0f} ms", folded == 0)
+
+
+def instructions() -> str:
+    """Return the instruction set that kernels use on this processor, as far as the system tells it."""
+    if platform.machine() not in ("x86_64", "AMD64"):
+        return platform.machine() or "of an unknown machine"
+    try:
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return "x86-64"
+    flags = set(next((line for line in text.splitlines() if line.startswith("flags")), "").split())
+    return next((name for name, needed in _LEVELS if needed <= flags), "x86-64")
+
+
+def _packages() -> Iterator[Finding]:
+    for name, limits, extra in requirements():
+        if not extra:
+            yield _package("packages", name, limits, f"pip install '{name}{limits}'")
+
+
+def _extras() -> Iterator[Finding]:
+    extras: dict[str, list[tuple[str, str]]] = {}
+    for name, limits, extra in requirements():
+        if extra and extra not in _FOR_DEVELOPERS:
+            extras.setdefault(extra, []).append((name, limits))
+    for extra, needed in extras.items():
+        adds, remedy = ADDS.get(extra, "see its page on dependencies"), f"pip install 'meshonet[{extra}]'"
+        found = [_package("extras", name, limits, remedy) for name, limits in needed]
+        ill = [each for each in found if each.well is False and each.value != "not installed"]
+        if ill:
+            yield Finding("extras", extra, f"{ill[0].name} {ill[0].value}; {adds}", False, remedy)
+        elif all(each.well for each in found):
+            versions = ", ".join(f"{each.name} {each.value}" for each in found)
+            yield Finding("extras", extra, f"{versions}; {adds}")
+        else:
+            yield Finding("extras", extra, f"not installed; {adds}", None, remedy)
+
+
+def requirements() -> list[tuple[str, str, str]]:
+    """Return names, limits of versions and extras of what meshonet needs; nothing if it is not installed."""
+    try:
+        lines = metadata.requires("meshonet") or []
+    except metadata.PackageNotFoundError:
+        return []
+    found = [match.groups() for line in lines if (match := _REQUIREMENT.match(line))]
+    return [(name, limits.strip(" ()"), extra or "") for name, limits, extra in found]
+
+
+def _package(group: str, name: str, limits: str, remedy: str) -> Finding:
+    try:
+        version = metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return Finding(group, name, "not installed", False, remedy)
+    if not within(version, limits):
+        return Finding(group, name, f"{version}, and {limits} is needed", False, remedy)
+    return Finding(group, name, version)
+
+
+def within(version: str, limits: str) -> bool:
+    """Say whether a version keeps lower and upper limits.
+
+    >>> within("0.28.0", ">=0.26,<0.29"), within("0.29", ">=0.26,<0.29"), within("2.13.0+cpu", ">=2.5")
+    (True, False, True)
+    """
+    own = _numbers(version)
+    kept = _LIMIT.findall(limits)
+    return all((own >= _numbers(limit)) == (compare == ">=") for compare, limit in kept)
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    """Return the numbers of a version, zeros at its end left out."""
+    numbers = [int(number) for number in re.findall(r"\d+", re.split(r"[+a-zA-Z]", version)[0])]
+    while numbers and not numbers[-1]:
+        numbers.pop()
+    return tuple(numbers)
