@@ -162,6 +162,7 @@ bench: $(VENV)/.developing
 	$(BIN)/python benchmarks/bench_hyperbolic.py $(if $(FILES),--files $(FILES)) --page docs/benchmarks/marching.md
 	$(BIN)/python benchmarks/bench_tfi.py
 	$(BIN)/python benchmarks/bench_volumes.py --page docs/benchmarks/volumes.md
+	$(if $(FILES),$(BIN)/python benchmarks/bench_engines.py --airfoils $(FILES) --page docs/benchmarks/engines.md)
 	$(if $(FILES),$(BIN)/python benchmarks/bench_wings.py --airfoils $(FILES) --page docs/benchmarks/wings.md)
 
 docs: $(VENV)/.developing

@@ -20,6 +20,7 @@ SCRIPTS = {
     "marching-surfaces": "marching",
     "wings": "wings",
     "volumes": "volumes",
+    "engines": "engines",
     "threads": "threads",
     "gpu": "gpu",
     "datasets": "datasets",

@@ -32,6 +32,15 @@ if TYPE_CHECKING:
 _SECONDS = 10  # to wait for the scheduler's answer
 T = TypeVar("T")
 R = TypeVar("R")
+_SETTINGS = {
+    "distributed.scheduler.allowed-failures": 1,
+    "distributed.scheduler.worker-saturation": 1.0,  # a task that waits is not blamed for a death
+    # looking at themselves a hundred times a second costs three processes a tenth of a core
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "10s",
+}
+"""Of a cluster of processes of this machine, beside its defaults."""
 
 
 @contextmanager
@@ -65,11 +74,7 @@ def _local(count: int) -> Iterator[Client]:
     from distributed import Client, LocalCluster
 
     share_cores()
-    settings = {
-        "distributed.scheduler.allowed-failures": 1,
-        "distributed.scheduler.worker-saturation": 1.0,  # a task that waits is not blamed for a death
-    }
-    with dask.config.set(settings), _without_interrupts():
+    with dask.config.set(_SETTINGS), _without_interrupts():
         cluster = LocalCluster(
             n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0,
             silence_logs=logging.CRITICAL + 1,
