@@ -84,7 +84,7 @@ name = file["names"].asstr()[k]
 named = time.perf_counter()
 times = [opened - begun, read - opened, named - read]
 print(json.dumps({"name": name, "corner": nodes[-1, -1].tolist(), "ms": [1e3 * t for t in times]}))
-"""
+""".lstrip()  # no text of the page
 COLUMN_READER = """
 import json, sys, time
 path, package, k = sys.argv[1], sys.argv[2], int(sys.argv[3])
@@ -97,7 +97,7 @@ corner = float(nodes[k][-1, -1, 0])
 read = time.perf_counter()
 times = [imported - begun, opened - imported, read - opened]
 print(json.dumps({"corner": corner, "ms": [1e3 * t for t in times]}))
-"""
+""".lstrip()  # no text of the page
 NI, NJ = 5, 4
 
 

@@ -60,10 +60,10 @@ def part_facts(path: Path) -> PartFacts:
         for name, data in _datasets(file):
             facts.columns[name] = len(data), data.shape[1:], data.dtype
         if facts.columns.pop("inputs", None):
-            facts.inputs = [digest.decode("ascii") for digest in file["inputs"].astype("S32")]
+            facts.inputs = [digest.decode("ascii") for digest in file["inputs"][()]]
         if "failed" in facts.columns:
             check_heaps(source)
-            facts.failed = [Failed(*json.loads(text)) for text in file["failed"].asstr()]
+            facts.failed = [Failed(*json.loads(text)) for text in file["failed"].asstr()[()]]
         facts.count = facts.columns.get("south", facts.columns.get("blocks/0", (0,)))[0]
         if "parameters" in facts.columns:
             facts.parameter_names = file["parameters"].attrs.get("names")
