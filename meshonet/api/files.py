@@ -39,12 +39,20 @@ def inputs(
     pick : patterns of names (``naca*``), to take only such files of folders, archives and lists.
     shard : k and n, to take every n-th input from the k-th on.
 
-    Raises InputError: a folder, archive or list that cannot be read, or in which there is nothing.
+    Yields
+    ------
+    str
+        The name of an input.
+
+    Raises
+    ------
+    InputError
+        For a folder, archive or list that cannot be read, or in which there is nothing.
     """
     words = (names,) if isinstance(names, str | Path) else names
     patterns = (pick,) if isinstance(pick, str) else tuple(pick)
-    found = Inputs(tuple(map(str, words)), readable_suffixes(), patterns, shard)
-    return (_readable(each.text) for each in found.own())
+    every = Inputs(tuple(map(str, words)), readable_suffixes(), patterns, shard)
+    return (_readable(each.text) for each in every.own())
 
 
 def _readable(text: str | InputError) -> str:
