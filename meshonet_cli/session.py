@@ -166,7 +166,7 @@ class Session:
         if self.batch:
             self._unwatch()
         done = self.members - 1
-        if count and done < count:
+        if count and done < count > 1:
             spent = time.perf_counter() - self._begun
             left = f", {(count - done) * spent / done:.0f} s left" if done else ""
             self.status(f"{bar(done, count)} {self.members}/{count}{left}: {name}")

@@ -57,7 +57,8 @@ class StageLine:
         head = f"{duration(spent)}, {stage.name}"
         done = stage.done()
         if not stage.count:
-            return f"{head}: {self.detail}" if self.detail else head
+            detail = f"{stage.unit} {done}" if done else self.detail
+            return f"{head}: {detail}" if detail else head
         left = (stage.count - done) * (now - self._since) / done if done else None
         rest = "" if left is None else f", {duration(left)} left"
         return f"{bar(done, stage.count)} {head}: {stage.unit} {done}/{stage.count}{rest}"
