@@ -11,9 +11,9 @@ from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.make_grid import Result, judged
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.stages import reached
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.wing_surface import wing_surface
+from meshonet.solvers.stages import reached
 
 _REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"
 
