@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -49,7 +50,10 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     outer, hole = [[0, 0], [3, 0], [3, 2], [0, 2], [0, 0]], [[1, 1], [1, 1.4], [1.4, 1.4], [1.4, 1], [1, 1]]
     plate = {"type": "Polygon", "coordinates": [outer, hole]}
     (made / "plate.geojson").write_text(json.dumps(plate))
-    Grid((Block(box()),)).write(made / "wing.cgns")
+    for name in ("wing.cgns", "box.xyz"):
+        Grid((Block(box()),)).write(made / name)
+    with zipfile.ZipFile(made / "airfoils.zip", "w") as archive:
+        archive.write(made / "airfoils" / "one.dat", "naca0012.dat")
     section = '[[sections]]\nairfoil = "airfoil.dat"\nchord = {}\nz = {}\n'
     (made / "wing.toml").write_text(section.format(1, 0) + section.format(0.5, 2) + "sweep = 20\n")
     bend = "[[pieces]]\nline = 2\n[[pieces]]\narc = 90\nradius = 2\ntowards = [0, 1, 0]\n"

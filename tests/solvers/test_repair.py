@@ -78,7 +78,11 @@ def test_repaired_corners_are_open_not_merely_positive() -> None:
 
 
 def test_shapes_that_are_nearly_the_same_are_repaired_alike_with_a_wide_margin() -> None:
-    """The jaw of a wrench is opened by 0.01: nodes of its boundary move by 0.005."""
+    """The jaw of a wrench is opened by 0.01: nodes of its boundary move by 0.005.
+
+    Inner nodes move little more with a wide margin. By how much is decided by where descents stop, for which
+    rounding is enough: 0.005 to 0.011 for margins of 9 to 18, and 0.08 for 6.
+    """
     moved = {}
     for margin in (6, 12):
         made = []
@@ -88,7 +92,8 @@ def test_shapes_that_are_nearly_the_same_are_repaired_alike_with_a_wide_margin()
             assert repair(nodes, False, margin) == 0
             made.append(nodes)
         moved[margin] = np.abs(made[1] - made[0]).max()
-    assert moved[12] < 0.01 < moved[6]
+    assert moved[12] < 0.015
+    assert moved[12] < 0.2 * moved[6]
 
 
 @pytest.mark.parametrize("shape", [(2, 5), (5, 2), (2, 2)])

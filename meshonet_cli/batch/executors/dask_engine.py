@@ -74,6 +74,7 @@ def _local(count: int) -> Iterator[Client]:
     from distributed import Client, LocalCluster
 
     share_cores()
+    os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "critical")  # for workers, as they load it
     with dask.config.set(_SETTINGS), _without_interrupts():
         cluster = LocalCluster(
             n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0,
@@ -81,6 +82,9 @@ def _local(count: int) -> Iterator[Client]:
         )  # fmt: skip
     with cluster, Client(cluster) as client:
         yield client
+        with suppress(Exception):  # those that took the place of dead ones print errors when all end at once
+            client.wait_for_workers(count, timeout=_SECONDS)
+            client.retire_workers(close_workers=True)
 
 
 @contextmanager
