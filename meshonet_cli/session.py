@@ -41,7 +41,8 @@ class Session:
     """Prints what happens and remembers the worst exit code.
 
     Results for programs (`as_json`) and tables go to standard output, everything else to standard error; only
-    warnings and errors when `quiet`, and tracebacks of failing members too with `debug`.
+    warnings and errors when `quiet`, and tracebacks of failing members too with `debug`. On a terminal a line
+    of progress stands below, with bars and without colours.
     """
 
     def __init__(self, *, quiet: bool = False, as_json: bool = False, debug: bool = False) -> None:

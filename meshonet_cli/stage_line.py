@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 DELAY = 1.0  # seconds without a line: most work is done by then
 INTERVAL = 0.2  # seconds between two lines
+HELD = 1.0  # seconds to wait for a terminal that is held, at the most
 
 _running: list[StageLine] = []
 
@@ -45,7 +46,7 @@ class StageLine:
         if self in _running:
             _running.remove(self)
             self._stopped.set()
-            self._thread.join(DELAY)
+            self._thread.join(HELD)
             self._watching.close()
 
     def text(self) -> str:
