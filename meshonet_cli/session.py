@@ -94,6 +94,8 @@ class Session:
     def report(self, report: Timed) -> None:
         """Report a member that is done: as JSON, in full when it is alone, on one line in a batch."""
         self.done += 1
+        if not self.batch:
+            self._unwatch()
         if self.as_json:
             self.result(report.as_json())
         else:
