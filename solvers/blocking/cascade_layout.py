@@ -96,7 +96,7 @@ def _outside(
 
 
 def _optimised(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
-    targets = metric.edges(layout.mesh) if metric else None
+    targets = metric.gradual(layout.mesh) if metric else None
     optimum = optimise(layout.mesh, iterations=iterations, targets=targets)
     if not optimum.valid:
         raise NoValidGridError("cells of the passage stay folded")
