@@ -160,7 +160,7 @@ class Session:
         """
         leads = os.environ.get("RANK", "0") == "0"  # of several processes under torchrun
         if self._bar and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):
-            self._line = StageLine(self._draw)
+            self._line = StageLine(self._draw, self._clear)
 
     def begin(self, name: str, count: int | None = None) -> None:
         """Show on a terminal which member of how many (None: not known) is at work; stop if asked to."""
@@ -219,6 +219,7 @@ class Session:
     def _clear(self) -> None:
         if self._bar_shown:
             sys.stderr.write("\r\x1b[2K")
+            sys.stderr.flush()
             self._bar_shown = False
 
 

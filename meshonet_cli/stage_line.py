@@ -25,12 +25,12 @@ _running: list[StageLine] = []
 
 
 class StageLine:
-    """Calls `draw` five times a second, from the second second on until it is stopped."""
+    """Calls `draw` five times a second, from the second second on until it is stopped, and then `clear`."""
 
-    def __init__(self, draw: Callable[[], None]) -> None:
+    def __init__(self, draw: Callable[[], None], clear: Callable[[], None]) -> None:
         from meshonet.solvers.stages import Stage, watching  # numpy, which a list of commands does not need
 
-        self._draw = draw
+        self._draw, self._clear = draw, clear
         self.detail = ""  # of the stage
         self._begun = self._since = time.perf_counter()
         self._stage = Stage("read")
@@ -42,12 +42,13 @@ class StageLine:
         _running.append(self)
 
     def stop(self) -> None:
-        """End the thread and wait until it draws no more."""
+        """End the thread, wait until it draws no more, and clear the line."""
         if self in _running:
             _running.remove(self)
             self._stopped.set()
             self._thread.join(HELD)
             self._watching.close()
+            self._clear()
 
     def text(self) -> str:
         """Return the line, with the detail where the stage has no steps; that alone for the first second."""

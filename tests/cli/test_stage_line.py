@@ -35,7 +35,7 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 def line() -> Iterator[StageLine]:
     """A line that is not drawn."""
     with stopping_lines():
-        yield StageLine(lambda: None)
+        yield StageLine(lambda: None, lambda: None)
 
 
 def threads() -> list[str]:
@@ -107,6 +107,19 @@ def test_batches_have_no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
         session.begin("a.h5")
         assert not threads()
         session.watch()
+        assert not threads()
+
+
+def test_an_interrupt_wipes_the_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    def work() -> None:
+        Session().watch()
+        time.sleep(0.1)
+        raise KeyboardInterrupt
+
+    with terminal(monkeypatch) as screen:
+        with pytest.raises(KeyboardInterrupt), stopping_lines():
+            work()
+        assert screen().endswith(f"0 s, read{WIPED}")
         assert not threads()
 
 
