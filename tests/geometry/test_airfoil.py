@@ -60,11 +60,11 @@ def test_edges_chord_and_gap_of_a_known_section():
     assert airfoil.wedge == pytest.approx(slope, abs=0.3)
 
 
-@pytest.mark.parametrize("shape", [Airfoil, lambda points: closed_curve(points, "curve")], ids=["file", "array"])
+@pytest.mark.parametrize("shape", [Airfoil, closed_curve], ids=["file", "array"])
 @pytest.mark.parametrize("ratio", [0.03, 0.06, 0.12])
 def test_wall_nodes_lie_on_an_oblique_base(ratio, shape):
     points = oblique(ratio)
-    wall = shape(points).boundary(Sampling(301, 41, "o")).south
+    wall = shape(points, "section").boundary(Sampling(301, 41, "o")).south
     behind = wall[wall[:, 0] > 0.98]
     assert farthest(behind, np.concatenate([points, points[:1]])) < 1e-5
 

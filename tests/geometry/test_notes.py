@@ -43,7 +43,7 @@ def test_a_base_rounded_at_its_corners_is_named() -> None:
 @pytest.mark.parametrize("te", ["round", "wedge"])
 def test_a_treatment_of_the_base_without_one_is_named(te: TrailingEdge) -> None:
     (note,) = Airfoil(selig(0.12)).boundary(Sampling(121, 31, "o", te=te)).notes
-    assert note == f"{{te}} {te} changes nothing, as the trailing edge has no base"
+    assert note == f"{{te}} {te} changes nothing, as the trailing edge is not blunt"
 
 
 def test_a_c_grid_that_was_chosen_for_a_sharp_edge_is_named() -> None:

@@ -224,7 +224,7 @@ class Airfoil:
         if self.blunt and te == "round":
             return (f"{base} is rounded at its corners",)
         if not self.blunt and sampling.te in ("round", "wedge"):
-            return (f"{{te}} {te} changes nothing, as the trailing edge has no base",)
+            return (f"{{te}} {te} changes nothing, as the trailing edge is not blunt",)
         return ()
 
     def _c_boundary(self, sampling: Sampling, original: Airfoil, notes: tuple[str, ...]) -> Boundary:
