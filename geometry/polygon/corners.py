@@ -19,7 +19,7 @@ ALWAYS = np.radians(75.0)
 HAIRPIN = np.radians(100.0)
 """A turn that may be the round end of a thin body with few points (`SHARP` beside small turns)."""
 WIDENS = 0.75
-"""A body widens behind an oblique base at this part of its first rate or more, behind a nose at about half."""
+"""A body widens behind an oblique base at this part or more of its first rate, behind a nose at half."""
 ALONE = np.radians(50.0)
 FEW = 12
 """A closed polygon of at most so many points is meant as one."""
