@@ -28,6 +28,7 @@ import typer.core
 
 from meshonet import __version__
 from meshonet_cli.commands import COMMANDS, Command
+from meshonet_cli.stage_line import stopping_lines
 from meshonet_cli.stopping import install
 
 INTERRUPTED, BAD_INPUT = 130, 2
@@ -103,7 +104,8 @@ def run(arguments: Sequence[str]) -> int:
     overview = not meant and "_MESHONET_COMPLETE" not in os.environ
     try:
         program = application(meant or COMMANDS, overview=overview)
-        code: Any = program.main(words, prog_name="meshonet", standalone_mode=False)
+        with stopping_lines():
+            code: Any = program.main(words, prog_name="meshonet", standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
         return _interrupted()
     except BrokenPipeError:

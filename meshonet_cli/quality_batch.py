@@ -16,6 +16,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.blocks import BLOCK_FIGURES
 from meshonet.geometry.quality.gates import Gate, parse_gates
 from meshonet.geometry.quality.report import COMPARED
+from meshonet.solvers.stages import reached
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.sources import items
 from meshonet_cli.plot_batch import picture_file
@@ -50,12 +51,14 @@ def measure_grids(
             begun = time.perf_counter()
             reference = references.match(item.what.name) if references else None
             paired = time.perf_counter()
+            reached("quality")
             measured = Measured(item, quality(item.what, profile=profile, compare=reference))
             measured.seconds["quality"] = time.perf_counter() - paired
             if references:
                 measured.seconds["compare"] = paired - begun
             for destination in outputs:
                 destination.check_only(item)
+                reached("write")
                 with measured.timed("write"):
                     destination.write(destination.path(item), [item.what])
             measured.finished(None)
@@ -70,6 +73,7 @@ def measure_grids(
     if rows and summary:
         session.conclude(Summary(rows))
     if page and html and rows:
+        reached("write")
         with whole_file(html) as part:
             page.write(part)
     return session.finish()

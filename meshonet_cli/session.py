@@ -5,7 +5,9 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import stat
 import sys
+import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
@@ -13,13 +15,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet_cli.errors import explained, with_options
+from meshonet_cli.stage_line import StageLine
 from meshonet_cli.stopping import check
+from meshonet_cli.text import bar
 
 if TYPE_CHECKING:
     from meshonet_cli.batch.timed import Timed
 
 GATE_NOT_MET = 1
-_BAR_LENGTH = 24
 
 
 class Printed(Protocol):
@@ -38,7 +41,8 @@ class Session:
     """Prints what happens and remembers the worst exit code.
 
     Results for programs (`as_json`) and tables go to standard output, everything else to standard error; only
-    warnings and errors when `quiet`, and tracebacks of failing members too with `debug`.
+    warnings and errors when `quiet`, and tracebacks of failing members too with `debug`. On a terminal a line
+    of progress stands below, with bars and without colours.
     """
 
     def __init__(self, *, quiet: bool = False, as_json: bool = False, debug: bool = False) -> None:
@@ -49,6 +53,9 @@ class Session:
         self._begun = time.perf_counter()
         self._bar = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
         self._bar_shown = False
+        self._text = ""  # of what goes on
+        self._line: StageLine | None = None
+        self._writing = threading.RLock()  # the line is drawn by a thread
 
     @contextlib.contextmanager
     def member(self, label: str, source: str | None = None) -> Iterator[None]:
@@ -87,6 +94,8 @@ class Session:
     def report(self, report: Timed) -> None:
         """Report a member that is done: as JSON, in full when it is alone, on one line in a batch."""
         self.done += 1
+        if not self.batch:
+            self._unwatch()
         if self.as_json:
             self.result(report.as_json())
         else:
@@ -120,8 +129,9 @@ class Session:
 
     def print(self, text: str) -> None:
         """Print on standard output."""
-        self._clear()
-        print(text, flush=True)  # noqa: T201
+        with self._writing:
+            self._clear()
+            print(text, flush=True)  # noqa: T201
 
     def check_output(self, output: str) -> None:
         """Raise InputError when results and JSON would share standard output."""
@@ -138,27 +148,37 @@ class Session:
     def status(self, text: str) -> None:
         """Show on a terminal what is going on, in place of what was shown before."""
         if self._bar:
-            self._clear()
-            width = (os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1
-            sys.stderr.write(printable(text)[:width])
-            sys.stderr.flush()
-            self._bar_shown = True
+            self._text = text
+            if self._line:
+                self._line.detail = text
+            self._draw()
+
+    def watch(self) -> None:
+        """Show on a terminal what a single input is at, once that has taken a second.
+
+        Not with JSON; nor where standard output is a pipe, whose reader may have a line of its own.
+        """
+        leads = os.environ.get("RANK", "0") == "0"  # of several processes under torchrun
+        if self._bar and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):
+            self._line = StageLine(self._draw, self._clear)
 
     def begin(self, name: str, count: int | None = None) -> None:
         """Show on a terminal which member of how many (None: not known) is at work; stop if asked to."""
         check()
         self.members += 1
+        if self.batch:
+            self._unwatch()
         done = self.members - 1
-        if count and done < count:
+        if count and done < count > 1:
             spent = time.perf_counter() - self._begun
             left = f", {(count - done) * spent / done:.0f} s left" if done else ""
-            self.status(f"{_bar(done, count)} {self.members}/{count}{left}: {name}")
+            self.status(f"{bar(done, count)} {self.members}/{count}{left}: {name}")
         elif done:
             self.status(f"{self.members}: {name}")
 
     def progress(self, done: int, count: int, text: str) -> bool:
         """Show on a terminal how far one long task is; return whether there is a terminal."""
-        self.status(f"{_bar(done, count)} {text}")
+        self.status(f"{bar(done, count)} {text}")
         return self._bar
 
     def skip(self, name: str, path: str, remark: str = "") -> None:
@@ -168,6 +188,7 @@ class Session:
 
     def finish(self) -> int:
         """Report how a batch went and return the exit code."""
+        self._unwatch()
         self._clear()
         if self.batch and not (self.quiet or self.as_json):
             spent = time.perf_counter() - self._begun
@@ -177,15 +198,33 @@ class Session:
         return self.worst
 
     def _write(self, text: str) -> None:
-        self._clear()
-        print(text, file=sys.stderr)  # noqa: T201
+        with self._writing:
+            self._clear()
+            print(text, file=sys.stderr)  # noqa: T201
+
+    def _draw(self) -> None:
+        with self._writing:
+            text = self._line.text() if self._line else self._text
+            self._clear()
+            width = (os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1
+            sys.stderr.write(printable(text)[:width])
+            sys.stderr.flush()
+            self._bar_shown = True
+
+    def _unwatch(self) -> None:
+        if self._line:
+            self._line.stop()
+            self._line = None
 
     def _clear(self) -> None:
         if self._bar_shown:
             sys.stderr.write("\r\x1b[2K")
+            sys.stderr.flush()
             self._bar_shown = False
 
 
-def _bar(done: int, count: int) -> str:
-    filled = _BAR_LENGTH * done // count
-    return f"[{'#' * filled}{'-' * (_BAR_LENGTH - filled)}]"
+def _is_pipe(descriptor: int) -> bool:
+    try:
+        return stat.S_ISFIFO(os.fstat(descriptor).st_mode)
+    except OSError:  # it is closed
+        return False

@@ -1,5 +1,7 @@
 """Numbers and tables as text."""
 
+_BAR_LENGTH = 24
+
 
 def aligned(rows: list[list[str]]) -> str:
     """Return `rows` as lines with columns aligned, the first to the left and the others to the right."""
@@ -24,6 +26,27 @@ def figure(value: float) -> str:
 def span(seconds: float) -> str:
     """Return a time span for people, in seconds or milliseconds."""
     return f"{seconds:.2f} s" if seconds >= 1 else f"{1e3 * seconds:.1f} ms"
+
+
+def duration(seconds: float) -> str:
+    """Return a span of time that goes on, for people.
+
+    >>> duration(42.0), duration(600.0), duration(9000.0)
+    ('42 s', '10 min', '2.5 h')
+    """
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+
+
+def bar(done: int, count: int) -> str:
+    """Return a bar of which `done` of `count` parts are filled.
+
+    >>> bar(1, 4)
+    '[######------------------]'
+    """
+    filled = _BAR_LENGTH * done // count
+    return f"[{'#' * filled}{'-' * (_BAR_LENGTH - filled)}]"
 
 
 def named(at: tuple[int, ...]) -> str:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError
+from meshonet.solvers.stages import reached
 from meshonet_cli.batch.destination import Destination, same_size
 from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item, Name, Named
@@ -164,6 +165,7 @@ class _Work(Generic[T, S, R]):
         if self.destination is None:
             return what, report
         try:
+            reached("write")
             with report.timed("write"):
                 self.destination.write(path, [what])
         except Exception as error:
@@ -250,6 +252,7 @@ def _streamed(
             what = made
         if what is None:
             continue
+        reached("write")
         with report.timed("write"):
             yield what
         written(report, destination.text)

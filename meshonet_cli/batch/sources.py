@@ -80,6 +80,7 @@ def items(inputs: Inputs, read: Callable[[str], Iterator[T]], session: Session) 
 
 def _items(inputs: Inputs, read: Callable[[str], Iterator[T]], session: Session) -> Iterator[Item[T]]:
     session.batch = session.batch or inputs.more_than(1)
+    session.watch()
     count = inputs.count() if session.live else None
     for item in records(inputs.own(), read):
         session.batch = session.batch or not item.only
@@ -165,6 +166,7 @@ def _assembly(
     from meshonet.geometry.shapes.assembly import assembled
 
     label = " + ".join(inputs.words)
+    session.watch()
     with session.member(label):
         begun = time.perf_counter()
         shapes: list[Shape] = []

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.output import whole_file
 from meshonet_cli.session import Session
+from meshonet_cli.text import duration
 
 if TYPE_CHECKING:
     from meshonet.solvers.neural.fit.loop import Progress
@@ -43,6 +44,7 @@ class Log:
         self.session, self.path = session, Path(path) if path else None
         self.fresh, self.resume = True, resume
         self.shown = 0
+        session.watch()
 
     def __call__(self, progress: Progress) -> None:
         """Show it."""
@@ -52,7 +54,7 @@ class Log:
         held_out = f", held out {progress.held_out['loss']:.2e}" if "loss" in progress.held_out else ""
         line = (
             f"epoch {progress.epoch}/{progress.epochs}: loss {progress.loss:.3e}{parts}{held_out}, "
-            f"rate {progress.rate:.1e}, {progress.speed:.0f} shapes/s, {_time(left)} left"
+            f"rate {progress.rate:.1e}, {progress.speed:.0f} shapes/s, {duration(left)} left"
         )
         due = progress.epoch - self.shown >= progress.epochs // LINES or progress.epoch == progress.epochs
         if not self.session.progress(progress.epoch, progress.epochs, line) and due:
@@ -87,14 +89,3 @@ def _kept(path: Path, epoch: int) -> list[str]:
         return []
     rows = [line for line in lines if line.endswith("\n") and line.split(",")[0].isdigit()]
     return [line for line in rows if int(line.split(",")[0]) < epoch]
-
-
-def _time(seconds: float) -> str:
-    """Return a span of time for people.
-
-    >>> _time(42.0), _time(600.0), _time(9000.0)
-    ('42 s', '10 min', '2.5 h')
-    """
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

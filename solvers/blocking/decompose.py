@@ -30,6 +30,7 @@ from meshonet.solvers.blocking.score import PRICE
 from meshonet.solvers.blocking.seamless_map import seamless_map
 from meshonet.solvers.blocking.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.stages import reached
 
 ATTEMPTS = 5
 HELD_ITERATIONS, FIRST_ITERATIONS, BEFORE_PADDING = 10, 60, 25
@@ -55,6 +56,7 @@ class Timings:
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Add the time spent inside to a stage."""
+        reached(name)
         begun = time.perf_counter()
         try:
             yield

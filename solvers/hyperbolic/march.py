@@ -34,6 +34,7 @@ from meshonet.solvers.hyperbolic.settings import (
     MarchSettings,
 )
 from meshonet.solvers.solution import Solution
+from meshonet.solvers.stages import filling
 
 FADE_ROWS = 12.0  # rows over which the correction of the first cell fades out
 REACHED = 0.025  # relative error of the far field's distance up to which no other distance is tried
@@ -140,7 +141,8 @@ def _marched(
     distance = distance_to_march(front, first, cells, settings, constant, edge)
     for _ in range(4):
         steps = level_steps(first, distance, cells, constant, edge)
-        hyperbolic_march(levels[0], levels[1], steps, *knobs, front.ends, front.widening, None, threads)
+        with filling("grid", "row", levels[0, 1:, 0]):
+            hyperbolic_march(levels[0], levels[1], steps, *knobs, front.ends, front.widening, None, threads)
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None

@@ -10,6 +10,7 @@ from meshonet.solvers.deformation.deform import deform
 from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.make_grid import Result, judged
+from meshonet.solvers.stages import reached
 
 _REMEDY = "go part of the way first, or make the grid of the new shape anew"
 
@@ -24,5 +25,6 @@ def make_deformed(
     """
     request = request or DeformRequest()
     with limited_to(request.threads):
+        reached("grid")
         solution = deform(grid, walls)
         return judged(solution, dict(solution.seconds), request, remedy=_REMEDY)

@@ -26,6 +26,7 @@ from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.volumes import check_plane, make_volume
 from meshonet.solvers.progress import History, Row, listening
 from meshonet.solvers.solution import Outcome, Solution
+from meshonet.solvers.stages import reached
 
 if TYPE_CHECKING:
     from meshonet.geometry.shapes.domain_shape import DomainShape
@@ -150,6 +151,7 @@ def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> deque[_M
     group: deque[_Member] = deque()
     nodes = 0
     for shape in islice(shapes, most):
+        reached("boundary")
         begun = time.perf_counter()
         try:
             boundary: Boundary | DomainShape | SpatialShape | Exception = _sampled(shape, request)
@@ -225,16 +227,19 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
         return _of_blocks(boundary, request, seconds)
     history = History()
     if solution is None:
+        reached("grid")
         begun = time.perf_counter()
         start = None if request.initial is None else [request.initial]
         with listening(history) if request.history else contextlib.nullcontext():
             solution = method.solve([boundary], start)[0]
         _add_times(seconds, solution, time.perf_counter() - begun)
     rows = history.of(solution) if request.history else ()
+    reached("guard")
     begun = time.perf_counter()
     checked = _checked(solution, boundary, request)
     notes = (*boundary.notes, *solution.notes, *_changed_first_cells(solution, checked))
     seconds["guard"] = seconds.get("guard", 0.0) + time.perf_counter() - begun
+    reached("quality")
     begun = time.perf_counter()
     quality = measure(checked.grid, percentiles=request.percentiles)
     seconds["quality"] = time.perf_counter() - begun
@@ -246,6 +251,7 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
     """Return the grid of blocks of a domain, measured."""
     from meshonet.solvers.pipeline.blocks import block_request, smoothed, smooths
 
+    reached("grid")
     begun = time.perf_counter()
     if shape.given is not None and smooths(shape, request):
         solution = smoothed(shape.given, request)
@@ -262,6 +268,7 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
 
 def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, float]) -> Result:
     """Return the volume grid of a shape in space, measured."""
+    reached("grid")
     begun = time.perf_counter()
     solution = make_volume(shape, request)
     _add_times(seconds, solution, time.perf_counter() - begun)
@@ -279,6 +286,7 @@ def judged(
 
     Raises NoValidGridError: cells are folded, which is not allowed; `remedy` says what to try.
     """
+    reached("quality")
     begun = time.perf_counter()
     quality = measure(solution.grid, percentiles=request.percentiles)
     seconds["quality"] = time.perf_counter() - begun

@@ -13,6 +13,7 @@ from meshonet.solvers.pipeline.make_grid import Result, judged
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.wing_surface import wing_surface
+from meshonet.solvers.stages import reached
 
 _REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"
 
@@ -44,6 +45,7 @@ def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
 
 def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
     """Return the volume between the planar grids of a blade's or a duct's sections."""
+    reached("grid")
     begun = time.perf_counter()
     from meshonet.solvers.pipeline.lofts import blade_volume, duct_volume
 
@@ -59,6 +61,7 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
     from meshonet.geometry.surface.surface import surface_of
     from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_surface
 
+    reached("boundary")
     loaded = time.perf_counter()
     grid, notes = wing_surface(stack, request.surface)
     surface = surface_of(grid)
@@ -69,6 +72,7 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
         symmetry="z", growth=request.growth,
     )  # fmt: skip
     seconds["load"] = loaded - begun
+    reached("grid")
     begun = time.perf_counter()
     solution = march_surface(surface, settings)
     seconds["grid"] = time.perf_counter() - begun

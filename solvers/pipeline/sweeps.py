@@ -12,6 +12,7 @@ from meshonet.solvers.pipeline.make_grid import Result, judged
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.sections import section_grid
 from meshonet.solvers.solution import Solution
+from meshonet.solvers.stages import reached
 from meshonet.solvers.sweeping.sweep import Sweep, reach_of, self_crossing, sweep
 
 _REMEDY = "use a wider bend, a smaller section or more {planes}"
@@ -30,6 +31,7 @@ def make_sweep(
         begun = time.perf_counter()
         section, notes = section_grid(shape, request)
         seconds["boundary"] = time.perf_counter() - begun
+        reached("grid")
         begun = time.perf_counter()
         grid = sweep(section, path, settings)
         crossing = self_crossing(path, reach_of(section))

@@ -10,6 +10,7 @@ from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.iteration import check_tolerances
 from meshonet.solvers.solution import Outcome, Solution
+from meshonet.solvers.stages import reached
 from meshonet.solvers.volumes.descent import FLAT, Descent
 from meshonet.solvers.volumes.edge_corners import check_corners
 from meshonet.solvers.volumes.evaluate import evaluate
@@ -57,12 +58,15 @@ def variational(
     laws = mean_laws(arc_laws(faces))
     optimum_faces = _coarse_faces(faces, laws, coarse)
     weights = ENERGIES[energy]
+    reached("optimum")
     planes, iterations = optimum(optimum_faces, max_cycles, weights)
     solved = time.perf_counter()
     if optimum_faces is not faces:
+        reached("evaluation")
         planes = np.ascontiguousarray(evaluate(planes, optimum_faces, faces, laws))
         keep_first_cells(planes, faces, laws)
     evaluated = time.perf_counter()
+    reached("repair")
     folded = repair(planes)
     facts = {"method": "variational", "energy": energy} | _terms(weights)
     counts = "x".join(map(str, optimum_faces.counts))

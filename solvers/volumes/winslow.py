@@ -9,6 +9,7 @@ from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import SolverError
 from meshonet.solvers.iteration import check_tolerances
 from meshonet.solvers.solution import Outcome, Solution
+from meshonet.solvers.stages import reached
 from meshonet.solvers.volumes.edge_corners import check_corners
 from meshonet.solvers.volumes.multigrid import Multigrid
 
@@ -57,10 +58,12 @@ def _solved(multigrid: Multigrid, tol: float | None, most: int) -> tuple[Floats,
         while norm > tol and cycles < most and np.isfinite(norm):
             multigrid.cycle(x)
             norm, cycles = multigrid.norm(x) / first, cycles + 1
+            reached("grid", "cycle", cycles)
         return x, cycles, norm, norm <= tol
     rate = RATE
     while change * rate > ENOUGH * (1.0 - rate) * apart / 3.0 and cycles < most and np.isfinite(change):
         last = change
         change, cycles = multigrid.cycle(x)[1], cycles + 1
+        reached("grid", "cycle", cycles)
         rate = min(max(change / last, 0.2), 0.95)
     return x, cycles, None, change * rate <= ENOUGH * (1.0 - rate) * apart / 3.0

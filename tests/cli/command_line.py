@@ -1,14 +1,20 @@
 """What tests of commands share: the types of their fixtures, edges made by hand, and datasets of them."""
 
+import contextlib
 import json
+import os
+import pty
+import select
 import subprocess
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
+import pytest
 
 ROOT = Path(__file__).parents[2]
 BOUNDARY_COMMANDS = ("sample-boundary", "tfi", "solve-pde", "infer")
@@ -79,3 +85,22 @@ def dataset(path: Path, topology: str, *samples: dict[str, np.ndarray], names: t
         if names:
             file["names"] = list(names)
     return path
+
+
+@contextlib.contextmanager
+def terminal(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], str]]:
+    """Standard error on a pseudo-terminal; what is on it so far is returned by the function it gives."""
+    leader, follower = pty.openpty()
+    monkeypatch.setenv("TERM", "xterm")
+    with os.fdopen(follower, "w") as stream, monkeypatch.context() as patch:
+        patch.setattr(sys, "stderr", stream)
+
+        def text() -> str:
+            stream.flush()
+            told = b""
+            while select.select([leader], [], [], 0.2)[0]:
+                told += os.read(leader, 65536)
+            return told.decode()
+
+        yield text
+    os.close(leader)

@@ -1,17 +1,13 @@
 """What a run tells of, where, and how it ends."""
 
-import contextlib
 import errno
 import io
 import json
-import os
-import pty
-import select
 import sys
-from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from command_line import terminal
 
 from meshonet.geometry.errors import InputError, NoValidGridError, SolverError
 from meshonet_cli.errors import explained
@@ -86,25 +82,6 @@ def test_json_is_written_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdout", stream)
     Session(as_json=True).result({"a": 1.5})
     assert json.loads(stream.getvalue()) == {"a": 1.5}
-
-
-@contextlib.contextmanager
-def terminal(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], str]]:
-    """Standard error on a pseudo-terminal; what is on it so far is returned by the function it gives."""
-    leader, follower = pty.openpty()
-    monkeypatch.setenv("TERM", "xterm")
-    with os.fdopen(follower, "w") as stream, monkeypatch.context() as patch:
-        patch.setattr(sys, "stderr", stream)
-
-        def text() -> str:
-            stream.flush()
-            told = b""
-            while select.select([leader], [], [], 0.2)[0]:
-                told += os.read(leader, 65536)
-            return told.decode()
-
-        yield text
-    os.close(leader)
 
 
 def test_progress_is_shown_on_a_terminal_and_wiped_off(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -37,6 +37,7 @@ from meshonet.solvers.hyperbolic.volume.symmetry import (
     symmetry_planes,
 )
 from meshonet.solvers.solution import Solution
+from meshonet.solvers.stages import filling
 
 __all__ = ["VolumeMarch", "march_surface"]
 
@@ -113,7 +114,8 @@ def march_levels(
     levels[0] = nodes[graph.order].T
     numbers = smoothing.numbers(0.5 * surface.size)
     threads = threads_for(len(nodes), MANY_VISITS)
-    made, _, _ = surface_march(levels, np.cumsum(steps), graph, numbers, threads)
+    with filling("grid", "level", levels[1:, 0, 0]):
+        made, _, _ = surface_march(levels, np.cumsum(steps), graph, numbers, threads)
     return levels[: made + 1]
 
 

@@ -15,6 +15,7 @@ from torch import Tensor, nn
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
+from meshonet.solvers.stages import reached
 
 SLOWER = "resume from the last checkpoint with a smaller learning rate"
 
@@ -122,6 +123,7 @@ def fit(
         optimiser.load_state_dict(saved["optimiser"])
         state = _State(**saved["state"])
     run = _wrapped(task, plan, team)
+    reached("training")
     begun, first = time.perf_counter(), state.epoch
     while state.epoch < plan.epochs:
         rate = _one_epoch(run, task, optimiser, plan, team, state)

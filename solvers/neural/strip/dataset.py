@@ -17,6 +17,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.conformal.strip import across, harmonic, modes, picard, to_columns
 from meshonet.solvers.conformal.walls import walls
 from meshonet.solvers.neural.strip.encoding import encode
+from meshonet.solvers.stages import reached
 
 HEIGHT = 4.0  # of a typical strip: brings derivatives across it to the scale of those along it
 MOST_STEPS = 30
@@ -57,6 +58,7 @@ def solve_strips(
             left_out += 1
         else:
             rows.append(row)
+        reached("samples", "shape", len(rows))
         if progress is not None:
             progress(len(rows), left_out)
     if not rows:

@@ -1,0 +1,90 @@
+"""What a single long input is at, for a terminal: ``12 s, grid: level 34/100, 23 s left``.
+
+A thread has the line drawn while the main one works in kernels, which release the lock of the interpreter.
+It begins with single inputs in the main process alone, never in a batch, whose processes it would disturb.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+from meshonet_cli.text import bar, duration
+
+if TYPE_CHECKING:
+    from meshonet.solvers.stages import Stage
+
+DELAY = 1.0  # seconds without a line: most work is done by then
+INTERVAL = 0.2  # seconds between two lines
+HELD = 1.0  # seconds to wait for a terminal that is held, at the most
+
+_running: list[StageLine] = []
+
+
+class StageLine:
+    """Calls `draw` five times a second, from the second second on until it is stopped, and then `clear`."""
+
+    def __init__(self, draw: Callable[[], None], clear: Callable[[], None]) -> None:
+        from meshonet.solvers.stages import Stage, watching  # numpy, which a list of commands does not need
+
+        self._draw, self._clear = draw, clear
+        self.detail = ""  # of the stage
+        self._begun = self._since = time.perf_counter()
+        self._stage = Stage("read")
+        self._stopped = threading.Event()
+        self._watching = contextlib.ExitStack()
+        self._watching.enter_context(watching(self._reached))
+        self._thread = threading.Thread(target=self._run, name="stage line", daemon=True)
+        self._thread.start()
+        _running.append(self)
+
+    def stop(self) -> None:
+        """End the thread, wait until it draws no more, and clear the line."""
+        if self in _running:
+            _running.remove(self)
+            self._stopped.set()
+            self._thread.join(HELD)
+            self._watching.close()
+            self._clear()
+
+    def text(self) -> str:
+        """Return the line, with the detail where the stage has no steps; that alone for the first second."""
+        stage, now = self._stage, time.perf_counter()
+        spent = now - self._begun
+        if spent < DELAY:
+            return self.detail
+        head = f"{duration(spent)}, {stage.name}"
+        done = stage.done()
+        if not stage.count:
+            detail = f"{stage.unit} {done}" if done else self.detail
+            return f"{head}: {detail}" if detail else head
+        left = (stage.count - done) * (now - self._since) / done if done else None
+        rest = "" if left is None else f", {duration(left)} left"
+        return f"{bar(done, stage.count)} {head}: {stage.unit} {done}/{stage.count}{rest}"
+
+    def _reached(self, stage: Stage) -> None:
+        if (stage.name, stage.unit, stage.count) != (self._stage.name, self._stage.unit, self._stage.count):
+            self._since = time.perf_counter()
+        if stage.name != self._stage.name:
+            self.detail = ""
+        self._stage = stage
+
+    def _run(self) -> None:
+        wait = DELAY
+        with contextlib.suppress(OSError, ValueError):  # the terminal has gone
+            while not self._stopped.wait(wait):
+                self._draw()
+                wait = INTERVAL
+
+
+@contextlib.contextmanager
+def stopping_lines() -> Iterator[None]:
+    """Stop lines that still run at the end of the block, however it ends."""
+    try:
+        yield
+    finally:
+        for line in [*_running]:
+            line.stop()
