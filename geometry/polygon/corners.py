@@ -18,6 +18,8 @@ ALWAYS = np.radians(75.0)
 """A turn that counts whatever its neighbours do."""
 HAIRPIN = np.radians(100.0)
 """A turn that may be the round end of a thin body with few points (`SHARP` beside small turns)."""
+WIDENS = 0.75
+"""A body widens behind an oblique base at this part or more of its first rate, behind a nose at half."""
 ALONE = np.radians(50.0)
 FEW = 12
 """A closed polygon of at most so many points is meant as one."""
@@ -47,8 +49,9 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     as each of them, or more than `SHARP` and twice as much, or more than `ALWAYS`; or two side by side more
     than `SHARP` and five times as much as the points beyond them. Left out is the round end of a thin body
     given by few points, which turns by up to 155 degrees at one of them: there the thickness grows like the
-    square root of the distance, at an edge like the distance (`growth_exponent`). A closed polygon of at most
-    `few` points (n, 2) is taken for one, not for samples of a round body.
+    square root of the distance, at an edge like the distance (`growth_exponent`). The two ends of an oblique
+    base, one of which turns as much, are both corners (`_oblique_bases`). A closed polygon of at most `few`
+    points (n, 2) is taken for one, not for samples of a round body.
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:
@@ -67,15 +70,47 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
         ahead, after = np.roll(angle, -1), np.roll(angle, -2)
         pair = (np.minimum(angle, ahead) > SHARP) & (np.roll(angle, 1) < 0.2 * angle) & (after < 0.2 * ahead)
         sharp |= pair | np.roll(pair, 1)
-    corners = np.flatnonzero(sharp)
     if polygon:
-        return corners
+        return np.flatnonzero(sharp)
+    bases = _oblique_bases(points, angle) if closed else np.zeros(len(points), dtype=bool)
+    corners = np.flatnonzero(sharp | bases)
     hairpin = (angle[corners] > HAIRPIN) | ((angle[corners] > SHARP) & (beside[corners] < ALONE))
     round_end = [
-        h and growth_exponent(points, int(k), closed=closed) < 0.75
+        h and not bases[k] and growth_exponent(points, int(k), closed=closed) < 0.75
         for k, h in zip(corners, hairpin, strict=True)
     ]
     return corners[~np.array(round_end, dtype=bool)]
+
+
+def _oblique_bases(points: Floats, angle: Floats) -> NDArray[np.bool_]:
+    """Say of each point (n,) of a closed polygon whether it is one of the two ends of an oblique base.
+
+    One end turns by more than `HAIRPIN`, the next by more than `KINK`, both five times as much as the points
+    beyond them. Points beside a round end may turn like that too, but there the widening slows down behind.
+    """
+    ahead, before, after = np.roll(angle, -1), np.roll(angle, 1), np.roll(angle, -2)
+    pair = (np.maximum(angle, ahead) > HAIRPIN) & (np.minimum(angle, ahead) > KINK)
+    pair &= (before < 0.2 * angle) & (after < 0.2 * ahead)
+    for k in np.flatnonzero(pair):
+        pair[k] = _widens_on(points, int(k))
+    return pair | np.roll(pair, 1)
+
+
+def _widens_on(points: Floats, k: int) -> bool:
+    """Say whether a body goes on widening behind points k and k + 1 as it does up to the next two.
+
+    Widths are measured across the way to the third two; behind a nose they grow like the root of it.
+    """
+    n = len(points)
+    if n < 7:
+        return False
+    a, b = points[np.arange(k, k - 3, -1) % n], points[np.arange(k + 1, k + 4) % n]
+    middle = 0.5 * (a + b) - 0.5 * (a[0] + b[0])
+    axis = middle[2] / max(math.hypot(*middle[2]), 1e-300)
+    width = np.abs((a - b) @ np.array([-axis[1], axis[0]]))
+    along = middle @ axis
+    rates = np.diff(width) * np.diff(along)[::-1]  # both times the product of the two distances
+    return bool(rates[1] >= WIDENS * rates[0])
 
 
 def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:

@@ -82,7 +82,11 @@ class Outline:
         for wrong, problem, remedy in (
             (topology == "c", "topology c needs the trailing edge of an airfoil", "use o or quad"),
             (steps, "{le_spacing} and {te_spacing} need an airfoil", "leave them out"),
-            (sampling.te != "auto", "only an airfoil has a trailing edge", "leave {te} out"),
+            (
+                sampling.te != "auto",
+                "only an airfoil has a trailing edge",
+                "leave {te} out, or write the points of an airfoil to a .dat file",
+            ),
             (sampling.wake or sampling.wake_nodes, "only an airfoil has a wake", "leave {wake} out"),
             (sampling.normalise, "only an airfoil can be normalised", "leave {normalise} out"),
             (

@@ -28,6 +28,13 @@ def selig(ratio: float = 0.12, camber: float = 0.0, base: float = 0.0, x: Points
     return np.concatenate([upper[::-1], lower[1:]])
 
 
+def oblique(ratio: float) -> Points:
+    """Return a section open at its end, whose lower side ends 0.003 chords before the upper one."""
+    upper, lower = surfaces(ratio, 0.02, 0.03 * ratio)
+    lower[:, 0] *= 0.997
+    return np.concatenate([upper[::-1], lower[1:]])
+
+
 def text(points: Points, digits: int = 6) -> str:
     """Return lines of x y."""
     return "".join(f"{x:.{digits}f} {y:.{digits}f}\n" for x, y in points)

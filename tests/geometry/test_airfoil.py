@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sections import STATIONS, farthest, selig, surfaces
+from sections import STATIONS, farthest, oblique, selig, surfaces
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.spacing.sampling import Sampling
 
 FORMULA = np.linspace(0, 1, 150) ** 2
@@ -57,6 +58,15 @@ def test_edges_chord_and_gap_of_a_known_section():
     assert airfoil.nose_radius == pytest.approx(1.1019 * 0.12**2, rel=0.15)  # the formula's own radius
     slope = 2 * np.degrees(np.arctan(5 * 0.12 * 0.24225 - 0.002))
     assert airfoil.wedge == pytest.approx(slope, abs=0.3)
+
+
+@pytest.mark.parametrize("shape", [Airfoil, closed_curve], ids=["file", "array"])
+@pytest.mark.parametrize("ratio", [0.03, 0.06, 0.12])
+def test_wall_nodes_lie_on_an_oblique_base(ratio, shape):
+    points = oblique(ratio)
+    wall = shape(points, "section").boundary(Sampling(301, 41, "o")).south
+    behind = wall[wall[:, 0] > 0.98]
+    assert farthest(behind, np.concatenate([points, points[:1]])) < 1e-5
 
 
 def test_leading_edge_is_the_farthest_place_of_the_curve():

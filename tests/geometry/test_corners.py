@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from sections import STATIONS, selig
+from sections import STATIONS, oblique, selig
 
 from meshonet.geometry.polygon.corners import find_corners, growth_exponent, turning
 
@@ -44,3 +44,20 @@ def test_thickness_grows_like_the_root_behind_a_nose_and_in_proportion_behind_a_
     assert growth_exponent(points, len(STATIONS) - 1) == pytest.approx(0.45, abs=0.1)
     assert growth_exponent(points, 0) == pytest.approx(1.0, abs=0.15)
     assert growth_exponent(points[:4], 0) == np.inf
+
+
+@pytest.mark.parametrize("ratio", [0.03, 0.06, 0.12])
+@pytest.mark.parametrize("start", [0, 1, 60])
+def test_both_ends_of_an_oblique_base_are_corners(ratio, start):
+    points = oblique(ratio)
+    n = len(points)
+    corners = (find_corners(np.roll(points, -start, axis=0), closed=True) + start) % n
+    assert sorted(corners.tolist()) == [0, n - 1]
+
+
+@pytest.mark.parametrize("offset", [0.02, 0.14, 0.3])
+def test_points_to_both_sides_of_the_tip_of_a_round_end_are_no_base(offset):
+    y = np.arange(-9, 10) + offset
+    end = np.stack([y**2, 0.35 * y], axis=1)
+    body = np.concatenate([end, [[200.0, 0.0]]])
+    assert find_corners(body, closed=True).tolist() == []

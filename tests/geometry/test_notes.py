@@ -9,7 +9,7 @@ from sections import selig
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.geometry.spacing.sampling import Sampling, TrailingEdge
 
 O_GRID = Sampling(121, 31, "o")
 
@@ -33,6 +33,24 @@ def touching() -> Airfoil:
     points[behind, 1] = np.where(lower[behind], 1e-6, -1e-6)
     points[[0, -1]] = 1.0, 0.0
     return Airfoil(points)
+
+
+def test_a_base_rounded_at_its_corners_is_named() -> None:
+    (note,) = Airfoil(selig(0.12, base=0.004)).boundary(Sampling(121, 31, "o", te="round")).notes
+    assert note == "the outline is changed: its base, 0.004 chords wide, is rounded at its corners"
+
+
+@pytest.mark.parametrize("te", ["round", "wedge"])
+def test_a_treatment_of_the_base_without_one_is_named(te: TrailingEdge) -> None:
+    (note,) = Airfoil(selig(0.12)).boundary(Sampling(121, 31, "o", te=te)).notes
+    assert note == f"{{te}} {te} changes nothing, as the trailing edge is not blunt"
+
+
+def test_a_c_grid_that_was_chosen_for_a_sharp_edge_is_named() -> None:
+    section = Airfoil(selig(0.12))
+    (note,) = section.boundary(Sampling(161, 31, viscous=True)).notes
+    assert note == "c grid, as the trailing edge is sharp; {topology} o makes an O grid"
+    assert section.boundary(Sampling(161, 31, "c", viscous=True)).notes == ()
 
 
 @pytest.mark.parametrize("sampling", [O_GRID, Sampling(161, 31, "c"), Sampling(121, 31, "o", normalise=True)])

@@ -20,7 +20,7 @@ from meshonet.geometry.shapes.airfoil.trailing_edge import rounded_base, wedged_
 from meshonet.geometry.shapes.airfoil.wall_nodes import Stations, wall_arcs
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.shapes.wake import C_EDGE, Wake, c_boundary, cells_of_wake, wake_axis
-from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
+from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling, TrailingEdge
 
 __all__ = ["SHARP_GAP", "Airfoil"]
 
@@ -204,20 +204,28 @@ class Airfoil:
         if topology == "o" and (sampling.wake or sampling.wake_nodes):
             remedy = "leave {wake} out, or use {topology} c"
             raise InputError("an O grid has no wake", remedy, source=self.name)
-        notes = body.notes
-        if te == "wedge" and self.blunt:
-            length = float(np.hypot(*(body.trailing_edge - self.trailing_edge))) / self.chord
-            notes += (
-                f"the outline is changed: its base, {self.gap / self.chord:.3g} chords wide, is closed by a "
-                f"wedge {length:.3g} chords long",
-            )
+        notes = body.notes + self._edge_notes(body, te, sampling)
         if topology == "c":
+            if sampling.topology == "auto":
+                notes += ("c grid, as the trailing edge is sharp; {topology} o makes an O grid",)
             return body._c_boundary(sampling, self, notes)
         centre = 0.5 * (body.leading_edge + body.trailing_edge)
         wall, replaced = body._wall(sampling.ni or DEFAULT_NI, sampling)
         radius, nj = sampling.radius * body.chord, sampling.nj or DEFAULT_NJ
         notes, turned = notes + replaced, not sampling.viscous
         return o_boundary(wall, nj, centre, radius, body.curve, self.name, self.unit, turned, notes)
+
+    def _edge_notes(self, body: Airfoil, te: TrailingEdge, sampling: Sampling) -> tuple[str, ...]:
+        """Return what became of the base in `body`, or that there is none where one was to be changed."""
+        base = f"the outline is changed: its base, {self.gap / self.chord:.3g} chords wide,"
+        if self.blunt and te == "wedge":
+            length = float(np.hypot(*(body.trailing_edge - self.trailing_edge))) / self.chord
+            return (f"{base} is closed by a wedge {length:.3g} chords long",)
+        if self.blunt and te == "round":
+            return (f"{base} is rounded at its corners",)
+        if not self.blunt and sampling.te in ("round", "wedge"):
+            return (f"{{te}} {te} changes nothing, as the trailing edge is not blunt",)
+        return ()
 
     def _c_boundary(self, sampling: Sampling, original: Airfoil, notes: tuple[str, ...]) -> Boundary:
         """Return the C boundary around this body, which was `given` once, with its units."""
