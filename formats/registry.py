@@ -116,14 +116,14 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
             format_named(fmt)
         word, _, rest = text.partition(":")
         return iter([later(_DESIGNATIONS[f"{word.lower()}:"])(rest)])
-    source = open_source(text)
+    source = _opened(text)
     record = _selectable(source, format_of(source, fmt))
     if record.read_shapes is not None:
         return _Records(source, partial(record.read_shapes, source))
     if record.read_grids is not None:
         read = record.read_grids
         return _Records(source, lambda: map(boundary_of, read(source)))
-    raise _unreadable(record, source)
+    raise _unreadable(record, source.name)
 
 
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
@@ -134,14 +134,18 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     if is_designation(text):
         remedy = f"make a grid of it first: meshonet infer {text} -o grid.vts"
         raise InputError("is a shape, not a grid", remedy, source=text)
-    source = open_source(text)
+    source = _opened(text)
     record = _selectable(source, format_of(source, fmt))
     if record.read_grids is not None:
         return _Records(source, partial(record.read_grids, source))
     if record.read_shapes is not None:
         remedy = f"make a grid of it first: meshonet infer {source.name} -o grid.vts"
-        raise InputError("holds a boundary, not a grid", remedy, source=source.name)
-    raise _unreadable(record, source)
+        if record.write_grids is None:
+            raise InputError("holds a boundary, not a grid", remedy, source=source.name)
+        problem = f"{record.name} files are read as boundaries, without the grid"
+        remedy = f"write the grid as .cgns or .vtm to read it again, or {remedy}"
+        raise InputError(problem, remedy, source=source.name)
+    raise _unreadable(record, source.name)
 
 
 def is_designation(text: str) -> bool:
@@ -191,6 +195,19 @@ def _known() -> str:
     )
 
 
-def _unreadable(record: Format, source: Source) -> InputError:
+def _opened(text: str) -> Source:
+    """Return the source of a name; of an empty file, as OpenFOAM's cases have, say if it is only written."""
+    try:
+        return open_source(text)
+    except InputError:
+        path = Path(text)
+        claimed = _by_suffix(path.suffix.lower())
+        if path.is_file() and claimed and not any(each.read_shapes or each.read_grids for each in claimed):
+            raise _unreadable(claimed[0], printable(text)) from None
+        raise
+
+
+def _unreadable(record: Format, name: str) -> InputError:
     problem = f"{record.name} files can only be written"
-    return InputError(problem, "give a grid or a boundary in another format", source=source.name)
+    remedy = "give a grid or a boundary in another format; .cgns and .vtm hold every grid"
+    return InputError(problem, remedy, source=name)

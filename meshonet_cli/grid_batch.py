@@ -147,8 +147,9 @@ def judging(session: Session, fail_on: Sequence[str] | None) -> Callable[[Report
         label, folded = report.item.label, report.quality.folded
         if folded:
             session.warn(f"{label}: {folded} folded cells are in {path}")
-        session.report(report)
-        session.gate(label, [text for gate in gates if (text := gate.broken(report.quality))])
+        problems = [text for gate in gates if (text := gate.broken(report.quality))]
+        session.report(report, problems)
+        session.gate(label, problems)
 
     return written
 

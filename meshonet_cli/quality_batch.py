@@ -62,12 +62,14 @@ def measure_grids(
                 with measured.timed("write"):
                     destination.write(destination.path(item), [item.what])
             measured.finished(None)
-            rows.append((item.label, measured.figures_of_row()))
+            problems = measured.report.broken(gates)
+            judged = {"gates_not_met": len(problems)} if gates or profile else {}
+            rows.append((item.label, measured.figures_of_row() | judged))
             if summary:
                 session.done += 1
             else:
-                session.show(measured)
-            session.gate(item.label, measured.report.broken(gates))
+                session.show(measured, problems)
+            session.gate(item.label, problems)
             if page:
                 page.add(item.label, measured.report)
     if rows and summary:

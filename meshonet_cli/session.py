@@ -49,7 +49,7 @@ class Session:
         self.quiet, self.as_json, self.debug = quiet, as_json, debug
         self.worst = 0
         self.batch = False
-        self.members = self.done = self.failed = self.skipped = 0
+        self.members = self.done = self.failed = self.skipped = self.beyond = 0
         self._begun = time.perf_counter()
         self._bar = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
         self._bar_shown = False
@@ -83,6 +83,7 @@ class Session:
 
     def gate(self, name: str, problems: Sequence[str]) -> None:
         """Report gates that a member did not meet."""
+        self.beyond += bool(problems)
         for problem in problems:
             self.worst = max(self.worst, GATE_NOT_MET)
             self._write(f"gate not met: {name}: {with_options(problem)}")
@@ -91,13 +92,16 @@ class Session:
         """Print what the user should know even when quiet."""
         self._write(f"warning: {text}")
 
-    def report(self, report: Timed) -> None:
-        """Report a member that is done: as JSON, in full when it is alone, on one line in a batch."""
+    def report(self, report: Timed, problems: Sequence[str] | None = None) -> None:
+        """Report a member that is done: as JSON, in full when it is alone, on one line in a batch.
+
+        JSON says which gates it did not meet, `problems`, unless None.
+        """
         self.done += 1
         if not self.batch:
             self._unwatch()
         if self.as_json:
-            self.result(report.as_json())
+            self.result({**report.as_json(), **_not_met(problems)})
         else:
             self.note(report.line() if self.batch else report.lines())
 
@@ -106,15 +110,18 @@ class Session:
         report.finished(path)
         self.report(report)
 
-    def show(self, report: Printed) -> None:
-        """Print a report that is itself the result: on standard output, in full, even when quiet."""
-        self.done += 1
-        self.conclude(report)
+    def show(self, report: Printed, problems: Sequence[str] | None = None) -> None:
+        """Print a report that is itself the result: on standard output, in full, even when quiet.
 
-    def conclude(self, total: Printed) -> None:
+        JSON says which gates it does not meet, `problems`, unless None.
+        """
+        self.done += 1
+        self.conclude(report, problems)
+
+    def conclude(self, total: Printed, problems: Sequence[str] | None = None) -> None:
         """Print the report of all members together: on standard output, even when quiet."""
         if self.as_json:
-            self.result(total.as_json())
+            self.result({**total.as_json(), **_not_met(problems)})
         else:
             self.print(total.lines())
 
@@ -192,7 +199,8 @@ class Session:
         self._clear()
         if self.batch and not (self.quiet or self.as_json):
             spent = time.perf_counter() - self._begun
-            parts = [f"{self.done} done", f"{self.skipped} there already" if self.skipped else "",
+            gates = f" ({self.beyond} of them beyond a gate)" if self.beyond else ""
+            parts = [f"{self.done} done{gates}", f"{self.skipped} there already" if self.skipped else "",
                      f"{self.failed} failed" if self.failed else ""]  # fmt: skip
             self._write(", ".join(part for part in parts if part) + f" in {spent:.2f} s")
         return self.worst
@@ -228,3 +236,7 @@ def _is_pipe(descriptor: int) -> bool:
         return stat.S_ISFIFO(os.fstat(descriptor).st_mode)
     except OSError:  # it is closed
         return False
+
+
+def _not_met(problems: Sequence[str] | None) -> dict[str, list[str]]:
+    return {} if problems is None else {"gates_not_met": [with_options(problem) for problem in problems]}

@@ -14,6 +14,11 @@ COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator
 NO_MORE: Mapping[str, float] = MappingProxyType({})
 COUNTS = ("folded", "bezier_folded")
 """Counts of cells that gates may name: by corners, and by the Bezier test of volumes."""
+OF_PROFILES: Mapping[str, str] = MappingProxyType({
+    "non_orthogonality": "openfoam", "face_skewness": "openfoam", "box_ratio": "openfoam",
+    "wall_growth": "viscous", "equal_wall_cells": "viscous", "far_field": "viscous",
+})  # fmt: skip
+"""Figures that are no metrics of cells, so that only profiles of ``quality`` judge them."""
 _STATISTICS = ("min", "mean", "max", "p01", "p99")
 _GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASCII)
 
@@ -87,6 +92,9 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
         )
     metric, statistic, compare = match[1], match[2], match[3]
     if metric not in (*ALL_NAMES, *COUNTS, *more):
+        if metric in OF_PROFILES:
+            remedy = f"judge the grid by the profile: meshonet quality GRID --profile {OF_PROFILES[metric]}"
+            raise InputError(f"{metric!r} is no metric of cells", remedy, parameter="fail_on")
         names = ("folded", *ALL_NAMES, "bezier_folded", *more)
         known = meant(metric, names) + "use one of " + ", ".join(names)
         raise InputError(f"metric {metric!r} is not known", known, parameter="fail_on")

@@ -9,7 +9,7 @@ from meshonet_cli.text import aligned, figure
 LABELS = {
     "folded": "folded", "max_angle": "max angle", "mean_angle": "mean angle", "relative_l2": "rel L2",
     "near_wall": "near wall", "max": "max", "boundary": "boundary", "folded_other": "folded there",
-    "max_angle_ratio": "max ratio", "mean_angle_ratio": "mean ratio",
+    "max_angle_ratio": "max ratio", "mean_angle_ratio": "mean ratio", "gates_not_met": "not met",
 }  # fmt: skip
 """Columns, for people."""
 

@@ -8,11 +8,14 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import islice
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.shapes.shape import Shape, edges_of
@@ -168,6 +171,10 @@ def _sampled(shape: Shape, request: GridRequest) -> Boundary | DomainShape | Spa
     """Return the boundary of a shape, or the shape itself in space and where many blocks are made of it."""
     if isinstance(shape, SpatialShape):
         return shape
+    if isinstance(shape, (str, Path, np.ndarray)):
+        remedy = "use meshonet.grid, or make a shape of it: meshonet.read or Domain.of_polygons"
+        what = "points" if isinstance(shape, np.ndarray) else "a name"
+        raise InputError(f"make_grid takes shapes, not {what}", remedy)
     check_plane(request)
     if request.asks_for_blocks or getattr(shape, "many", False):
         from meshonet.solvers.pipeline.blocks import as_blocks

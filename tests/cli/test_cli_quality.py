@@ -7,8 +7,10 @@ import pytest
 from command_line import Meshonet, dataset, duct
 
 from meshonet.formats.registry import read_grids
+from meshonet.geometry.quality.gates import COUNTS, OF_PROFILES
 from meshonet.geometry.quality.measure import per_cell
 from meshonet.geometry.quality.metrics import NAMES
+from meshonet.geometry.quality.profiles import PROFILES
 from meshonet.geometry.quality.report import COMPARED
 
 
@@ -85,6 +87,36 @@ def test_several_gates_are_all_told(meshonet: Meshonet, folded_vts: Path) -> Non
     done = meshonet("quality", folded_vts, "--fail-on", "folded>=1", "--fail-on", "max_angle.mean<=200")
     assert done.code == 1
     assert done.err.count("gate not met") == 2
+
+
+def test_json_names_the_gates_and_checks_that_are_not_met(
+    meshonet: Meshonet, grid_vts: Path, folded_vts: Path
+) -> None:
+    words = ("quality", grid_vts, folded_vts, "--fail-on", "folded>0", "--profile", "verdict")
+    good, bad = meshonet(*words, "--json").objects
+    assert good["gates_not_met"] == []
+    assert bad["gates_not_met"][0].endswith("and --fail-on 'folded>0'")
+    assert "profile verdict: folded is" in bad["gates_not_met"][1]
+    assert "not met" in meshonet(*words, "--summary").out.splitlines()[0]
+
+
+def test_a_figure_of_a_profile_is_no_gate_and_the_error_names_the_profile(
+    meshonet: Meshonet, grid_vts: Path
+) -> None:
+    done = meshonet("quality", grid_vts, "--fail-on", "face_skewness>4")
+    assert done.code == 2
+    assert "is no metric of cells; judge the grid by the profile: meshonet quality GRID --profile" in done.err
+
+
+def test_figures_of_profiles_are_known_by_their_profile() -> None:
+    figures = {check.figure: name for name, checks in PROFILES.items() for check in checks}
+    assert {key: name for key, name in figures.items() if key not in (*NAMES, *COUNTS)} == OF_PROFILES
+
+
+def test_a_mesh_that_is_read_as_a_boundary_is_no_grid(meshonet: Meshonet, grid_vts: Path) -> None:
+    assert meshonet("convert", grid_vts, "g.msh").code == 0
+    done = meshonet("quality", "g.msh")
+    assert "gmsh files are read as boundaries, without the grid; write the grid as .cgns or .vtm" in done.err
 
 
 def test_every_grid_is_measured_and_the_worst_decides(

@@ -123,6 +123,16 @@ def test_a_session_counts_what_was_done(capsys: pytest.CaptureFixture[str]) -> N
     assert "1 done, 1 there already, 1 failed in " in capsys.readouterr().err
 
 
+def test_a_session_counts_grids_beyond_a_gate_among_those_done(capsys: pytest.CaptureFixture[str]) -> None:
+    session = Session()
+    session.batch = True
+    session.done = 3
+    session.gate("a.vts", ["max_angle.max is 175", "folded is 1"])
+    session.gate("b.vts", [])
+    session.finish()
+    assert "3 done (1 of them beyond a gate) in " in capsys.readouterr().err
+
+
 def test_undecodable_text_does_not_stop_a_message(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Session().warn("gr\u00f6\u00dfer")
     assert "gr" in capsys.readouterr().err

@@ -278,6 +278,7 @@ def test_standard_output_is_hdf5_unless_said_otherwise() -> None:
         ("no.vts", "no.vts: no such file; check the path"),
         ("", "is a folder; name a file in it"),
         ("empty.vts", "empty.vts: is empty; give"),
+        ("case.foam", "case.foam: openfoam files can only be written; give a grid"),
         ("a.q", r"a.q: its ending '.q' is not .*from_format; known endings: "),
         ("plain", "plain: its content is not of a known format; name it with from_format"),
         ("loop.vts", "loop.vts: cannot be opened .*symbolic"),
@@ -294,6 +295,7 @@ def test_standard_output_is_hdf5_unless_said_otherwise() -> None:
 )
 def test_what_cannot_be_read_is_named_with_its_remedy(name: str, told: str, tmp_path: Path) -> None:
     (tmp_path / "empty.vts").touch()
+    (tmp_path / "case.foam").touch()
     for file in ("a.q", "plain", "x.png", "x.geo"):
         (tmp_path / file).write_text("hello\n")
     (tmp_path / "loop.vts").symlink_to(tmp_path / "loop.vts")

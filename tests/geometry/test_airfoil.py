@@ -156,3 +156,9 @@ def test_surfaces_that_touch_by_rounding_are_still_an_airfoil():
 def test_says_what_an_airfoil_cannot_be(sampling, message):
     with pytest.raises(InputError, match=message):
         Airfoil(selig()).boundary(sampling)
+
+
+def test_an_airfoil_prints_its_name_chord_and_edge():
+    points = selig(0.12, 0.0, 0.002, STATIONS)
+    assert repr(Airfoil(points, "a")).startswith("<Airfoil 'a': chord 1")
+    assert "blunt trailing edge 0.002" in repr(Airfoil(points, "a"))

@@ -97,3 +97,9 @@ def test_many_are_solved_in_one_call_and_one_by_one_when_that_fails(monkeypatch:
     calls.clear()
     assert len(list(make_grids([arch(21, 11), arch(13, 11)], GridRequest()))) == 2
     assert calls == [2, 1, 1]
+
+
+@pytest.mark.parametrize("shape", [np.eye(3, 2), "naca:0012"])
+def test_points_and_names_are_no_shapes_and_the_error_says_what_makes_them_one(shape: object) -> None:
+    with pytest.raises(InputError, match=r"make_grid takes shapes, not .*; use meshonet.grid, or"):
+        make_grid(shape, GridRequest())  # type: ignore[arg-type]

@@ -79,6 +79,10 @@ class Airfoil:
         first, last = (self.curve.knots[1], self.curve.knots[-1]) if self.blunt else (0.0, self.curve.length)
         self._arcs = float(first), arc, float(last)
 
+    def __repr__(self) -> str:
+        edge = f"blunt trailing edge {self.gap:.6g}" if self.blunt else "sharp or round trailing edge"
+        return f"<Airfoil {self.name!r}: chord {self.chord:.6g}, {edge}, {len(self.curve.points)} points>"
+
     @property
     def unit(self) -> float:
         """What cells at the wall are measured in: the chord, or 1 where that is the nominal chord.
