@@ -152,7 +152,12 @@ class _Dask(Workers):
 
     def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
         """Have a worker do a task, where the program was started and by its words."""
-        return self.executor.submit(_call, function, task, self._folder, self._words)
+        from distributed.client import ClosedClientError
+
+        try:
+            return self.executor.submit(_call, function, task, self._folder, self._words)
+        except ClosedClientError as error:
+            raise self.lost() from error
 
     def result(self, future: Any) -> Any:
         """Return the result of a task, or raise what it ended in."""
