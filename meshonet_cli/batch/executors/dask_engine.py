@@ -152,11 +152,9 @@ class _Dask(Workers):
 
     def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
         """Have a worker do a task, where the program was started and by its words."""
-        from distributed.client import ClosedClientError
-
         try:
             return self.executor.submit(_call, function, task, self._folder, self._words)
-        except ClosedClientError as error:
+        except Exception as error:  # of several kinds, by how far the client is in noticing
             raise self.lost() from error
 
     def result(self, future: Any) -> Any:
