@@ -122,6 +122,7 @@ class _Dask(Workers):
 
     def __init__(self, client: Client, warn: Warn) -> None:
         self._client, self._warn = client, warn
+        self._address = client.scheduler.address  # a client that is closed has no scheduler
         self._events: deque[dict[str, Any]] = deque()
         self._wait()
         client.subscribe_topic("all", self._hear)
@@ -147,14 +148,16 @@ class _Dask(Workers):
 
     def lost(self) -> EngineLostError:
         """Return the error of a scheduler that is gone."""
-        problem = f"the Dask scheduler at {self._client.scheduler.address} is gone"
+        problem = f"the Dask scheduler at {self._address} is gone"
         return EngineLostError(problem, "run it again with another one; {skip_existing} keeps what is done")
 
     def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
         """Have a worker do a task, where the program was started and by its words."""
+        from distributed.client import ClosedClientError
+
         try:
             return self.executor.submit(_call, function, task, self._folder, self._words)
-        except Exception as error:  # of several kinds, by how far the client is in noticing
+        except ClosedClientError as error:
             raise self.lost() from error
 
     def result(self, future: Any) -> Any:
@@ -175,7 +178,7 @@ class _Dask(Workers):
 
     def _wait(self) -> None:
         if not self._client.nthreads():
-            self._warn(f"{self._client.scheduler.address} has no workers yet; waiting for the first")
+            self._warn(f"{self._address} has no workers yet; waiting for the first")
             self._client.wait_for_workers(1)
 
     def _check_versions(self) -> None:
