@@ -7,6 +7,7 @@ and by Farkas' lemma four have none when λ >= 0 with Σ λ n = 0 has Σ λ n·q
 determinants of three of them.
 """
 
+from collections.abc import Iterator
 from itertools import combinations
 
 import numpy as np
@@ -20,28 +21,33 @@ from meshonet.kernels._native import closed_node
 Place = tuple[int, int, int]
 
 
+Ranges = list[tuple[int, int]]
+"""First and last (excluded) node along each direction."""
+
+
 def closed_place(faces: SixFaces) -> Place | None:
     """Return i, j, k of an inner node that has no place at which the corners around it are open, or None."""
-    counts = faces.counts
-    if min(counts) < 3:
-        return None
-    for size in (3, 2, 1):
-        for sides in combinations(FACES, size):
-            if len({PLACES[side][0] for side in sides}) < size:
-                continue
-            ranges = _ranges(sides, counts)
-            walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)
-            sizes = [last - low for low, last in ranges]
-            number = closed_node(walls, tuple(ranges), threads_for(int(np.prod(sizes))))
-            if number >= 0:
-                at = np.unravel_index(number, sizes)
-                i, j, k = (int(low + step) for (low, _), step in zip(ranges, at, strict=True))
-                return i, j, k
+    for sides, ranges in next_to_faces(faces.counts):
+        walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)
+        sizes = [last - low for low, last in ranges]
+        number = closed_node(walls, tuple(ranges), threads_for(int(np.prod(sizes))))
+        if number >= 0:
+            at = np.unravel_index(number, sizes)
+            i, j, k = (int(low + step) for (low, _), step in zip(ranges, at, strict=True))
+            return i, j, k
     return None
 
 
-def _ranges(sides: tuple[Side, ...], counts: tuple[int, int, int]) -> list[tuple[int, int]]:
-    """Return first and last (excluded) node along each direction of the inner nodes next to all `sides`."""
+def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ...], Ranges]]:
+    """Yield sets of sides, those of three first, and the inner nodes next to all of them, if there are any."""
+    for size in (3, 2, 1) if min(counts) > 2 else ():
+        for sides in combinations(FACES, size):
+            if len({PLACES[side][0] for side in sides}) == size:
+                yield sides, _ranges(sides, counts)
+
+
+def _ranges(sides: tuple[Side, ...], counts: tuple[int, int, int]) -> Ranges:
+    """Return the inner nodes next to all `sides`."""
     ranges = [(1, n - 1) for n in counts]
     for side in sides:
         axis, end = PLACES[side]

@@ -7,9 +7,8 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import PLACES
-from meshonet.geometry.blocks.six_faces import FACES, SixFaces
-
-Place = tuple[int, int, int]
+from meshonet.geometry.blocks.six_faces import SixFaces
+from meshonet.solvers.volumes.near_faces import Place, Ranges, next_to_faces
 
 ROUNDING = 1e-12
 OPEN = 0.05
@@ -20,33 +19,16 @@ FLAT = 1e-4
 
 def closed_place(faces: SixFaces) -> Place | None:
     """Return i, j, k of an inner node that has no place at which the corners around it are open, or None."""
-    counts = faces.counts
-    if min(counts) < 3:
-        return None
-    for size in (3, 2, 1):
-        for sides in combinations(FACES, size):
-            if len({PLACES[side][0] for side in sides}) < size:
-                continue
-            ranges = _ranges(sides, counts)
-            bad = _closed(faces, sides, ranges)
-            if bad.any():
-                at = np.unravel_index(int(np.argmax(bad)), bad.shape)
-                i, j, k = (int(low + step) for (low, _), step in zip(ranges, at, strict=True))
-                return i, j, k
+    for sides, ranges in next_to_faces(faces.counts):
+        bad = _closed(faces, sides, ranges)
+        if bad.any():
+            at = np.unravel_index(int(np.argmax(bad)), bad.shape)
+            i, j, k = (int(low + step) for (low, _), step in zip(ranges, at, strict=True))
+            return i, j, k
     return None
 
 
-def _ranges(sides: tuple[Side, ...], counts: tuple[int, int, int]) -> list[tuple[int, int]]:
-    """Return first and last (excluded) node along each direction of the inner nodes next to all `sides`."""
-    ranges = [(1, n - 1) for n in counts]
-    for side in sides:
-        axis, end = PLACES[side]
-        at = 1 if end == 0 else counts[axis] - 2
-        ranges[axis] = (at, at + 1)
-    return ranges
-
-
-def _closed(faces: SixFaces, sides: tuple[Side, ...], ranges: list[tuple[int, int]]) -> NDArray[np.bool_]:
+def _closed(faces: SixFaces, sides: tuple[Side, ...], ranges: Ranges) -> NDArray[np.bool_]:
     """Return for the nodes in `ranges` whether their half-spaces, of all `sides`, have nothing in common."""
     halves = [_half_spaces(faces, side, ranges) for side in sides]
     normals = np.concatenate([normal for normal, _ in halves])
@@ -81,7 +63,7 @@ def _determinant(three: Floats) -> Floats:
     )
 
 
-def _half_spaces(faces: SixFaces, side: Side, ranges: list[tuple[int, int]]) -> tuple[Floats, Floats]:
+def _half_spaces(faces: SixFaces, side: Side, ranges: Ranges) -> tuple[Floats, Floats]:
     """Return unit normals (4, ..., 3), inwards, and bounds (4, ...) of n · p at the nodes in `ranges`."""
     axis, end = PLACES[side]
     face = getattr(faces, side)
