@@ -20,7 +20,7 @@ from meshonet.solvers.pipeline.deformations import make_deformed
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item
-from meshonet_cli.batch.run import deliver, one_by_one, prepare
+from meshonet_cli.batch.run import process
 from meshonet_cli.batch.sources import items
 from meshonet_cli.grid_batch import judging, reported
 from meshonet_cli.options.groups import bad_value
@@ -41,12 +41,10 @@ def write_deformed(
     make = _Deformed(walls, DeformRequest(allow_invalid, percentiles, engine.threads(threads)))
     destination = Destination(output, to_format, "grids", part_size=part_size)
     members = items(inputs, partial(read_grids, fmt=from_format), session)
-    prepare(members, destination, session)
-    written = judging(session, fail_on)
-    deliver(
-        members, one_by_one(make), destination, session, written, skip_existing=skip_existing, engine=engine
-    )
-    return session.finish()
+    return process(
+        members, make, destination, session, written=judging(session, fail_on), skip_existing=skip_existing,
+        engine=engine,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

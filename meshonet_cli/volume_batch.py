@@ -28,7 +28,7 @@ from meshonet.solvers.sweeping.sweep import Sweep
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item
-from meshonet_cli.batch.run import deliver, one_by_one, prepare, process
+from meshonet_cli.batch.run import process
 from meshonet_cli.batch.sources import Members, items
 from meshonet_cli.batch.timed import Delivered, part_names
 from meshonet_cli.grid_batch import judging, reported
@@ -113,12 +113,10 @@ def _write(
     engine: Engine,
 ) -> int:  # fmt: skip
     destination = Destination(output, to_format, "grids", nodes=VOLUME_NODES)
-    prepare(members, destination, session)
-    written = judging(session, fail_on)
-    deliver(
-        members, one_by_one(make), destination, session, written, skip_existing=skip_existing, engine=engine
-    )
-    return session.finish()
+    return process(
+        members, make, destination, session, written=judging(session, fail_on), skip_existing=skip_existing,
+        engine=engine,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

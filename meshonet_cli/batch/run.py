@@ -44,12 +44,16 @@ def prepare(members: Members[T], destination: Destination, session: Session) -> 
 
 def process(
     members: Members[T], make: Callable[[Item[T]], tuple[S, R]], destination: Destination,
-    session: Session, *, skip_existing: bool = False, engine: Engine = HERE,
+    session: Session, *, written: Callable[[R, str], None] | None = None, skip_existing: bool = False,
+    engine: Engine = HERE,
 ) -> int:  # fmt: skip
-    """Make something of each of the `members`, deliver it, and return the exit code."""
+    """Make something of each of the `members`, deliver it, and return the exit code.
+
+    `written` is called with the report and the path of each; the session's own says that it is done.
+    """
     prepare(members, destination, session)
     deliver(
-        members, one_by_one(make), destination, session, session.written,
+        members, one_by_one(make), destination, session, written or session.written,
         skip_existing=skip_existing, engine=engine,
     )  # fmt: skip
     return session.finish()

@@ -39,7 +39,7 @@ def closed_place(faces: SixFaces) -> Place | None:
 
 
 def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ...], Ranges]]:
-    """Yield sets of sides, those of three first, and the inner nodes next to all of them, if there are any."""
+    """Yield sets of sides, those of three first, and the inner nodes next to all of them, if any."""
     for size in (3, 2, 1) if min(counts) > 2 else ():
         for sides in combinations(FACES, size):
             if len({PLACES[side][0] for side in sides}) == size:
