@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 import time
-from collections.abc import Callable, Iterator
-from contextvars import ContextVar
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.solvers.listeners import Listeners
 
 if TYPE_CHECKING:
     from meshonet.solvers.solution import Solution
@@ -34,22 +34,17 @@ class Cycle:
 
 
 Listener = Callable[[Cycle], None]
-_listeners: ContextVar[tuple[Listener, ...]] = ContextVar("listeners", default=())
+_listeners: Listeners[Cycle] = Listeners("cycles")
 
 
-@contextlib.contextmanager
-def listening(listener: Listener) -> Iterator[None]:
+def listening(listener: Listener) -> AbstractContextManager[None]:
     """Call `listener` after every cycle that runs inside the block, in the thread of the cycle."""
-    token = _listeners.set((*_listeners.get(), listener))
-    try:
-        yield
-    finally:
-        _listeners.reset(token)
+    return _listeners.added(listener)
 
 
 def listened_to() -> bool:
     """Return whether anybody listens."""
-    return bool(_listeners.get())
+    return bool(_listeners)
 
 
 def cycle_ended(
@@ -57,13 +52,10 @@ def cycle_ended(
     functional: float | None = None,
 ) -> None:  # fmt: skip
     """Call the listeners after a cycle of `method` that left the grid as `nodes` (ni, nj, 2)."""
-    listeners = _listeners.get()
-    if not listeners:
+    if not _listeners:
         return
     counts = nodes.shape[0], nodes.shape[1]
-    cycle = Cycle(method, *counts, number, residual, change, count_folded(nodes), functional)
-    for listener in listeners:
-        listener(cycle)
+    _listeners(Cycle(method, *counts, number, residual, change, count_folded(nodes), functional))
 
 
 @dataclass(frozen=True)

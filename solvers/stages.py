@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
-from contextvars import ContextVar
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.solvers.listeners import Listeners
 
 
 @dataclass(frozen=True)
@@ -23,23 +23,17 @@ class Stage:
 
 
 Watcher = Callable[[Stage], None]
-_watchers: ContextVar[tuple[Watcher, ...]] = ContextVar("watchers", default=())
+_watchers: Listeners[Stage] = Listeners("stages")
 
 
-@contextlib.contextmanager
-def watching(watcher: Watcher) -> Iterator[None]:
+def watching(watcher: Watcher) -> contextlib.AbstractContextManager[None]:
     """Call `watcher` with every stage that is reached inside the block, in the thread that reaches it."""
-    token = _watchers.set((*_watchers.get(), watcher))
-    try:
-        yield
-    finally:
-        _watchers.reset(token)
+    return _watchers.added(watcher)
 
 
 def reached(name: str, unit: str = "", done: int = 0, count: int = 0) -> None:
     """Call the watchers: the stage `name` begins, or has `done` so many of `count` steps."""
-    for watcher in _watchers.get():
-        watcher(Stage(name, unit, count, lambda: done))
+    _watchers(Stage(name, unit, count, lambda: done))
 
 
 @contextlib.contextmanager
@@ -48,12 +42,11 @@ def filling(name: str, unit: str, marks: Floats) -> Iterator[None]:
 
     For watchers the marks are NaN until then; after the block `done` does not look at them any more.
     """
-    if not _watchers.get():
+    if not _watchers:
         yield
         return
     marks[:] = np.nan
-    for watcher in _watchers.get():
-        watcher(Stage(name, unit, len(marks), lambda: len(marks) - int(np.count_nonzero(np.isnan(marks)))))
+    _watchers(Stage(name, unit, len(marks), lambda: len(marks) - int(np.count_nonzero(np.isnan(marks)))))
     try:
         yield
     finally:
