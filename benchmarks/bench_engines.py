@@ -80,15 +80,15 @@ BESIDE = Path(sys.executable).parent
 
 def contours(folder: Path) -> list[Floats]:
     """Return every airfoil of a folder as points around the section, all at the same stations."""
-    found = []
+    outlines = []
     for path in sorted(folder.glob("*.dat")):
         try:
-            found.append(
+            outlines.append(
                 edges_of(next(read_shapes(str(path))), Sampling(POINTS, 5, "o", normalise=True)).south
             )
         except MeshonetError as error:
             print(f"left out: {error}")
-    return found
+    return outlines
 
 
 def write_sections(folder: Path, count: int, contours: Sequence[Floats]) -> None:
@@ -214,11 +214,11 @@ def speed_rows(folder: Path, count: int, size: int) -> Iterator[str]:
         done = run(words, folder)
         output = words[words.index("-o") + 1]
         assert (folder / output).exists(), done.said[-3:]
-        found = digest(folder / output)
-        alone, wanted = alone or done.seconds, wanted or found
+        digests = digest(folder / output)
+        alone, wanted = alone or done.seconds, wanted or digests
         remove(folder, Path(output).stem)
-        same = "yes" if found == wanted else "NO"
-        made = int(found.split()[0])
+        same = "yes" if digests == wanted else "NO"
+        made = int(digests.split()[0])
         yield (
             f"| {name} | {done.seconds:.0f} | {made / done.seconds:.0f} | {alone / done.seconds:.2f} | "
             f"{done.cpu:.0f} | {done.megabytes()} | {same} |"
@@ -274,8 +274,8 @@ def death_rows(folder: Path, count: int, size: int) -> Iterator[str]:
         same = "yes" if digest(folder / output) == wanted else "NO"
         remove(folder, output.stem)
         marks = ("warning: ", "error: the", "=   BAD")
-        told = [line.strip("= ") for line in done.said if line.startswith(marks)]
-        said = "<br>".join(told[:2]) or "nothing"
+        messages = [line.strip("= ") for line in done.said if line.startswith(marks)]
+        said = "<br>".join(messages[:2]) or "nothing"
         return f"| {name} | {said} | {done.code} | {len(there)} of {parts} | {made} | {same} |"
 
     def worker(process: psutil.Process) -> int:
@@ -301,13 +301,16 @@ def main() -> None:
     parser.add_argument("--deaths", type=int, default=2_000, help="airfoils of the runs with a death")
     parser.add_argument("--scratch", type=Path, help="folder for the datasets [default: the system's]")
     parser.add_argument("--page", type=Path)
-    given = parser.parse_args()
+    options = parser.parse_args()
     tables, load = [HEAD.rstrip("\n")], os.getloadavg()[0]
-    known = contours(given.airfoils)
-    sizes = {given.count: min(500, max(given.count // 10, 1)), given.deaths: max(given.deaths // 20, 1)}
-    for text, rows, count in ((SPEED, speed_rows, given.count), (DEATHS, death_rows, given.deaths)):
+    known = contours(options.airfoils)
+    sizes = {
+        options.count: min(500, max(options.count // 10, 1)),
+        options.deaths: max(options.deaths // 20, 1),
+    }
+    for text, rows, count in ((SPEED, speed_rows, options.count), (DEATHS, death_rows, options.deaths)):
         table = [text.format(count=f"{count:,}", size=sizes[count]).rstrip("\n")]
-        with TemporaryDirectory(dir=given.scratch) as scratch:
+        with TemporaryDirectory(dir=options.scratch) as scratch:
             folder = Path(scratch)
             write_sections(folder / "sections", count, known)
             for row in rows(folder, count, sizes[count]):
@@ -318,8 +321,8 @@ def main() -> None:
     if load > 0.3:
         machine += f"\nOther programs ran on them (load {load:.1f}): compare processor seconds, not seconds."
     page = "\n".join([*tables, TAIL.rstrip("\n"), "", machine, ""])
-    if given.page:
-        given.page.write_text(page, encoding="utf-8")
+    if options.page:
+        options.page.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":

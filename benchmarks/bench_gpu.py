@@ -76,17 +76,17 @@ def operator_rows(device: Device, sizes: Sequence[int], count: int) -> Iterator[
     yield "| --- | --- | --- | --- | --- | --- |"
     for name in FAMILIES:
         for n in sizes:
-            given = shapes_for(name, count, n)
-            few = given[:8]
+            boundaries = shapes_for(name, count, n)
+            few = boundaries[:8]
             here = infer_many(few, name, device="cpu")
             there = infer_many(few, name, device=device)
             apart = max(
                 float(np.abs(a.grid.nodes - b.grid.nodes).max() / np.ptp(a.grid.nodes))
                 for a, b in zip(here, there, strict=True)
             )
-            infer_many(given, name, device=device)  # warm
+            infer_many(boundaries, name, device=device)  # warm
             begun = time.perf_counter()
-            memory = most_memory(device, partial(infer_many, given, name, device=device))
+            memory = most_memory(device, partial(infer_many, boundaries, name, device=device))
             rate = count / (time.perf_counter() - begun)
             verdict = f"{apart:.0e}" if apart <= EQUAL else f"{apart:.0e}: TOO FAR"
             yield f"| `{name}` | {n} x {n} | {count} | {rate:.0f} | {memory} | {verdict} |"

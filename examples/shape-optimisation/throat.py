@@ -71,13 +71,13 @@ def optimise(steps: int) -> tuple[list[float], meshonet.Grid]:
     """Return the skewness before each step and after the last, and the last grid."""
     shape, mean, square = np.zeros(WAVES), np.zeros(WAVES), np.zeros(WAVES)
     shape[0] = 1.0
-    found = []
+    skews = []
     for number in range(steps + 1):
         heights, slopes = top(shape)
         made = meshonet.solve_pde(boundary(heights), method="variational")
         derivative = meshonet.optimum_derivative(made)
         skew, by_nodes = skewness(derivative.grid.nodes)
-        found.append(skew)
+        skews.append(skew)
         if number == steps:
             break
         by_shape = slopes @ derivative.transposed(by_nodes)[:, -1, 1]
@@ -85,7 +85,7 @@ def optimise(steps: int) -> tuple[list[float], meshonet.Grid]:
         square = 0.999 * square + 0.001 * by_shape**2
         size = np.sqrt(square / (1.0 - 0.999 ** (number + 1))) + 1e-8
         shape = shape - RATE * mean / (1.0 - 0.9 ** (number + 1)) / size
-    return found, derivative.grid
+    return skews, derivative.grid
 
 
 def main() -> None:
@@ -94,9 +94,9 @@ def main() -> None:
     parser.add_argument("-o", "--output", type=Path, help="grid file to write")
     parser.add_argument("--steps", type=int, default=60)
     options = parser.parse_args()
-    found, grid = optimise(options.steps)
+    skews, grid = optimise(options.steps)
     print(
-        f"mean of cos² at the corners: {found[0]:.5f} at first, {found[-1]:.5f} after {options.steps} steps"
+        f"mean of cos² at the corners: {skews[0]:.5f} at first, {skews[-1]:.5f} after {options.steps} steps"
     )
     if options.output:
         grid.write(options.output)

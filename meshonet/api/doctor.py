@@ -117,12 +117,12 @@ def _extras() -> Iterator[Finding]:
             extras.setdefault(extra, []).append((name, limits))
     for extra, needed in extras.items():
         adds, remedy = ADDS.get(extra, "see its page on dependencies"), f"pip install 'meshonet[{extra}]'"
-        found = [_package("extras", name, limits, remedy) for name, limits in needed]
-        ill = [each for each in found if each.well is False and each.value != "not installed"]
+        packages = [_package("extras", name, limits, remedy) for name, limits in needed]
+        ill = [each for each in packages if each.well is False and each.value != "not installed"]
         if ill:
             yield Finding("extras", extra, f"{ill[0].name} {ill[0].value}; {adds}", False, remedy)
-        elif all(each.well for each in found):
-            versions = ", ".join(f"{each.name} {each.value}" for each in found)
+        elif all(each.well for each in packages):
+            versions = ", ".join(f"{each.name} {each.value}" for each in packages)
             yield Finding("extras", extra, f"{versions}; {adds}")
         else:
             yield Finding("extras", extra, f"not installed; {adds}", None, remedy)
@@ -134,8 +134,8 @@ def requirements() -> list[tuple[str, str, str]]:
         lines = metadata.requires("meshonet") or []
     except metadata.PackageNotFoundError:
         return []
-    found = [match.groups() for line in lines if (match := _REQUIREMENT.match(line))]
-    return [(name, limits.strip(" ()"), extra or "") for name, limits, extra in found]
+    matches = [match.groups() for line in lines if (match := _REQUIREMENT.match(line))]
+    return [(name, limits.strip(" ()"), extra or "") for name, limits, extra in matches]
 
 
 def _package(group: str, name: str, limits: str, remedy: str) -> Finding:

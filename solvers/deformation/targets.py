@@ -165,11 +165,11 @@ def _of_grid(
         others = [theirs.nodes[each.numbers] for each in theirs.pieces if each.patch.name == name]
     sizes = [piece.numbers.shape for piece in pieces]
     if sizes != [other.shape[:-1] for other in others] or others[0].shape[-1] != table.nodes.shape[1]:
-        own, given = (
+        own_sizes, new_sizes = (
             ", ".join(" x ".join(map(str, size)) for size in each)
             for each in (sizes, [other.shape[:-1] for other in others])
         )
-        problem = f"{name!r} has {own} nodes, and {given or 'none'} in the other grid"
+        problem = f"{name!r} has {own_sizes} nodes, and {new_sizes or 'none'} in the other grid"
         raise InputError(problem, "use a grid with the same nodes there", parameter="wall")
     for piece, other in zip(pieces, others, strict=True):
         yield piece.numbers, other

@@ -97,10 +97,10 @@ def terminal(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], str]]:
 
         def text() -> str:
             stream.flush()
-            told = b""
+            shown = b""
             while select.select([leader], [], [], 0.2)[0]:
-                told += os.read(leader, 65536)
-            return told.decode()
+                shown += os.read(leader, 65536)
+            return shown.decode()
 
         yield text
     os.close(leader)

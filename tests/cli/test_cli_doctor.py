@@ -22,12 +22,12 @@ def test_all_is_well_here(meshonet: Meshonet) -> None:
 
 
 def test_json_has_every_package_and_every_extra_for_users(meshonet: Meshonet) -> None:
-    told = meshonet("doctor", "--json").only
-    assert told["well"]
-    names = {finding["name"] for finding in told["findings"]}
+    report = meshonet("doctor", "--json").only
+    assert report["well"]
+    names = {finding["name"] for finding in report["findings"]}
     installed = {name for name, _, extra in doctor_module.requirements() if not extra}
     assert {"numpy", "h5py", "typer"} <= installed <= names
-    extras = {finding["name"]: finding for finding in told["findings"] if finding["group"] == "extras"}
+    extras = {finding["name"]: finding for finding in report["findings"] if finding["group"] == "extras"}
     assert {"train", "dxf", "pyvista"} <= set(extras)
     assert not {"test", "lint", "docs"} & set(extras)
     for name, finding in extras.items():

@@ -85,9 +85,9 @@ def test_the_line_disappears_when_done(monkeypatch: pytest.MonkeyPatch) -> None:
         reached("grid")
         time.sleep(0.1)
         session.finish()
-        told = screen()
-    assert f"{WIPED}0 s, grid" in told
-    assert told.endswith(WIPED)
+        shown = screen()
+    assert f"{WIPED}0 s, grid" in shown
+    assert shown.endswith(WIPED)
     assert not threads()
 
 
@@ -134,10 +134,10 @@ def test_a_command_that_fails_leaves_no_line(monkeypatch: pytest.MonkeyPatch, tm
 
 
 def test_a_command_shows_its_stages_and_no_colour(tmp_path: Path) -> None:
-    told = on_terminal(tmp_path, subprocess.DEVNULL)
-    assert re.search(r"0 s, (read|boundary|grid|quality|write)", told)
-    assert "\x1b" not in told.replace(WIPED, "")
-    assert told.replace(WIPED, "").rstrip().splitlines()[-1].startswith("  time")
+    shown = on_terminal(tmp_path, subprocess.DEVNULL)
+    assert re.search(r"0 s, (read|boundary|grid|quality|write)", shown)
+    assert "\x1b" not in shown.replace(WIPED, "")
+    assert shown.replace(WIPED, "").rstrip().splitlines()[-1].startswith("  time")
 
 
 def test_a_command_that_writes_into_a_pipe_shows_none(tmp_path: Path) -> None:
@@ -158,13 +158,13 @@ def on_terminal(folder: Path, stdout: int) -> str:
         env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm"},
     )  # fmt: skip
     os.close(follower)
-    told = b""
+    shown = b""
     try:
         while part := os.read(leader, 65536):
-            told += part
+            shown += part
     except OSError:  # the other end is closed
         pass
     os.close(leader)
     running.communicate(timeout=30)
     assert running.returncode == 0
-    return told.decode()
+    return shown.decode()

@@ -98,29 +98,29 @@ def test_a_missing_part_gets_one_line_that_names_it(files: PartFiles) -> None:
 
 
 def names_and_errors(grids: Iterator[Grid]) -> list[str]:
-    told = []
+    outcomes = []
     while True:
         try:
-            told.append(next(grids).name)
+            outcomes.append(next(grids).name)
         except StopIteration:
-            return told
+            return outcomes
         except InputError as error:
-            told.append(str(error))
+            outcomes.append(str(error))
 
 
 def test_a_damaged_part_gets_one_line_and_the_others_are_read(files: PartFiles) -> None:
     files.path(1).write_bytes(files.path(1).read_bytes()[:2000])
-    told = names_and_errors(read_grids(str(files.index)))
-    assert told[:3] + told[4:] == ["g0", "g1", "g2", "g8", "g9"]
-    assert "part-00001.h5: " in told[3]
+    outcomes = names_and_errors(read_grids(str(files.index)))
+    assert outcomes[:3] + outcomes[4:] == ["g0", "g1", "g2", "g8", "g9"]
+    assert "part-00001.h5: " in outcomes[3]
 
 
 def test_a_damaged_sample_is_named_by_its_part(files: PartFiles) -> None:
     with h5py.File(files.path(1), "a") as file:
         file["nodes"][2, 0, 0] = np.nan
-    told = names_and_errors(read_grids(str(files.index)))
-    assert "part-00001.h5: sample 2: " in told[5]
-    assert len(told) == 9
+    outcomes = names_and_errors(read_grids(str(files.index)))
+    assert "part-00001.h5: sample 2: " in outcomes[5]
+    assert len(outcomes) == 9
 
 
 def test_a_part_with_fewer_samples_than_shown_is_refused(files: PartFiles) -> None:

@@ -35,16 +35,16 @@ function cutBy(lattices, points, axis, coordinate) {
 
 /** Return the points in which edges of a cell meet the plane, in their order around the polygon. */
 function polygonOf(node, offsets, points, axis, coordinate) {
-  const found = [];
+  const corners = [];
   for (const [a, b] of HEX_EDGES) {
     const p = node + offsets[a], q = node + offsets[b];
     const from = points[axis][p] - coordinate, to = points[axis][q] - coordinate;
     if (from >= 0 === to >= 0) continue;
     const part = from / (from - to);
-    found.push([0, 1, 2].map((x) => (x === axis ? coordinate : points[x][p] + part * (points[x][q] - points[x][p]))));
+    corners.push([0, 1, 2].map((x) => (x === axis ? coordinate : points[x][p] + part * (points[x][q] - points[x][p]))));
   }
   const [u, v] = [0, 1, 2].filter((x) => x !== axis);
-  const middle = [0, 1, 2].map((x) => found.reduce((sum, point) => sum + point[x], 0) / found.length);
+  const middle = [0, 1, 2].map((x) => corners.reduce((sum, point) => sum + point[x], 0) / corners.length);
   const angle = (point) => Math.atan2(point[v] - middle[v], point[u] - middle[u]);
-  return found.map((point) => [angle(point), point]).sort((one, two) => one[0] - two[0]).map(([, point]) => point);
+  return corners.map((point) => [angle(point), point]).sort((one, two) => one[0] - two[0]).map(([, point]) => point);
 }

@@ -39,12 +39,12 @@ async function begin() {
     return [stroke(spot, 9, INK), stroke(spot, 6.5, cells < 4 ? [0.95, 0.72, 0.02, 1] : [0.89, 0.34, 0.18, 1])];
   });
 
-  let asked = false;
+  let waiting = false;
   const draw = () => {
-    if (asked) return;
-    asked = true;
+    if (waiting) return;
+    waiting = true;
     requestAnimationFrame(() => {
-      asked = false;
+      waiting = false;
       const visible = shown();
       const strokes = [
         ...visible.map((layer) => layer.stroke).filter(Boolean),
