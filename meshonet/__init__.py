@@ -51,11 +51,11 @@ if TYPE_CHECKING:
     from meshonet.geometry.sections.stack import Stack as Stack
     from meshonet.geometry.spacing.sampling import Sampling as Sampling
     from meshonet.solvers.method import METHODS as METHODS
-    from meshonet.solvers.pipeline.make_grid import Result as Result
     from meshonet.solvers.pipeline.make_grid import make_grid as make_grid
     from meshonet.solvers.pipeline.make_grid import make_grids as make_grids
     from meshonet.solvers.pipeline.parameters import grid_request as grid_request
     from meshonet.solvers.pipeline.request import GridRequest as GridRequest
+    from meshonet.solvers.pipeline.result import Result as Result
     from meshonet.solvers.stacking.request import StackRequest as StackRequest
     from meshonet.solvers.sweeping.sweep import Sweep as Sweep
 
@@ -85,9 +85,10 @@ _MODULES = {
     "meshonet.geometry.sections.stack": ("Stack",),
     "meshonet.geometry.spacing.sampling": ("Sampling",),
     "meshonet.solvers.method": ("METHODS",),
-    "meshonet.solvers.pipeline.make_grid": ("Result", "make_grid", "make_grids"),
+    "meshonet.solvers.pipeline.make_grid": ("make_grid", "make_grids"),
     "meshonet.solvers.pipeline.parameters": ("grid_request",),
     "meshonet.solvers.pipeline.request": ("GridRequest",),
+    "meshonet.solvers.pipeline.result": ("Result",),
     "meshonet.solvers.stacking.request": ("StackRequest",),
     "meshonet.solvers.sweeping.sweep": ("Sweep",),
 }

@@ -14,8 +14,10 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.gates import need_percentiles, parse_gates
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ
-from meshonet.solvers.pipeline.make_grid import MOST_NODES, Result, make_grids
+from meshonet.solvers.pipeline.choose_method import method_of
+from meshonet.solvers.pipeline.make_grid import MOST_NODES, make_grids
 from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.pipeline.result import Result
 from meshonet.solvers.progress import Row, listening
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.executors.engine import HERE, Engine
@@ -156,7 +158,7 @@ def judging(session: Session, fail_on: Sequence[str] | None) -> Callable[[Report
 
 def _together(request: GridRequest) -> int:
     """Return how many members one of several processes gets at a time: fewer when grids are large."""
-    if request.solver().together is None:
+    if method_of(request).together is None:
         return 1
     nodes = (request.sampling.ni or 1) * (request.sampling.nj or 1)
     return max(1, min(SHARED, MOST_NODES // nodes))

@@ -9,7 +9,7 @@ from meshonet.geometry.threads import limited_to
 from meshonet.solvers.deformation.deform import deform
 from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall
-from meshonet.solvers.pipeline.make_grid import Result, judged
+from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.stages import reached
 
 _REMEDY = "go part of the way first, or make the grid of the new shape anew"

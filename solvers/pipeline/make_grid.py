@@ -5,78 +5,33 @@ from __future__ import annotations
 import contextlib
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from itertools import islice
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError, NoValidGridError
-from meshonet.geometry.quality.measure import measure, worst_cells_of
-from meshonet.geometry.quality.summary import Quality
-from meshonet.geometry.shapes.shape import Shape, edges_of
+from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
-from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.geometry.threads import limited_to
-from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.method import Method
+from meshonet.solvers.pipeline.choose_method import method_of
 from meshonet.solvers.pipeline.fallback import guard, refuse_folded
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.volumes import check_plane, make_volume
-from meshonet.solvers.progress import History, Row, listening
-from meshonet.solvers.solution import Outcome, Solution
+from meshonet.solvers.pipeline.result import Result, judged
+from meshonet.solvers.pipeline.sample_shape import sampled
+from meshonet.solvers.pipeline.volumes import make_volume
+from meshonet.solvers.progress import History, listening
+from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import reached
 
 if TYPE_CHECKING:
     from meshonet.geometry.shapes.domain_shape import DomainShape
-    from meshonet.solvers.stacking.request import StackRequest
 
 MOST_TOGETHER = 64  # shapes that are solved together at the most
 MOST_NODES = 1 << 22  # nodes of grids from which no more are solved together: some hundred MB
-
-
 _OTHER_METHODS = "try {method} variational, or {allow_invalid}"
-
-
-@dataclass(frozen=True, eq=False)
-class Result:
-    """A grid and what there is to say of it.
-
-    Parameters
-    ----------
-    solution : Solution
-        The grid, its method, path and figures.
-    quality : Quality
-        Quality of the grid.
-    seconds : dict
-        Wall-clock seconds by stage: boundary, load (modules and models, once a process), grid (from boundary
-        nodes in memory to grid nodes in memory), guard, quality.
-    notes : tuple of str, optional
-        Sentences a user should read, those of boundary and solution among them; names of parameters stand in
-        braces, for `meshonet.geometry.errors.spelled`.
-    history : tuple of Row, optional
-        Cycles of the method, when the request keeps them.
-    """
-
-    solution: Solution
-    quality: Quality
-    seconds: Mapping[str, float]
-    notes: tuple[str, ...] = ()
-    history: tuple[Row, ...] = ()
-
-    @property
-    def grid(self) -> Grid:
-        """The grid."""
-        return self.solution.grid
-
-    @property
-    def outcome(self) -> Outcome:
-        """How it ended, with what to try next."""
-        return Outcome.FOLDED if self.quality.folded else self.solution.outcome
 
 
 def make_grid(shape: Shape, request: GridRequest) -> Result:
@@ -132,7 +87,7 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     InputError
         The method does not have such settings.
     """
-    method = request.solver()
+    method = method_of(request)
     shapes = iter(shapes)
     while group := _group(shapes, request, MOST_TOGETHER if method.together else 1):
         with limited_to(request.threads):
@@ -157,7 +112,7 @@ def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> deque[_M
         reached("boundary")
         begun = time.perf_counter()
         try:
-            boundary: Boundary | DomainShape | SpatialShape | Exception = _sampled(shape, request)
+            boundary: Boundary | DomainShape | SpatialShape | Exception = sampled(shape, request)
         except Exception as error:
             boundary = error
         group.append(_Member(boundary, {"boundary": time.perf_counter() - begun}))
@@ -165,36 +120,6 @@ def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> deque[_M
         if nodes >= MOST_NODES:
             break
     return group
-
-
-def _sampled(shape: Shape, request: GridRequest) -> Boundary | DomainShape | SpatialShape:
-    """Return the boundary of a shape, or the shape itself in space and where many blocks are made of it."""
-    if isinstance(shape, SpatialShape):
-        return shape
-    if isinstance(shape, (str, Path, np.ndarray)):
-        remedy = "use meshonet.grid, or make a shape of it: meshonet.read or Domain.of_polygons"
-        what = "points" if isinstance(shape, np.ndarray) else "a name"
-        raise InputError(f"make_grid takes shapes, not {what}", remedy)
-    check_plane(request)
-    if request.asks_for_blocks or getattr(shape, "many", False):
-        from meshonet.solvers.pipeline.blocks import as_blocks
-
-        domain = as_blocks(shape, request)
-        if domain is not None:
-            return domain
-    sampling = request.shape_sampling()
-    boundary = edges_of(shape, sampling)
-    if request.refine:
-        boundary = edges_of(shape, _finer(sampling, shape, boundary, 2**request.refine))
-    return boundary
-
-
-def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Sampling:
-    """Return `sampling` with `k` times the cells of the `boundary` of `shape`, those of a wake included."""
-    wakes = [patch.stop - patch.start for patch in boundary.patches if patch.name == "wake"]
-    made = boundary.topology == "c" and wakes and not isinstance(shape, Boundary)
-    nodes = k * wakes[0] + 1 if made else sampling.wake_nodes
-    return replace(sampling, ni=k * (boundary.ni - 1) + 1, nj=k * (boundary.nj - 1) + 1, wake_nodes=nodes)
 
 
 def _solve_together(group: Iterable[_Member], method: Method) -> None:
@@ -280,27 +205,6 @@ def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, flo
     solution = make_volume(shape, request)
     _add_times(seconds, solution, time.perf_counter() - begun)
     return judged(solution, seconds, request, remedy=_OTHER_METHODS)
-
-
-def judged(
-    solution: Solution,
-    seconds: dict[str, float],
-    request: GridRequest | StackRequest | DeformRequest,
-    *,
-    remedy: str,
-) -> Result:
-    """Return a solution with its quality, whose time is added to `seconds` by stage.
-
-    Raises NoValidGridError: cells are folded, which is not allowed; `remedy` says what to try.
-    """
-    reached("quality")
-    begun = time.perf_counter()
-    quality = measure(solution.grid, percentiles=request.percentiles)
-    seconds["quality"] = time.perf_counter() - begun
-    if quality.folded and not request.allow_invalid:
-        problem = f"{quality.folded} of {quality.cells} cells are folded; {remedy}"
-        raise NoValidGridError(problem, worst_cells_of(solution.grid))
-    return Result(solution, quality, seconds, solution.notes)
 
 
 def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> None:

@@ -9,7 +9,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.threads import limited_to
-from meshonet.solvers.pipeline.make_grid import Result, judged
+from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.wing_surface import wing_surface

@@ -8,8 +8,8 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.path import Path
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.threads import limited_to
-from meshonet.solvers.pipeline.make_grid import Result, judged
 from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.pipeline.sections import section_grid
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import reached

@@ -16,6 +16,8 @@ from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.sequence import Sequenced
 from meshonet.solvers.solution import Outcome, Solution
 
+METHOD_OF = "meshonet.solvers.pipeline.make_grid.method_of"
+
 
 def test_what_cannot_be_repaired_is_refused_or_marked() -> None:
     made = interpolate(impossible())
@@ -72,7 +74,7 @@ def test_first_cells_that_the_guard_changes_are_noted(monkeypatch: pytest.Monkey
         nodes[10, 1], nodes[10, 2] = nodes[10, 2].copy(), nodes[10, 1].copy()
         return Solution(boundary.grid(nodes), "fake", first_cells={"south": 1e-3})
 
-    monkeypatch.setattr(GridRequest, "solver", lambda self: Each("fake", fold))
+    monkeypatch.setattr(METHOD_OF, lambda _: Each("fake", fold))
     result = make_grid(arch(21, 11), GridRequest())
     assert result.solution.path == ("repair",)
     assert any("the guard changed first cells" in note for note in result.notes)
@@ -90,7 +92,7 @@ def test_many_are_solved_in_one_call_and_one_by_one_when_that_fails(monkeypatch:
                 raise MemoryError
             return [interpolate(problem) for problem in problems]
 
-    monkeypatch.setattr(GridRequest, "solver", lambda self: Many())
+    monkeypatch.setattr(METHOD_OF, lambda _: Many())
     shapes = [arch(21, 11), hole(21, 11), arch(21, 11)]
     assert all(not isinstance(result, Exception) for result in make_grids(shapes, GridRequest()))
     assert calls == [2, 1]

@@ -1,0 +1,75 @@
+"""What a request cannot ask for: values out of range, parameters that need or exclude each other."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.method import METHODS, method_named
+
+if TYPE_CHECKING:
+    from meshonet.solvers.pipeline.request import GridRequest
+
+
+def check_request(request: GridRequest) -> None:
+    """Raise InputError for a value out of its range, or for parameters that need or exclude each other."""
+    if request.method not in ("best", "auto") and request.method.partition(":")[0] not in METHODS:
+        method_named(request.method)  # which says what there is
+    _check_first_cells(request)
+    if request.method == "hyperbolic" and not request.at_walls:
+        raise InputError("{method} hyperbolic without a first cell", "give {first_cell} or {y_plus} as well")
+    if request.wall_angle is not None and request.method != "steger-sorenson":
+        problem = f"method {request.method} sets no angle"
+        raise InputError(problem, "use {method} steger-sorenson", parameter="wall_angle")
+    if isinstance(request.coarse, int):
+        if request.refine:
+            raise InputError("{coarse} and {refine} both solve on fewer nodes first", "give one of them")
+        if request.initial is not None:
+            problem = "a coarse solve has no use for a grid to start from"
+            raise InputError(problem, "drop {initial} or {coarse}")
+    if request.repair and request.settings.get("answer") == "raw":
+        problem = "{repair} would change a raw answer"
+        raise InputError(problem, "leave one of {repair} and {answer} out")
+    tol = request.settings.get("tol")
+    if tol is not None and not 0 < tol < 1:
+        raise InputError(f"{tol:g} is not between 0 and 1", "use e.g. 1e-8", parameter="tol")
+    for name, least in (("threads", 1), ("layers", 3)):
+        value = getattr(request, name)
+        if value is not None and value < least:
+            raise InputError(f"{value} is too few", f"give {least} or more", parameter=name)
+    if request.blocks not in ("auto", "single"):
+        raise InputError(f"blocks {request.blocks!r} is not known", "use auto or single")
+    if request.asks_for_blocks:
+        from meshonet.solvers.pipeline.blocks import check_asked
+
+        check_asked(request)
+
+
+def _check_first_cells(request: GridRequest) -> None:
+    if request.first_cell is not None and request.y_plus is not None:
+        problem = "{first_cell} and {y_plus} both say how high the first cell is"
+        raise InputError(problem, "give one of them")
+    if (request.y_plus is None) != (request.reynolds is None):
+        needed, known = ("reynolds", "y_plus") if request.reynolds is None else ("y_plus", "reynolds")
+        raise InputError(f"{{{known}}} without {{{needed}}}", f"give {{{needed}}} as well")
+    if request.y_plus is None and request.chord_fraction != 0.5:
+        raise InputError("{chord_fraction} without {y_plus}", "give {y_plus} and {reynolds} as well")
+    heights = {
+        "first_cell": request.first_cell,
+        **{f"spacing_{side}": h for side, h in request.sides.items()},
+    }
+    for name, height in heights.items():
+        if height is not None and not 0 < height < math.inf:
+            raise InputError(f"a first cell of {height:g}", "give a positive height", parameter=name)
+    if not request.at_walls and not request.sides:
+        for name, value in (("constant_layers", request.constant_layers), ("growth", request.growth)):
+            if value is not None:
+                problem = f"{{{name}}} without a first cell"
+                raise InputError(problem, "give {first_cell} or {y_plus} as well")
+    if request.constant_layers is not None and request.constant_layers < 1:
+        raise InputError(f"{request.constant_layers} layers", "give at least 1", parameter="constant_layers")
+    if request.at_walls and request.growth is not None and not 1 < request.growth <= 10:
+        remedy = "give the ratio of neighbouring cells, such as 1.15"
+        raise InputError(f"a growth of {request.growth:g}", remedy, parameter="growth")
+    request.wall_height()  # which says what is out of range

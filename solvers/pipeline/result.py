@@ -1,0 +1,79 @@
+"""What comes of a request: a grid that was checked, with its quality and times."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.quality.measure import measure, worst_cells_of
+from meshonet.geometry.quality.summary import Quality
+from meshonet.solvers.progress import Row
+from meshonet.solvers.solution import Outcome, Solution
+from meshonet.solvers.stages import reached
+
+if TYPE_CHECKING:
+    from meshonet.solvers.deformation.request import DeformRequest
+    from meshonet.solvers.pipeline.request import GridRequest
+    from meshonet.solvers.stacking.request import StackRequest
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A grid and what there is to say of it.
+
+    Parameters
+    ----------
+    solution : Solution
+        The grid, its method, path and figures.
+    quality : Quality
+        Quality of the grid.
+    seconds : dict
+        Wall-clock seconds by stage: boundary, load (modules and models, once a process), grid (from boundary
+        nodes in memory to grid nodes in memory), guard, quality.
+    notes : tuple of str, optional
+        Sentences a user should read, those of boundary and solution among them; names of parameters stand in
+        braces, for `meshonet.geometry.errors.spelled`.
+    history : tuple of Row, optional
+        Cycles of the method, when the request keeps them.
+    """
+
+    solution: Solution
+    quality: Quality
+    seconds: Mapping[str, float]
+    notes: tuple[str, ...] = ()
+    history: tuple[Row, ...] = ()
+
+    @property
+    def grid(self) -> Grid:
+        """The grid."""
+        return self.solution.grid
+
+    @property
+    def outcome(self) -> Outcome:
+        """How it ended, with what to try next."""
+        return Outcome.FOLDED if self.quality.folded else self.solution.outcome
+
+
+def judged(
+    solution: Solution,
+    seconds: dict[str, float],
+    request: GridRequest | StackRequest | DeformRequest,
+    *,
+    remedy: str,
+) -> Result:
+    """Return a solution with its quality, whose time is added to `seconds` by stage.
+
+    Raises NoValidGridError: cells are folded, which is not allowed; `remedy` says what to try.
+    """
+    reached("quality")
+    begun = time.perf_counter()
+    quality = measure(solution.grid, percentiles=request.percentiles)
+    seconds["quality"] = time.perf_counter() - begun
+    if quality.folded and not request.allow_invalid:
+        problem = f"{quality.folded} of {quality.cells} cells are folded; {remedy}"
+        raise NoValidGridError(problem, worst_cells_of(solution.grid))
+    return Result(solution, quality, seconds, solution.notes)
