@@ -12,7 +12,7 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.c_sheets import Sheet, march_sheet
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.cut_loop import CutLoop
-from meshonet.solvers.blocking.even_loops import Measure
+from meshonet.solvers.blocking.even_line import Measures
 from meshonet.solvers.blocking.free_wake import SHARP_DEG, free_wake
 from meshonet.solvers.blocking.layer_rows import LayerSettings, last_layers, open_metric, ring_metric
 from meshonet.solvers.blocking.near_field import NearField
@@ -70,9 +70,9 @@ class Sheets(WallLayers):
         return SizeMetric.joined([*(_sheet_metric(s, self.settings) for s in self.cut.layers), *parts])
 
     @property
-    def measures(self) -> dict[int, Measure]:
+    def measures(self) -> dict[int, Measures]:
         """What steps are to be even in, besides arc length, along the fronts of rings, by loop of `rest`."""
-        return {k: self.rings[of].along_wall for k, of in self.numbers.items() if of in self.rings}
+        return {k: self.rings[of].along for k, of in self.numbers.items() if of in self.rings}
 
     def sheet_rows(self, sheet: Sheet) -> int:
         """Return the layers of a sheet."""

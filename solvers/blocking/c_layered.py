@@ -27,7 +27,7 @@ from meshonet.solvers.blocking.c_sheets import Sheet
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.decompose import Timings
-from meshonet.solvers.blocking.even_growth import evened
+from meshonet.solvers.blocking.even_line import evened_arcs
 from meshonet.solvers.blocking.even_loops import evened_loops
 from meshonet.solvers.blocking.even_metric import metric_places
 from meshonet.solvers.blocking.finished import finished, respaced_layers
@@ -172,16 +172,12 @@ def _tied(mesh: QuadMesh, cut: CutLoop[Sheet], k: int, limit: float) -> tuple[Qu
     new = index.copy()
     mean = 0.5 * (index[: edge + 1] + last - index[::-1][: edge + 1])
     if limit:
-        arcs = cut.front_arcs(k, mean)
-        arcs[1:-1] = arcs[0] + np.cumsum(evened(np.diff(arcs)[None], limit)[0])[:-1]
-        mean[1:-1] = cut.index(k, arcs[1:-1])
+        mean[1:-1] = cut.index(k, evened_arcs(cut.front_arcs(k, mean), limit, 1)[1:-1])
     new[: edge + 1], new[::-1][: edge + 1] = mean, last - mean
     held = np.concatenate([order[: edge + 1], order[::-1][: edge + 1]])
     if limit:  # the wall's cells fit to those of the wake
         piece = slice(edge - 1, len(new) - edge + 1)
-        arcs = cut.front_arcs(k, new[piece])
-        steps = evened(np.diff(arcs)[None], limit, False, 1, 1)[0]
-        new[piece][2:-2] = cut.index(k, arcs[0] + np.cumsum(steps)[1:-2])
+        new[piece][2:-2] = cut.index(k, evened_arcs(cut.front_arcs(k, new[piece]), limit, 2)[2:-2])
         held = order
     return _moved(mesh, cut, k, order, new), held
 

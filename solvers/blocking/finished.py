@@ -7,11 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import percentiles_of
+from meshonet.geometry.arrays import Floats, percentiles_of
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.chords import Chords
-from meshonet.solvers.blocking.even_rows import evened_rows, guarded
+from meshonet.solvers.blocking.even_mesh import evened_mesh
 from meshonet.solvers.blocking.folds import corner_jacobians, smallest_corner, unfolded
 from meshonet.solvers.blocking.grid_lines import rows_of
 from meshonet.solvers.blocking.layer_rows import LayerSettings
@@ -20,6 +22,8 @@ from meshonet.solvers.blocking.score import deviations
 
 RESPACED_SINE = 0.1
 """Of angles, that no node that is placed anew across layers may make smaller."""
+_ATTEMPTS = 6
+_SPREAD = 0.15
 MARGIN = 1.21
 """By how much cells may differ in the end, in logarithms, over the growth of layers."""
 
@@ -62,17 +66,17 @@ def respaced_layers(layout: Layout, settings: LayerSettings, joints: Collection[
     """
     mesh = layout.mesh
     change = respaced(layout, settings, joints).mesh.nodes - mesh.nodes
-    return replace(layout, mesh=mesh.with_nodes(guarded(mesh.nodes, change, mesh, RESPACED_SINE)))
+    return replace(layout, mesh=mesh.with_nodes(_guarded(mesh.nodes, change, mesh)))
 
 
 def finished(ways: Sequence[Layout], settings: LayerSettings, corners: Collection[int] = ()) -> Layout:
-    """Return the best of several ways to place the nodes of a layout, its cells evened or as they are.
+    """Return the best of several ways to place the nodes of a layout, its cells made to grow evenly.
 
     `corners` are the numbers of blocks between the layers of two walls. Raises NoValidGridError: cells are
     folded; with the place.
     """
-    limit = MARGIN * float(np.log(settings.growth))
-    layout = best_of([*ways, *(evened_rows(layout, limit, settings.constant) for layout in ways)])
+    layout = best_of(ways)
+    layout = best_of([layout, _evened(layout, settings)])
     held = np.zeros(len(layout.mesh.nodes), dtype=bool)
     for number in layout.layers:
         block = layout.blocks[number]
@@ -85,3 +89,38 @@ def finished(ways: Sequence[Layout], settings: LayerSettings, corners: Collectio
         x, y = layout.mesh.nodes[layout.mesh.quads[int(corner.argmin())]].mean(axis=0)
         raise NoValidGridError(f"layers or cells beside them are folded at ({x:.6g}, {y:.6g})")
     return layout
+
+
+def _evened(layout: Layout, settings: LayerSettings) -> Layout:
+    """Return the layout with cells that grow by no more than a limit, as far as first cells allow it."""
+    held = layout.mesh.wall_nodes.copy()
+    for number in layout.layers:
+        held[layout.blocks[number][:, : settings.constant + 1]] = True
+    limit = max(MARGIN * np.log(settings.growth), np.log(MOST_GROWTH))
+    return replace(layout, mesh=evened_mesh(layout.mesh, held, float(limit)))
+
+
+def _guarded(nodes: Floats, change: Floats, mesh: QuadMesh) -> Floats:
+    """Return nodes (n, 2) moved by `change` (n, 2), or less where cells would become too skew."""
+    bound = np.minimum(RESPACED_SINE, 0.95 * _sines(nodes, mesh.quads))
+    part = np.ones(len(nodes))
+    for _ in range(_ATTEMPTS):
+        moved = nodes + part[:, None] * change
+        bad = _sines(moved, mesh.quads) < bound
+        if not bad.any():
+            return moved
+        part[mesh.quads[bad]] *= 0.3
+        for _ in range(round(1.0 / _SPREAD)):
+            least = part[mesh.edges].min(axis=1) + _SPREAD
+            np.minimum.at(part, mesh.edges[:, 0], least)
+            np.minimum.at(part, mesh.edges[:, 1], least)
+    return nodes
+
+
+def _sines(nodes: Floats, quads: Indices) -> Floats:
+    """Return the smallest sine (m,) of the angles of quads, negative where they are folded."""
+    z = nodes[quads]
+    edge = np.roll(z, -1, axis=1) - z
+    edge /= np.hypot(edge[..., 0], edge[..., 1])[..., None]
+    before = np.roll(edge, 1, axis=1)
+    return np.asarray((before[..., 0] * edge[..., 1] - before[..., 1] * edge[..., 0]).min(axis=1))

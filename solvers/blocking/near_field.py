@@ -14,7 +14,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.solvers.blocking.attach import Rows, loop_nodes
-from meshonet.solvers.blocking.even_growth import evened
+from meshonet.solvers.blocking.even_line import evened_steps
 
 FAR = 4.0
 """Radii of the circle around all bodies at which an outer loop counts as distant."""
@@ -86,7 +86,7 @@ class NearField:
         arcs = np.interp(angle, closed, np.append(self.arcs, self.arcs[0] + self.outer.length))
         end = self.outer.at(arcs)
         length = np.hypot(*(end - start).T)
-        wanted = evened(heights[None], np.log(_EVEN), closed=True)[0] * growth**0.5
+        wanted = evened_steps(heights, np.log(_EVEN)) * growth**0.5
         mean = float(np.exp(np.log(wanted).mean()))
         wanted = np.clip(wanted, mean / _UNLIKE, _UNLIKE * mean)
         cells = self.cells(mean, growth, multiple)

@@ -23,11 +23,14 @@ from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.column_weights import column_weights, line_lengths, started, whole_columns
+from meshonet.solvers.blocking.even_line import Measures
 from meshonet.solvers.blocking.marched import GAP_PART, fitted
 from meshonet.solvers.blocking.wall_columns import wall_columns
 from meshonet.solvers.hyperbolic.settings import ATTEMPTS
 
 _FINER = 8
+SLACK = np.array([2.0, 1.0, 0.9])
+"""How much more, in logarithms, steps along fronts may differ than those at walls, which stay in the end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,13 +80,18 @@ class Ring:
         return started(nodes, self.wall.at(starts)), starts
 
     @cached_property
-    def along_wall(self) -> tuple[Floats, Floats]:
-        """Arc lengths (m,) of the front, from 0 to its length, and of the wall, rising, beneath them."""
+    def along(self) -> Measures:
+        """Arc lengths of the front, of the wall beneath it, and of the level next to the wall."""
         n = len(self.arcs)
         index = np.arange(_FINER * n + 1) / _FINER
         knots = np.append(self.front.curve.knots, self.front.length)
         wall = monotone_cubic(np.arange(-1.0, n + 2.0), self._unwrapped(), index)
-        return np.interp(index, np.arange(n + 1.0), knots), wall - wall[0]
+        level = self.levels[:, 1]
+        step = np.hypot(*(np.roll(level, -1, axis=0) - level).T)
+        around = np.cumsum(np.concatenate([[0.0], step[-1:], step, step[:1]]))
+        above = monotone_cubic(np.arange(-1.0, n + 2.0), around, index)
+        front = np.interp(index, np.arange(n + 1.0), knots)
+        return Measures(front, np.stack([front, wall - wall[0], above - above[0]]), SLACK)
 
     def _unwrapped(self) -> Floats:
         """Return arc lengths (n + 3,) of columns -1 to n + 1, ascending."""

@@ -12,7 +12,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.cut_loop import CutLoop
-from meshonet.solvers.blocking.even_loops import Measure
+from meshonet.solvers.blocking.even_line import Measures
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, last_layers, open_metric, ring_metric
 from meshonet.solvers.blocking.near_field import NearField
@@ -102,12 +102,13 @@ class WallLayers:
         return replace(self._metric, along=scale * self._metric.along, largest=largest)
 
     @property
-    def measures(self) -> dict[int, Measure]:
+    def measures(self) -> dict[int, Measures]:
         """What steps are to be even in, besides arc length, along the loops that stand in for others."""
-        measures = {k: ring.along_wall for k, ring in self.rings.items()}
+        measures = {k: ring.along for k, ring in self.rings.items()}
         measures |= {k: _measure(cut) for k, cut in self.cuts.items()}
         if self.near is not None:
-            measures[0] = (np.array([0.0, self.near.circle.length]),) * 2
+            ends = np.array([0.0, self.near.circle.length])
+            measures[0] = Measures(ends, ends[None])
         return measures
 
     def rows(self, layers: Ring | Strip) -> int:
@@ -151,7 +152,7 @@ def _sizes(domain: Domain, number: int) -> tuple[float, float]:
     return thickness, loop.length / COLUMNS
 
 
-def _measure(cut: CutLoop[Strip]) -> Measure:
+def _measure(cut: CutLoop[Strip]) -> Measures:
     """Return arc lengths of a cut loop, and what rises with them: those of walls where there are fronts."""
     arcs, rise = [np.zeros(1)], [np.zeros(1)]
     for k, strip in enumerate(cut.layers):
@@ -164,7 +165,7 @@ def _measure(cut: CutLoop[Strip]) -> Measure:
     rise.append(rise[-1][-1:] + cut.loop.length - arcs[-2][-1])
     at, value = np.concatenate(arcs), np.concatenate(rise)
     keep = np.concatenate([[True], np.diff(at) > 1e-12 * cut.loop.length])
-    return at[keep], value[keep]
+    return Measures(at[keep], np.stack([at[keep], value[keep]]))
 
 
 def wanted_counts(

@@ -7,7 +7,6 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.blocking.even_growth import evened
 from meshonet.solvers.blocking.folds import smallest_corner
 from meshonet.solvers.blocking.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layered import layered
@@ -73,21 +72,3 @@ def test_no_room_for_layers_is_said_with_its_place():
     domain = Domain((FAR, cylinder(0, 0, 0.5), cylinder(1.0001, 0, 0.5)))
     with pytest.raises(InputError, match="no room for layers"):
         layered(domain, [1, 2], LayerSettings(1e-3), cells=8000)
-
-
-def test_evened_cells_keep_their_sum_and_move_only_where_they_differ_by_too_much():
-    cells = np.ones((1, 60))
-    cells[0, 30:] = 4.0
-    new = evened(cells, np.log(1.2))
-    assert new.sum() == pytest.approx(cells.sum())
-    assert np.abs(np.diff(np.log(new))).max() <= np.log(1.2) * (1 + 1e-9)
-    np.testing.assert_array_equal(new[0, :15], 1.0)
-    np.testing.assert_array_equal(new[0, -15:], 4.0)
-
-
-def test_held_cells_are_kept():
-    cells = np.array([[0.1, *[1.0] * 40]])
-    new = evened(cells, np.log(1.2), start=1)
-    assert new[0, 0] == pytest.approx(0.1)
-    assert new.sum() == pytest.approx(cells.sum())
-    assert np.abs(np.diff(np.log(new))).max() <= np.log(1.2) * (1 + 1e-9)
