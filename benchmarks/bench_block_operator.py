@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import argparse
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from clock import clocked
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "examples" / "domains"))
 
@@ -61,16 +61,6 @@ def values(layout: Layout) -> list[float]:
     return [optimise(layout.mesh, iterations=n, tolerance=0.0).value for n in AFTER]
 
 
-def clocked(call) -> tuple[float, object]:  # type: ignore[no-untyped-def]
-    """Return the least processor seconds of three calls, and the result."""
-    best, result = np.inf, None
-    for _ in range(3):
-        begun = time.process_time()
-        result = call()
-        best = min(best, time.process_time() - begun)
-    return best, result
-
-
 def main() -> None:
     """Print the comparison."""
     parser = argparse.ArgumentParser()
@@ -89,10 +79,10 @@ def main() -> None:
             continue
         chords = Chords.of(layout)
         counts = chords.counts_for_cells(options.cells)
-        spline_s, fine = clocked(lambda c=chords, n=counts: refine(c.layout, n, c))
-        network_s, nodes = clocked(lambda f=fine: by_network(f, operator))
+        spline_s, fine = clocked(lambda c=chords, n=counts: refine(c.layout, n, c), 3)
+        network_s, nodes = clocked(lambda f=fine: by_network(f, operator), 3)
         other = replace(fine, mesh=fine.mesh.with_nodes(nodes))
-        ten_s, _ = clocked(lambda f=fine: optimise(f.mesh, iterations=10))
+        ten_s, _ = clocked(lambda f=fine: optimise(f.mesh, iterations=10), 3)
         a, b = values(fine), values(other)
         rows.append((spline_s, network_s, ten_s))
         show = " ".join(f"{x:.4f}/{y:.4f}" for x, y in zip(a, b, strict=True))

@@ -9,7 +9,6 @@ measured is kept in a folder, and a run goes on from there.
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import resource
@@ -21,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from page import arguments, publish
 from quads_checked import judged, merged
 
 import meshonet
@@ -34,13 +34,12 @@ Row = dict[str, Any]
 
 def main() -> None:
     """Measure what was not measured yet, and print; write the page when asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--files", type=Path, help="folder of GeoJSON domains besides")
     parser.add_argument("--random", type=int, default=200, help="how many random domains")
     parser.add_argument("--gmsh", type=int, default=40, help="how many domains Gmsh gets, spread over all")
     parser.add_argument("--algorithms", default="11,8,9", help="Mesh.Algorithm of Gmsh")
     parser.add_argument("--keep", type=Path, default=ROOT / "build" / "bench-blocks")
-    parser.add_argument("--page", type=Path, help="markdown page to write")
     options = parser.parse_args()
     options.keep.mkdir(parents=True, exist_ok=True)
     groups = domains(options.files, options.random, options.keep / "domains")
@@ -55,9 +54,7 @@ def main() -> None:
         for algorithm in (options.algorithms.split(",") if sampled else [])
     }
     text = page(groups, ours, theirs)
-    print(text)
-    if options.page:
-        options.page.write_text(text)
+    publish(text, options.page)
 
 
 def domains(files: Path | None, random: int, folder: Path) -> dict[str, list[Path]]:

@@ -8,12 +8,12 @@ model has seen. Folds are counted before the guard. Processor time of one thread
 
 from __future__ import annotations
 
-import argparse
 from functools import partial
-from pathlib import Path
 
 import numpy as np
-from gains import Way, clocked, distances, figures, gains, operate, percent, published
+from clock import clocked
+from gains import Way, distances, figures, gains, operate, percent, published
+from page import arguments, publish
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import SolverError
@@ -38,11 +38,10 @@ SEED = 1000
 
 def main() -> None:
     """Measure and print; write the page when asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--sizes", default="129x65:60,401x201:10", help="NIxNJ:bodies")
     parser.add_argument("--model", default="hole-o")
     parser.add_argument("--twin", default="hole-winslow")
-    parser.add_argument("--page", type=Path, help="markdown page to write")
     options = parser.parse_args()
     parts = [HEAD]
     for size in options.sizes.split(","):
@@ -50,10 +49,7 @@ def main() -> None:
         ni, nj = (int(word) for word in counts.split("x"))
         parts += tables(bodies(ni, nj, int(members)), options.model, options.twin)
     parts += [batches(options.model), holes(options.model, options.twin), wakes(), TAIL]
-    text = "\n".join(parts)
-    print(text)
-    if options.page:
-        options.page.write_text(text)
+    publish("\n".join(parts), options.page)
 
 
 def bodies(ni: int, nj: int, count: int) -> list[Boundary]:
@@ -75,9 +71,9 @@ def tables(edges: list[Boundary], model: str, twin: str) -> list[str]:
     ways: dict[str, Way] = {
         "TFI": lambda b: Solution(tfi(b), "tfi"),
         "Winslow": winslow,
-        "Winslow --coarse 65": partial(solve_coarse, method=winslow, n=65, smooth=True),
+        "Winslow --coarse 65": partial(solve_coarse, solve=winslow, n=65, smooth=True),
         "variational": variational,
-        "variational --coarse 65": partial(solve_coarse, method=variational, n=65, smooth=True),
+        "variational --coarse 65": partial(solve_coarse, solve=variational, n=65, smooth=True),
         "**network**": partial(operate, model, 0),
         "**network, 2 steps**": partial(operate, model, 2),
         "**network, 5 steps**": partial(operate, model, 5),
@@ -98,7 +94,7 @@ def batches(model: str) -> str:
     edges = [random_body(np.random.default_rng([SEED, k]), 65, 33) for k in range(32)]
     lines = ["\n## 32 bodies in one batch, 65 x 33\n", "| method | CPU ms a grid |", "| --- | --- |"]
     for dtype in ("float32", "float64"):
-        spent = min(clocked(partial(load, edges, model, 0, dtype)) for _ in range(5)) / len(edges)
+        spent = clocked(partial(load(model).solve, edges, 0, dtype=dtype), 5)[0] / len(edges)
         lines.append(f"| **network in {dtype}** | {1e3 * spent:.2f} |")
     return "\n".join(lines)
 

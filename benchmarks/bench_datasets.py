@@ -8,7 +8,6 @@ process: inputs, digests, parts, reports, the index. Samples are read by fresh p
 
 from __future__ import annotations
 
-import argparse
 import json
 import resource
 import statistics
@@ -24,6 +23,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+from page import arguments, publish
 
 from meshonet.formats.hdf5.parts import PartFiles
 from meshonet.geometry.blocks.grid import Grid
@@ -263,18 +263,14 @@ def page(members: int, size: int, repeats: int, parts: Iterable[int]) -> str:
 
 def main() -> None:
     """Print the page, or write it."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--members", type=int, default=1_000_000)
     parser.add_argument("--part-size", type=int, default=1000)
     parser.add_argument("--repeats", type=int, default=9)
     parser.add_argument("--parts", type=int, nargs="*", default=[100, 1000, 3000, 10_000])
-    parser.add_argument("--page", type=Path)
     options = parser.parse_args()
     text = page(options.members, options.part_size, options.repeats, options.parts)
-    if options.page:
-        options.page.write_text(text, encoding="utf-8")
-    else:
-        print(text)
+    publish(text, options.page)
 
 
 if __name__ == "__main__":

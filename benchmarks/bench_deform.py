@@ -9,8 +9,6 @@ FOLDER of airfoils holds ``*.dat``; that of bodies the elements of a multi-eleme
 
 from __future__ import annotations
 
-import argparse
-import platform
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -18,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from page import arguments, processor, publish
 
 import meshonet
 from meshonet.geometry.arrays import Floats
@@ -235,29 +234,17 @@ def table_of(rows: Sequence[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
-def machine() -> str:
-    """Return what the processor is called."""
-    info = Path("/proc/cpuinfo")
-    lines = info.read_text(encoding="utf-8").splitlines() if info.exists() else []
-    names = [line for line in lines if line.startswith("model name")]
-    return names[0].partition(":")[2].strip() if names else platform.machine()
-
-
 def main() -> None:
     """Measure, print, and write the page when asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--airfoils", type=Path, required=True)
     parser.add_argument("--bodies", type=Path)
     parser.add_argument("--count", type=int, default=500)
-    parser.add_argument("--page", type=Path)
     options = parser.parse_args()
     with limited_to(1):
         rows, refused, several = measured(options.airfoils, options.bodies, options.count)
-    text = table_of(rows)
-    print(text, f"{refused} refused, {several} in several steps")
-    if options.page:
-        head = HEAD.format(seed=SEED, refused=refused, machine=machine())
-        options.page.write_text(head + text + TAIL.format(steps=several), encoding="utf-8")
+    head = HEAD.format(seed=SEED, refused=refused, machine=processor())
+    publish(head + table_of(rows) + TAIL.format(steps=several), options.page)
 
 
 if __name__ == "__main__":

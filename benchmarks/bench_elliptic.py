@@ -8,14 +8,13 @@ and those of the paper stand beside ours as they were measured or published; the
 
 from __future__ import annotations
 
-import argparse
-import time
 import tracemalloc
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
+from clock import clocked
+from page import arguments, processor, publish
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
@@ -73,16 +72,6 @@ def shapes(n: int) -> Iterator[tuple[str, Boundary]]:
     yield "NACA 0012, sharp", naca("0012-sharp").boundary(Sampling(n, n))
 
 
-def timed(act: Callable[[], Result]) -> tuple[Result, float]:
-    """Return the result of `act` and its processor seconds, the better of two."""
-    spent = []
-    for _ in range(2):
-        begun = time.process_time()
-        result = act()
-        spent.append(time.process_time() - begun)
-    return result, min(spent)
-
-
 def doubles_a_node(edges: Boundary) -> float:
     """Return the most memory that solving takes, in float64 numbers a node."""
     tracemalloc.start()
@@ -94,12 +83,10 @@ def doubles_a_node(edges: Boundary) -> float:
 
 def row(name: str, edges: Boundary) -> str:
     """Return one line of the table of shapes."""
-    level, to_level = timed(lambda: solve(edges))
-    exact, to_exact = timed(lambda: solve(edges, tol=1e-8, max_cycles=60))
-    begun = time.process_time()
-    guarded = guard(level, edges)
+    to_level, level = clocked(lambda: solve(edges), 2)
+    to_exact, exact = clocked(lambda: solve(edges, tol=1e-8, max_cycles=60), 2)
+    guarding, guarded = clocked(lambda: guard(level, edges))
     grid, path = guarded.grid, guarded.path
-    guarding = time.process_time() - begun
     folded = count_folded(level.grid.nodes)
     rate = (exact.residual or 0.0) ** (1.0 / max(1, exact.cycles or 1))
     stages = " then ".join(path) or "none"
@@ -132,7 +119,10 @@ def ours(largest: int) -> str:
         if max(ni, nj) > max(largest, 1600):
             cells.append("")
             continue
-        _, spent = timed(lambda ni=ni, nj=nj: solve(naca("0012-sharp").boundary(Sampling(ni, nj))))  # type: ignore[misc]
+        spent, _ = clocked(
+            lambda ni=ni, nj=nj: solve(naca("0012-sharp").boundary(Sampling(ni, nj))),  # type: ignore[misc]
+            2,
+        )
         cells.append(f"{spent:.3f}")
     return "| **meshonet, NACA 0012, O grid, default** | " + " | ".join(cells) + " |"
 
@@ -223,7 +213,7 @@ def walls(ni: int, nj: int) -> Iterator[str]:
                 made, moved = make(edges)
                 return spread(made, moved, heights), moved
 
-            (made, moved), spent = timed(act)
+            spent, (made, moved) = clocked(act, 2)
             nodes = made.grid.nodes
             yield (
                 f"| {name} | {way} | {count_folded(nodes)} | {worst_first_cell(made):.0e} "
@@ -253,8 +243,9 @@ def controls(sizes: list[int]) -> Iterator[str]:
             for first in (1e-3, 1e-5):
                 one = family(name)
                 edges = clustered(one.boundary(0.5 * (one.low + one.high), n, n), first)
-                made, spent = timed(
-                    lambda edges=edges: solve_thomas_middlecoff(edges, tol=1e-8, max_cycles=60)  # type: ignore[misc]
+                spent, made = clocked(
+                    lambda edges=edges: solve_thomas_middlecoff(edges, tol=1e-8, max_cycles=60),  # type: ignore[misc]
+                    2,
                 )
                 nodes = made.grid.nodes
                 rate = (made.residual or 0.0) ** (1.0 / max(1, made.cycles or 1))
@@ -263,15 +254,6 @@ def controls(sizes: list[int]) -> Iterator[str]:
                     f"| {name} | {n} | {first:g} | {spent:.3f} | {made.cycles} | {rate:.2f} "
                     f"| {count_folded(nodes)} | {median:.1e} |"
                 )
-
-
-def processor() -> str:
-    """Return the name of the processor, where the system tells it."""
-    path = Path("/proc/cpuinfo")
-    lines = path.read_text().splitlines() if path.exists() else []
-    return next(
-        (line.split(":")[1].strip() for line in lines if line.startswith("model name")), "one machine"
-    )
 
 
 def page(sizes: list[int], largest: int) -> Iterator[str]:
@@ -287,17 +269,15 @@ def page(sizes: list[int], largest: int) -> Iterator[str]:
 
 def main() -> None:
     """Print the page, and write it to --page."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--sizes", default="400,800,1600")
     parser.add_argument("--largest", type=int, default=0, help="one more size, for three of the shapes")
-    parser.add_argument("--page", type=Path)
     options = parser.parse_args()
     lines = []
     for line in page([int(n) for n in options.sizes.split(",")], options.largest):
         print(line, flush=True)
         lines.append(line)
-    if options.page:
-        options.page.write_text("\n".join(lines) + "\n")
+    publish("\n".join(lines) + "\n", options.page, shown=True)
 
 
 if __name__ == "__main__":

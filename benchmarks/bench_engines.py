@@ -10,10 +10,8 @@ packages distributed, mpi4py and mpich.
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import os
-import platform
 import resource
 import signal
 import socket
@@ -29,6 +27,7 @@ from tempfile import TemporaryDirectory
 import h5py
 import numpy as np
 import psutil
+from page import arguments, processor, publish
 
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.arrays import Floats
@@ -295,12 +294,11 @@ def death_rows(folder: Path, count: int, size: int) -> Iterator[str]:
 
 def main() -> None:
     """Measure, print the tables and write the page."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = arguments(__doc__)
     parser.add_argument("--airfoils", type=Path, required=True, help="folder of .dat files")
     parser.add_argument("--count", type=int, default=20_000)
     parser.add_argument("--deaths", type=int, default=2_000, help="airfoils of the runs with a death")
     parser.add_argument("--scratch", type=Path, help="folder for the datasets [default: the system's]")
-    parser.add_argument("--page", type=Path)
     options = parser.parse_args()
     tables, load = [HEAD.rstrip("\n")], os.getloadavg()[0]
     known = contours(options.airfoils)
@@ -317,12 +315,10 @@ def main() -> None:
                 print(row, flush=True)
                 table.append(row)
         tables.append("\n".join(table))
-    machine = f"Measured on {os.cpu_count()} cores, {platform.processor() or platform.machine()}."
+    machine = f"Measured on {os.cpu_count()} cores, {processor()}."
     if load > 0.3:
         machine += f"\nOther programs ran on them (load {load:.1f}): compare processor seconds, not seconds."
-    page = "\n".join([*tables, TAIL.rstrip("\n"), "", machine, ""])
-    if options.page:
-        options.page.write_text(page, encoding="utf-8")
+    publish("\n".join([*tables, TAIL.rstrip("\n"), "", machine, ""]), options.page, shown=True)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,6 @@ all of it in seconds on a CPU, to see that it works.
 
 from __future__ import annotations
 
-import argparse
-import platform
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -19,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from page import arguments, processor, publish
 
 import meshonet
 from meshonet.formats.hdf5.write import write_grids
@@ -139,7 +138,7 @@ def page(device: Device, quick: bool) -> str:
     """Return the page."""
     if device == "cuda" and not torch.cuda.is_available():
         return f"{HEAD}\n{NONE}\n"
-    machine = torch.cuda.get_device_name() if device == "cuda" else platform.processor() or "CPU"
+    machine = torch.cuda.get_device_name() if device == "cuda" else processor()
     sizes, count, n = ((33,), 4, 33) if quick else ((65, 200), 256, 65)
     shapes, epochs = (8, 2) if quick else (260, 12)
     with tempfile.TemporaryDirectory() as folder:
@@ -151,16 +150,12 @@ def page(device: Device, quick: bool) -> str:
 
 def main(words: Sequence[str] | None = None) -> str:
     """Print the page, or write it; return it."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--device", choices=("cuda", "cpu"), default="cuda")
     parser.add_argument("--quick", action="store_true", help="seconds, on few shapes")
-    parser.add_argument("--page", type=Path)
     chosen = parser.parse_args(words)
     text = page(chosen.device, chosen.quick)
-    if chosen.page:
-        chosen.page.write_text(text, encoding="utf-8")
-    else:
-        print(text)
+    publish(text, chosen.page)
     return text
 
 

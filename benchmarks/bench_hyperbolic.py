@@ -14,8 +14,6 @@ import os
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
-import argparse
-import platform
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from page import arguments, processor, publish
 
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.arrays import Floats
@@ -110,11 +109,10 @@ class Case:
 
 def main() -> None:
     """Measure and print; write the page when asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--files", type=Path, help="folder of airfoil .dat files")
     parser.add_argument("--count", type=int, default=40, help="procedural airfoils")
     parser.add_argument("--repeat", type=int, default=3, help="times that each grid is made")
-    parser.add_argument("--page", type=Path, help="markdown page to write")
     options = parser.parse_args()
     global REPEAT  # one setting of all timings
     REPEAT = options.repeat
@@ -131,12 +129,10 @@ def main() -> None:
         rows += [row(name, cases, *size) for size in SIZES]
     rows += [procedural_row(options.count, *size) for size in SIZES]
     ours = [angles(groups[name][0]) for name in ("NACA 0012, blunt edge rounded", "NACA 0012, C")]
-    page = "\n".join([HEAD.format(machine=machine(), repeat=REPEAT), *rows, CONSTRUCT2D.format(*ours)])
+    page = "\n".join([HEAD.format(machine=processor(), repeat=REPEAT), *rows, CONSTRUCT2D.format(*ours)])
     most = max((group for name, group in groups.items() if name.endswith(", C")), key=len)
     page += DEFAULT_FIRST_CELL + "\n".join(default_rows(most)) + "\n"
-    print(page)
-    if options.page:
-        options.page.write_text(page)
+    publish(page, options.page)
 
 
 def reader(text: str) -> Callable[[], Any]:
@@ -268,14 +264,6 @@ def growth(sizes: Floats) -> float:
     """Return the largest relative step between neighbours along the first axis."""
     ratio = sizes[1:] / sizes[:-1]
     return float(np.maximum(ratio, 1.0 / ratio).max() - 1.0)
-
-
-def machine() -> str:
-    """Return the processor's name."""
-    for text in Path("/proc/cpuinfo").read_text().splitlines() if Path("/proc/cpuinfo").exists() else []:
-        if text.startswith("model name"):
-            return text.split(":", 1)[1].strip()
-    return platform.processor() or platform.machine()
 
 
 if __name__ == "__main__":

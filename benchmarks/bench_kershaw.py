@@ -8,17 +8,16 @@ processor seconds of one thread, the least of three runs of ours and one run of 
 
 from __future__ import annotations
 
-import argparse
-import time
 from collections.abc import Callable
 from functools import partial
 from importlib.metadata import version
 from importlib.util import find_spec
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from bench_volumes import quality
+from clock import clocked
+from page import arguments, publish
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
@@ -137,9 +136,7 @@ def tmop(nodes: Floats, *, slide: bool) -> tuple[Floats, float]:
     newton.SetAbsTol(0.0)
     newton.SetPrintLevel(-1)
     newton.SetOperator(form)
-    begun = time.process_time()
-    newton.Mult(mfem.Vector(0), x)
-    spent = time.process_time() - begun
+    spent, _ = clocked(lambda: newton.Mult(mfem.Vector(0), x))
     made = np.empty_like(nodes)
     made[at] = x.GetDataArray().reshape(3, -1).T
     del keep
@@ -155,12 +152,8 @@ def _fixed(at: tuple[Floats, ...], n: int, slide: bool) -> list[tuple[int, int]]
 
 def timed(make: Callable[[], Solution]) -> tuple[Floats, float]:
     """Return the nodes of a solution and the least seconds of three runs."""
-    spent = []
-    for _ in range(3):
-        begun = time.process_time()
-        solution = make()
-        spent.append(time.process_time() - begun)
-    return solution.grid.nodes, min(spent)
+    spent, solution = clocked(make, 3)
+    return solution.grid.nodes, spent
 
 
 def rows(cells: int, epsilon: float) -> dict[str, tuple[Floats, float]]:
@@ -191,19 +184,14 @@ def table(cells: int, epsilon: float) -> str:
 
 def main() -> None:
     """Print the table, or write the page."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--cells", type=int, default=24, help="a multiple of 6")
     parser.add_argument("--epsilon", type=float, default=0.3)
-    parser.add_argument("--page", type=Path)
     chosen = parser.parse_args()
     with limited_to(1):
         made = table(chosen.cells, chosen.epsilon)
     title = f"\n## {chosen.cells} cells a side, ε = {chosen.epsilon}\n\n"
-    text = f"{HEAD}{title}{made}\n{TAIL}"
-    if chosen.page:
-        chosen.page.write_text(text)
-    else:
-        print(text)
+    publish(f"{HEAD}{title}{made}\n{TAIL}", chosen.page)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,6 @@ in rows ``| names | script | N | s0 | marchDist |``. One thread.
 
 from __future__ import annotations
 
-import argparse
-import platform
 import resource
 import subprocess
 import sys
@@ -20,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from page import arguments, processor, publish
 
 sys.path.append(str(Path(__file__).parents[1] / "tests" / "solvers"))
 import surface_shapes as shapes
@@ -209,28 +208,19 @@ def row_of(case: Case, process: bool) -> str:
 
 def main() -> None:
     """Print the rows, and write the page where one is named."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = arguments(__doc__)
     parser.add_argument("--surfaces", type=Path)
-    parser.add_argument("--page", type=Path)
     parser.add_argument("--no-process", action="store_true", help="do not time the command")
-    arguments = parser.parse_args()
+    options = parser.parse_args()
     rows = []
-    cases = [*(cases_of(arguments.surfaces) if arguments.surfaces else ()), *own_cases()]
+    cases = [*(cases_of(options.surfaces) if options.surfaces else ()), *own_cases()]
     for case in cases:
         with limited_to(1):
-            rows.append(row_of(case, not arguments.no_process))
+            rows.append(row_of(case, not options.no_process))
         print(rows[-1], flush=True)
-    if arguments.page:
-        machine = next(
-            (
-                line.split(":")[1].strip()
-                for line in Path("/proc/cpuinfo").read_text().splitlines()
-                if "model name" in line
-            ),
-            platform.processor(),
-        )
-        head = ["| " + " | ".join(COLUMNS) + " |", "|" + " --- |" * len(COLUMNS)]
-        arguments.page.write_text(HEAD.format(machine=machine) + "\n".join([*head, *rows]) + "\n")
+    head = ["| " + " | ".join(COLUMNS) + " |", "|" + " --- |" * len(COLUMNS)]
+    text = HEAD.format(machine=processor()) + "\n".join([*head, *rows]) + "\n"
+    publish(text, options.page, shown=True)
 
 
 if __name__ == "__main__":

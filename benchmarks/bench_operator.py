@@ -16,7 +16,6 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
 import argparse
-import platform
 import time
 from collections.abc import Callable
 from functools import partial
@@ -26,6 +25,7 @@ import numpy as np
 from gains import operate, published
 from judged import Way, rows, table
 from kept import Kept
+from page import arguments, processor, publish
 from shapes import Shape, airfoil_files, members, random_airfoils, random_domains
 
 from meshonet.geometry.arrays import Floats
@@ -53,7 +53,7 @@ LARGEST = {"variational": 800}
 
 def coarse(method: Way, n: int) -> Way:
     """Return the way that solves on n x n nodes and is evaluated at all."""
-    return partial(solve_coarse, method=method, n=n, smooth=True)
+    return partial(solve_coarse, solve=method, n=n, smooth=True)
 
 
 COMMON: dict[str, Way] = {
@@ -86,7 +86,7 @@ DOMAINS: dict[str, Way] = {
 
 def main() -> None:
     """Measure and print; write the page when asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--files", type=Path, help="folder of airfoil .dat files")
     parser.add_argument("--count", type=int, default=40, help="procedural airfoils")
     parser.add_argument("--many", type=int, default=500, help="procedural airfoils whose folds are counted")
@@ -94,15 +94,13 @@ def main() -> None:
     parser.add_argument("--large", type=int, default=12, help="files at 800x800")
     parser.add_argument("--domains", default="65:40,193:15", help="four-sided domains, nodes:domains")
     parser.add_argument("--keep", type=Path, help="folder for finished rows; go on from those in it")
-    parser.add_argument("--page", type=Path, help="markdown page to write")
     options = parser.parse_args()
     kept = Kept(options.keep)
-    parts = [HEAD.format(machine=machine())]
+    parts = [HEAD.format(machine=f"{processor()}, one thread")]
     for part in sections(options, kept):
         print(part, flush=True)
         parts.append(part)
-    if options.page:
-        options.page.write_text("\n".join(parts))
+    publish("\n".join(parts), options.page, shown=True)
 
 
 def sections(options: argparse.Namespace, kept: Kept):  # type: ignore[no-untyped-def]
@@ -230,16 +228,6 @@ def best(make: Callable[[Boundary], Solution] | None, edges: Boundary, repeats: 
         if spent[0] > 5.0:
             break
     return 1e3 * min(spent)
-
-
-def machine() -> str:
-    """Return the processor's name."""
-    names = [
-        line.split(":", 1)[1].strip()
-        for line in Path("/proc/cpuinfo").read_text().splitlines()
-        if line.startswith("model name")
-    ]
-    return f"{names[0] if names else platform.processor()}, one thread"
 
 
 HEAD = """# All methods compared: airfoils and four-sided domains

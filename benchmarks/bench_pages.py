@@ -8,7 +8,6 @@ k3d, pyvista with trame-pyvista and nest_asyncio2.
 
 from __future__ import annotations
 
-import argparse
 import importlib.util
 import statistics
 import sys
@@ -18,6 +17,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from page import arguments, publish
 
 import meshonet
 from meshonet import Grid
@@ -191,8 +191,7 @@ def measured(browser: Browser, write: Callable[[Grid, Path], None], grid: Grid, 
 
 def main() -> None:
     """Print the page, and write it where it is wanted."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--page", type=Path)
+    parser = arguments(__doc__)
     options = parser.parse_args()
     text = HEAD
     with TemporaryDirectory() as folder:
@@ -217,9 +216,7 @@ def main() -> None:
                     text += f"| {name} | {mega:.1f} | {spent:.1f} | {shown:.1f} | {metrics} |\n"
         finally:
             browser.close()
-    print(text)
-    if options.page:
-        options.page.write_text(text, encoding="utf-8")
+    publish(text, options.page)
 
 
 if __name__ == "__main__":

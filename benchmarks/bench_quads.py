@@ -13,7 +13,6 @@ import os
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
-import argparse
 import subprocess
 import sys
 import tempfile
@@ -23,7 +22,9 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from gains import Way, clocked, distances, figures, gains, operate, published
+from clock import clocked
+from gains import Way, distances, figures, gains, operate, published
+from page import arguments, publish
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "solvers"))
 from random_quads import random_quad
@@ -52,13 +53,12 @@ FIRST = 1000
 
 def main() -> None:
     """Measure and print; write the page when asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--sizes", default="65:120,193:60,385:30", help="nodes:domains")
     parser.add_argument("--large", type=int, default=800, help="one more size, of the arch alone")
     parser.add_argument("--model", default="quad-general")
     parser.add_argument("--twin", default="quad-winslow")
     parser.add_argument("--clock", action="store_true", help="rates by the clock too, of an idle machine")
-    parser.add_argument("--page", type=Path, help="markdown page to write")
     options = parser.parse_args()
     network = partial(operate, options.model)
     parts = [HEAD]
@@ -68,10 +68,7 @@ def main() -> None:
         parts += [angles(n, boundaries, network), to_winslow(n, boundaries, partial(operate, options.twin))]
     parts += [large(options.large, network), batches(options.model, options.clock)]
     parts += [families(options.twin), TAIL]
-    text = "\n".join(parts)
-    print(text)
-    if options.page:
-        options.page.write_text(text)
+    publish("\n".join(parts), options.page)
 
 
 def domains(n: int, count: int) -> list[Boundary]:
@@ -84,10 +81,10 @@ def angles(n: int, boundaries: list[Boundary], network: Callable[..., Solution])
     ways: dict[str, Way] = {
         "TFI": lambda b: Solution(tfi(b), "tfi"),
         "Winslow": winslow,
-        "Winslow --coarse 65": partial(solve_coarse, method=winslow, n=65, smooth=True),
+        "Winslow --coarse 65": partial(solve_coarse, solve=winslow, n=65, smooth=True),
         "variational": variational,
-        "variational --coarse 33": partial(solve_coarse, method=variational, n=33, smooth=True),
-        "variational --coarse 65": partial(solve_coarse, method=variational, n=65, smooth=True),
+        "variational --coarse 33": partial(solve_coarse, solve=variational, n=33, smooth=True),
+        "variational --coarse 65": partial(solve_coarse, solve=variational, n=65, smooth=True),
         NEAR: near,
         "**network**": partial(network, 0),
         "**network, 2 steps**": partial(network, 2),
@@ -100,8 +97,8 @@ def to_winslow(n: int, boundaries: list[Boundary], network: Callable[..., Soluti
     """Return the table of distances to Winslow's solution at n x n nodes."""
     ways: dict[str, Way] = {
         "TFI": lambda b: Solution(tfi(b), "tfi"),
-        "Winslow --coarse 33": partial(solve_coarse, method=winslow, n=33, smooth=False),
-        "Winslow --coarse 65": partial(solve_coarse, method=winslow, n=65, smooth=False),
+        "Winslow --coarse 33": partial(solve_coarse, solve=winslow, n=33, smooth=False),
+        "Winslow --coarse 65": partial(solve_coarse, solve=winslow, n=65, smooth=False),
         NEAR: near,
         "**quad-winslow**": partial(network, 0),
         "**quad-winslow, 1 cycle**": partial(network, 1),
@@ -136,7 +133,7 @@ def large(n: int, network: Callable[..., Solution]) -> str:
     ways: dict[str, Way] = {
         "Winslow": winslow,
         "variational": variational,
-        "variational --coarse 129": partial(solve_coarse, method=variational, n=129, smooth=True),
+        "variational --coarse 129": partial(solve_coarse, solve=variational, n=129, smooth=True),
         "**network**": partial(network, 0),
         "**network, 5 steps**": partial(network, 5),
     }
@@ -172,7 +169,7 @@ def batches(model: str, clock: bool) -> str:
     spent = dict.fromkeys(ways, np.inf)
     for _ in range(8):  # in turn: the machine's speed changes
         for name, way in ways.items():
-            spent[name] = min(spent[name], clocked(way) / len(boundaries))
+            spent[name] = min(spent[name], clocked(way)[0] / len(boundaries))
     first = next(iter(spent.values()))
     lines += [
         f"| {name} | {1e3 * each:.2f} | {1 / each:.0f} | {first / each:.1f} |" for name, each in spent.items()

@@ -8,7 +8,6 @@ slows them alike. The machine should be idle otherwise: a thread without a core 
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import os
 import sys
@@ -19,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 from bench_volumes import random_faces
+from page import arguments, publish
 
 sys.path.append(str(Path(__file__).parents[1] / "tests" / "solvers"))
 import surface_shapes
@@ -242,19 +242,17 @@ def table(cases: Iterator[Case], threads: int) -> str:
 
 def main() -> None:
     """Print the tables; write the page when asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--size", type=int, default=3200, help="nodes along both directions of the plane")
     parser.add_argument("--side", type=int, default=129, help="nodes along the three directions in space")
-    parser.add_argument("--page", type=Path)
     chosen = parser.parse_args()
     load = os.getloadavg()[0]
     plane = table(planar_cases(chosen.size), chosen.threads)
     space = table(solid_cases(chosen.side), chosen.threads)
     busy = f"\n{os.cpu_count()} cores; {load:.1f} programs were at work when it began.\n"
     text = f"{HEAD}{busy}\n## In the plane\n\n{plane}\n\n## In space\n\n{space}\n{WHY}"
-    if chosen.page:
-        chosen.page.write_text(text, encoding="utf-8")
+    publish(text, chosen.page, shown=True)
 
 
 if __name__ == "__main__":

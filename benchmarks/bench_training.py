@@ -22,17 +22,16 @@ import os
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
-import argparse
 import time
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise
-from pathlib import Path
 from statistics import median
 
 import numpy as np
 import torch
+from page import arguments, publish
 from torch import Tensor, nn
 
 from meshonet.geometry.families.family import family
@@ -52,12 +51,11 @@ BATCHES = ((30, POINTS), (15, POINTS), (10, (250, 50)), (5, (250, 50)))
 
 def main() -> None:
     """Measure and print; write the page when asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--seen", type=int, default=6_000, help="geometries of the one-by-one loop, seed 0")
     parser.add_argument("--rate", type=float, default=1e-3, help="learning rate of the one-by-one loops")
     parser.add_argument("--batched-rate", type=float, default=4e-3, help="learning rate of the batched loop")
-    parser.add_argument("--page", type=Path, help="markdown page to write")
     options = parser.parse_args()
     torch.set_num_threads(1)
     samples = arches()
@@ -72,10 +70,7 @@ def main() -> None:
         drawn.run(one_by_one(samples, POINTS, options.rate, seed), limit)
         for row, (batch, points) in zip(others, BATCHES, strict=True):
             row.run(batched(samples, options.batched_rate, batch, points, seed), SEEN[-1])
-    text = page(rows)
-    print(text)
-    if options.page:
-        options.page.write_text(text, encoding="utf-8")
+    publish(page(rows), options.page)
 
 
 def arches() -> Samples:

@@ -13,15 +13,15 @@ import os
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
-import argparse
 import sys
-import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
+from clock import clocked
+from page import arguments, publish
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "solvers"))
 from random_quads import random_quad
@@ -49,12 +49,11 @@ SHAPES = (arch, hexagon, bump, wrench)
 
 def main() -> None:
     """Measure and print; write the page and its picture when asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--sizes", default="65,129,800")
     parser.add_argument("--large", type=int, default=3200, help="one more size, of the arch alone")
     parser.add_argument("--domains", type=int, default=60, help="random domains to try")
     parser.add_argument("--bodies-at", default="200x100", help="nodes around bodies")
-    parser.add_argument("--page", type=Path, help="markdown page to write, its picture goes to ../img/")
     options = parser.parse_args()
     parts = [HEAD, PAPER]
     for n in (int(word) for word in options.sizes.split(",")):
@@ -62,10 +61,8 @@ def main() -> None:
     parts.append(shapes(options.large, (arch,)))
     parts.extend(domains(n, options.domains) for n in (65, 129))
     parts.append(bodies(options.bodies_at))
-    text = "\n".join(parts) + "\n"
-    print(text)
+    publish("\n".join(parts) + "\n", options.page)
     if options.page:
-        options.page.write_text(text)
         picture(options.page.parents[1] / "img" / "quad-grids.png")
 
 
@@ -74,11 +71,11 @@ def ways(n: int) -> dict[str, Way]:
     found: dict[str, Way] = {"TFI": lambda b: Solution(tfi(b), "tfi"), "winslow": winslow}
     counts = [m for m in (33, 65, 129) if m < n]
     for m in counts:
-        found[f"winslow --coarse {m}"] = partial(solve_coarse, method=winslow, n=m, smooth=True)
+        found[f"winslow --coarse {m}"] = partial(solve_coarse, solve=winslow, n=m, smooth=True)
     if n <= 800:
         found["**variational**"] = variational
     for m in counts:
-        found[f"**variational --coarse {m}**"] = partial(solve_coarse, method=variational, n=m, smooth=True)
+        found[f"**variational --coarse {m}**"] = partial(solve_coarse, solve=variational, n=m, smooth=True)
     found["neural operator, quad-general"] = lambda b: load("quad-general").solve([b])[0]
     return found
 
@@ -96,7 +93,7 @@ def shapes(n: int, makers: tuple[Callable[[int, int], Boundary], ...] = SHAPES) 
             family = "variational" if name.startswith("neural") else name.strip("*").split()[0]
             full = reference.setdefault(family, nodes)
             lines.append(row(name, nodes, full, seconds))
-        copied = min(clocked(partial(full.copy, order="K"))[0] for _ in range(5))
+        copied = clocked(partial(full.copy, order="K"), 5)[0]
         lines.append(f"| copy of the grid in memory | | | | | | {1e3 * copied:.1f} |")
     return "\n".join(lines)
 
@@ -177,9 +174,9 @@ def picture(path: Path) -> None:
     drawn: dict[str, Way] = {
         "TFI": lambda b: Solution(tfi(b), "tfi"),
         "Winslow": winslow,
-        "Winslow, coarse 17": partial(solve_coarse, method=winslow, n=17, smooth=True),
+        "Winslow, coarse 17": partial(solve_coarse, solve=winslow, n=17, smooth=True),
         "variational": variational,
-        "variational, coarse 17": partial(solve_coarse, method=variational, n=17, smooth=True),
+        "variational, coarse 17": partial(solve_coarse, solve=variational, n=17, smooth=True),
     }
     figure, axes = plt.subplots(len(SHAPES), len(drawn), figsize=(15, 13), layout="constrained")
     for line, make in zip(axes, SHAPES, strict=True):
@@ -209,13 +206,6 @@ def best(way: Way, boundary: Boundary, repeats: int) -> tuple[float, Floats]:
     """Return the least processor seconds of `repeats` runs, and the nodes."""
     runs = [clocked(partial(way, boundary)) for _ in range(repeats)]
     return min(seconds for seconds, _ in runs), runs[0][1].grid.nodes
-
-
-def clocked(call: Callable[[], T]) -> tuple[float, T]:
-    """Return the processor seconds of `call` and its result."""
-    begun = time.process_time()
-    result = call()
-    return time.process_time() - begun, result
 
 
 TABLE = "| method | folded | max / 99 % / mean angle | deviation at walls | distance to full solve | CPU ms |"

@@ -8,14 +8,14 @@ Angles are deviations from 90 degrees, the worst of the three at a corner; SJ is
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Callable
 from functools import partial
 from itertools import count
-from pathlib import Path
 
 import numpy as np
+from clock import clocked
+from page import arguments, publish
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
@@ -70,16 +70,6 @@ def random_faces(seed: int, n: int, size: float = 0.06) -> SixFaces:
     return SixFaces(*(face(axis, end) for axis in range(3) for end in (0, 1)))
 
 
-def least(act: Callable[[], object], runs: int = 5) -> float:
-    """Return the least processor seconds of `act`."""
-    spent = []
-    for _ in range(runs):
-        begun = time.process_time()
-        act()
-        spent.append(time.process_time() - begun)
-    return min(spent)
-
-
 def quality(nodes: Floats) -> tuple[int, float, float, float]:
     """Return folded cells, least SJ, mean and 99th percentile of the corners' deviation."""
     edges = [np.diff(nodes, axis=axis) for axis in range(3)]
@@ -105,7 +95,7 @@ def times(sizes: list[int]) -> str:
     for n in sizes:
         faces = random_faces(1, n, 0.03)
         out, other = np.zeros((3, n, n, n)), np.ones((3, n, n, n))
-        copy = least(partial(np.copyto, out, other), 15)
+        copy = clocked(partial(np.copyto, out, other), 15)[0]
         laws, few = mean_laws(arc_laws(faces)), faces.resampled((33, 33, 33))
         planes = optimum(few)[0]
         start = np.moveaxis(interpolate(few, uniform_laws(few.counts)), -1, 0)
@@ -122,7 +112,7 @@ def times(sizes: list[int]) -> str:
         if n <= 129:
             rows["Winslow, all of it"] = partial(winslow, faces)
         for name, act in rows.items():
-            spent = copy if "copy" in name else least(act, 7 if n < 200 else 3)
+            spent = copy if "copy" in name else clocked(act, 7 if n < 200 else 3)[0]
             lines.append(f"| {n}³ | {name} | {1e3 * spent:.1f} | {spent / copy:.2f} |")
     return "\n".join(lines)
 
@@ -168,18 +158,13 @@ def domains(number: int, n: int) -> str:
 
 def main() -> None:
     """Print the tables, or write the page."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--domains", type=int, default=50)
     parser.add_argument("--largest", type=int, default=257)
-    parser.add_argument("--page", type=Path)
     chosen = parser.parse_args()
     with limited_to(1):
         parts = [times([n for n in (129, 257) if n <= chosen.largest]), domains(chosen.domains, 33)]
-    text = f"{HEAD}\n## Time\n\n{parts[0]}\n\n## Quality\n\n{parts[1]}\n"
-    if chosen.page:
-        chosen.page.write_text(text)
-    else:
-        print(text)
+    publish(f"{HEAD}\n## Time\n\n{parts[0]}\n\n## Quality\n\n{parts[1]}\n", chosen.page)
 
 
 if __name__ == "__main__":

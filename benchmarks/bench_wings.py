@@ -13,14 +13,13 @@ import os
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
-import argparse
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from bench_hyperbolic import machine
+from page import arguments, processor, publish
 
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.blocks.grid import Grid
@@ -155,16 +154,13 @@ def pipes() -> str:
 
 def main() -> None:
     """Make the page."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = arguments(__doc__)
     parser.add_argument("--airfoils", required=True, help="folder of .dat files")
     parser.add_argument("--count", type=int, default=60)
-    parser.add_argument("--page", help="file to write; standard output without it")
     options = parser.parse_args()
     shapes = [next(read_shapes(str(path))) for path in sorted(Path(options.airfoils).glob("*.dat"))]
     sections = [shape for shape in shapes if isinstance(shape, Airfoil)]
-    page = HEAD.format(count=options.count, files=len(sections), machine=machine())
+    page = HEAD.format(count=options.count, files=len(sections), machine=processor())
     for name, kind, settings in ROWS:
         generator, made = np.random.default_rng(SEED), []
         for _ in range(options.count):
@@ -176,10 +172,7 @@ def main() -> None:
                 print(f"{name}: {stack.sections[0].shape.name}, {stack.sections[1].shape.name}: {error}")
         page += row(name, options.count, made) + "\n"
     page += pipes() + "\n"
-    if options.page:
-        Path(options.page).write_text(page)
-    else:
-        print(page)
+    publish(page, options.page)
 
 
 if __name__ == "__main__":

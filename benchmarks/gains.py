@@ -6,10 +6,11 @@ Folds are counted before the guard; times are processor seconds of one thread, i
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 import numpy as np
+from clock import clocked
 from kept import ROOT
 
 from meshonet.geometry.arrays import Floats
@@ -40,9 +41,8 @@ def operate(model: str, polish: int, boundary: Boundary) -> Solution:
 
 def figures(way: Way, boundary: Boundary) -> tuple[float, float, float, float]:
     """Return folded cells, largest angle, mean angle and processor seconds."""
-    begun = time.process_time()
-    grid = way(boundary).grid
-    spent = time.process_time() - begun
+    spent, solution = clocked(partial(way, boundary))
+    grid = solution.grid
     summary = measure(grid)["max_angle"]
     return count_folded(grid.nodes), summary.max, summary.mean, spent
 
@@ -72,20 +72,12 @@ def distances(boundaries: Sequence[Boundary], goals: Sequence[Grid], ways: Mappi
     for name, way in ways.items():
         errors, spent = [], []
         for boundary, goal in zip(boundaries, goals, strict=True):
-            begun = time.process_time()
-            grid = way(boundary).grid
-            spent.append(time.process_time() - begun)
-            errors.append(compare(grid, goal).relative_l2)
+            seconds, solution = clocked(partial(way, boundary))
+            spent.append(seconds)
+            errors.append(compare(solution.grid, goal).relative_l2)
         median, high = np.quantile(errors, (0.5, 0.9))
         lines.append(f"| {name} | {median:.1e} / {high:.1e} | {1e3 * np.median(spent):.1f} |")
     return "\n".join(lines)
-
-
-def clocked(call: Callable[[], object]) -> float:
-    """Return the processor seconds of `call`."""
-    begun = time.process_time()
-    call()
-    return time.process_time() - begun
 
 
 def percent(where: Floats) -> str:

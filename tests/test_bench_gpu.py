@@ -13,11 +13,12 @@ pytest.importorskip("torch")
 
 
 @pytest.fixture
-def script() -> ModuleType:
+def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     path = Path(__file__).parents[1] / "benchmarks" / "bench_gpu.py"
     spec = importlib.util.spec_from_file_location("bench_gpu", path)
     assert spec is not None
     assert spec.loader is not None
+    monkeypatch.syspath_prepend(path.parent)  # where what scripts share is
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from meshonet.formats.source import Source, printable
-from meshonet.formats.text.rows import Line, decode, left_out, read_lines, table
+from meshonet.formats.text.rows import Line, decode, left_out, mostly_rows, read_lines, table
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -46,13 +46,7 @@ def parse(text: str, source: str, stem: str = "") -> Airfoil:
 
 def sniff(head: bytes) -> bool:
     """Say whether `head` is text most of whose lines are pairs of numbers."""
-    try:
-        lines = read_lines(decode(head))
-    except InputError:
-        return False
-    rows = [line for line in lines if line.kind == "row"]
-    pairs = sum(len(line.values) == 2 for line in rows)
-    return pairs >= 4 and pairs >= 0.8 * len(rows)
+    return mostly_rows(head, (2,), least=4)
 
 
 def _name(lines: list[Line], first: int) -> str:

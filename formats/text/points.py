@@ -17,7 +17,7 @@ from typing import TypeVar
 import numpy as np
 
 from meshonet.formats.source import Source
-from meshonet.formats.text.rows import Line, decode, left_out, read_lines, table
+from meshonet.formats.text.rows import Line, decode, left_out, mostly_rows, read_lines, table
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.domain.nesting import nested
@@ -70,13 +70,7 @@ def parse(text: str, source: str, stem: str = "") -> list[Shape]:
 
 def sniff(head: bytes) -> bool:
     """Say whether `head` is text of which most lines are two or three numbers."""
-    try:
-        lines = read_lines(decode(head))
-    except InputError:
-        return False
-    rows = [line for line in lines if line.kind == "row"]
-    few = sum(len(line.values) <= 3 for line in rows)
-    return few >= 3 and few >= 0.8 * len(rows)
+    return mostly_rows(head, (1, 2, 3), least=3)
 
 
 def _with_notes(shape: AnyOutline, notes: tuple[str, ...]) -> AnyOutline:

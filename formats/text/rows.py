@@ -98,6 +98,17 @@ def _lines(text: str) -> tuple[Line, ...]:
     return tuple(_line(number, line) for number, line in enumerate(texts, start=1))
 
 
+def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
+    """Say whether `head` is text with at least so many rows of as many numbers, four fifths of its rows."""
+    try:
+        lines = read_lines(decode(head))
+    except InputError:
+        return False
+    rows = [line for line in lines if line.kind == "row"]
+    fitting = sum(len(line.values) in counts for line in rows)
+    return fitting >= least and fitting >= 0.8 * len(rows)
+
+
 def table(lines: list[Line]) -> list[list[Line]]:
     """Return the rows of a text in blocks, as blank lines and prose divide them.
 

@@ -129,8 +129,10 @@ class Connection:
         return Connection(*ends, tuple(ways), self.transform.inverse() if self.transform else None)
 
     def __str__(self) -> str:
-        ends = f"{self.side} of block {self.block} to {self.donor_side} of block {self.donor}"
-        return f"the connection of {ends}"
+        own, donor = (
+            ascii(side)[1:-1] for side in (self.side, self.donor_side)
+        )  # of a file, perhaps damaged
+        return f"the connection of {own} of block {self.block} to {donor} of block {self.donor}"
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
         """Return side, first and last node of the parts of a planar block's boundary that it connects."""

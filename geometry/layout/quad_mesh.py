@@ -122,6 +122,11 @@ class QuadMesh:
         places = Places(self.places.loop, self.places.arc, cells, np.full(len(own), -1))
         return QuadMesh(self.domain, self.nodes, own[self.quads], places)
 
+    def aspects(self, lengths: Floats) -> Floats:
+        """Return the ratios (m,) of sides 1-2 and 0-3 to 0-1 and 3-2, were edges of `lengths` (e,)."""
+        sides = lengths[self.edge_of]
+        return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
+
     def with_nodes(self, nodes: Floats, arc: Floats | None = None) -> QuadMesh:
         """Return the same quads with nodes (n, 2), and boundary nodes at arc lengths (n,), moved."""
         places = self.places if arc is None else replace(self.places, arc=arc)

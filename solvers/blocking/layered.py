@@ -108,9 +108,8 @@ def _optimised(
 ) -> Layout:
     """Return a layout with its nodes optimised for some sizes; `held` (n,) stay."""
     mesh = layout.mesh
-    optimum = optimise(
-        mesh, iterations=iterations, targets=metric.edges(mesh), aspects=metric.aspects(mesh), held=held
-    )
+    targets = metric.edges(mesh)
+    optimum = optimise(mesh, iterations=iterations, targets=targets, aspects=mesh.aspects(targets), held=held)
     if not optimum.valid:
         raise NoValidGridError("cells outside the layers stay folded")
     return replace(layout, mesh=optimum.mesh)

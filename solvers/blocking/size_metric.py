@@ -91,11 +91,6 @@ class SizeMetric:
         """Return the lengths (m,) of edges at `places` (m, 2) in `directions` (m, 2) of any length."""
         return self.near(places, directions).length(self.across, self.along, self.largest)
 
-    def aspects(self, mesh: QuadMesh) -> Floats:
-        """Return the ratios (m,) that sides 1-2 and 0-3 of quads are to have to 0-1 and 3-2."""
-        wanted = self.edges(mesh)[mesh.edge_of]
-        return np.asarray(np.sqrt(wanted[:, 1] * wanted[:, 3] / (wanted[:, 0] * wanted[:, 2])))
-
     def near(self, places: Floats, directions: Floats) -> Near:
         """Return what `length` needs of `places` (m, 2) and `directions` (m, 2) whatever the sizes are."""
         places = np.ascontiguousarray(places)

@@ -17,7 +17,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import line_neighbours
-from meshonet.solvers.smoothing.spacing import THIN, aspects, lengths, thin_heights
+from meshonet.solvers.smoothing.spacing import THIN, lengths, thin_heights
 
 ROWS = 200
 """Rows of layers at the most."""
@@ -92,7 +92,7 @@ def _lines(mesh: QuadMesh) -> _Lines:
 
 def _thin(mesh: QuadMesh) -> NDArray[np.bool_]:
     """Say of each edge (e,) whether it is the short side of all cells beside it, by `THIN`."""
-    ratio = aspects(mesh, lengths(mesh))[:, None]
+    ratio = mesh.aspects(lengths(mesh))[:, None]
     short = np.concatenate([ratio, 1.0 / ratio, ratio, 1.0 / ratio], axis=1) > THIN
     wide = np.zeros(len(mesh.edges), dtype=bool)
     wide[mesh.edge_of[~short]] = True

@@ -24,7 +24,7 @@ from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.smoothing.hold_back import held_back
 from meshonet.solvers.smoothing.judge import Measures, measures
 from meshonet.solvers.smoothing.layers import with_layers
-from meshonet.solvers.smoothing.spacing import aspects, lengths, wanted_lengths
+from meshonet.solvers.smoothing.spacing import lengths, wanted_lengths
 from meshonet.solvers.solution import Outcome, Solution
 
 METHOD = "variational"
@@ -72,7 +72,7 @@ def _optima(given: Layout, *, slide: bool, iterations: int) -> Iterator[Layout]:
         towards = partial(
             optimise,
             iterations=iterations,
-            aspects=aspects(mesh, wanted),
+            aspects=mesh.aspects(wanted),
             targets=wanted,
             tolerance=TOLERANCE,
         )

@@ -31,12 +31,6 @@ def lengths(mesh: QuadMesh) -> Floats:
     return np.asarray(np.hypot(*(ends[:, 1] - ends[:, 0]).T))
 
 
-def aspects(mesh: QuadMesh, length: Floats) -> Floats:
-    """Return the ratios (m,) of the sides 1-2 and 0-3 to 0-1 and 3-2 of quads with edges of `length` (e,)."""
-    sides = length[mesh.edge_of]
-    return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
-
-
 def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
     """Return lengths (e,) of `mesh.edges` of which no neighbours differ by much more than a factor `most`.
 
@@ -64,7 +58,7 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
 def thin_heights(mesh: QuadMesh) -> NDArray[np.bool_]:
     """Say of each edge (e,) whether it leaves the boundary beside a cell that is thin along it."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
-    ratio = aspects(mesh, lengths(mesh))[cell]
+    ratio = mesh.aspects(lengths(mesh))[cell]
     thin = np.where(side % 2 == 0, ratio < 1.0 / THIN, ratio > THIN)
     beside = mesh.edge_of[cell[:, None], (side[:, None] + [1, 3]) % 4][thin]
     heights = np.zeros(len(mesh.edges), dtype=bool)

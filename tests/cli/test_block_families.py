@@ -6,32 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from block_files import cells, first_cells, grid_of
 from command_line import Meshonet
 from domains import circle
 
-from meshonet.formats.registry import read_grids
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import count_folded
 
 PLATE = "POLYGON ((0 0, 2 0, 4 0.3, 4 2, 0 2, 0 0), (1 0.7, 1 1.2, 1.5 1.2, 1.5 0.7, 1 0.7))"
 FIRST = 1e-4
-
-
-def grid_of(name: str) -> Grid:
-    (grid,) = read_grids(name)
-    return grid
-
-
-def cells(grid: Grid) -> int:
-    return sum((block.counts[0] - 1) * (block.counts[1] - 1) for block in grid.blocks)
-
-
-def first_cells(grid: Grid) -> np.ndarray:
-    """Heights of the cells at bodies, which blocks have south of them."""
-    walls = [patch for patch in grid.outer_patches() if patch.kind == "wall"]
-    assert {patch.side for patch in walls} == {"south"}
-    nodes = [grid.blocks[patch.block].nodes[patch.start : patch.stop + 1, :2] for patch in walls]
-    return np.concatenate([np.hypot(*(each[:, 1] - each[:, 0]).T) for each in nodes])
 
 
 @pytest.fixture

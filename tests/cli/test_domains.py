@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from block_files import grid_of
 from command_line import Meshonet
 from domains import circle
 
-from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 
 STEP = "POLYGON ((0 1, 2 1, 2 0, 6 0, 6 2, 0 2, 0 1))"
@@ -33,11 +33,6 @@ def write(name: str, text: str) -> str:
 
 def lines(points: np.ndarray) -> str:
     return "".join(f"{x!r},{y!r}\n" for x, y in points.tolist())
-
-
-def grid_of(name: str) -> Grid:
-    (grid,) = read_grids(name)
-    return grid
 
 
 def names(grid: Grid) -> set[str]:

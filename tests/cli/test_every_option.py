@@ -36,27 +36,62 @@ Effect = tuple[str, str, str]
 THERE = ("there.h5", "there.png", "there.json")
 BODY, GRID, LAYERS = "naca:2412 --res 41x15", "grid.h5", "naca:2412 --res 61x41 --first-cell 1e-3"
 MADE = "-o made.h5 -q"
-SUNK = "grid.h5 --shift south=0,-.1"
-PLATE = f"naca:2412 --res 61x41 --y-plus 100 --reynolds 1e5 {MADE}"
+SHIFT = "--shift south=0,-.1"
+SUNK = f"grid.h5 {SHIFT}"
 
-PRINTING = {
-    "--json": (f"{GRID} -o made.h5", "OPTION", "prints"),
-    "--quiet": (f"{GRID} -o made.h5", "OPTION", "says"),
-    "--debug": (f"missing.h5 {MADE}", "OPTION", "error"),
-}
-FILES = {
-    "--output": (f"{GRID} {MADE}", "OPTION other.h5", "files"),
-    "--from": ("odd.name -o made.h5", "OPTION vts", "code"),
-    "--to": (f"{GRID} -o made.name", "OPTION hdf5", "code"),
-    "--skip-existing": (f"{GRID} -o there.h5 -q", "OPTION", "layout"),
-}
-SHAPES = PRINTING | FILES | {
+
+def printing(base: str, missing: str) -> dict[str, Effect]:
+    """What a run prints, and one whose input is missing."""
+    return {
+        "--json": (base, "OPTION", "prints"),
+        "--quiet": (base, "OPTION", "says"),
+        "--debug": (missing, "OPTION", "error"),
+    }
+
+
+def files(base: str, unnamed: str = "odd.name", made: str = "h5", kind: str = "hdf5") -> dict[str, Effect]:
+    """Files of a run and of one whose input says nothing of its format, written as `made`, called `kind`."""
+    return {
+        "--output": (f"{base} -o made.{made} -q", f"OPTION other.{made}", "files"),
+        "--from": (f"{unnamed} -o made.{made} -q", "OPTION vts", "code"),
+        "--to": (f"{base} -o made.name", f"OPTION {kind}", "code"),
+        "--skip-existing": (f"{base} -o there.{made} -q", "OPTION", "layout"),
+    }
+
+
+def chosen(base: str, pattern: str, differs: str = "files") -> dict[str, Effect]:
+    """Inputs of a list of two, by a pattern and by a share."""
+    return {"--pick": (base, f"OPTION {pattern}", differs), "--shard": (base, "OPTION 2/2", differs)}
+
+
+def engines(base: str) -> dict[str, Effect]:
+    """A run of several inputs, in other processes."""
+    return {
+        "--jobs": (base, "OPTION 2", "workers"),
+        "--engine": (base, "OPTION mpi", "code"),
+        "--scheduler": (base, "OPTION tcp://a:1", "code"),
+    }
+
+
+def flat_plate(base: str, differs: str = "nodes") -> dict[str, Effect]:
+    """First cells by their y+."""
+    base = f"{base} --y-plus 90 --reynolds 1e5"
+    return {"--y-plus": (base, "OPTION 80", differs), "--reynolds": (base, "OPTION 2e5", differs)}
+
+
+def judged(base: str, folded: str) -> dict[str, Effect]:
+    """What is refused of a run, and of one whose cells fold; threads, of which there is no none."""
+    return {
+        "--threads": (f"{base} --threads 2", "OPTION 0", "code"),
+        "--fail-on": (base, "OPTION max_angle>90.5", "code"),
+        "--allow-invalid": (folded, "OPTION", "code"),
+    }
+
+
+COMMON = printing(f"{GRID} -o made.h5", f"missing.h5 {MADE}") | files(GRID)
+MANY = "three.h5 -o {name}.h5 -q"
+SHAPES = COMMON | chosen("@shapes.txt -o made-{stem}.h5 -q", "*C*") | engines(MANY) | {
     "--part-size": ("three.h5 -o made.h5 -q", "OPTION 2", "files"),
-    "--pick": ("@shapes.txt -o made-{stem}.h5 -q", "OPTION *C*", "files"),
-    "--shard": ("@shapes.txt -o made-{stem}.h5 -q", "OPTION 2/2", "files"),
-    "--jobs": ("three.h5 -o {name}.h5 -q", "OPTION 2", "workers"),
-    "--engine": ("three.h5 -o {name}.h5 -q", "OPTION mpi", "code"),
-    "--scheduler": ("three.h5 -o {name}.h5 -q", "OPTION tcp://a:1", "code"),
     "--res": (f"naca:2412 {MADE}", "OPTION 31x9", "nodes"),
     "--topology": (f"{BODY} {MADE}", "OPTION c", "nodes"),
     "--spacing": (f"{BODY} {MADE}", "OPTION cosine", "nodes"),
@@ -69,17 +104,21 @@ SHAPES = PRINTING | FILES | {
     "--corners": (f"box.csv --res 11 {MADE}", "OPTION 1,2,3,0", "nodes"),
     "--normalise": (f"large.dat --res 41x15 {MADE}", "OPTION", "nodes"),
 }  # fmt: skip
-GRIDS = SHAPES | {
-    "--threads": ("three.h5 -o {name}.h5 -q", "OPTION 0", "code"),
-    "--first-cell": (f"naca:2412 --res 41x41 {MADE}", "OPTION 1e-3", "nodes"),
-    "--y-plus": (PLATE, "OPTION 200", "nodes"),
-    "--reynolds": (PLATE, "OPTION 2e5", "nodes"),
-    "--chord-fraction": (PLATE, "OPTION .1", "nodes"),
-    "--growth": (f"naca:2412 --res 61x61 --first-cell 1e-3 {MADE}", "OPTION 1.25", "nodes"),
-    "--constant-layers": (f"{LAYERS} {MADE}", "OPTION 5", "nodes"),
-    "--allow-invalid": (f"open.h5 {MADE}", "OPTION", "code"),
-    "--fail-on": (f"{GRID} {MADE}", "OPTION max_angle>90.5", "code"),
-}
+GRIDS = (
+    SHAPES
+    | judged(f"{GRID} {MADE}", f"open.h5 {MADE}")
+    | flat_plate(f"naca:2412 --res 61x41 {MADE}")
+    | {
+        "--first-cell": (f"naca:2412 --res 41x41 {MADE}", "OPTION 1e-3", "nodes"),
+        "--chord-fraction": (
+            f"naca:2412 --res 61x41 --y-plus 90 --reynolds 1e5 {MADE}",
+            "OPTION .1",
+            "nodes",
+        ),
+        "--growth": (f"naca:2412 --res 61x61 --first-cell 1e-3 {MADE}", "OPTION 1.25", "nodes"),
+        "--constant-layers": (f"{LAYERS} {MADE}", "OPTION 5", "nodes"),
+    }
+)
 SIDES = {
     f"--spacing-{side}": (f"{GRID} {MADE}", "OPTION .01", "nodes")
     for side in ("south", "north", "west", "east")
@@ -104,7 +143,8 @@ MARCHED = {
     "--symmetry": (f"cap.xyz --first-cell .01 --layers 9 --far-field 3 {MADE}", "OPTION none", "nodes"),
 }
 TRAINING = "arches.h5 --epochs 4 --points 60 --batch 4 -o new.safetensors"
-
+PICTURE = printing(f"{GRID} -o made.png", "missing.h5 -o made.png") | files(GRID, made="png", kind="png")
+LAYOUT = printing("step.wkt -o made.json", "missing.wkt -o made.json") | files("step.wkt", made="json")
 WING, PIPE = "short.toml --around 49 --span 9 --layers 18", "circle:.5 path.csv --cells 40"
 EFFECTS: dict[str, dict[str, Effect]] = {
     "sample-boundary": SHAPES | {
@@ -146,7 +186,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--repair": (f"wave.h5 --model m.safetensors --answer pasted {MADE}", "OPTION", "code"),
         "--no-repair": (f"wave.h5 --model m.safetensors {MADE}", "OPTION", "code"),
     },
-    "quality": {
+    "quality": chosen("@grids.txt --summary", "*oo*", "out") | {
         "--json": ("grid.h5", "OPTION", "out"),
         "--quiet": ("missing.h5 grid.h5", "OPTION", "error"),
         "--debug": ("missing.h5", "OPTION", "error"),
@@ -157,16 +197,12 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--per-cell": ("grid.h5", "OPTION cells.vts", "files"),
         "--html": ("grid.h5", "OPTION report.html", "files"),
         "--compare": ("grid.h5", "OPTION smooth.h5", "out"),
-        "--pick": ("@grids.txt --summary", "OPTION *oo*", "out"),
-        "--shard": ("@grids.txt --summary", "OPTION 2/2", "out"),
         "--pair": ("bc.h5 --compare cb.h5 --summary", "OPTION order", "out"),
         "--summary": ("grid.h5 smooth.h5", "OPTION", "out"),
         "--threads": ("grid.h5", "OPTION 0", "code"),
     },
-    "convert": PRINTING | FILES | {
+    "convert": COMMON | chosen("@grids.txt -o made-{stem}.h5 -q", "*oo*") | {
         "--part-size": ("bc.h5 -o made.h5 -q", "OPTION 1", "files"),
-        "--pick": ("@grids.txt -o made-{stem}.h5 -q", "OPTION *oo*", "files"),
-        "--shard": ("@grids.txt -o made-{stem}.h5 -q", "OPTION 2/2", "files"),
         "--extrude": ("grid.h5 -o made.p3d", "OPTION 1", "bytes"),
         "--planes": ("grid.h5 -o made.p3d --extrude 1", "OPTION 3", "bytes"),
         "--plot3d": ("grid.h5 -o made.p3d", "OPTION binary", "bytes"),
@@ -175,38 +211,18 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--coarsen": (f"grid.h5 {MADE}", "OPTION 2", "nodes"),
         "--list-formats": ("", "OPTION", "prints"),
     },
-    "plot": {
-        "--output": ("grid.h5 -o made.png -q", "OPTION other.svg", "files"),
-        "--from": ("odd.name -o made.png", "OPTION vts", "code"),
-        "--to": ("grid.h5 -o made.name", "OPTION png", "code"),
-        "--pick": ("@grids.txt -o made-{stem}.png -q", "OPTION *oo*", "files"),
-        "--shard": ("@grids.txt -o made-{stem}.png -q", "OPTION 2/2", "files"),
-        "--skip-existing": ("grid.h5 -o there.png -q", "OPTION", "layout"),
-        "--json": ("grid.h5 -o made.png", "OPTION", "prints"),
-        "--quiet": ("grid.h5 -o made.png", "OPTION", "says"),
-        "--debug": ("missing.h5 -o made.png", "OPTION", "error"),
+    "plot": PICTURE | chosen("@grids.txt -o made-{stem}.png -q", "*oo*") | {
         "--metric": ("grid.h5 -o made.png -q", "OPTION skewness", "bytes"),
         "--zoom": ("grid.h5 -o made.png -q", "OPTION .5,1.5,0,.5", "bytes"),
         "--every": ("grid.h5 -o made.png -q", "OPTION 5", "bytes"),
         "--slice": ("cube.vts -o made.png -q", "OPTION z=1.5", "bytes"),
         "--seen-from": ("cube.vts -o made.png -q", "OPTION 30,60", "bytes"),
     },
-    "layout": PRINTING | DOMAINS | {
-        "--json": ("step.wkt -o made.json", "OPTION", "prints"),
-        "--quiet": ("step.wkt -o made.json", "OPTION", "says"),
-        "--debug": ("missing.wkt -o made.json", "OPTION", "error"),
-        "--output": ("step.wkt -o made.json -q", "OPTION other.json", "files"),
-        "--from": ("odd.name -o made.json -q", "OPTION vts", "code"),
-        "--pick": ("@domains.txt -o made-{stem}.json -q", "OPTION *ep", "files"),
-        "--shard": ("@domains.txt -o made-{stem}.json -q", "OPTION 2/2", "files"),
-        "--skip-existing": ("step.wkt -o there.json -q", "OPTION", "layout"),
-        "--jobs": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION 2", "workers"),
-        "--engine": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION mpi", "code"),
-        "--scheduler": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION tcp://a:1", "code"),
+    "layout": LAYOUT | chosen("@domains.txt -o made-{stem}.json -q", "*ep") | {
+        **engines("step.wkt hole.wkt -o {stem}.json -q"),
+        **flat_plate("hole.wkt -o made.json -q", "bytes"),
         "--far-field": ("naca:0012 -o made.json -q", "OPTION 7", "bytes"),
         "--first-cell": ("hole.wkt -o made.json -q", "OPTION .002", "bytes"),
-        "--y-plus": ("hole.wkt --y-plus 2 --reynolds 1e4 -o made.json -q", "OPTION 1", "bytes"),
-        "--reynolds": ("hole.wkt --y-plus 2 --reynolds 1e4 -o made.json -q", "OPTION 2e4", "bytes"),
         "--walls": ("hole.wkt --first-cell .002 -o made.json -q", "OPTION bolt", "error"),
         "--assemble": ("naca:0012 tail.csv -o {name}.json -q", "OPTION", "files"),
         **{
@@ -215,19 +231,11 @@ EFFECTS: dict[str, dict[str, Effect]] = {
             if name != "--assemble"
         },
     },
-    "stack": {
-        "--json": (f"{WING} -o made.h5", "OPTION", "prints"),
-        "--quiet": (f"{WING} -o made.h5", "OPTION", "says"),
-        "--debug": ("missing.toml -o made.h5 -q", "OPTION", "error"),
-        "--output": (f"{WING} {MADE}", "OPTION other.h5", "files"),
-        "--to": (f"{WING} -o made.name", "OPTION hdf5", "code"),
-        "--skip-existing": (f"{WING} -o there.h5 -q", "OPTION", "layout"),
-        "--pick": ("@wings.txt --around 49 --span 9 --layers 18 -o made-{stem}.h5 -q", "OPTION w*", "files"),
-        "--shard": ("@wings.txt --around 49 --span 9 --layers 18 -o w-{stem}.h5 -q", "OPTION 2/2", "files"),
-        "--jobs": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION 2", "workers"),
-        "--engine": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION mpi", "code"),
-        "--scheduler": (f"wing.toml {WING} -o {{name}}.h5 -q", "OPTION tcp://a:1", "code"),
-        "--threads": (f"{WING} {MADE} --threads 2", "OPTION 0", "code"),
+    "stack": printing(f"{WING} -o made.h5", f"missing.toml {MADE}") | files(WING) | {
+        **chosen("@wings.txt --around 49 --span 9 --layers 18 -o made-{stem}.h5 -q", "w*"),
+        **engines(f"wing.toml {WING} -o {{name}}.h5 -q"),
+        **flat_plate(f"{WING} {MADE}"),
+        **judged(f"{WING} {MADE}", f"moon.toml --around 49 --span 9 {MADE}"),
         "--around": (f"{WING} {MADE}", "OPTION 61", "nodes"),
         "--span": (f"{WING} {MADE}", "OPTION 11", "nodes"),
         "--base": (f"{WING} {MADE}", "OPTION .01", "nodes"),
@@ -236,26 +244,14 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--surface": (f"{WING} {MADE}", "OPTION", "nodes"),
         "--layers": (f"{WING} {MADE}", "OPTION 20", "nodes"),
         "--first-cell": (f"{WING} {MADE}", "OPTION .002", "nodes"),
-        "--y-plus": (f"{WING} --y-plus 90 --reynolds 1e5 {MADE}", "OPTION 80", "nodes"),
-        "--reynolds": (f"{WING} --y-plus 90 --reynolds 1e5 {MADE}", "OPTION 2e5", "nodes"),
         "--growth": (f"wing.toml --around 49 --span 9 {MADE}", "OPTION 1.3", "nodes"),
-        "--fail-on": (f"{WING} {MADE}", "OPTION max_angle>90.5", "code"),
-        "--allow-invalid": (f"moon.toml --around 49 --span 9 {MADE}", "OPTION", "code"),
     },
-    "sweep": {
-        "--json": (f"{PIPE} -o made.h5", "OPTION", "prints"),
-        "--quiet": (f"{PIPE} -o made.h5", "OPTION", "says"),
-        "--debug": ("circle:1 missing.csv -o made.h5 -q", "OPTION", "error"),
-        "--output": (f"{PIPE} {MADE}", "OPTION other.h5", "files"),
-        "--from": (f"odd.name path.csv {MADE}", "OPTION vts", "code"),
-        "--to": (f"{PIPE} -o made.name", "OPTION hdf5", "code"),
-        "--skip-existing": (f"{PIPE} -o there.h5 -q", "OPTION", "layout"),
-        "--pick": ("@pipes.txt path.csv --cells 40 -o made-{index}.h5 -q", "OPTION circle.4", "files"),
-        "--shard": ("@pipes.txt path.csv --cells 40 -o made-{index}.h5 -q", "OPTION 2/2", "files"),
-        "--jobs": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION 2", "workers"),
-        "--engine": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION mpi", "code"),
-        "--scheduler": (f"circle:.4 {PIPE} -o {{index}}.h5 -q", "OPTION tcp://a:1", "code"),
-        "--threads": (f"{PIPE} {MADE} --threads 2", "OPTION 0", "code"),
+    "sweep": printing(f"{PIPE} -o made.h5", f"circle:1 missing.csv {MADE}") | {
+        **files(PIPE, "odd.name path.csv"),
+        **chosen("@pipes.txt path.csv --cells 40 -o made-{index}.h5 -q", "circle.4"),
+        **engines(f"circle:.4 {PIPE} -o {{index}}.h5 -q"),
+        **flat_plate(f"{PIPE} {MADE}"),
+        **judged(f"{PIPE} {MADE}", f"folded.h5 path.csv {MADE}"),
         "--res": (f"box.csv path.csv {MADE}", "OPTION 11x9", "nodes"),
         "--planes": (f"{PIPE} {MADE}", "OPTION 7", "nodes"),
         "--up": (f"{PIPE} {MADE}", "OPTION 0,1,1", "nodes"),
@@ -266,32 +262,17 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--layout": (f"step.wkt path.csv --cells 400 {MADE}", "OPTION tall.json", "nodes"),
         "--walls": (f"hole.wkt path.csv --first-cell .002 {MADE}", "OPTION bolt", "error"),
         "--first-cell": (f"{PIPE} {MADE}", "OPTION .01", "nodes"),
-        "--y-plus": (f"{PIPE} --y-plus 90 --reynolds 1e5 {MADE}", "OPTION 80", "nodes"),
-        "--reynolds": (f"{PIPE} --y-plus 90 --reynolds 1e5 {MADE}", "OPTION 2e5", "nodes"),
         "--growth": (f"{PIPE} --first-cell .001 {MADE}", "OPTION 1.5", "nodes"),
-        "--fail-on": (f"{PIPE} {MADE}", "OPTION max_angle>90.5", "code"),
-        "--allow-invalid": (f"folded.h5 path.csv {MADE}", "OPTION", "code"),
     },
-    "deform": {
-        "--json": (f"{SUNK} -o made.h5", "OPTION", "prints"),
-        "--quiet": (f"{SUNK} -o made.h5", "OPTION", "says"),
-        "--debug": (f"missing.h5 --shift south=0,-.1 {MADE}", "OPTION", "error"),
-        "--output": (f"{SUNK} {MADE}", "OPTION other.h5", "files"),
-        "--from": ("odd.name --shift south=0,-.1 -o made.h5", "OPTION vts", "code"),
-        "--to": (f"{SUNK} -o made.name", "OPTION hdf5", "code"),
-        "--skip-existing": (f"{SUNK} -o there.h5 -q", "OPTION", "layout"),
-        "--part-size": ("bc.h5 --shift south=0,-.1 -o made.h5 -q", "OPTION 1", "files"),
-        "--pick": ("@grids.txt --shift south=0,-.1 -o made-{stem}.h5 -q", "OPTION *oo*", "files"),
-        "--shard": ("@grids.txt --shift south=0,-.1 -o made-{stem}.h5 -q", "OPTION 2/2", "files"),
-        "--jobs": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION 2", "workers"),
-        "--engine": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION mpi", "code"),
-        "--scheduler": (f"smooth.h5 {SUNK} -o {{index}}.h5 -q", "OPTION tcp://a:1", "code"),
-        "--threads": (f"{SUNK} {MADE} --threads 2", "OPTION 0", "code"),
+    "deform": printing(f"{SUNK} -o made.h5", f"missing.h5 {SHIFT} {MADE}") | {
+        **files(SUNK, f"odd.name {SHIFT}"),
+        **chosen(f"@grids.txt {SHIFT} -o made-{{stem}}.h5 -q", "*oo*"),
+        **engines(f"smooth.h5 {SUNK} -o {{index}}.h5 -q"),
+        **judged(f"{SUNK} {MADE}", f"grid.h5 --rotate south=180@1,0 {MADE}"),
+        "--part-size": (f"bc.h5 {SHIFT} {MADE}", "OPTION 1", "files"),
         "--wall": (f"grid.h5 --shift north=0,.1 {MADE}", "OPTION south=c.vts", "nodes"),
         "--rotate": (f"{SUNK} {MADE}", "OPTION north=2@0,1", "nodes"),
         "--shift": (f"{SUNK} {MADE}", "OPTION north=0,.1", "nodes"),
-        "--fail-on": (f"{SUNK} {MADE}", "OPTION max_angle>90.5", "code"),
-        "--allow-invalid": (f"grid.h5 --rotate south=180@1,0 {MADE}", "OPTION", "code"),
     },
     "models": {
         "--json": ("", "OPTION", "out"),
@@ -299,11 +280,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
     "doctor": {
         "--json": ("", "OPTION", "out"),
     },
-    "train": {
+    "train": printing(TRAINING, "missing.h5 -o m.safetensors") | {
         "--output": (TRAINING, "OPTION other.safetensors", "files"),
-        "--json": (TRAINING, "OPTION", "prints"),
-        "--quiet": (TRAINING, "OPTION", "says"),
-        "--debug": ("missing.h5 -o m.safetensors", "OPTION", "error"),
         "--from": (TRAINING.replace("arches.h5", "solved.name"), "OPTION vts", "code"),
         "--model": (TRAINING, "OPTION meshonet-hard", "weights"),
         "--split": (TRAINING, "OPTION extrapolation", "weights"),

@@ -7,11 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from block_files import cells, first_cells, grid_of
 from command_line import Meshonet
 from domains import circle
-
-from meshonet.formats.registry import read_grids
-from meshonet.geometry.blocks.grid import Grid
 
 BODIES = ("naca:0012", "rod.csv", "--assemble", "--far-field", 20)
 FIRST = ("--first-cell", 1e-4)
@@ -20,21 +18,6 @@ FIRST = ("--first-cell", 1e-4)
 def rod(x: float, y: float, radius: float) -> None:
     text = "".join(f"{x!r},{y!r}\n" for x, y in circle(x, y, radius, 90).tolist())
     Path("rod.csv").write_text(text)
-
-
-def grid_of(name: str) -> Grid:
-    (grid,) = read_grids(name)
-    return grid
-
-
-def cells(grid: Grid) -> int:
-    return sum((block.counts[0] - 1) * (block.counts[1] - 1) for block in grid.blocks)
-
-
-def first_cells(grid: Grid) -> np.ndarray:
-    walls = [patch for patch in grid.outer_patches() if patch.kind == "wall"]
-    nodes = [grid.blocks[patch.block].nodes[patch.start : patch.stop + 1, :2] for patch in walls]
-    return np.concatenate([np.hypot(*(each[:, 1] - each[:, 0]).T) for each in nodes])
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from cgns_joints import joined_nodes
 from volume_grids import VOLUMES, box, pipe, shifted, turned_sector
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
@@ -97,40 +98,18 @@ def test_vtk_reads_every_zone(make: Make, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("make", VOLUMES)
 def test_both_sides_of_an_interface_are_joined_node_by_node(make: Make, tmp_path: Path) -> None:
-    """By the standard's rule: the donor's index is begin + T (here - begin), T of the short form."""
     grid = make()
     write_grids(tmp_path / "g.cgns", [grid])
-    with h5py.File(tmp_path / "g.cgns") as file:
-        zones = [node for node in file["Base"].values() if node.attrs.get("label") == b"Zone_t"]
-        names = [zone.name.rpartition("/")[2] for zone in zones]
-        for k, zone in enumerate(zones):
-            for joint in zone.get("ZoneGridConnectivity", {}).values():
-                own, donor, short = (
-                    joint[f"{name}/ data"][()] for name in ("PointRange", "PointRangeDonor", "Transform")
-                )
-                matrix = np.zeros((3, 3), int)
-                for axis, target in enumerate(short):
-                    matrix[abs(target) - 1, axis] = np.sign(target)
-                assert round(np.linalg.det(matrix)) == 1  # of right-handed zones
-                np.testing.assert_array_equal(matrix @ (own[1] - own[0]), donor[1] - donor[0])
-                other = names.index(joint[" data"][()].tobytes().decode())
-                ways = [np.arange(abs(b - a) + 1) * np.sign(b - a) for a, b in own.T]
-                steps = np.stack(np.meshgrid(*ways, indexing="ij"), axis=-1).reshape(-1, 3)
-                here, there = own[0] + steps, donor[0] + steps @ matrix.T
-                nodes, theirs = (
-                    grid.blocks[number].nodes[tuple(index.T - 1)]
-                    for number, index in ((k, here), (other, there))
-                )
-                if "GridConnectivityProperty" in joint:
-                    periodic = joint["GridConnectivityProperty/Periodic"]
-                    centre, angles, shift = (
-                        periodic[f"{name}/ data"][()]
-                        for name in ("RotationCenter", "RotationAngle", "Translation")
-                    )
-                    nodes = (nodes - centre) @ _turn(*angles).T + centre + shift
-                    np.testing.assert_allclose(nodes, theirs, atol=1e-6)  # of float32
-                else:
-                    np.testing.assert_array_equal(nodes, theirs)
+    for joint, nodes, theirs in joined_nodes(tmp_path / "g.cgns", grid):
+        if "GridConnectivityProperty" in joint:
+            periodic = joint["GridConnectivityProperty/Periodic"]
+            centre, angles, shift = (
+                periodic[f"{name}/ data"][()] for name in ("RotationCenter", "RotationAngle", "Translation")
+            )
+            moved = (nodes - centre) @ _turn(*angles).T + centre + shift
+            np.testing.assert_allclose(moved, theirs, atol=1e-6)  # of float32
+        else:
+            np.testing.assert_array_equal(nodes, theirs)
 
 
 def _turn(a: float, b: float, c: float) -> np.ndarray:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import meshio
 import numpy as np
 import pytest
+from check_mesh import check_mesh
 from volume_grids import VOLUMES, pipe, shifted, turned_sector
 
 from meshonet.formats.mesh.unstructured import Unstructured, unstructured
@@ -66,26 +65,12 @@ def test_periodic_faces_face_each_other_row_by_row(make: Make) -> None:
     np.testing.assert_array_equal(pair.motion(mesh.points[pair.nodes[:, 0]]), mesh.points[pair.nodes[:, 1]])
 
 
-def checked(folder: Path) -> str:
-    """What checkMesh says of a case."""
-    done = subprocess.run(
-        ["checkMesh", "-case", str(folder), "-allTopology", "-allGeometry"],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        env=os.environ | {"WM_PROJECT_DIR": "/usr/share/openfoam"},
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "separation" not in done.stderr
-    return done.stdout
-
-
 @pytest.mark.client("checkMesh")
 @pytest.mark.parametrize("words", ["ascii", "binary"])
 @pytest.mark.parametrize("make", VOLUMES)
 def test_check_mesh_finds_nothing(make: Make, words: str, tmp_path: Path) -> None:
     write_foam(tmp_path / "case.foam", [make()], options=frozenset({words}))
-    said = checked(tmp_path)
+    said = check_mesh(tmp_path, "-allGeometry")
     assert "Mesh OK." in said, said
     assert "Upper triangular ordering OK." in said
     mesh = unstructured(make())
@@ -212,7 +197,7 @@ def poles() -> Grid:
 @pytest.mark.parametrize("words", ["ascii", "binary"])
 def test_cells_at_an_axis_are_prisms(words: str, tmp_path: Path) -> None:
     write_foam(tmp_path / "case.foam", [poles()], options=frozenset({words}))
-    said = checked(tmp_path)
+    said = check_mesh(tmp_path, "-allGeometry")
     assert "prisms:        48\n" in said, said
     assert "hexahedra:     96\n" in said
     assert "***" not in said.replace(" ***High aspect ratio", "")

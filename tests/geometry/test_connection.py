@@ -127,3 +127,8 @@ def test_o_and_c_are_names_of_connections() -> None:
     assert (grid.connections, grid.topology, grid.wake) == ((c_wake(5, 1),), "c", 1)
     assert [(p.name, p.start, p.stop) for p in grid.outer_patches()][:1] == [("wall", 1, 3)]
     assert [patch.name for patch in grid.walls()] == ["wall"]
+
+
+def test_a_side_that_cannot_be_printed_is_named_in_ascii() -> None:
+    told = str(Connection(0, "west", ((0, 1),), 0, "\x85\ufffd", ((0, 1),), (1,)))  # type: ignore[arg-type]
+    assert told == "the connection of west of block 0 to \\x85\\ufffd of block 0"

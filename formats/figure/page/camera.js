@@ -106,3 +106,16 @@ function dot(a, b) {
 function cross(a, b) {
   return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }
+
+/** Say whether a box, if any, is small in extents: a body in its far field. */
+function small(box, extents) {
+  return box && Math.max(...box[0].map((low, k) => box[1][k] - low)) < Math.max(...extents) / 5;
+}
+
+/** Return a box with some room around it. */
+function boxOf(box) {
+  if (!box) return null;
+  const [low, high] = box.map((corner) => (corner.length === 3 ? corner : [...corner, 0]));
+  const room = 0.18 * Math.max(...low.map((value, k) => high[k] - value));
+  return [low.map((value) => value - room), high.map((value) => value + room)];
+}

@@ -102,3 +102,19 @@ function inside(ax, ay, bx, by, cx, cy, dx, dy) {
 function crosses(ax, ay, bx, by) {
   return ay > 0 !== by > 0 && ax - ay * (bx - ax) / (by - ay) > 0;
 }
+
+/** Return the numbers of the nodes of an edge of a block in the plane. */
+function edgeNodes(lattice, { axis, end, start, stop }) {
+  const [across, along] = axis === 0 ? [0, 1] : [1, 0];
+  const fixed = lattice.node + (end ? (lattice.counts[across] - 1) * lattice.nodeSteps[across] : 0);
+  return Array.from({ length: stop - start + 1 }, (_, k) => fixed + (start + k) * lattice.nodeSteps[along]);
+}
+
+/** Return the edges of a cell of 4 corners in the plane or 8 in space, the last index running fastest. */
+function edgesOf(corners) {
+  const pairs = [];
+  for (let a = 0; a < corners.length; a++) {
+    for (let bit = 1; bit < corners.length; bit *= 2) if (!(a & bit)) pairs.push([corners[a], corners[a | bit]]);
+  }
+  return pairs;
+}

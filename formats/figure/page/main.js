@@ -176,7 +176,7 @@ async function begin() {
 
   // --- controls
   $("#name").textContent = facts.name || "Grid";
-  $("#counts").textContent = countWords();
+  $("#counts").textContent = countWords(facts);
   $("#metric").append(
     ...facts.metrics.map(({ name }) => element("option", { value: name, textContent: name.replaceAll("_", " ") })),
     element("option", { value: "", textContent: "none" }));
@@ -265,106 +265,6 @@ async function begin() {
   await colour(facts.start.metric || "");
   window.meshonet = { camera, state, shown, facts };
   document.body.dataset.ready = "yes";
-}
-
-function countWords() {
-  const [first] = facts.blocks;
-  const cells = `${facts.cells.toLocaleString("en")} cells`;
-  if (facts.blocks.length > 1) return `${facts.blocks.length} blocks, ${cells}`;
-  return `${first.join(" × ")} nodes, ${cells}`;
-}
-
-/** Return the numbers of the nodes of an edge of a block in the plane. */
-function edgeNodes(lattice, { axis, end, start, stop }) {
-  const [across, along] = axis === 0 ? [0, 1] : [1, 0];
-  const fixed = lattice.node + (end ? (lattice.counts[across] - 1) * lattice.nodeSteps[across] : 0);
-  return Array.from({ length: stop - start + 1 }, (_, k) => fixed + (start + k) * lattice.nodeSteps[along]);
-}
-
-/** Return the edges of a cell of 4 corners in the plane or 8 in space, the last index running fastest. */
-function edgesOf(corners) {
-  const pairs = [];
-  for (let a = 0; a < corners.length; a++) {
-    for (let bit = 1; bit < corners.length; bit *= 2) if (!(a & bit)) pairs.push([corners[a], corners[a | bit]]);
-  }
-  return pairs;
-}
-
-/** Say whether a box, if any, is small in extents: a body in its far field. */
-function small(box, extents) {
-  return box && Math.max(...box[0].map((low, k) => box[1][k] - low)) < Math.max(...extents) / 5;
-}
-
-/** Return a box with some room around it. */
-function boxOf(box) {
-  if (!box) return null;
-  const [low, high] = box.map((corner) => (corner.length === 3 ? corner : [...corner, 0]));
-  const room = 0.18 * Math.max(...low.map((value, k) => high[k] - value));
-  return [low.map((value) => value - room), high.map((value) => value + room)];
-}
-
-/** Let the mouse, fingers and the wheel move the camera, and a click pick. */
-function listen(canvas, camera, draw, { pick, at }) {
-  const held = new Map();
-  let moved = false;
-  const place = (event) => {
-    const box = canvas.getBoundingClientRect();
-    return [event.clientX - box.left - box.width / 2, box.top + box.height / 2 - event.clientY];
-  };
-  const spread = () => {
-    const [a, b] = [...held.values()];
-    return { size: Math.hypot(a[0] - b[0], a[1] - b[1]), middle: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2] };
-  };
-  canvas.addEventListener("pointerdown", (event) => {
-    canvas.setPointerCapture(event.pointerId);
-    camera.stay();
-    held.set(event.pointerId, place(event));
-    moved = held.size > 1;
-    canvas.classList.add("held");
-    $("#tip").hidden = true;
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    const now = place(event);
-    const under = at(...now);
-    $("#readout").textContent = under ? `x ${under[0].toPrecision(7)}  y ${under[1].toPrecision(7)}` : "";
-    if (!held.has(event.pointerId)) return;
-    const before = held.get(event.pointerId);
-    const pinch = held.size === 2 ? spread() : null;
-    const dx = now[0] - before[0], dy = now[1] - before[1];
-    if (!moved && Math.hypot(dx, dy) < 3) return;
-    moved = true;
-    held.set(event.pointerId, now);
-    if (pinch) {
-      const after = spread();
-      camera.zoom(after.size / Math.max(pinch.size, 1), ...after.middle);
-      camera.pan(after.middle[0] - pinch.middle[0], after.middle[1] - pinch.middle[1]);
-    } else if (camera.flat || event.shiftKey || event.buttons > 1) camera.pan(dx, dy);
-    else camera.turn(dx, -dy);
-    draw();
-  });
-  const release = (event) => {
-    if (!held.delete(event.pointerId)) return;
-    canvas.classList.remove("held");
-    if (moved || event.type === "pointercancel") return;
-    const [x, y] = place(event);
-    const words = pick(x, y);
-    if (!words) return;
-    const tip = $("#tip");
-    tip.replaceChildren(element("b", { textContent: words[1] || words[0] }), ...(words[1] ? [element("br"), words[0]] : []));
-    tip.style.left = `${x + canvas.clientWidth / 2 + 12}px`;
-    tip.style.top = `${canvas.clientHeight / 2 - y + 12}px`;
-    tip.hidden = false;
-  };
-  canvas.addEventListener("pointerup", release);
-  canvas.addEventListener("pointercancel", release);
-  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    camera.stay();
-    $("#tip").hidden = true;
-    camera.zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0016)), ...place(event));
-    draw();
-  }, { passive: false });
 }
 
 begin().catch((error) => {

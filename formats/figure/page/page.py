@@ -27,6 +27,7 @@ _PROGRAM = (
     "shaders.js",
     "painter.js",
     "panel.js",
+    "pointer.js",
     "main.js",
 )
 """Files of the program, in this order."""

@@ -123,3 +123,11 @@ function showTriad(axes) {
     return [svg("line", { x1: 0, y1: 0, x2: 25 * right[k], y2: -25 * up[k] }), label];
   }));
 }
+
+/** Return how many blocks, nodes and cells there are, in words. */
+function countWords(facts) {
+  const [first] = facts.blocks;
+  const cells = `${facts.cells.toLocaleString("en")} cells`;
+  if (facts.blocks.length > 1) return `${facts.blocks.length} blocks, ${cells}`;
+  return `${first.join(" × ")} nodes, ${cells}`;
+}
