@@ -17,6 +17,7 @@ from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet_cli.errors import explained, with_options
 from meshonet_cli.stage_line import StageLine
 from meshonet_cli.stopping import check
+from meshonet_cli.summary import Row, Summary
 from meshonet_cli.text import bar
 
 if TYPE_CHECKING:
@@ -49,6 +50,10 @@ class Session:
         self.quiet, self.as_json, self.debug = quiet, as_json, debug
         self.worst = 0
         self.batch = False
+        self.summary = False
+        """Whether a table of all members is the result."""
+        self.rows: list[Row] = []
+        self._stdout_is_taken = False
         self.members = self.done = self.failed = self.skipped = self.beyond = 0
         self._begun = time.perf_counter()
         self._bar = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
@@ -72,6 +77,7 @@ class Session:
         self.failed += 1
         code = error.exit_code if isinstance(error, MeshonetError) else 2
         self.worst = max(self.worst, code)
+        self.rows.append(Row(label))
         line = explained(error, label)
         if self.debug:
             import traceback
@@ -81,12 +87,14 @@ class Session:
         if self.as_json:
             self.result({"input": source, "output": None, "error": line, "exit_code": code})
 
-    def gate(self, name: str, problems: Sequence[str]) -> None:
-        """Report gates that a member did not meet."""
+    def judge(self, row: Row) -> None:
+        """Report gates that a member did not meet, and keep its row for a table."""
+        self.rows.append(row)
+        problems = row.judgement.problems if row.judgement else ()
         self.beyond += bool(problems)
         for problem in problems:
             self.worst = max(self.worst, GATE_NOT_MET)
-            self._write(f"gate not met: {name}: {with_options(problem)}")
+            self._write(f"gate not met: {row.label}: {with_options(problem)}")
 
     def warn(self, text: str) -> None:
         """Print what the user should know even when quiet."""
@@ -142,6 +150,7 @@ class Session:
 
     def check_output(self, output: str) -> None:
         """Raise InputError when results and JSON would share standard output."""
+        self._stdout_is_taken = output == "-"
         if self.as_json and output == "-":
             raise InputError(
                 "--json and -o - both want standard output", "write the result to a file", source="-o"
@@ -194,9 +203,14 @@ class Session:
         self.note(f"{name} -> {path}: there already{remark}")
 
     def finish(self) -> int:
-        """Report how a batch went and return the exit code."""
+        """Report how a batch went, with a table where it was judged, and return the exit code."""
         self._unwatch()
         self._clear()
+        table = Summary(self.rows)
+        if self.summary and table.members:
+            self.conclude(table)
+        elif table.judged and self.batch and not (self.quiet or self.as_json):
+            (self._write if self._stdout_is_taken else self.print)(table.lines())
         if self.batch and not (self.quiet or self.as_json):
             spent = time.perf_counter() - self._begun
             gates = f" ({self.beyond} of them beyond a gate)" if self.beyond else ""
