@@ -9,6 +9,7 @@ import stat
 import sys
 import threading
 import time
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from meshonet_cli.batch.timed import Timed
 
 GATE_NOT_MET = 1
+SAME_ERRORS = 3
+"""How many inputs are named that end in the same error; the others are counted."""
 
 
 class Printed(Protocol):
@@ -54,6 +57,7 @@ class Session:
         """Whether a table of all members is the result."""
         self.rows: list[Row] = []
         self._stdout_is_taken = False
+        self._errors: Counter[str] = Counter()
         self.members = self.done = self.failed = self.skipped = self.beyond = 0
         self._begun = time.perf_counter()
         self._bar = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
@@ -70,10 +74,10 @@ class Session:
         except (KeyboardInterrupt, GeneratorExit, BrokenPipeError):
             raise
         except Exception as error:
-            self.fail(label, source or label, error)
+            self.fail(label, source or label, error, repeated=True)
 
-    def fail(self, label: str, source: str, error: Exception) -> None:
-        """Report a member that failed."""
+    def fail(self, label: str, source: str, error: Exception, *, repeated: bool = False) -> None:
+        """Report a member that failed; of one that may be `repeated` for each the first `SAME_ERRORS`."""
         self.failed += 1
         code = error.exit_code if isinstance(error, MeshonetError) else 2
         self.worst = max(self.worst, code)
@@ -83,7 +87,10 @@ class Session:
             import traceback
 
             self._write("".join(traceback.format_exception(error)).rstrip())
-        self._write(f"error: {line}")
+        same = error.problem if repeated and isinstance(error, InputError) and not self.debug else ""
+        self._errors[same] += 1
+        if not same or self._errors[same] <= SAME_ERRORS:
+            self._write(f"error: {line}")
         if self.as_json:
             self.result({"input": source, "output": None, "error": line, "exit_code": code})
 
@@ -206,6 +213,10 @@ class Session:
         """Report how a batch went, with a table where it was judged, and return the exit code."""
         self._unwatch()
         self._clear()
+        for problem, count in self._errors.items():
+            if problem and count > SAME_ERRORS:
+                more = count - SAME_ERRORS
+                self._write(f"error: {more} more input{'s' if more > 1 else ''}: {with_options(problem)}")
         table = Summary(self.rows)
         if self.summary and table.members:
             self.conclude(table)

@@ -64,3 +64,18 @@ def test_a_gate_on_a_figure_that_the_cells_lack_is_an_error(meshonet: Meshonet) 
     done = meshonet("infer", "naca:0012", "--res", "41x15", "--fail-on", "bezier_folded>0", "-o", "g.h5")
     assert done.code == 2
     assert "naca:0012: --fail-on: this grid has no bezier_folded" in done.err.replace("error: ", "")
+
+
+def test_an_error_that_all_inputs_end_in_is_told_three_times_and_counted(meshonet: Meshonet) -> None:
+    foils = [f"naca:24{number:02}" for number in range(10, 20)]
+    words = ("infer", *foils, "--topology", "quad", "-o", "{stem}.h5")
+    done = meshonet(*words)
+    assert done.code == 2
+    errors = [line for line in done.err.splitlines() if line.startswith("error: ")]
+    assert len(errors) == 4
+    assert errors[0].startswith("error: naca:2410: topology quad is not made from an airfoil")
+    assert errors[3] == "error: 7 more inputs: topology quad is not made from an airfoil"
+    assert "10 failed" in done.err
+    assert len(meshonet(*words, "--json").objects) == 10  # a program is told each of them
+    missing = meshonet("infer", *(f"{number}.dat" for number in range(5)), "-o", "{stem}.h5")
+    assert missing.err.count("no such file") == 5
