@@ -13,7 +13,7 @@ from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.gates import need_percentiles, parse_gates
+from meshonet.geometry.quality.criteria import Criteria
 from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.deformations import make_deformed
@@ -31,18 +31,19 @@ from meshonet_cli.session import Session
 def write_deformed(
     inputs: Inputs, output: str, session: Session, *, wall: Sequence[str] = (),
     rotate: Sequence[str] = (), shift: Sequence[str] = (), allow_invalid: bool = False,
-    fail_on: Sequence[str] | None = None, from_format: str | None = None, to_format: str | None = None,
+    criteria: Criteria = Criteria(), from_format: str | None = None, to_format: str | None = None,
     skip_existing: bool = False, part_size: int | None = None, engine: Engine = HERE,
     threads: int | None = None,
 ) -> int:  # fmt: skip
     """Write the grids of `inputs` with walls in their new places and return the exit code."""
     walls = walls_of(wall, rotate, shift)
-    percentiles = need_percentiles(parse_gates(fail_on))
-    make = _Deformed(walls, DeformRequest(allow_invalid, percentiles, engine.threads(threads)))
+    make = _Deformed(
+        walls, DeformRequest(allow_invalid, criteria.percentiles, engine.threads(threads)), criteria
+    )
     destination = Destination(output, to_format, "grids", part_size=part_size)
     members = items(inputs, partial(read_grids, fmt=from_format), session)
     return process(
-        members, make, destination, session, written=judging(session, fail_on), skip_existing=skip_existing,
+        members, make, destination, session, written=judging(session), skip_existing=skip_existing,
         engine=engine,
     )  # fmt: skip
 
@@ -53,9 +54,11 @@ class _Deformed:
 
     walls: Mapping[str, NewWall] | NewWall
     request: DeformRequest
+    criteria: Criteria
 
     def __call__(self, item: Item[Grid]) -> tuple[Grid, Report]:
-        return reported(item, make_deformed(item.what, self.walls, self.request))  # type: ignore[arg-type]
+        deformed = make_deformed(item.what, self.walls, self.request)
+        return reported(item, deformed, self.criteria)  # type: ignore[arg-type]
 
 
 def walls_of(

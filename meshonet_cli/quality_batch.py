@@ -1,7 +1,7 @@
 """The grids of `quality`, one after the other."""
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 
 from meshonet.api.quality import quality
@@ -13,30 +13,30 @@ from meshonet.formats.registry import format_for_output, read_grids
 from meshonet.formats.vtk.metrics import write_metrics
 from meshonet.geometry.blocks.match_grids import GridMatcher, Pairing
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.blocks import BLOCK_FIGURES
-from meshonet.geometry.quality.gates import Gate, parse_gates
-from meshonet.geometry.quality.report import COMPARED
+from meshonet.geometry.quality.criteria import Criteria
+from meshonet.geometry.quality.gates import Gate
 from meshonet.solvers.stages import reached
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.sources import items
 from meshonet_cli.plot_batch import picture_file
 from meshonet_cli.report.quality import Measured
-from meshonet_cli.report.summary import Summary
 from meshonet_cli.session import Session
+from meshonet_cli.summary import Row
 
 
 def measure_grids(
-    inputs: Inputs, session: Session, *, fmt: str | None = None, fail_on: Sequence[str] | None = None,
-    profile: str | None = None, compare: str | None = None, pairing: Pairing = "auto", summary: bool = False,
+    inputs: Inputs, session: Session, *, fmt: str | None = None, criteria: Criteria = Criteria(),
+    compare: str | None = None, pairing: Pairing = "auto", summary: bool = False,
     plot: str | None = None, html: str | None = None, per_cell: str | None = None,
 ) -> int:  # fmt: skip
     """Measure every grid of `inputs`, print the reports and return the exit code.
 
-    `fail_on` are gates, `profile` names thresholds, `compare` is a file of reference grids, matched by
-    `pairing`. `summary` prints one table over all; `plot` and `per_cell` are pictures and files of metrics to
-    write, `html` is a page about all grids.
+    `compare` is a file of reference grids, matched by `pairing`. `summary` prints one
+    table over all; `plot` and `per_cell` are pictures and files of metrics to write, `html` is a page about
+    all grids.
     """
-    gates = parse_gates(fail_on, (*BLOCK_FIGURES, *(COMPARED if compare else ())))
+    gates, profile = criteria.gates, criteria.profile
+    session.summary = summary
     outputs = [picture_file(plot, None, Picture())] if plot else []
     outputs += [_metrics_file(per_cell)] if per_cell else []
     for destination in outputs:
@@ -45,7 +45,6 @@ def measure_grids(
             raise InputError("standard output has the table", "write to a file", source="-")
     page = _page(html, gates) if html else None
     references = GridMatcher(read_grids(compare), pairing) if compare else None
-    rows: list[tuple[str, Mapping[str, float]]] = []
     for item in items(inputs, partial(read_grids, fmt=fmt), session):
         with session.member(item.label, item.source):
             begun = time.perf_counter()
@@ -62,19 +61,15 @@ def measure_grids(
                 with measured.timed("write"):
                     destination.write(destination.path(item), [item.what])
             measured.finished(None)
-            problems = measured.report.broken(gates)
-            judged = {"gates_not_met": len(problems)} if gates or profile else {}
-            rows.append((item.label, measured.figures_of_row() | judged))
+            judgement = measured.report.judgement(gates)
             if summary:
                 session.done += 1
             else:
-                session.show(measured, problems)
-            session.gate(item.label, problems)
+                session.show(measured, judgement.problems)
+            session.judge(Row(item.label, measured.figures_of_row(), judgement if criteria else None))
             if page:
                 page.add(item.label, measured.report)
-    if rows and summary:
-        session.conclude(Summary(rows))
-    if page and html and rows:
+    if page and html and session.done:
         reached("write")
         with whole_file(html) as part:
             page.write(part)

@@ -9,6 +9,7 @@ import stat
 import sys
 import threading
 import time
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -17,12 +18,15 @@ from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet_cli.errors import explained, with_options
 from meshonet_cli.stage_line import StageLine
 from meshonet_cli.stopping import check
+from meshonet_cli.summary import Row, Summary
 from meshonet_cli.text import bar
 
 if TYPE_CHECKING:
     from meshonet_cli.batch.timed import Timed
 
 GATE_NOT_MET = 1
+SAME_ERRORS = 3
+"""How many inputs are named that end in the same error; the others are counted."""
 
 
 class Printed(Protocol):
@@ -49,6 +53,11 @@ class Session:
         self.quiet, self.as_json, self.debug = quiet, as_json, debug
         self.worst = 0
         self.batch = False
+        self.summary = False
+        """Whether a table of all members is the result."""
+        self.rows: list[Row] = []
+        self._stdout_is_taken = False
+        self._errors: Counter[str] = Counter()
         self.members = self.done = self.failed = self.skipped = self.beyond = 0
         self._begun = time.perf_counter()
         self._bar = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
@@ -65,28 +74,34 @@ class Session:
         except (KeyboardInterrupt, GeneratorExit, BrokenPipeError):
             raise
         except Exception as error:
-            self.fail(label, source or label, error)
+            self.fail(label, source or label, error, repeated=True)
 
-    def fail(self, label: str, source: str, error: Exception) -> None:
-        """Report a member that failed."""
+    def fail(self, label: str, source: str, error: Exception, *, repeated: bool = False) -> None:
+        """Report a member that failed; of one that may be `repeated` for each the first `SAME_ERRORS`."""
         self.failed += 1
         code = error.exit_code if isinstance(error, MeshonetError) else 2
         self.worst = max(self.worst, code)
+        self.rows.append(Row(label))
         line = explained(error, label)
         if self.debug:
             import traceback
 
             self._write("".join(traceback.format_exception(error)).rstrip())
-        self._write(f"error: {line}")
+        same = error.problem if repeated and isinstance(error, InputError) and not self.debug else ""
+        self._errors[same] += 1
+        if not same or self._errors[same] <= SAME_ERRORS:
+            self._write(f"error: {line}")
         if self.as_json:
             self.result({"input": source, "output": None, "error": line, "exit_code": code})
 
-    def gate(self, name: str, problems: Sequence[str]) -> None:
-        """Report gates that a member did not meet."""
+    def judge(self, row: Row) -> None:
+        """Report gates that a member did not meet, and keep its row for a table."""
+        self.rows.append(row)
+        problems = row.judgement.problems if row.judgement else ()
         self.beyond += bool(problems)
         for problem in problems:
             self.worst = max(self.worst, GATE_NOT_MET)
-            self._write(f"gate not met: {name}: {with_options(problem)}")
+            self._write(f"gate not met: {row.label}: {with_options(problem)}")
 
     def warn(self, text: str) -> None:
         """Print what the user should know even when quiet."""
@@ -142,6 +157,7 @@ class Session:
 
     def check_output(self, output: str) -> None:
         """Raise InputError when results and JSON would share standard output."""
+        self._stdout_is_taken = output == "-"
         if self.as_json and output == "-":
             raise InputError(
                 "--json and -o - both want standard output", "write the result to a file", source="-o"
@@ -194,9 +210,18 @@ class Session:
         self.note(f"{name} -> {path}: there already{remark}")
 
     def finish(self) -> int:
-        """Report how a batch went and return the exit code."""
+        """Report how a batch went, with a table where it was judged, and return the exit code."""
         self._unwatch()
         self._clear()
+        for problem, count in self._errors.items():
+            if problem and count > SAME_ERRORS:
+                more = count - SAME_ERRORS
+                self._write(f"error: {more} more input{'s' if more > 1 else ''}: {with_options(problem)}")
+        table = Summary(self.rows)
+        if self.summary and table.members:
+            self.conclude(table)
+        elif table.judged and self.batch and not (self.quiet or self.as_json):
+            (self._write if self._stdout_is_taken else self.print)(table.lines())
         if self.batch and not (self.quiet or self.as_json):
             spent = time.perf_counter() - self._begun
             gates = f" ({self.beyond} of them beyond a gate)" if self.beyond else ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -16,7 +16,7 @@ from meshonet.formats.stack import stack_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.path import Path
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.gates import need_percentiles, parse_gates
+from meshonet.geometry.quality.criteria import Criteria
 from meshonet.geometry.sections.stack import Stack, Tip
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.solvers.pipeline.parameters import grid_request
@@ -44,21 +44,20 @@ VOLUME_NODES = 1_000_000
 
 def write_stacks(
     inputs: Inputs, output: str, parameters: Mapping[str, Any], session: Session, *,
-    tip: Tip | None = None, surface: bool = False, fail_on: Sequence[str] | None = None,
+    tip: Tip | None = None, surface: bool = False, criteria: Criteria = Criteria(),
     to_format: str | None = None, skip_existing: bool = False, engine: Engine = HERE,
 ) -> int:  # fmt: skip
     """Write the volumes, or the surfaces, of the stacks of `inputs` and return the exit code."""
-    percentiles = need_percentiles(parse_gates(fail_on))
-    request = stack_request(**_shared(parameters, engine), percentiles=percentiles)
+    request = stack_request(**_shared(parameters, engine), percentiles=criteria.percentiles)
     members = items(inputs, partial(_stack, tip=tip), session)
     if surface:
-        if fail_on:
-            raise InputError("{fail_on} judges cells, and a surface has none", "leave it out")
+        if criteria:
+            raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")
         destination = Destination(output, to_format, "grids", nodes=VOLUME_NODES)
         return process(
             members, _Surfaces(request), destination, session, skip_existing=skip_existing, engine=engine
         )
-    return _write(members, _Stacks(request), output, session, fail_on, to_format, skip_existing, engine)
+    return _write(members, _Stacks(request, criteria), output, session, to_format, skip_existing, engine)
 
 
 def _stack(source: str, tip: Tip | None) -> Iterator[Stack]:
@@ -67,17 +66,17 @@ def _stack(source: str, tip: Tip | None) -> Iterator[Stack]:
 
 def write_sweeps(
     inputs: Inputs, path: str, output: str, res: str | None, section: Mapping[str, Any],
-    along: Mapping[str, Any], session: Session, *, fail_on: Sequence[str] | None = None,
+    along: Mapping[str, Any], session: Session, *, criteria: Criteria = Criteria(),
     from_format: str | None = None, to_format: str | None = None, skip_existing: bool = False,
     engine: Engine = HERE,
 ) -> int:  # fmt: skip
     """Write the volumes of the sections of `inputs` along a path; return the exit code."""
     parameters = domain_parameters(_shared(section, engine))
-    parameters["percentiles"] = need_percentiles(parse_gates(fail_on))
+    parameters["percentiles"] = criteria.percentiles
     request = grid_request(res=None if res is None else _counts(res), **parameters)
-    make = _Sweeps(path_of(path), request, Sweep(**along))
+    make = _Sweeps(path_of(path), request, Sweep(**along), criteria)
     members = items(inputs, partial(read_sections, fmt=from_format), session)
-    return _write(members, make, output, session, fail_on, to_format, skip_existing, engine)
+    return _write(members, make, output, session, to_format, skip_existing, engine)
 
 
 def _counts(text: str) -> tuple[int, int]:
@@ -109,12 +108,12 @@ def _shared(parameters: Mapping[str, Any], engine: Engine) -> dict[str, Any]:
 
 def _write(
     members: Members[Any], make: Callable[[Any], tuple[Grid, Report]],
-    output: str, session: Session, fail_on: Sequence[str] | None, to_format: str | None, skip_existing: bool,
+    output: str, session: Session, to_format: str | None, skip_existing: bool,
     engine: Engine,
 ) -> int:  # fmt: skip
     destination = Destination(output, to_format, "grids", nodes=VOLUME_NODES)
     return process(
-        members, make, destination, session, written=judging(session, fail_on), skip_existing=skip_existing,
+        members, make, destination, session, written=judging(session), skip_existing=skip_existing,
         engine=engine,
     )  # fmt: skip
 
@@ -124,9 +123,10 @@ class _Stacks:
     """Makes the volumes of stacks."""
 
     request: StackRequest
+    criteria: Criteria
 
     def __call__(self, item: Item[Stack]) -> tuple[Grid, Report]:
-        return reported(item, make_stack(item.what, self.request))  # type: ignore[arg-type]
+        return reported(item, make_stack(item.what, self.request), self.criteria)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)
@@ -136,9 +136,11 @@ class _Sweeps:
     path: Path
     request: GridRequest
     settings: Sweep
+    criteria: Criteria
 
     def __call__(self, item: Item[Shape]) -> tuple[Grid, Report]:
-        return reported(item, make_sweep(item.what, self.path, self.request, self.settings))
+        volume = make_sweep(item.what, self.path, self.request, self.settings)
+        return reported(item, volume, self.criteria)
 
 
 @dataclass(frozen=True)

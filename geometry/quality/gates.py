@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Literal
 
 from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.quality.metrics import ALL_NAMES
@@ -65,8 +66,36 @@ class Gate:
         value = self.figure(quality, more)
         if not self.beyond(value):
             return None
-        what = f"{self.metric}.{self.statistic}" if self.metric in ALL_NAMES else self.metric
-        return f"{what} is {value:.6g}, and {{fail_on}} '{self.text}'"
+        return f"{self._what} is {value:.6g}, and {{fail_on}} '{self.text}'"
+
+    def in_short(self, value: float) -> str:
+        """Return a figure beyond the limit and the limit: ``max_angle.max 178.2 > 170``."""
+        return f"{self._what} {value:.4g} {self.compare} {self.limit:g}"
+
+    @property
+    def _what(self) -> str:
+        return f"{self.metric}.{self.statistic}" if self.metric in ALL_NAMES else self.metric
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What came of gates and profile for one grid.
+
+    Parameters
+    ----------
+    problems : tuple of str
+        A line for each gate, and each check of the profile, that failed.
+    beyond : tuple of str
+        The same in short, warnings of the profile among them: ``max_angle 178.2 > 170``.
+    """
+
+    problems: tuple[str, ...] = ()
+    beyond: tuple[str, ...] = ()
+
+    @property
+    def verdict(self) -> Literal["pass", "warn", "fail"]:
+        """The worst that any gate or check says."""
+        return "fail" if self.problems else "warn" if self.beyond else "pass"
 
 
 def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:

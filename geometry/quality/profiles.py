@@ -80,6 +80,10 @@ class ProfileReport:
         """Whether no check failed; warnings pass."""
         return all(result.verdict != "fail" for result in self.results)
 
+    def beyond(self) -> list[str]:
+        """Return in short which limits are exceeded, those that warn too: ``face_skewness 5.2 > 4``."""
+        return [_in_short(result) for result in self.results if result.verdict in ("warn", "fail")]
+
     def failures(self) -> list[str]:
         """Return a line for each check that failed."""
         return [
@@ -90,6 +94,13 @@ class ProfileReport:
             for result in self.results
             if result.verdict == "fail" and result.value is not None
         ]
+
+
+def _in_short(result: CheckResult) -> str:
+    """Return which limit a figure is beyond, the one that fails it where it is beyond several."""
+    value = result.value or 0.0
+    limit = max((x for x in result.check.limits if x.broken(value)), key=lambda x: x.level == "fail")
+    return f"{result.check.figure} {value:.4g} {limit.compare} {limit.value:g}"
 
 
 def _check(figure: str, *limits: tuple[Level, Literal[">", ">=", "<"], float]) -> Check:

@@ -8,7 +8,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.blocks import BLOCK_FIGURES, extreme_dict
 from meshonet.geometry.quality.compare import Difference, compare
-from meshonet.geometry.quality.gates import Gate
+from meshonet.geometry.quality.gates import Gate, Judgement
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.profiles import CheckResult, Figures, ProfileReport, profile_report
 from meshonet.geometry.quality.summary import Quality
@@ -56,6 +56,12 @@ class QualityReport:
         more = self._beside(gates)
         lines = [line for gate in gates if (line := gate.broken(self.quality, more))]
         return lines + (self.profile.failures() if self.profile else [])
+
+    def judgement(self, gates: Sequence[Gate]) -> Judgement:
+        """Return what comes of the gates and of the profile."""
+        beyond = [gate.in_short(value) for gate, value, broken in self.judged(gates) if broken]
+        beyond += self.profile.beyond() if self.profile else []
+        return Judgement(tuple(self.broken(gates)), tuple(dict.fromkeys(beyond)))
 
     def judged(self, gates: Sequence[Gate]) -> list[tuple[Gate, float, bool]]:
         """Return for each gate the figure that it looks at, and whether that is beyond its limit."""

@@ -17,8 +17,8 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.draw import draws
 from meshonet.geometry.shapes.assembly import assembled
+from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.shapes.domain_shape import DomainShape
-from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.polygon_shape import domain_or_body
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
@@ -239,4 +239,4 @@ def shape_of(
         return SpatialShape(Grid((Block(points),)))
     if points.ndim != 2 or points.shape[1] != 2:
         raise InputError(f"points of shape {points.shape}", "give (n, 2)", parameter="shape")
-    return domain_or_body(Outline(points))
+    return domain_or_body(closed_curve(points, ""))

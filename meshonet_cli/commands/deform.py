@@ -23,6 +23,7 @@ def deform(
     files: o.FileOptions,
     printing: o.PrintOptions,
     workers: o.EngineOptions,
+    gates: o.GateOptions,
     wall: Annotated[list[str] | None, _option(
         "--wall", metavar="[NAME=]FILE",
         help="New shape of a wall: an outline, naca:2412, or a grid with as many nodes there, taken node by "
@@ -37,7 +38,6 @@ def deform(
         help="Shift a wall, after its turn when it has one. Repeatable.",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
-    fail_on: o.FailOn = None,
     threads: o.Threads = None,
 ) -> int:
     """Make grids follow a changed boundary, their layers as they were."""
@@ -46,7 +46,7 @@ def deform(
     return write_deformed(
         many.of(grid, grids=True), output, printing.session(), wall=wall or (), rotate=rotate or (),
         shift=shift or (),
-        allow_invalid=allow_invalid, fail_on=fail_on, from_format=files.from_format,
+        allow_invalid=allow_invalid, criteria=gates.criteria(), from_format=files.from_format,
         to_format=files.to_format, skip_existing=files.skip_existing, part_size=files.part_size,
         engine=workers.chosen(), threads=threads,
     )

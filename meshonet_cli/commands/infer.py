@@ -44,7 +44,8 @@ DeviceName = Annotated[Literal["cpu", "cuda"] | None, _option(
 def infer(
     boundary: o.Boundaries, output: o.Output, many: o.InputOptions, sampling: o.SamplingOptions,
     first: o.LayerOptions,
-    domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions, printing: o.PrintOptions,
+    domain: o.DomainOptions, checks: o.CheckOptions, gates: o.GateOptions,
+    files: o.FileOptions, printing: o.PrintOptions,
     volume: o.VolumeOptions, workers: o.EngineOptions,
     blocks: o.BlocksName = "auto", walls: o.Walls = None, model: ModelName = None, polish: Polish = "auto",
     answer: Answer = "valid", device: DeviceName = None, refine: o.Refine = 0,
@@ -60,10 +61,12 @@ def infer(
     from meshonet_cli.grid_batch import request_of, write_grids
 
     settings = {"model": model, "polish": o.polish_steps(polish), "answer": answer, "device": device}
+    criteria = gates.criteria()
     request = request_of(
         "best",
         sampling,
         checks,
+        criteria,
         first,
         volume,
         settings=settings,
@@ -77,7 +80,7 @@ def infer(
         many.of(boundary),
         output,
         request,
-        checks,
+        criteria,
         files,
         session,
         assemble=domain.assemble,

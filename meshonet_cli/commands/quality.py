@@ -22,12 +22,7 @@ def quality(
     grid: o.Grids,
     many: o.InputOptions,
     printing: o.PrintOptions,
-    fail_on: o.FailOn = None,
-    profile: Annotated[Literal["openfoam", "pointwise", "verdict", "viscous"] | None, _check(
-        "--profile", metavar="openfoam|pointwise|verdict|viscous",
-        help="Judge by the thresholds of other programs: prints each with its figure and pass, warning or "
-        "FAIL, and exits with 1 when one fails. See docs/reference/quality.md.",
-    )] = None,
+    gates: o.GateOptions,
     plot: Annotated[str | None, _output(
         "--plot", metavar="F.png", help="Draw the grid, coloured by max_angle.",
     )] = None,
@@ -56,6 +51,7 @@ def quality(
     threads: o.Threads = None,
 ) -> int:
     """Measure grids: folded cells, angles, skewness."""
+    from meshonet.geometry.quality.report import COMPARED
     from meshonet.geometry.threads import limited_to
     from meshonet_cli.quality_batch import measure_grids
 
@@ -63,7 +59,7 @@ def quality(
     with limited_to(threads):
         return measure_grids(
             many.of(grid, grids=True), printing.session(),
-            fmt=from_format, fail_on=fail_on, profile=profile, compare=compare, pairing=pair or "auto",
-            summary=summary, plot=plot, html=html, per_cell=per_cell,
+            fmt=from_format, criteria=gates.criteria(COMPARED if compare else ()), compare=compare,
+            pairing=pair or "auto", summary=summary, plot=plot, html=html, per_cell=per_cell,
         )
 # fmt: on

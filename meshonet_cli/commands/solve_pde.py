@@ -69,7 +69,8 @@ History = Annotated[str | None, o.option_of(o.IO)(
 def solve_pde(
     boundary: o.Boundaries, output: o.Output, many: o.InputOptions, sampling: o.SamplingOptions,
     first: o.LayerOptions,
-    sides: o.SideOptions, domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions,
+    sides: o.SideOptions, domain: o.DomainOptions, checks: o.CheckOptions, gates: o.GateOptions,
+    files: o.FileOptions,
     printing: o.PrintOptions, volume: o.VolumeOptions, workers: o.EngineOptions,
     blocks: o.BlocksName = "auto", walls: o.Walls = None,
     method: Method = "auto", tol: Tolerance = None, max_cycles: MaxCycles = None, coarse: Coarse = "auto",
@@ -84,8 +85,9 @@ def solve_pde(
     """
     from meshonet_cli.grid_batch import initial_grid, request_of, write_grids
 
+    criteria = gates.criteria()
     request = request_of(
-        method, sampling, checks, first, sides, volume,
+        method, sampling, checks, criteria, first, sides, volume,
         settings={"tol": tol, "max_cycles": max_cycles},
         coarse=o.coarse_nodes(coarse), refine=refine, initial=initial_grid(initial),
         history=history is not None,
@@ -94,6 +96,6 @@ def solve_pde(
     )  # fmt: skip
     session = printing.session()
     return write_grids(
-        many.of(boundary), output, request, checks, files, session,
+        many.of(boundary), output, request, criteria, files, session,
         history=history, assemble=domain.assemble, engine=workers.chosen(),
     )  # fmt: skip

@@ -26,6 +26,7 @@ def stack(
     output: o.Output,
     many: o.InputOptions,
     printing: o.PrintOptions,
+    gates: o.GateOptions,
     workers: o.EngineOptions,
     around: Annotated[int | None, _sampling(
         "--around", metavar="N", help="Nodes around a section, an odd number. [default: 129]",
@@ -64,7 +65,6 @@ def stack(
         "[default: 1.2, or what --layers need]",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
-    fail_on: o.FailOn = None,
     to_format: o.To = None,
     skip_existing: o.SkipExisting = False,
     threads: o.Threads = None,
@@ -79,7 +79,7 @@ def stack(
     parameters = {name: value for name, value in chosen.items() if value is not None}
     return write_stacks(
         many.of(sections, suffixes=(".toml",)), output, parameters | {"allow_invalid": allow_invalid},
-        printing.session(), tip=tip, surface=surface, fail_on=fail_on, to_format=to_format,
+        printing.session(), tip=tip, surface=surface, criteria=gates.criteria(), to_format=to_format,
         skip_existing=skip_existing, engine=workers.chosen(),
     )
 # fmt: on

@@ -25,6 +25,7 @@ def sweep(
     output: o.Output,
     many: o.InputOptions,
     printing: o.PrintOptions,
+    gates: o.GateOptions,
     workers: o.EngineOptions,
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ", help="Nodes along the sides of a four-sided section. [default: 65x33]",
@@ -69,7 +70,6 @@ def sweep(
         "--growth", metavar="G", help="Largest ratio of neighbouring cells away from walls. [default: 1.2]",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
-    fail_on: o.FailOn = None,
     from_format: o.From = None,
     to_format: o.To = None,
     skip_existing: o.SkipExisting = False,
@@ -90,7 +90,7 @@ def sweep(
     }
     along = {"planes": planes, "up": vector(up), "twist": twist, "scale": scale}
     return write_sweeps(
-        many.of(outlines), path, output, res, section, along, printing.session(), fail_on=fail_on,
+        many.of(outlines), path, output, res, section, along, printing.session(), criteria=gates.criteria(),
         from_format=from_format, to_format=to_format, skip_existing=skip_existing, engine=workers.chosen(),
     )
 # fmt: on

@@ -23,6 +23,7 @@ def tfi(
     first: o.LayerOptions,
     sides: o.SideOptions,
     checks: o.CheckOptions,
+    gates: o.GateOptions,
     files: o.FileOptions,
     printing: o.PrintOptions,
     workers: o.EngineOptions,
@@ -35,10 +36,11 @@ def tfi(
     """Make grids by transfinite interpolation."""
     from meshonet_cli.grid_batch import request_of, write_grids
 
+    criteria = gates.criteria()
     request = request_of(
-        "tfi", sampling, checks, first, sides, settings={"blending": blending}, threads=threads
+        "tfi", sampling, checks, criteria, first, sides, settings={"blending": blending}, threads=threads
     )
     return write_grids(
-        many.of(boundary), output, request, checks, files, printing.session(), engine=workers.chosen()
+        many.of(boundary), output, request, criteria, files, printing.session(), engine=workers.chosen()
     )
 # fmt: on

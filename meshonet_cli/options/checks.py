@@ -1,17 +1,19 @@
 """Options that say what a grid must be to be written, and what ends the program with 1."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from meshonet_cli.options.groups import CHECKS, option_of
+
+if TYPE_CHECKING:
+    from meshonet.geometry.quality.criteria import Criteria
 
 _option = option_of(CHECKS)
 
 # fmt: off
-FailOn = Annotated[list[str] | None, _option(
-    "--fail-on", metavar="GATE",
-    help="Exit with 1 when this holds, e.g. 'max_angle>170', 'skewness.p99>0.8', 'folded>0'; repeatable.",
-)]
 AllowInvalid = Annotated[bool, _option(
     "--allow-invalid", help="Write the grid even when cells are folded.",
 )]
@@ -27,5 +29,31 @@ class CheckOptions:
         "refuses]",
     )] = None
     allow_invalid: AllowInvalid = False
-    fail_on: FailOn = None
+
+
+@dataclass(frozen=True)
+class GateOptions:
+    """What a grid must be to pass."""
+
+    fail_on: Annotated[list[str] | None, _option(
+        "--fail-on", metavar="GATE",
+        help="Exit with 1 when this holds, e.g. 'max_angle>170', 'skewness.p99>0.8', 'folded>0'; repeatable. "
+        "Of several grids a table says which pass.",
+    )] = None
+    profile: Annotated[Literal["openfoam", "pointwise", "verdict", "viscous"] | None, _option(
+        "--profile", metavar="openfoam|pointwise|verdict|viscous",
+        help="Judge by the thresholds of other programs as by gates: pass, warning or FAIL, and exit with 1 "
+        "when one fails. See docs/reference/quality.md.",
+    )] = None
+
+    def criteria(self, more: Sequence[str] = ()) -> Criteria:
+        """Return gates and profile; gates may name figures of grids of blocks, and of `more`.
+
+        Raises InputError: a gate that is none.
+        """
+        from meshonet.geometry.quality.blocks import BLOCK_FIGURES
+        from meshonet.geometry.quality.criteria import Criteria
+        from meshonet.geometry.quality.gates import parse_gates
+
+        return Criteria(parse_gates(self.fail_on, (*BLOCK_FIGURES, *more)), self.profile)
 # fmt: on

@@ -11,8 +11,12 @@ from meshonet_cli.text import named, span
 
 if TYPE_CHECKING:
     from meshonet.geometry.quality.blocks import BlockFigures
+    from meshonet.geometry.quality.gates import Judgement
     from meshonet.geometry.quality.summary import Quality
     from meshonet.solvers.progress import Row
+
+_METHODS = {"conformal": "conformal map"}
+"""Methods whose names alone would not say what they do, for people."""
 
 
 @dataclass
@@ -35,6 +39,7 @@ class Report(Timed):
     notes: tuple[str, ...] = ()
     history: tuple[Row, ...] = ()
     blocks: BlockFigures | None = None
+    judgement: Judgement | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
@@ -52,7 +57,7 @@ class Report(Timed):
         """Return the report of a single grid for people."""
         angle = self.quality["max_angle"]
         rows = {
-            "method": self.method + (f", model {self.model}" if self.model else "") + _after(self.path),
+            "method": self._method + (f", model {self.model}" if self.model else "") + _after(self.path),
             "residual": f"{self.residual:.1e} after {self.cycles} cycle{'' if self.cycles == 1 else 's'}"
             if self.residual is not None
             else "",
@@ -70,8 +75,12 @@ class Report(Timed):
         return (
             f"{self.item.label} -> {self.output}: {self._size(short=True)}, "
             f"{self.quality.folded} folded, max angle {angle:.1f}, "
-            f"{self.method}{_after(self.path)}, {span(self.seconds['total'])}"
+            f"{self._method}{_after(self.path)}, {span(self.seconds['total'])}"
         )
+
+    @property
+    def _method(self) -> str:
+        return _METHODS.get(self.method, self.method)
 
     def _size(self, *, short: bool = False) -> str:
         """Return how large the grid is."""

@@ -12,6 +12,7 @@ from meshonet.geometry.quality.report import Comparison, QualityReport
 from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet_cli.batch.timed import Timed
+from meshonet_cli.summary import figures
 from meshonet_cli.text import aligned, figure, named
 
 _PLACES = {2: "i, j", 3: "block, i, j", 4: "block, i, j, k"}
@@ -55,10 +56,8 @@ class Measured(Timed):
 
     def figures_of_row(self) -> dict[str, float]:
         """Return the figures that a summary of many grids shows."""
-        quality, comparison = self.report.quality, self.report.comparison
-        angle = quality["max_angle"]
-        row = {"folded": quality.folded, "max_angle": angle.max, "mean_angle": angle.mean}
-        return row | (comparison.figures() if comparison else {})
+        comparison = self.report.comparison
+        return figures(self.report.quality) | (comparison.figures() if comparison else {})
 
 
 def quality_table(quality: Quality) -> str:

@@ -40,13 +40,14 @@ def solve(
     boundaries: Sequence[Boundary],
     polish: Polish = "auto",
     correction: Correction | None = None,
-    model: str = "base",
+    model: str | None = None,
     substitute: Callable[[Boundary, str], Solution | None] | None = None,
 ) -> list[Solution]:
     """Return a grid inside each O boundary, whose nodes it has bitwise.
 
     `polish`: Picard steps; `correction`: what is added to the harmonic base before them, for all boundaries
-    at once; `model`: name that solutions give the correction; `substitute`: is offered a boundary that cannot
+    at once; `model`: name of the operator that
+    makes the correction; `substitute`: is offered a boundary that cannot
     be lifted, and why, before the elliptic solver.
     """
     across()  # made once a process: no part of a grid's time
@@ -60,30 +61,35 @@ def solve(
         if isinstance(body, Walls):
             solution = _solved(boundary, body, next(starts), polish, model, rough=rough)
         else:
-            why = f"the operator cannot take this body ({body.problem})"
+            why = f"the {_called(model)} cannot take this body ({body.problem})"
             solution = (substitute and substitute(boundary, why)) or _elliptic(boundary, why)
         solutions.append(replace(solution, seconds={"grid": time.perf_counter() - begun}))
     return solutions
 
 
 def _solved(
-    boundary: Boundary, body: Walls, start: Complexes, polish: Polish, model: str, *, rough: bool
+    boundary: Boundary, body: Walls, start: Complexes, polish: Polish, model: str | None, *, rough: bool
 ) -> Solution:
     c, changes = _polished(start, polish)
     if changes and not changes[-1] < DIVERGED:
-        return _elliptic(boundary, "the operator's polish diverged")
+        return _elliptic(boundary, f"the polish of the {_called(model)} diverged")
     nodes, finite = _evaluated(boundary, body, c)
     if rough and count_folded(nodes):
         nodes, finite = _evaluated(boundary, body._replace(corners=sharp_turns(body)), c)
     if rough and count_folded(nodes):
         with suppress(SolverError):
-            solution = _elliptic(boundary, "the operator folds cells of uneven spacing")
+            solution = _elliptic(boundary, f"the {_called(model)} folds cells of uneven spacing")
             if not count_folded(solution.grid.nodes):
                 return solution
-    facts = {"method": "operator", "model": model, "polish": len(changes)}
+    method = "operator" if model else Conformal.name
+    facts = {"method": method, **({"model": model} if model else {}), "polish": len(changes)}
     grid = boundary.grid(nodes, facts, finite=finite)
     residual = changes[-1] if changes else None
-    return Solution(grid, "operator", model=model, residual=residual, cycles=len(changes))
+    return Solution(grid, method, model=model, residual=residual, cycles=len(changes))
+
+
+def _called(model: str | None) -> str:
+    return "operator" if model else "conformal map"
 
 
 def _lifted(boundary: Boundary) -> tuple[Walls | InputError, bool]:
@@ -154,5 +160,4 @@ class Conformal:
             if problem.topology != "o":
                 what = f"method conformal makes o grids, and this boundary is {problem.topology}"
                 raise InputError(what, "use another {method}")
-        solutions = solve(problems, self.polish)
-        return [replace(each, method=self.name, model=None) if each.model else each for each in solutions]
+        return solve(problems, self.polish)

@@ -13,15 +13,28 @@ def test_a_body_becomes_a_valid_o_grid(meshonet: Meshonet, body_h5: Path) -> Non
     told = meshonet("infer", body_h5, "-o", "grid.vts", "--json").only
     assert told["folded"] == 0
     assert told["topology"] == "o"
-    assert told["model"]
     (grid,) = read_grids("grid.vts")
     np.testing.assert_array_equal(grid.nodes[:, 0], ellipse()["south"])
     np.testing.assert_array_equal(grid.nodes[-1], grid.nodes[0])
 
 
-def test_base_is_the_operator_without_network(meshonet: Meshonet, body_h5: Path) -> None:
+def test_base_is_the_conformal_map_without_network(meshonet: Meshonet, body_h5: Path) -> None:
     told = meshonet("infer", body_h5, "-o", "grid.vts", "--model", "base", "--polish", "off", "--json").only
-    assert (told["method"], told["model"], told["cycles"]) == ("operator", "base", 0)
+    assert (told["method"], told["model"], told["cycles"]) == ("conformal", None, 0)
+
+
+def test_reports_say_that_an_o_grid_comes_of_a_conformal_map(meshonet: Meshonet, body_h5: Path) -> None:
+    assert "  method     conformal map\n" in meshonet("infer", body_h5, "-o", "grid.vts").err
+    lines = meshonet("infer", body_h5, body_h5, "-o", "{index}.vts").err.splitlines()
+    assert ", conformal map, " in lines[0]
+    assert (
+        meshonet("solve-pde", body_h5, "--method", "conformal", "-o", "g.h5", "--json").only["method"]
+        == "conformal"
+    )
+    (grid,) = read_grids("grid.vts")
+    assert grid.provenance["method"] == "conformal"
+    named = meshonet("infer", body_h5, "-o", "grid.vts", "--model", "airfoil-o").err
+    assert "  method     operator, model airfoil-o\n" in named
 
 
 def test_polish_takes_the_steps_it_is_told(meshonet: Meshonet, body_h5: Path) -> None:

@@ -97,7 +97,43 @@ def test_json_names_the_gates_and_checks_that_are_not_met(
     assert good["gates_not_met"] == []
     assert bad["gates_not_met"][0].endswith("and --fail-on 'folded>0'")
     assert "profile verdict: folded is" in bad["gates_not_met"][1]
-    assert "not met" in meshonet(*words, "--summary").out.splitlines()[0]
+
+
+def test_a_judged_batch_ends_in_a_table_of_verdicts_and_limits(
+    meshonet: Meshonet, grid_vts: Path, folded_vts: Path
+) -> None:
+    words = ("quality", grid_vts, folded_vts, "missing.vts", "--fail-on", "folded>0", "--profile", "verdict")
+    for more in ((), ("--summary",)):
+        done = meshonet(*words, *more)
+        assert done.code == 2
+        head, good, bad, none, *_, counts = done.out.splitlines()[-9:]
+        assert head.endswith("verdict  limits exceeded")
+        assert good.split()[-1] == "pass"
+        assert "FAIL     folded " in bad
+        assert bad.count(" > 0") == 1  # which is a gate, and a check of the profile
+        assert "scaled_jacobian" in bad
+        assert none.split() == ["missing.vts", "-", "-", "-", "error"]
+        assert counts == "verdicts: 1 pass, 1 FAIL, 1 error"
+    told = meshonet(*words, "--summary", "--json").objects[-1]["summary"]
+    assert told["members"] == 2
+    assert [row["verdict"] for row in told["verdicts"]] == ["pass", "fail", "error"]
+    assert [text.split()[0] for text in told["verdicts"][1]["beyond"]] == [
+        "folded", "scaled_jacobian", "max_angle", "min_angle",
+    ]  # fmt: skip
+    without = meshonet("quality", grid_vts, folded_vts, "--summary").out
+    assert "verdict" not in without
+
+
+def test_a_warning_of_a_profile_passes_and_is_in_the_table(meshonet: Meshonet) -> None:
+    words = ("--res", "81", "--first-cell", "1e-4", "--growth", "1.2", "-o", "g.h5", "-q")
+    meshonet("infer", "naca:0012", *words)
+    done = meshonet("quality", "g.h5", "g.h5", "--summary", "--profile", "viscous")
+    assert (done.code, "warning  equal_wall_cells 1 < 2, far_field 14" in done.out, " < 100" in done.out) == (
+        0,
+        True,
+        True,
+    )
+    assert done.out.splitlines()[-1] == "verdicts: 2 warning"
 
 
 def test_a_figure_of_a_profile_is_no_gate_and_the_error_names_the_profile(

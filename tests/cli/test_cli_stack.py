@@ -90,7 +90,10 @@ def test_a_gate_ends_with_1(meshonet: Meshonet, wing: Path) -> None:
         ),
         (("--y-plus", "1"), "--y-plus and --reynolds belong together"),
         (("--layers", "9", "--growth", "1.2"), "--layers and --growth both say"),
-        (("--surface", "--fail-on", "folded>0"), "--fail-on judges cells, and a surface has none"),
+        (
+            ("--surface", "--fail-on", "folded>0"),
+            "--fail-on and --profile judge cells, and a surface has none",
+        ),
     ],
 )
 def test_values_that_do_not_fit_get_a_line(

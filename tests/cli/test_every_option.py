@@ -107,6 +107,7 @@ SHAPES = COMMON | chosen("@shapes.txt -o made-{stem}.h5 -q", "*C*") | engines(MA
 GRIDS = (
     SHAPES
     | judged(f"{GRID} {MADE}", f"open.h5 {MADE}")
+    | {"--profile": ("grid.h5 grid.h5 -o made.h5", "OPTION viscous", "out")}
     | flat_plate(f"naca:2412 --res 61x41 {MADE}")
     | {
         "--first-cell": (f"naca:2412 --res 41x41 {MADE}", "OPTION 1e-3", "nodes"),
@@ -236,6 +237,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         **engines(f"wing.toml {WING} -o {{name}}.h5 -q"),
         **flat_plate(f"{WING} {MADE}"),
         **judged(f"{WING} {MADE}", f"moon.toml --around 49 --span 9 {MADE}"),
+        "--profile": (f"short.toml {WING} -o made-{{index}}.h5", "OPTION pointwise", "out"),
         "--around": (f"{WING} {MADE}", "OPTION 61", "nodes"),
         "--span": (f"{WING} {MADE}", "OPTION 11", "nodes"),
         "--base": (f"{WING} {MADE}", "OPTION .01", "nodes"),
@@ -252,6 +254,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         **engines(f"circle:.4 {PIPE} -o {{index}}.h5 -q"),
         **flat_plate(f"{PIPE} {MADE}"),
         **judged(f"{PIPE} {MADE}", f"folded.h5 path.csv {MADE}"),
+        "--profile": (f"circle:.5 {PIPE} -o made-{{index}}.h5", "OPTION verdict", "out"),
         "--res": (f"box.csv path.csv {MADE}", "OPTION 11x9", "nodes"),
         "--planes": (f"{PIPE} {MADE}", "OPTION 7", "nodes"),
         "--up": (f"{PIPE} {MADE}", "OPTION 0,1,1", "nodes"),
@@ -269,6 +272,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         **chosen(f"@grids.txt {SHIFT} -o made-{{stem}}.h5 -q", "*oo*"),
         **engines(f"smooth.h5 {SUNK} -o {{index}}.h5 -q"),
         **judged(f"{SUNK} {MADE}", f"grid.h5 --rotate south=180@1,0 {MADE}"),
+        "--profile": ("grid.h5 grid.h5 --shift south=0,-.1 -o made.h5", "OPTION viscous", "out"),
         "--part-size": (f"bc.h5 {SHIFT} {MADE}", "OPTION 1", "files"),
         "--wall": (f"grid.h5 --shift north=0,.1 {MADE}", "OPTION south=c.vts", "nodes"),
         "--rotate": (f"{SUNK} {MADE}", "OPTION north=2@0,1", "nodes"),

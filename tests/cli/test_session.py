@@ -10,8 +10,10 @@ import pytest
 from command_line import terminal
 
 from meshonet.geometry.errors import InputError, NoValidGridError, SolverError
+from meshonet.geometry.quality.gates import Judgement
 from meshonet_cli.errors import explained
 from meshonet_cli.session import Session
+from meshonet_cli.summary import Row
 from meshonet_cli.text import aligned, figure, span
 
 
@@ -63,9 +65,12 @@ def test_every_error_is_a_line(error: Exception, told: str) -> None:
     assert "\n" not in explained(error, "m")
 
 
+FIGURES = {"folded": 0.0}
+
+
 def test_gates_say_the_figure_and_set_one(capsys: pytest.CaptureFixture[str]) -> None:
     session = Session(quiet=True)
-    session.gate("g.vts", ["max_angle.max is 175"])
+    session.judge(Row("g.vts", FIGURES, Judgement(("max_angle.max is 175",))))
     assert session.finish() == 1
     assert capsys.readouterr().err == "gate not met: g.vts: max_angle.max is 175\n"
 
@@ -127,8 +132,8 @@ def test_a_session_counts_grids_beyond_a_gate_among_those_done(capsys: pytest.Ca
     session = Session()
     session.batch = True
     session.done = 3
-    session.gate("a.vts", ["max_angle.max is 175", "folded is 1"])
-    session.gate("b.vts", [])
+    session.judge(Row("a.vts", FIGURES, Judgement(("max_angle.max is 175", "folded is 1"))))
+    session.judge(Row("b.vts", FIGURES, Judgement()))
     session.finish()
     assert "3 done (1 of them beyond a gate) in " in capsys.readouterr().err
 

@@ -15,7 +15,12 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, clean_section
-from meshonet.geometry.shapes.airfoil.section_curve import farthest_arc, moved_note, section_curve
+from meshonet.geometry.shapes.airfoil.section_curve import (
+    farthest_arc,
+    moved_note,
+    section_curve,
+    shape_notes,
+)
 from meshonet.geometry.shapes.airfoil.trailing_edge import rounded_base, wedged_base
 from meshonet.geometry.shapes.airfoil.wall_nodes import Stations, wall_arcs
 from meshonet.geometry.shapes.far_field import o_boundary
@@ -208,7 +213,8 @@ class Airfoil:
         if topology == "o" and (sampling.wake or sampling.wake_nodes):
             remedy = "leave {wake} out, or use {topology} c"
             raise InputError("an O grid has no wake", remedy, source=self.name)
-        notes = body.notes + self._edge_notes(body, te, sampling)
+        notes = body.notes + shape_notes(self._section, self.curve, self.chord)
+        notes += self._edge_notes(body, te, sampling)
         if topology == "c":
             if sampling.topology == "auto":
                 notes += ("c grid, as the trailing edge is sharp; {topology} o makes an O grid",)

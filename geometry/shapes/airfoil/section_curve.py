@@ -8,10 +8,14 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing, find_crossings
-from meshonet.geometry.shapes.airfoil.clean import Section
+from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, Section
 
 _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31 / 32])
 """Where an interval of the curve is cut into straight pieces to be searched for crossings."""
+DEPARTURE = 1e-3
+"""Distance in chords beyond which the curve counts as another wall than the lines between its points."""
+OBLIQUE = 30.0  # degrees off the normal of the chord from which on a base is called oblique
+MOST_BASE = 0.25  # chords; a wider last piece of a surface is none
 _PARTS = 128  # parts into which a stretch is cut to find the place farthest from the trailing edge
 
 
@@ -63,6 +67,48 @@ def moved_note(before: Section, section: Section) -> str:
         f"the outline is changed: its surfaces touch near ({x:.6g}, {y:.6g}) and are moved apart, by at most "
         f"{most:.2g} chords"
     )
+
+
+def shape_notes(section: Section, curve: Curve, chord: float) -> tuple[str, ...]:
+    """Return notes of an oblique base, and of a curve that leaves the straight lines between its points."""
+    notes = _oblique_base(section, chord)
+    off = departure(curve) / chord
+    if off > DEPARTURE:
+        notes += (
+            f"the wall is a smooth curve through the points, which leaves the straight lines between them by "
+            f"up to {off:.2g} chords; more points would say where it runs",
+        )
+    return notes
+
+
+def _oblique_base(section: Section, chord: float) -> tuple[str, ...]:
+    """Return a note where the base is far from square to the chord; a sharp section may end in one piece."""
+    points, last = section.points, len(section.points) - 1
+    others = [(last, "")] if section.blunt else [(1, "lower"), (last, "upper")]
+    for other, side in others:
+        base = points[other] - points[0]
+        width = float(np.hypot(*base))
+        if not {0, other} <= set(section.corners.tolist()) or not SHARP_GAP < width / chord < MOST_BASE:
+            continue
+        edge = 0.5 * (points[0] + points[other])
+        axis = edge - points[np.argmax(np.hypot(*(points - edge).T))]
+        slant = float(np.degrees(np.arcsin(min(abs(base @ axis) / (width * np.hypot(*axis)), 1.0))))
+        kept = f", as the last piece of the {side} surface, and the edge counts as sharp" if side else ""
+        if side or slant > OBLIQUE:
+            return (
+                f"the base of the trailing edge, {width / chord:.3g} chords wide, is oblique, {slant:.0f} "
+                f"degrees off the normal of the chord: both its corners are kept{kept}",
+            )
+    return ()
+
+
+def departure(curve: Curve) -> float:
+    """Return the largest distance of a curve from the straight lines between its points, in its unit."""
+    ends = np.concatenate([curve.points, curve.points[:1]]) if curve.closed else curve.points
+    starts, ways = ends[:-1, None], np.diff(ends, axis=0)[:, None]
+    inside = curve.polyline(_CUTS)[: len(ways) * len(_CUTS)].reshape(len(ways), len(_CUTS), 2) - starts
+    across = ways[..., 0] * inside[..., 1] - ways[..., 1] * inside[..., 0]
+    return float((np.abs(across) / np.hypot(ways[..., 0], ways[..., 1])).max())
 
 
 def _crossed(section: Section, crossing: Crossing, places: Sequence[str]) -> InputError:

@@ -63,5 +63,6 @@ class StripOperator(Operator):
     def solve(self, boundaries: Sequence[Boundary], polish: Polish = "auto", **_: Any) -> list[Solution]:
         """Return a grid inside each O boundary, whose nodes it has bitwise."""
         self.check(boundaries)
-        correction = self.residual if self.network else None
-        return conformal.solve(boundaries, polish, correction, self.name)
+        if not self.network:
+            return conformal.solve(boundaries, polish)
+        return conformal.solve(boundaries, polish, self.residual, self.name)

@@ -35,7 +35,7 @@ def test_boundary_nodes_are_kept_bitwise_and_nothing_folds(designation: str, pol
     edges = boundary(designation)
     solution = infer(edges, polish=polish)  # type: ignore[arg-type]
     nodes = solution.grid.nodes
-    assert solution.method == "operator"
+    assert solution.method == ("conformal" if polish == "auto" else "operator")
     np.testing.assert_array_equal(nodes[:, 0], edges.south)
     np.testing.assert_array_equal(nodes[:, -1], edges.north)
     np.testing.assert_array_equal(nodes[0], nodes[-1])
@@ -157,19 +157,19 @@ def test_a_body_the_lift_cannot_take_goes_to_the_elliptic_solver_and_says_why() 
     wall[-1] = wall[0]
     solution = infer(o_boundary(wall, 12, np.zeros(2), 6.0))
     assert solution.method == "winslow"
-    assert "the operator cannot take this body" in solution.notes[0]
+    assert "the conformal map cannot take this body" in solution.notes[0]
 
 
-def test_even_spacing_around_the_leading_edge_stays_with_the_operator() -> None:
+def test_even_spacing_around_the_leading_edge_stays_with_the_conformal_map() -> None:
     solution = infer(boundary("2412-sharp", 200, 100, spacing="uniform"))
-    assert solution.method == "operator"
+    assert solution.method == "conformal"
     assert count_folded(solution.grid.nodes) == 0
 
 
 @pytest.mark.parametrize("seed", [113, 125, 143, 174, 198, 249])
 def test_lines_off_edges_between_wide_cells_do_not_cross_them(seed: int) -> None:
     solution = infer(procedural.boundary(np.random.default_rng(seed), 160, 160, "uniform"))
-    assert (solution.method, count_folded(solution.grid.nodes)) == ("operator", 0)
+    assert (solution.method, count_folded(solution.grid.nodes)) == ("conformal", 0)
 
 
 @pytest.mark.parametrize("settings", [{"spacing": "uniform"}, {"spacing": "tanh", "te_spacing": 0.012}])
@@ -198,7 +198,8 @@ def test_grids_stay_what_they_were(designation: str, i: int, j: int, x: float, y
 def test_polished_to_the_end_the_network_is_left_out_unless_it_is_named() -> None:
     edges = boundary("4412", 161, 60, spacing="cosine")
     found, named = infer(edges), infer(edges, model="airfoil-o")
-    assert (found.model, named.model, infer(edges, polish=1).model) == ("base", "airfoil-o", "airfoil-o")
+    assert (found.method, found.model) == ("conformal", None)
+    assert (named.method, named.model, infer(edges, polish=1).model) == ("operator", "airfoil-o", "airfoil-o")
     near = slice(0, 40)
     away = np.abs(found.grid.nodes - named.grid.nodes)[:, near].max()
     assert 0.0 < away < 1e-3, "both are Winslow's solution"

@@ -1,0 +1,42 @@
+"""What a user accepts of a grid: gates, and the limits of a profile."""
+
+from dataclasses import dataclass
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.gates import Gate, Judgement, need_percentiles
+from meshonet.geometry.quality.profiles import Figures, profile_report
+from meshonet.geometry.quality.report import QualityReport
+from meshonet.geometry.quality.summary import Quality
+
+
+@dataclass(frozen=True)
+class Criteria:
+    """Gates, and the name of a profile; what is false asks for nothing.
+
+    Parameters
+    ----------
+    gates : tuple of Gate, optional
+        Conditions under which a grid fails.
+    profile : str, optional
+        One of `meshonet.geometry.quality.profiles.PROFILES`.
+    """
+
+    gates: tuple[Gate, ...] = ()
+    profile: str | None = None
+
+    def __bool__(self) -> bool:
+        return bool(self.gates or self.profile)
+
+    @property
+    def percentiles(self) -> bool:
+        """Whether a gate looks at a percentile, which `judge` must then be given."""
+        return need_percentiles(self.gates)
+
+    def judge(self, grid: Grid, quality: Quality) -> Judgement:
+        """Return the judgement of a grid of this `quality`.
+
+        Raises InputError: a gate names a figure that these cells do not have.
+        """
+        figures = Figures(grid, quality, grid.walls())
+        profile = profile_report(figures, self.profile) if self.profile else None
+        return QualityReport(grid, quality, (), figures, profile).judgement(self.gates)

@@ -1,0 +1,116 @@
+"""Many grids in one table: a row each, and the median, mean, 90th percentile and worst of every column."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from meshonet_cli.text import aligned, figure
+
+if TYPE_CHECKING:
+    from meshonet.geometry.quality.gates import Judgement
+    from meshonet.geometry.quality.summary import Quality
+
+LABELS = {
+    "folded": "folded", "max_angle": "max angle", "mean_angle": "mean angle", "relative_l2": "rel L2",
+    "near_wall": "near wall", "max": "max", "boundary": "boundary", "folded_other": "folded there",
+    "max_angle_ratio": "max ratio", "mean_angle_ratio": "mean ratio",
+}  # fmt: skip
+"""Columns, for people."""
+VERDICTS = {"pass": "pass", "warn": "warning", "fail": "FAIL", "error": "error"}
+"""Verdicts, for people; an error means that there is no grid to judge."""
+
+
+def figures(quality: Quality) -> dict[str, float]:
+    """Return the columns of every grid."""
+    angle = quality["max_angle"]
+    return {"folded": quality.folded, "max_angle": angle.max, "mean_angle": angle.mean}
+
+
+@dataclass(frozen=True)
+class Row:
+    """A member of a batch, with its figures by column; one without figures ended in an error."""
+
+    label: str
+    figures: Mapping[str, float] = field(default_factory=dict)
+    judgement: Judgement | None = None
+
+    @property
+    def verdict(self) -> str:
+        """A key of `VERDICTS`, or nothing for a grid that was not judged."""
+        return (self.judgement.verdict if self.judgement else "") if self.figures else "error"
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Figures of many grids, and the verdicts where they were judged."""
+
+    rows: Sequence[Row]
+
+    @property
+    def members(self) -> list[Row]:
+        """The rows of grids."""
+        return [row for row in self.rows if row.figures]
+
+    @property
+    def judged(self) -> bool:
+        """Whether there are verdicts."""
+        return any(row.judgement for row in self.rows)
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        facts: dict[str, Any] = {"members": len(self.members)}
+        for column in self._columns():
+            labels, values = self._values(column)
+            facts[column] = _statistics(values) | {"worst": labels[values.index(max(values))]}
+            if column.startswith("folded"):
+                facts[column] |= {"sum": sum(values), "members": sum(value > 0 for value in values)}
+        if self.judged:
+            facts["verdicts"] = [
+                {"name": row.label, "verdict": row.verdict, "beyond": list(_beyond(row))} for row in self.rows
+            ]
+        return {"summary": facts}
+
+    def lines(self) -> str:
+        """Return the table for people."""
+        columns = self._columns()
+        rows = self.rows if self.judged else self.members
+        table = [["grid", *(LABELS[column] for column in columns)]]
+        for row in rows:
+            values = row.figures
+            table.append([row.label, *(figure(values[c]) if c in values else "-" for c in columns)])
+        statistics = [_statistics(self._values(column)[1]) for column in columns]
+        for name in ("median", "mean", "p90", "max"):
+            label = f"{'worst' if name == 'max' else name} of {len(self.members)}"
+            table.append([label, *(figure(values[name]) for values in statistics)])
+        return self._with_verdicts(aligned(table)) if self.judged else aligned(table)
+
+    def _with_verdicts(self, table: str) -> str:
+        """Return a table of all rows with the verdict at the end of each, and how many there are of each."""
+        lines = table.splitlines()
+        width = max(map(len, lines))
+        ends = ["verdict  limits exceeded"]
+        ends += [f"{VERDICTS[row.verdict]:<7}  {', '.join(_beyond(row))}" for row in self.rows]
+        whole = [f"{line:<{width}}  {end}".rstrip() for line, end in zip(lines, ends, strict=False)]
+        verdicts = [row.verdict for row in self.rows]
+        counts = [f"{verdicts.count(key)} {word}" for key, word in VERDICTS.items() if key in verdicts]
+        return "\n".join([*whole, *lines[len(ends) :], f"verdicts: {', '.join(counts)}"])
+
+    def _columns(self) -> list[str]:
+        return [column for column in LABELS if any(column in row.figures for row in self.rows)]
+
+    def _values(self, column: str) -> tuple[list[str], list[float]]:
+        pairs = [(row.label, float(row.figures[column])) for row in self.rows if column in row.figures]
+        return [label for label, _ in pairs], [value for _, value in pairs]
+
+
+def _beyond(row: Row) -> Sequence[str]:
+    return row.judgement.beyond if row.judgement else ()
+
+
+def _statistics(values: Sequence[float]) -> dict[str, float]:
+    import numpy as np
+
+    low, median, high, most = (float(v) for v in np.percentile(values, [0, 50, 90, 100]))
+    return {"min": low, "median": median, "mean": float(np.mean(values)), "p90": high, "max": most}

@@ -1,0 +1,81 @@
+"""Grids judged as they are made: one mechanism for gates and profiles, in every command that makes grids."""
+
+from pathlib import Path
+
+import pytest
+from command_line import Meshonet, Process
+
+FOILS = ("naca:0012", "naca:2412", "missing.dat")
+VISCOUS = ("--res", "41x15", "--profile", "viscous", "-o", "{stem}.h5")
+
+
+@pytest.mark.parametrize("jobs", [(), ("--jobs", "2")])
+def test_a_batch_ends_in_a_table_of_verdicts(meshonet: Meshonet, jobs: tuple[str, ...]) -> None:
+    done = meshonet("infer", *FOILS, *VISCOUS, *jobs)
+    assert done.code == 2
+    head, *lines, counts = done.out.splitlines()
+    assert head.endswith("verdict  limits exceeded")
+    rows = {line.split()[0]: line for line in lines}  # of several processes, what cannot be read comes first
+    for name in FOILS[:2]:
+        line = rows[name]
+        assert "FAIL     wall_growth " in line
+        assert ">= 1.25" in line
+        assert "far_field 15 < 100" in line  # a warning
+        assert Path(name.replace(":", "") + ".h5").exists()  # it is written all the same
+    assert rows["missing.dat"].split()[-1] == "error"
+    assert counts == "verdicts: 2 FAIL, 1 error"
+    assert done.err.count("gate not met: naca:0012: profile viscous: wall_growth is") == 1
+    assert "2 done (2 of them beyond a gate), 1 failed" in done.err
+
+
+def test_grids_on_standard_output_leave_the_table_on_standard_error(process: Process) -> None:
+    done = process("infer", *FOILS[:2], *VISCOUS[:4], "-o", "-")
+    assert done.returncode == 1
+    assert b"verdicts: 2 FAIL" in done.stderr
+
+
+def test_json_has_what_is_not_met_and_no_table(meshonet: Meshonet) -> None:
+    told = meshonet("infer", *FOILS[:2], *VISCOUS, "--json").objects
+    assert [len(grid["gates_not_met"]) for grid in told] == [1, 1]
+    assert told[0]["gates_not_met"][0].startswith("profile viscous: wall_growth is ")
+
+
+def test_what_is_not_judged_has_no_table(meshonet: Meshonet) -> None:
+    assert meshonet("infer", *FOILS, "--res", "41x15", "-o", "{stem}.h5").out == ""
+    assert meshonet("infer", *FOILS, *VISCOUS, "-q").out == ""
+
+
+def test_a_profile_says_the_same_when_the_grid_is_made_and_afterwards(meshonet: Meshonet) -> None:
+    for profile in ("openfoam", "pointwise", "verdict", "viscous"):
+        words = ("--profile", profile, "--json")
+        made = meshonet("infer", "naca:4412", "--res", "61x31", "-o", "g.h5", *words)
+        read = meshonet("quality", "g.h5", *words)
+        assert made.code == read.code
+        assert made.only["gates_not_met"] == read.only["gates_not_met"]
+
+
+def test_gates_name_figures_of_blocks_when_grids_are_made(meshonet: Meshonet) -> None:
+    Path("plate.wkt").write_text("POLYGON ((0 0, 3 0, 3 1, 1 1, 1 2, 0 2, 0 0))", encoding="utf-8")
+    done = meshonet("infer", "plate.wkt", "--cells", "400", "--fail-on", "growth>=1", "-o", "g.h5")
+    assert (done.code, "gate not met: plate.wkt: growth is" in done.err) == (1, True)
+
+
+def test_a_gate_on_a_figure_that_the_cells_lack_is_an_error(meshonet: Meshonet) -> None:
+    done = meshonet("infer", "naca:0012", "--res", "41x15", "--fail-on", "bezier_folded>0", "-o", "g.h5")
+    assert done.code == 2
+    assert "naca:0012: --fail-on: this grid has no bezier_folded" in done.err.replace("error: ", "")
+
+
+def test_an_error_that_all_inputs_end_in_is_told_three_times_and_counted(meshonet: Meshonet) -> None:
+    foils = [f"naca:24{number:02}" for number in range(10, 20)]
+    words = ("infer", *foils, "--topology", "quad", "-o", "{stem}.h5")
+    done = meshonet(*words)
+    assert done.code == 2
+    errors = [line for line in done.err.splitlines() if line.startswith("error: ")]
+    assert len(errors) == 4
+    assert errors[0].startswith("error: naca:2410: topology quad is not made from an airfoil")
+    assert errors[3] == "error: 7 more inputs: topology quad is not made from an airfoil"
+    assert "10 failed" in done.err
+    assert len(meshonet(*words, "--json").objects) == 10  # a program is told each of them
+    missing = meshonet("infer", *(f"{number}.dat" for number in range(5)), "-o", "{stem}.h5")
+    assert missing.err.count("no such file") == 5
