@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, percentiles_of
 from meshonet.geometry.domain.domain import Domain
@@ -27,11 +28,11 @@ from meshonet.solvers.blocking.c_sheets import Sheet
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.decompose import Timings
-from meshonet.solvers.blocking.even_line import evened_arcs
-from meshonet.solvers.blocking.even_loops import evened_loops
+from meshonet.solvers.blocking.even_line import evened_places
+from meshonet.solvers.blocking.even_loops import evened_loops, spread
 from meshonet.solvers.blocking.even_metric import metric_places
-from meshonet.solvers.blocking.finished import finished, respaced_layers
-from meshonet.solvers.blocking.folds import unfolded
+from meshonet.solvers.blocking.finished import best_of, finished, respaced_layers
+from meshonet.solvers.blocking.folds import smallest_corner, unfolded
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_rows
 from meshonet.solvers.blocking.on_loops import on_loops
 from meshonet.solvers.blocking.outside import found_outside
@@ -95,8 +96,7 @@ def c_layered(
         except NoValidGridError as error:
             problem = error
             continue
-        if best is None or skewness(whole.mesh) < skewness(best.mesh):
-            best = whole
+        best = whole if best is None else best_of([best, whole])
         if skewness(best.mesh) < SKEW_DEG:
             break
     if best is None:
@@ -139,7 +139,22 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
                     held |= np.isin(mesh.places.loop, list(fronts))
     with timings.stage("refine"):
         fine = multiplied(Layout(mesh, coarse.blocks), times)
-        return unfolded(fine, fine.mesh.wall_nodes)
+        fine = unfolded(fine, fine.mesh.wall_nodes)
+        moved = _evened_fronts(fine, sheets) if even else fine
+        return moved if smallest_corner(moved.mesh) > 0.0 else fine
+
+
+def _evened_fronts(fine: Layout, sheets: Sheets) -> Layout:
+    """Return the layout with nodes moved along fronts, so that neighbouring cells there differ less."""
+    mesh = fine.mesh
+    for k in range(len(sheets.cut.layers)):
+        mesh, _ = _tied(mesh, sheets.cut, k, layered.EVEN)
+    shift = mesh.nodes - fine.mesh.nodes
+    fronts = shift.any(axis=1)
+    nodes = fine.mesh.nodes + spread(fine, 0, shift)
+    nodes[fronts] = mesh.nodes[fronts]
+    fine = replace(fine, mesh=mesh.with_nodes(nodes))
+    return evened_loops(fine, sheets.measures, layered.EVEN)
 
 
 def _balanced(mesh: QuadMesh, cut: CutLoop[Sheet], k: int) -> QuadMesh:
@@ -169,17 +184,24 @@ def _tied(mesh: QuadMesh, cut: CutLoop[Sheet], k: int, limit: float) -> tuple[Qu
     order, index = cut.front_nodes(mesh, 0, k)
     last = len(cut.layers[k].levels) - 1.0
     edge = int(np.flatnonzero(index == cut.layers[k].edge)[0])
-    new = index.copy()
+    new, measures = index.copy(), cut.layers[k].along(cut.front_arcs(k, np.arange(last + 1.0)))
     mean = 0.5 * (index[: edge + 1] + last - index[::-1][: edge + 1])
     if limit:
-        mean[1:-1] = cut.index(k, evened_arcs(cut.front_arcs(k, mean), limit, 1)[1:-1])
+        mean = evened_places(mean, _ends(len(mean), 1), measures, limit, closed=False)
     new[: edge + 1], new[::-1][: edge + 1] = mean, last - mean
     held = np.concatenate([order[: edge + 1], order[::-1][: edge + 1]])
     if limit:  # the wall's cells fit to those of the wake
         piece = slice(edge - 1, len(new) - edge + 1)
-        new[piece][2:-2] = cut.index(k, evened_arcs(cut.front_arcs(k, new[piece]), limit, 2)[2:-2])
+        fixed = _ends(len(new[piece]), 2)
+        new[piece] = evened_places(new[piece], fixed, measures, limit, closed=False)
         held = order
     return _moved(mesh, cut, k, order, new), held
+
+
+def _ends(count: int, held: int) -> NDArray[np.bool_]:
+    """Return an array (count,) that is true for the first and last `held`."""
+    at = np.arange(count)
+    return np.minimum(at, count - 1 - at) < held
 
 
 def _moved(mesh: QuadMesh, cut: CutLoop[Sheet], k: int, order: Indices, index: Floats) -> QuadMesh:

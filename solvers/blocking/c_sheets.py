@@ -16,12 +16,14 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import gaps_in_front, wall_points
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.column_weights import column_weights, line_lengths, started, whole_columns
+from meshonet.solvers.blocking.even_line import FINER, SLACK, Measures
 from meshonet.solvers.blocking.free_wake import Wake
 from meshonet.solvers.blocking.marched import GAP_PART, SLOPE, THINNER, TRIES, marched
 from meshonet.solvers.blocking.wall_columns import wall_columns
@@ -92,6 +94,19 @@ class Sheet:
     def thickness(self) -> Floats:
         """(n,) lengths of the columns."""
         return line_lengths(self.levels)
+
+    def along(self, front: Floats) -> Measures:
+        """Return what rises along the columns by their numbers: arc lengths of three levels.
+
+        Those of the front, `front` (n,), of wake and wall, and of the level next to them.
+        """
+        n = len(self.levels)
+        index = np.arange(FINER * (n - 1) + 1) / FINER
+        values = [np.interp(index, np.arange(float(n)), front)]
+        for level in (self.levels[:, 0], self.levels[:, 1]):
+            arcs = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(level, axis=0).T))])
+            values.append(monotone_cubic(np.arange(float(n)), arcs, index))
+        return Measures(index, np.stack(values), SLACK)
 
     def columns(self, index: Floats, start: Floats) -> tuple[Floats, Floats]:
         """Return lines (k, m, 2) at column numbers (k,), which need not be whole, and their openings.

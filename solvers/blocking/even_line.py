@@ -25,6 +25,13 @@ MOVE = 1e-2
 MARGIN = 0.006
 """How far below the limit, in logarithms, ratios are to come."""
 STEPS = 24
+MOST, RELAXED, TRIES = 10.0, 1.5, 6
+"""Steps by which places may move, and by what limits that take more are multiplied, so often."""
+
+FINER = 8
+"""Parts of a column in which measures are told apart."""
+SLACK = np.array([2.0, 1.0, 0.9])
+"""Logarithms of ratios along fronts, at walls, and in the level next to these, by that of the limit."""
 
 Bools = NDArray[np.bool_]
 
@@ -63,17 +70,17 @@ def evened_places(places: Floats, fixed: Bools, measures: Measures, limit: float
     place.
     """
     line = _Line.of(places, fixed, measures, closed)
-    if fixed.all() or not line.exceeded(places, limit):
+    new = places
+    if fixed.all():
         return places
-    return line.evened(places, limit)
-
-
-def evened_arcs(arcs: Floats, limit: float, held: int) -> Floats:
-    """Return arc lengths (n,) whose steps differ by a limited ratio; the first and last `held` stay."""
-    fixed = np.zeros(len(arcs), dtype=bool)
-    fixed[:held] = fixed[-held:] = True
-    ends = arcs[[0, -1]]
-    return evened_places(arcs, fixed, Measures(ends, ends[None]), limit, closed=False)
+    for _ in range(TRIES):
+        if not line.exceeded(places, limit):
+            return places
+        new = line.evened(places, limit)
+        if (np.abs(new - places)[line.free] ** 2 * line.stiffness).max() < MOVE * MOST**2:
+            break
+        limit *= RELAXED
+    return new
 
 
 def evened_steps(steps: Floats, limit: float) -> Floats:

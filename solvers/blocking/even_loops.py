@@ -30,14 +30,14 @@ def evened_loops(layout: Layout, measures: Mapping[int, Measures], limit: float)
         shift = np.zeros_like(nodes)
         shift[order] = mesh.domain.loops[number].at(new) - mesh.nodes[order]
         arcs[order] = new
-        nodes += _spread(layout, number, shift)
+        nodes += spread(layout, number, shift)
         nodes[order] = mesh.domain.loops[number].at(new)
     fixed = mesh.places.cells > 0
     nodes[fixed] = mesh.nodes[fixed]
     return replace(layout, mesh=mesh.with_nodes(nodes, arcs))
 
 
-def _spread(layout: Layout, loop: int, shift: Floats) -> Floats:
+def spread(layout: Layout, loop: int, shift: Floats) -> Floats:
     """Return what nodes (n, 2) move by, when those on a loop do by `shift` (n, 2)."""
     moved = np.zeros_like(shift)
     on = layout.mesh.places.loop == loop

@@ -26,14 +26,16 @@ from meshonet.kernels._native import line_neighbours
 from meshonet.solvers.blocking.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
 from meshonet.solvers.least_squares import NormalEquations, Residuals
 
-ANGLE, MOVE = 0.2, 1e-3
+ANGLE, MOVE = 1.0, 1e-3
 """ν, σ."""
 MARGIN = 0.012
 """How far below the limit, in logarithms, ratios are to come."""
-AROUND = 6
-"""Cells around ratios that exceed the limit in which nodes move."""
+AROUND, REACH = 6, 2.0
+"""Cells around ratios that exceed the limit in which nodes move, and more for each cell of excess."""
 ROUNDS, STEPS = 6, 3
 """How often it is looked which nodes move, and the steps for each such set."""
+WORTH = 0.7
+"""Part of what exceeds the limit that may be left by a round for another one."""
 _ANGLES = np.radians(60.0), np.radians(120.0)
 
 Bools = NDArray[np.bool_]
@@ -47,11 +49,14 @@ def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:
     """
     lines = consecutive_edges(mesh)
     z = mesh.nodes[:, 0] + 1j * mesh.nodes[:, 1]
-    weight = EXCESS
+    weight, before = EXCESS, np.inf
     for _ in range(ROUNDS):
-        free = _near(mesh, lines[np.abs(growth_along(z, lines)) > limit]) & ~held
-        if not free.any():
+        growth = growth_along(z, lines)
+        free = _near(mesh, lines, growth, limit) & ~held
+        excess = np.maximum(np.abs(growth) - limit, 0.0).sum()
+        if not free.any() or excess > WORTH * before:
             break
+        before = excess
         z, weight = _Patch.of(mesh, lines, z, free, limit).evened(z, weight)
     return mesh.with_nodes(np.stack([z.real, z.imag], axis=1))
 
@@ -92,11 +97,17 @@ def growth_along(z: Complexes, lines: Indices) -> Floats:
     return np.asarray(np.log(np.abs(after) / np.abs(before)))
 
 
-def _near(mesh: QuadMesh, lines: Indices) -> Bools:
-    """Return which nodes (n,) are within `AROUND` cells of the middle ones of `lines` (k, 3)."""
+def _near(mesh: QuadMesh, lines: Indices, growth: Floats, limit: float) -> Bools:
+    """Return which nodes (n,) are near the middle ones of `lines` (k, 3) whose growth (k,) exceeds the limit.
+
+    That is within `AROUND` cells, and `REACH` more for each cell that it takes to grow so much.
+    """
+    uneven = np.abs(growth) > limit
     near = np.zeros(len(mesh.nodes), dtype=bool)
-    near[lines[:, 1]] = True
-    for _ in range(AROUND):
+    reach = AROUND + np.floor(REACH * (np.abs(growth[uneven]) / limit - 1.0)).astype(np.intp)
+    middle = lines[uneven, 1]
+    for cells in range(int(reach.max(initial=0)), 0, -1):
+        near[middle[reach >= cells]] = True
         near[mesh.quads[near[mesh.quads].any(axis=1)]] = True
     return near
 

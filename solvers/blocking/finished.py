@@ -50,12 +50,15 @@ def _price(layout: Layout) -> float:
 
 
 def uneven_percent(layout: Layout) -> float:
-    """Return the percentage of ratios of neighbouring cells, along grid lines, beyond `MOST_GROWTH`."""
-    count = beyond = 0
+    """Return the percentage of ratios of neighbouring cells, along grid lines, beyond `MOST_GROWTH`.
+
+    Those below its square count in part: as many times `MOST_GROWTH` as they are beyond it, in logarithms.
+    """
+    count, beyond, limit = 0, 0.0, np.log(MOST_GROWTH)
     for row in rows_of(Chords.of(layout)):
         step = np.diff(layout.mesh.nodes[row.nodes], axis=1)
         change = np.abs(np.diff(np.log(np.hypot(step[..., 0], step[..., 1])), axis=1))
-        count, beyond = count + change.size, beyond + int((change > np.log(MOST_GROWTH)).sum())
+        count, beyond = count + change.size, beyond + float(np.clip(change / limit - 1.0, 0.0, 1.0).sum())
     return 100.0 * beyond / max(count, 1)
 
 
@@ -76,7 +79,7 @@ def finished(ways: Sequence[Layout], settings: LayerSettings, corners: Collectio
     folded; with the place.
     """
     layout = best_of(ways)
-    layout = best_of([layout, _evened(layout, settings)])
+    layout = best_of([layout, _evened(layout, settings, corners)])
     held = np.zeros(len(layout.mesh.nodes), dtype=bool)
     for number in layout.layers:
         block = layout.blocks[number]
@@ -91,11 +94,13 @@ def finished(ways: Sequence[Layout], settings: LayerSettings, corners: Collectio
     return layout
 
 
-def _evened(layout: Layout, settings: LayerSettings) -> Layout:
+def _evened(layout: Layout, settings: LayerSettings, corners: Collection[int]) -> Layout:
     """Return the layout with cells that grow by no more than a limit, as far as first cells allow it."""
     held = layout.mesh.wall_nodes.copy()
     for number in layout.layers:
         held[layout.blocks[number][:, : settings.constant + 1]] = True
+    for number in corners:
+        held[layout.blocks[number]] = True
     limit = max(MARGIN * np.log(settings.growth), np.log(MOST_GROWTH))
     return replace(layout, mesh=evened_mesh(layout.mesh, held, float(limit)))
 

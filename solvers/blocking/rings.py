@@ -23,14 +23,10 @@ from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.column_weights import column_weights, line_lengths, started, whole_columns
-from meshonet.solvers.blocking.even_line import Measures
+from meshonet.solvers.blocking.even_line import FINER, SLACK, Measures
 from meshonet.solvers.blocking.marched import GAP_PART, fitted
 from meshonet.solvers.blocking.wall_columns import wall_columns
 from meshonet.solvers.hyperbolic.settings import ATTEMPTS
-
-_FINER = 8
-SLACK = np.array([2.0, 1.0, 0.9])
-"""How much more, in logarithms, steps along fronts may differ than those at walls, which stay in the end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +79,7 @@ class Ring:
     def along(self) -> Measures:
         """Arc lengths of the front, of the wall beneath it, and of the level next to the wall."""
         n = len(self.arcs)
-        index = np.arange(_FINER * n + 1) / _FINER
+        index = np.arange(FINER * n + 1) / FINER
         knots = np.append(self.front.curve.knots, self.front.length)
         wall = monotone_cubic(np.arange(-1.0, n + 2.0), self._unwrapped(), index)
         level = self.levels[:, 1]

@@ -7,7 +7,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.solvers.blocking.even_line import Measures, evened_arcs, evened_places, evened_steps
+from meshonet.solvers.blocking.even_line import Measures, evened_places, evened_steps
 from meshonet.solvers.blocking.even_mesh import consecutive_edges, evened_mesh, growth_along
 
 LIMIT = np.log(1.2)
@@ -15,6 +15,11 @@ LIMIT = np.log(1.2)
 
 def largest_growth(steps):
     return np.exp(np.abs(np.diff(np.log(steps))).max())
+
+
+def evened_arcs(arcs, limit, held):
+    fixed = np.minimum(np.arange(len(arcs)), np.arange(len(arcs))[::-1]) < held
+    return evened_places(arcs, fixed, Measures(arcs[[0, -1]], arcs[None, [0, -1]]), limit, closed=False)
 
 
 def test_arcs_keep_their_ends_and_grow_by_no_more_than_the_limit():
