@@ -4,6 +4,7 @@ import os
 import shutil
 from pathlib import Path
 from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import meshonet
 
@@ -29,6 +30,12 @@ nitpicky = True
 nitpick_ignore_regex = [("py:obj", ".*")]  # `names` in docstrings: links where there is a page
 default_role = "autolink"
 suppress_warnings = ["config.cache"]  # the scraper below is a function
+
+# --- for readers without the source; made anew each time, and read by tutorials/index.md
+with ZipFile(Path(__file__).parent / "examples.zip", "w", ZIP_DEFLATED) as archive:
+    examples = Path(__file__).parents[1] / "examples"
+    for path in sorted(path for path in examples.rglob("*") if "__pycache__" not in path.parts):
+        archive.write(path, path.relative_to(examples.parent))
 
 # --- pages
 myst_enable_extensions = ["dollarmath", "deflist"]

@@ -69,6 +69,18 @@ class Format:
     reads_options: bool = False
     suffix_options: Mapping[str, str] = field(default_factory=dict)
 
+    def file_at(self, path: str) -> str:
+        """Return the file to write where a user named `path`: of a format that fills a folder, that in it.
+
+        >>> case = Format("openfoam", (".foam",), "", fills_folder=True)
+        >>> case.file_at("runs/first"), case.file_at("runs/first/case.foam")
+        ('runs/first/first.foam', 'runs/first/case.foam')
+        """
+        place = Path(path)
+        if not self.fills_folder or path == "-" or place.suffix.lower() in self.suffixes:
+            return path
+        return str(place / f"{place.resolve().name}{self.suffixes[0]}")
+
     def with_options(self, text: str) -> Format:
         """Return the format with options: words divided by commas; those behind a colon replace earlier ones.
 

@@ -1,5 +1,6 @@
 """Which format a file is in: by its name, by its ending, by its content."""
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -8,7 +9,7 @@ from typing import Literal, TypeVar
 
 from meshonet.formats.format import Format, later
 from meshonet.formats.mesh.recover_topology import boundary_of
-from meshonet.formats.source import Source, open_source, printable
+from meshonet.formats.source import Source, nearest, open_source, printable
 from meshonet.formats.table import TABLE
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError, in_source, meant
@@ -28,6 +29,7 @@ _DESIGNATIONS = {
     "circle:": "meshonet.geometry.shapes.circle:circle",
 }
 """Words that begin the designation of a shape, and the function of what is behind them."""
+_LIKE_DESIGNATION = re.compile(r"([a-z]+)[\s:_-]*(\d[\w.-]*)", re.IGNORECASE)
 
 
 def format_named(name: str) -> Format:
@@ -116,7 +118,7 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
             format_named(fmt)
         word, _, rest = text.partition(":")
         return iter([later(_DESIGNATIONS[f"{word.lower()}:"])(rest)])
-    source = _opened(text)
+    source = source_of(text)
     record = _selectable(source, format_of(source, fmt))
     if record.read_shapes is not None:
         return _Records(source, partial(record.read_shapes, source))
@@ -134,7 +136,7 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     if is_designation(text):
         remedy = f"make a grid of it first: meshonet infer {text} -o grid.vts"
         raise InputError("is a shape, not a grid", remedy, source=text)
-    source = _opened(text)
+    source = source_of(text)
     record = _selectable(source, format_of(source, fmt))
     if record.read_grids is not None:
         return _Records(source, partial(record.read_grids, source))
@@ -195,12 +197,20 @@ def _known() -> str:
     )
 
 
-def _opened(text: str) -> Source:
-    """Return the source of a name; of an empty file, as OpenFOAM's cases have, say if it is only written."""
+def source_of(text: str) -> Source:
+    """Return the source of a name, as `open_source` does.
+
+    Raises InputError: as there; it knows designations that lack their colon, and formats that are only
+    written, whose files are empty, as OpenFOAM's cases have them.
+    """
     try:
         return open_source(text)
     except InputError:
         path = Path(text)
+        match = None if path.exists() or nearest(path) else _LIKE_DESIGNATION.fullmatch(text)
+        if match and f"{match[1].lower()}:" in _DESIGNATIONS:
+            remedy = f"did you mean {match[1].lower()}:{match[2]}?"
+            raise InputError("no such file", remedy, source=printable(text)) from None
         claimed = _by_suffix(path.suffix.lower())
         if path.is_file() and claimed and not any(each.read_shapes or each.read_grids for each in claimed):
             raise _unreadable(claimed[0], printable(text)) from None

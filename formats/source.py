@@ -143,12 +143,12 @@ def _rows(number: str | None, words: str | None) -> slice | None:
 def _missing(text: str) -> InputError:
     name, mark, kept = text.rpartition("#")
     if not (mark and Path(name).is_file()):
-        return InputError("no such file", _beside(Path(text)) or "check the path", source=printable(text))
+        return InputError("no such file", nearest(Path(text)) or "check the path", source=printable(text))
     problem = f"no such file, and of {printable(name)} there is only #train, #test, #7 or #5:9"
     return InputError(problem, f"leave #{printable(kept)} out", source=printable(text))
 
 
-def _beside(path: Path) -> str:
+def nearest(path: Path) -> str:
     """Return a question whether the file of the nearest name in the folder was meant, if one is near."""
     try:
         names = [entry.name for entry in itertools.islice(path.parent.iterdir(), _MOST_NAMES)]

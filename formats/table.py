@@ -127,7 +127,7 @@ _FORMATS: tuple[Format, ...] = (
         sniff=is_cgns, names_patches=True, many=True, space=_BOTH,
     ),
     _format(
-        "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file",
+        "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file, or the one named",
         "openfoam.write:write_grids", choices=(("ascii", "binary"),), names_patches=True, fills_folder=True,
         blocks="merged", space=_VOLUMES,
     ),

@@ -53,7 +53,7 @@ class InputError(MeshonetError):
 def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
     """Return a question for whoever wrote `word` and may have meant one of `known`; nothing if none is near.
 
-    `likeness` is the part of their letters that is alike at the least.
+    `likeness` is the part of their letters that is alike at the least, unless the word begins with one.
 
     >>> meant("max_angel", ["max_angle", "min_angle"])
     "did you mean 'max_angle'? "
@@ -62,8 +62,10 @@ def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
     """
     from difflib import get_close_matches
 
-    near = get_close_matches(word, list(known), n=1, cutoff=likeness)
-    return f"did you mean {near[0]!r}? " if near else ""
+    names = list(known)
+    near = get_close_matches(word, names, n=1, cutoff=likeness)
+    near = near or sorted((name for name in names if len(name) > 2 and word.startswith(name)), key=len)
+    return f"did you mean {near[-1]!r}? " if near else ""
 
 
 @contextmanager

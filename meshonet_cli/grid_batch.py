@@ -81,8 +81,8 @@ def reported(member: Item[Shape], result: Result, criteria: Criteria) -> tuple[G
     counts = grid.blocks[0].counts if len(grid.blocks) == 1 else (None, None)
     report = Report(
         member, method=solution.method, ni=counts[0], nj=counts[1], topology=grid.topology,
-        quality=result.quality, model=solution.model, path=solution.path, residual=solution.residual,
-        cycles=solution.cycles, notes=result.notes, history=result.history,
+        wake=grid.wake, quality=result.quality, model=solution.model, path=solution.path,
+        residual=solution.residual, cycles=solution.cycles, notes=result.notes, history=result.history,
     )  # fmt: skip
     report.seconds |= result.seconds
     if grid.topology == "blocks":

@@ -29,7 +29,6 @@ class LayoutReport(Timed):
     """The report of a layout: `facts` are its counts."""
 
     facts: dict[str, int]
-    notes: tuple[str, ...] = ()
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
@@ -57,7 +56,7 @@ class LayoutMaker:
             "blocks": len(layout.blocks), "cells": layout.cells,
             "irregular": int(np.count_nonzero(mesh.irregular & ~mesh.wall_nodes)),
         }  # fmt: skip
-        report = LayoutReport(item, facts, mesh.domain.notes)
+        report = LayoutReport(item, facts, notes=mesh.domain.notes)
         report.seconds |= stages
         return layout, report
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError, MeshonetError
+from meshonet.geometry.notes import advice_in, changes_in
 from meshonet_cli.errors import explained, with_options
 from meshonet_cli.stage_line import StageLine
 from meshonet_cli.stopping import check
@@ -58,7 +59,8 @@ class Session:
         self.rows: list[Row] = []
         self._stdout_is_taken = False
         self._errors: Counter[str] = Counter()
-        self.members = self.done = self.failed = self.skipped = self.beyond = 0
+        self.members = self.done = self.failed = self.skipped = self.beyond = self.changed = 0
+        self._advice: dict[str, None] = {}  # what is told once, at the end of a batch
         self._begun = time.perf_counter()
         self._bar = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
         self._bar_shown = False
@@ -119,6 +121,8 @@ class Session:
             self.result({**report.as_json(), **_not_met(problems)})
         else:
             self.note(report.line() if self.batch else report.lines())
+        self.changed += bool(changes_in(report.notes))
+        self._advice |= dict.fromkeys(advice_in(report.notes))
 
     def written(self, report: Timed, path: str) -> None:
         """Report a member whose result is in the file `path`."""
@@ -126,7 +130,7 @@ class Session:
         self.report(report)
 
     def show(self, report: Printed, problems: Sequence[str] | None = None) -> None:
-        """Print a report that is itself the result: on standard output, in full, even when quiet.
+        """Print a report that is itself the result: on standard output, in full, unless quiet.
 
         JSON says which gates it does not meet, `problems`, unless None.
         """
@@ -134,10 +138,10 @@ class Session:
         self.conclude(report, problems)
 
     def conclude(self, total: Printed, problems: Sequence[str] | None = None) -> None:
-        """Print the report of all members together: on standard output, even when quiet."""
+        """Print the report of all members together: on standard output, as JSON even when quiet."""
         if self.as_json:
             self.result({**total.as_json(), **_not_met(problems)})
-        else:
+        elif not self.quiet:
             self.print(total.lines())
 
     def note(self, text: str) -> None:
@@ -228,6 +232,11 @@ class Session:
             parts = [f"{self.done} done{gates}", f"{self.skipped} there already" if self.skipped else "",
                      f"{self.failed} failed" if self.failed else ""]  # fmt: skip
             self._write(", ".join(part for part in parts if part) + f" in {spent:.2f} s")
+            if self.changed:
+                changed = "1 shape was" if self.changed == 1 else f"{self.changed} shapes were"
+                self._write(f"{changed} changed, as is said below the line of the grid")
+            for advice in self._advice:
+                self._write(with_options(advice))
         return self.worst
 
     def _write(self, text: str) -> None:

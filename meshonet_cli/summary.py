@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from meshonet.geometry.quality.verdicts import VERDICTS, verdict_word
 from meshonet_cli.text import aligned, figure
 
 if TYPE_CHECKING:
@@ -18,8 +19,6 @@ LABELS = {
     "max_angle_ratio": "max ratio", "mean_angle_ratio": "mean ratio",
 }  # fmt: skip
 """Columns, for people."""
-VERDICTS = {"pass": "pass", "warn": "warning", "fail": "FAIL", "error": "error"}
-"""Verdicts, for people; an error means that there is no grid to judge."""
 
 
 def figures(quality: Quality) -> dict[str, float]:
@@ -38,7 +37,7 @@ class Row:
 
     @property
     def verdict(self) -> str:
-        """A key of `VERDICTS`, or nothing for a grid that was not judged."""
+        """One of `VERDICTS`, or nothing for a grid that was not judged."""
         return (self.judgement.verdict if self.judgement else "") if self.figures else "error"
 
 
@@ -91,10 +90,10 @@ class Summary:
         lines = table.splitlines()
         width = max(map(len, lines))
         ends = ["verdict  limits exceeded"]
-        ends += [f"{VERDICTS[row.verdict]:<7}  {', '.join(_beyond(row))}" for row in self.rows]
+        ends += [f"{verdict_word(row.verdict):<7}  {', '.join(_beyond(row))}" for row in self.rows]
         whole = [f"{line:<{width}}  {end}".rstrip() for line, end in zip(lines, ends, strict=False)]
         verdicts = [row.verdict for row in self.rows]
-        counts = [f"{verdicts.count(key)} {word}" for key, word in VERDICTS.items() if key in verdicts]
+        counts = [f"{verdicts.count(word)} {verdict_word(word)}" for word in VERDICTS if word in verdicts]
         return "\n".join([*whole, *lines[len(ends) :], f"verdicts: {', '.join(counts)}"])
 
     def _columns(self) -> list[str]:

@@ -16,6 +16,7 @@ from meshonet.formats.stack import stack_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.path import Path
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import change_facts
 from meshonet.geometry.quality.criteria import Criteria
 from meshonet.geometry.sections.stack import Stack, Tip
 from meshonet.geometry.shapes.shape import Shape
@@ -152,6 +153,6 @@ class _Surfaces:
     def __call__(self, item: Item[Stack]) -> tuple[Grid, Delivered]:
         begun = time.perf_counter()
         grid, notes = stack_surface(item.what, self.request)
-        report = Delivered(item, grid, part_names(grid), "surface", notes)
+        report = Delivered(item, grid, part_names(grid), "surface", notes=notes)
         report.seconds["grid"] = time.perf_counter() - begun
-        return grid.with_provenance(**provenance()), report
+        return grid.with_provenance(**change_facts(notes), **provenance()), report

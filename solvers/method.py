@@ -117,6 +117,14 @@ class Each(OneByOne):
         return replace(self, settings={**self.settings, **settings})
 
 
+class UnknownSettingError(InputError):
+    """A setting that a method does not have."""
+
+    def __init__(self, method: str, setting: str) -> None:
+        super().__init__(f"method {method} has no {{{setting}}}", f"leave {{{setting}}} out")
+        self.setting = setting
+
+
 class Row(NamedTuple):
     """A method before it is loaded."""
 
@@ -200,4 +208,4 @@ def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[s
     known = inspect.signature(function).parameters
     for setting in settings:
         if setting not in known:
-            raise InputError(f"method {name} has no {{{setting}}}", f"leave {{{setting}}} out")
+            raise UnknownSettingError(name, setting)

@@ -172,3 +172,45 @@ def test_the_page_of_examples_prints_what_it_says(tmp_path: Path, monkeypatch: p
         with contextlib.redirect_stdout(printed):
             exec(code, names)  # noqa: S102
         assert printed.getvalue() == expected, code
+
+
+@pytest.mark.parametrize(
+    ("parameters", "near"),
+    [
+        ({"yplus": 1}, "did you mean 'y_plus'?"),
+        ({"resolution": 80}, "did you mean 'res'?"),
+        ({"colour": 1}, ""),
+    ],
+)
+def test_parameters_that_there_are_not_name_the_nearest(parameters: dict[str, int], near: str) -> None:
+    (name,) = parameters
+    with pytest.raises(meshonet.InputError, match=f"has no {name}; .*leave {name} out") as caught:
+        meshonet.grid("naca:0012", **parameters)
+    assert (near in str(caught.value), "did you mean" in str(caught.value)) == (True, bool(near))
+
+
+def test_metrics_are_listed_and_a_wrong_name_has_the_nearest() -> None:
+    quality = meshonet.tfi(square()).quality()
+    assert list(quality) == list(quality.metrics)
+    assert "max_angle" in quality
+    with pytest.raises(KeyError, match="metric 'maxangle' is not known; did you mean 'max_angle'"):
+        quality["maxangle"]
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_boundaries_of_domains_are_named(turned: bool) -> None:
+    box = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]])
+    hole = np.array([[1.0, 0.5], [1.5, 1.0], [1.0, 1.5], [0.5, 1.0]])
+    names = ["floor", "outlet", "ceiling", "inlet"]
+    if turned:  # from the same first point the other way round, so that stretches come in the other order
+        box, names = box[[0, 3, 2, 1]], names[::-1]
+    domain = meshonet.Domain.of_polygons([box, hole], "channel", [names, "post"])
+    outer = domain.loops[0]
+    middles = {"floor": (2.0, 0.0), "outlet": (4.0, 1.0), "ceiling": (2.0, 2.0), "inlet": (0.0, 1.0)}
+    arcs = outer.corner_arcs + np.array([2.0, 1.0, 2.0, 1.0])
+    found = {outer.name_at(float(arc)): tuple(outer.at(np.array([arc]))[0]) for arc in arcs}
+    assert found == middles
+    made = meshonet.solve_pde(domain, cells=300)
+    assert {patch.name for patch in made.patches} == {*middles, "post"}
+    with pytest.raises(meshonet.InputError, match="names of 1 polygons, and 2 polygons; name each of them"):
+        meshonet.Domain.of_polygons([box, hole], names=["box"])

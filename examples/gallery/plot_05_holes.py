@@ -13,11 +13,14 @@ import meshonet
 turn = np.linspace(0.0, 2.0 * np.pi, 96, endpoint=False)
 circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
 plate = np.array([[-2, -1], [2, -1], [2, 1], [-2, 1]], dtype=float)
-domain = meshonet.Domain.of_polygons([plate, 0.4 * circle + [-0.9, 0.0], 0.3 * circle + [0.9, 0.1]], "plate")
+outlines = [plate, 0.4 * circle + [-0.9, 0.0], 0.3 * circle + [0.9, 0.1]]
+names = [["floor", "outlet", "ceiling", "inlet"], "left hole", "right hole"]
+domain = meshonet.Domain.of_polygons(outlines, "plate", names)
 
 grid = meshonet.solve_pde(domain, cells=2500)
 meshonet.plot(grid, "plate.png")
 print(len(grid.blocks), "blocks,", len(grid.connections), "interfaces")
+print("patches:", ", ".join(sorted({patch.name for patch in grid.patches})))
 
 # %%
 # Layers at the walls, their first cells exact:

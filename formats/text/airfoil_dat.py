@@ -17,6 +17,7 @@ from meshonet.formats.source import Source, printable
 from meshonet.formats.text.rows import Line, decode, left_out, mostly_rows, read_lines, table
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError, in_source
+from meshonet.geometry.notes import Change
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 MOST_POINTS = 20_000
@@ -156,7 +157,8 @@ def _wrong_counts(counts: Line | None, points: int, upper: int) -> tuple[str, ..
     if (upper or first) == first and points == both:
         return ()
     surfaces = f"{upper} and {points - upper} follow" if upper else f"{points} follow"
-    return (f"line {counts.number} announces {counts.text.strip()} points and {surfaces}, which are read",)
+    text = f"line {counts.number} announces {counts.text.strip()} points and {surfaces}, which are read"
+    return (Change(text),)
 
 
 def _columns(rows: list[Line]) -> tuple[Floats, list[int]]:

@@ -11,6 +11,7 @@ from typing import Literal, NamedTuple
 
 from meshonet.formats.source import LARGEST
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Change
 
 Kind = Literal["blank", "text", "row", "noted", "gap", "broken", "damaged"]
 
@@ -146,7 +147,7 @@ def left_out(lines: list[Line]) -> tuple[str, ...]:
     """Return a note for each line beside a row that begins like one and has no second number."""
     kinds: list[Kind] = ["blank", *(line.kind for line in lines), "blank"]
     return tuple(
-        f"line {line.number}, {line.text.strip()[:40]!r}, is no pair of numbers and is left out"
+        Change(f"line {line.number}, {line.text.strip()[:40]!r}, is no pair of numbers and is left out")
         for k, line in enumerate(lines)
         if line.kind in ("gap", "broken") and "row" in (kinds[k], kinds[k + 2])
     )

@@ -13,6 +13,7 @@ from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.six_faces import FACES, SixFaces, edges, place_of, share_edges
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.corners import Indices
 
 TOLERANCE = 1e-6
@@ -172,7 +173,7 @@ def _closed(faces: dict[Side, Floats], order: dict[Side, int]) -> tuple[str, ...
             widest, where = float(gaps[at]), pair
     share_edges(faces)
     return (
-        (f"nodes of shared edges were up to {widest:.3g} apart ({where}) and are now equal",)
+        (Change(f"nodes of shared edges were up to {widest:.3g} apart ({where}) and are now equal"),)
         if widest
         else ()
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.ring import ring_loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 
@@ -40,19 +42,46 @@ class Domain:
             raise InputError("a domain without a loop", "give an outer loop")
 
     @classmethod
-    def of_polygons(cls, polygons: list[Floats], name: str = "") -> Domain:
+    def of_polygons(
+        cls, polygons: Sequence[Floats], name: str = "", names: Sequence[str | Sequence[str]] = ()
+    ) -> Domain:
         """Return the domain inside the first polygon (n, 2) and outside the others, either way round.
+
+        Parameters
+        ----------
+        polygons : sequence of array (n, 2)
+            Points along each; corners are where it turns by more than 30 degrees.
+        name : str, optional
+            Of the domain.
+        names : sequence, optional
+            For each polygon what its boundary is called: a name, or a list of one for each stretch from a
+            corner to the next, in the order of its points, from its first corner on. Without them it is
+            ``outer``, ``body``, ``body2`` ...
 
         Returns
         -------
         Domain
-            The domain inside the first polygon (n, 2) and outside the others, either way round.
+            The domain inside the first polygon and outside the others.
+
+        Raises
+        ------
+        InputError
+            Names for another number of polygons, or of stretches.
+
+        Examples
+        --------
+        >>> box = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]])
+        >>> sides = ["floor", "outlet", "ceiling", "inlet"]
+        >>> Domain.of_polygons([box], "channel", [sides]).loops[0].names
+        ('floor', 'outlet', 'ceiling', 'inlet')
         """
+        if names:
+            return cls(_named(polygons, names), name)
         loops = []
         for number, points in enumerate(polygons):
-            names = ("outer",) if number == 0 else ("body" if number == 1 else f"body{number}",)
+            own = ("outer",) if number == 0 else ("body" if number == 1 else f"body{number}",)
             left = polygon_area(points) > 0
-            loops.append(Loop.of_polygon(points if left == (number == 0) else points[::-1], names=names))
+            loops.append(Loop.of_polygon(points if left == (number == 0) else points[::-1], names=own))
         return cls(tuple(loops), name)
 
     @cached_property
@@ -64,3 +93,14 @@ class Domain:
     def extent(self) -> float:
         """Larger side of the box around the domain."""
         return float(np.ptp(self.loops[0].curve.points, axis=0).max())
+
+
+def _named(polygons: Sequence[Floats], names: Sequence[str | Sequence[str]]) -> tuple[Loop, ...]:
+    """Return the loops along polygons whose boundaries are called so."""
+    if len(names) != len(polygons):
+        raise InputError(f"names of {len(names)} polygons, and {len(polygons)} polygons", "name each of them")
+    called = [(own,) if isinstance(own, str) else tuple(own) for own in names]
+    return tuple(
+        ring_loop(points, hole=number > 0, names=own)
+        for number, (points, own) in enumerate(zip(polygons, called, strict=True))
+    )

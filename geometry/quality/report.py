@@ -78,7 +78,7 @@ class QualityReport:
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as what JSON can hold."""
-        grid, growth = self.grid, self.figures.growth if self.profile else None
+        grid, growth = self.grid, self.figures.growth
         many = grid.topology == "blocks"
         facts: dict[str, Any] = {
             **({"cells": self.quality.cells} if many else {"ni": grid.ni, "nj": grid.nj}),
@@ -90,9 +90,9 @@ class QualityReport:
             "quality": quality_dict(self.quality),
             "walls": [_wall(row) for row in self.figures.wall_rows],
         }
-        if self.profile and growth:
-            along = {"xi": growth.xi, "eta": growth.eta} | growth.families()
-            facts["growth"] = {name: extreme_dict(extreme) for name, extreme in along.items()}
+        along = {"xi": growth.xi, "eta": growth.eta} | growth.families()
+        facts["growth"] = {name: extreme_dict(extreme) for name, extreme in along.items()}
+        if self.profile:
             checks = [_check(result) for result in self.profile.results]
             facts["profile"] = {"name": self.profile.name, "passed": self.profile.passed, "checks": checks}
         if self.comparison:

@@ -1,7 +1,9 @@
 """What was measured of the cells of a grid: a summary of every metric."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+
+from meshonet.geometry.errors import meant
 
 
 @dataclass(frozen=True)
@@ -31,8 +33,18 @@ class Quality:
     bezier_folded: int | None = None
 
     def __getitem__(self, name: str) -> Summary:
-        """Return the summary of one metric."""
+        """Return the summary of one metric.
+
+        Raises KeyError: there is none of that name, with the names that there are.
+        """
+        if name not in self.metrics:
+            known = f"{meant(str(name), self.metrics)}use one of {', '.join(self.metrics)}"
+            raise KeyError(f"metric {name!r} is not known; {known}")
         return self.metrics[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Return an iterator over the names of the metrics."""
+        return iter(self.metrics)
 
     def __str__(self) -> str:
         head = f"{self.cells} cells, {self.folded} folded\n{'metric':16}{'min':>12}{'mean':>12}{'max':>12}"

@@ -12,7 +12,7 @@ any other                                      blocks that are found
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -67,6 +67,10 @@ class DomainShape:
     def notes(self) -> tuple[str, ...]:
         """What a reader passed over in its file."""
         return self.domain.notes
+
+    def noted(self, *notes: str) -> DomainShape:
+        """Return it with `notes` behind its own."""
+        return replace(self, domain=replace(self.domain, notes=(*self.notes, *notes)))
 
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the four edges of the single block that the domain is.

@@ -56,5 +56,6 @@ def convert(
         fmt, f"write_{kind}"
     )
     members = conversion.read(str(source), from_format, boundaries=boundaries)
-    with whole_file(str(output), make_folder=fmt.fills_folder, beside=fmt.fills_folder or fmt.beside) as part:
+    folder = fmt.fills_folder
+    with whole_file(fmt.file_at(str(output)), make_folder=folder, beside=folder or fmt.beside) as part:
         write(part, (conversion(member) for member in members))

@@ -14,8 +14,8 @@ from meshonet.formats.registry import (
     is_designation,
     read_grids,
     read_shapes,
+    source_of,
 )
-from meshonet.formats.source import open_source
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -122,7 +122,7 @@ def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Gr
     text = str(path)
     if is_designation(text):
         return read_shapes(text, from_format)
-    fmt = format_of(open_source(text), from_format)
+    fmt = format_of(source_of(text), from_format)
     if fmt.read_grids is None:
         return read_shapes(text, from_format)
     grids = read_grids(text, from_format)
@@ -142,7 +142,8 @@ def write(what: Grid | Boundary | Layout, path: str | Path, *, to_format: str | 
     what : Grid, Boundary or Layout
         What to write.
     path : str or Path
-        File to write; its ending says the format.
+        File to write; its ending says the format. The mesh of a case of OpenFOAM goes into the folder of
+        ``case.foam``, or into the one that is named.
     to_format : str, optional
         Format, when the ending does not say.
 
@@ -157,5 +158,5 @@ def write(what: Grid | Boundary | Layout, path: str | Path, *, to_format: str | 
     fmt = format_for_output(str(path), to_format, kind)
     put: Any = getattr(fmt, f"write_{kind}")
     folder = fmt.fills_folder
-    with whole_file(str(path), make_folder=folder, beside=folder or fmt.beside) as part:
+    with whole_file(fmt.file_at(str(path)), make_folder=folder, beside=folder or fmt.beside) as part:
         put(part, [what])

@@ -14,7 +14,7 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.families.draw import draws
 from meshonet.geometry.shapes.assembly import assembled
 from meshonet.geometry.shapes.closed_curve import closed_curve
@@ -24,7 +24,7 @@ from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.make_grid import make_grid
-from meshonet.solvers.pipeline.parameters import Counts, grid_request, sampling_of
+from meshonet.solvers.pipeline.parameters import SAMPLED, Counts, grid_request, sampling_of
 
 AnyShape: TypeAlias = str | Path | Floats | Shape | Grid | Domain
 """A path, a designation ``naca:2412``, points of an outline, nodes in space, or what is made of these."""
@@ -165,7 +165,8 @@ def sample_boundary(
     """
     edges = edges_of(shape_of(shape), sampling_of(res, parameters))
     for name in parameters:
-        raise InputError(f"a boundary has no {{{name}}}", f"leave {{{name}}} out")
+        near = meant(name, ("res", "sensors", *SAMPLED))
+        raise InputError(f"a boundary has no {{{name}}}", f"{near}leave {{{name}}} out")
     return edges if sensors is None else edges.with_sensors(sensors)
 
 

@@ -60,12 +60,12 @@ class Destination:
         Raises InputError: an earlier member has the same path.
         """
         if not self.each:
-            return self.text
+            return self.format.file_at(self.text)
         if item.index == NO_NUMBER and "index" in _fields(self.text):
             problem = "is one of several in its file, which {shard} leaves without a number"
             raise InputError(problem, "use {{name}} in place of {{index}}", source=item.label)
         name = re.sub(r"[^\w.+-]+", "_", item.what.name).strip("._") or item.stem
-        path = self.text.format(stem=item.stem, index=item.index, name=name)
+        path = self.format.file_at(self.text.format(stem=item.stem, index=item.index, name=name))
         place = str(Path(path).parent) if self.format.fills_folder else path
         if place in self._taken:
             raise InputError(

@@ -26,6 +26,7 @@ class Timed:
     """Something done to a member of a batch: which, where the result is, and seconds by stage."""
 
     item: Item[Any]
+    notes: tuple[str, ...] = field(default=(), kw_only=True)
     seconds: dict[str, float] = field(init=False)
     output: str | None = field(default=None, init=False)
 
@@ -83,7 +84,6 @@ class Delivered(Timed):
     what: InitVar[Grid | Boundary]
     facts: dict[str, Any]
     text: str = ""
-    notes: tuple[str, ...] = ()
     counts: dict[str, int] = field(init=False)
     topology: str = field(init=False)
 

@@ -37,7 +37,7 @@ Split = Annotated[str | None, _option(
 Settings = Annotated[list[str] | None, _option(
     "--set", metavar="NAME=VALUE",
     help="Setting of the model, e.g. sensors=80, or a weight of the quad operator's loss, e.g. folds=3; "
-    "repeatable. The page docs/theory/paper-models.md lists them.",
+    "repeatable. The page on networks of the paper in the documentation lists them.",
 )]
 Epochs = Annotated[int | None, _option(
     "--epochs", metavar="N", min=1, help="Passes over the shapes. [default: strip 24, quad 64, others 15000]",

@@ -42,8 +42,8 @@ class GateOptions:
     )] = None
     profile: Annotated[Literal["openfoam", "pointwise", "verdict", "viscous"] | None, _option(
         "--profile", metavar="openfoam|pointwise|verdict|viscous",
-        help="Judge by the thresholds of other programs as by gates: pass, warning or FAIL, and exit with 1 "
-        "when one fails. See docs/reference/quality.md.",
+        help="Judge by the thresholds of other programs as by gates: pass, warn or FAIL, and exit with 1 "
+        "when one fails. The page on quality in the documentation lists them.",
     )] = None
 
     def criteria(self, more: Sequence[str] = ()) -> Criteria:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from meshonet.geometry.notes import changes_in
 from meshonet_cli.batch.timed import Timed
 from meshonet_cli.errors import with_options
 from meshonet_cli.text import named, span
@@ -23,20 +24,21 @@ _METHODS = {"conformal": "conformal map"}
 class Report(Timed):
     """The report of one grid, as ``--json`` prints it.
 
-    `seconds` holds wall-clock seconds by stage: read, boundary, load (modules and models, once a process),
-    grid (from boundary nodes in memory to grid nodes in memory), guard, quality, write, and total.
+    `wake` is the number of cells along the wake of a C grid, 0 in others. `seconds` holds wall-clock seconds
+    by stage: read, boundary, load (modules and models, once a process), grid (from boundary nodes in memory
+    to grid nodes in memory), guard, quality, write, and total.
     """
 
     method: str
     ni: int | None
     nj: int | None
     topology: str
+    wake: int
     quality: Quality
     model: str | None = None
     path: tuple[str, ...] = ()
     residual: float | None = None
     cycles: int | None = None
-    notes: tuple[str, ...] = ()
     history: tuple[Row, ...] = ()
     blocks: BlockFigures | None = None
     judgement: Judgement | None = None
@@ -48,9 +50,10 @@ class Report(Timed):
         blocks = {} if self.blocks is None else {"cells": self.quality.cells, **self.blocks.as_dict()}
         return {
             **self.member_json(), "method": self.method, "model": self.model, "ni": self.ni, "nj": self.nj,
-            "topology": self.topology, **blocks, "folded": self.quality.folded, "path": list(self.path),
-            "residual": self.residual, "cycles": self.cycles, "quality": quality_dict(self.quality),
-            "seconds": self.times_json(), "notes": [with_options(note) for note in self.notes],
+            "topology": self.topology, **self._along_wall(), **blocks, "folded": self.quality.folded,
+            "path": list(self.path), "residual": self.residual, "cycles": self.cycles,
+            "quality": quality_dict(self.quality), "seconds": self.times_json(),
+            "notes": [with_options(note) for note in self.notes], "changes": list(changes_in(self.notes)),
         }  # fmt: skip
 
     def lines(self) -> str:
@@ -66,17 +69,26 @@ class Report(Timed):
             "time": self.times(),
         }
         head = f"{self.item.label} -> {self.output}: {self._size()}, {self.topology} grid"
+        if counts := self._along_wall():
+            head += f" with {counts['body_nodes']} nodes on the body and {counts['wake_nodes']} on the wake"
         notes = [f"  {with_options(note)}" for note in self.notes]
         return "\n".join([head, *(f"  {name:<10} {text}" for name, text in rows.items() if text), *notes])
 
     def line(self) -> str:
-        """Return the report of a member of a batch for people."""
+        """Return the report of a member of a batch for people: one line, and what was changed below it."""
         angle = self.quality["max_angle"].max
-        return (
+        head = (
             f"{self.item.label} -> {self.output}: {self._size(short=True)}, "
             f"{self.quality.folded} folded, max angle {angle:.1f}, "
             f"{self._method}{_after(self.path)}, {span(self.seconds['total'])}"
         )
+        return "\n  ".join([head, *changes_in(self.notes)])
+
+    def _along_wall(self) -> dict[str, int]:
+        """Return how the nodes of a C grid's south side are shared out, the trailing edge counted in both."""
+        if self.ni is None or not self.wake:
+            return {}
+        return {"body_nodes": self.ni - 2 * self.wake, "wake_nodes": self.wake + 1}
 
     @property
     def _method(self) -> str:

@@ -10,6 +10,7 @@ from meshonet.geometry.quality.metrics import METRICS, SOLID_METRICS
 from meshonet.geometry.quality.profiles import CheckResult, Figures, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
 from meshonet.geometry.quality.summary import Quality
+from meshonet.geometry.quality.verdicts import verdict_word
 from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet_cli.batch.timed import Timed
 from meshonet_cli.summary import figures
@@ -17,7 +18,6 @@ from meshonet_cli.text import aligned, figure, named
 
 _PLACES = {2: "i, j", 3: "block, i, j", 4: "block, i, j, k"}
 """Places of nodes and cells by how many numbers they have."""
-_VERDICTS = {"fail": "FAIL", "warn": "warning", "none": "no figure"}
 
 
 @dataclass
@@ -47,6 +47,8 @@ class Measured(Timed):
             rows.append(lines_table(report.figures.blocks))
         if report.figures.wall_rows and (report.profile or grid.around_body or many):
             rows.append(walls_table(report.figures.wall_rows))
+        if report.profile or not many:
+            rows.append(growth_table(report.figures))
         if report.profile:
             rows.append(profile_table(report.figures, report.profile))
         rows += [f"folded at {cell_text(cell)}" for cell in report.worst]
@@ -146,23 +148,31 @@ def walls_table(rows: tuple[WallRow, ...]) -> str:
     return aligned(table)
 
 
-def profile_table(figures: Figures, profile: ProfileReport) -> str:
-    """Return the checks of a profile, and the growth of cells, as tables."""
-    grid = figures.grid
-    at = f"at {_PLACES[1 + len(grid.blocks[0].counts) if grid.topology == 'blocks' else 2]}"
-    rows = [["growth", "mean", "max", at]]
+def growth_table(figures: Figures) -> str:
+    """Return the growth of cells as a table."""
+    rows = [["growth", "mean", "max", _places_of(figures)]]
     for name, extreme in figures.growth.families().items():
         rows.append([f"along {name}", figure(extreme.mean), figure(extreme.max), _place(extreme.at)])
-    checks = [[f"profile {profile.name}", "figure", at, "limits", "verdict"]]
-    checks += [_check_row(result) for result in profile.results]
-    return f"{aligned(rows)}\n{aligned(checks)}"
+    return aligned(rows)
+
+
+def profile_table(figures: Figures, profile: ProfileReport) -> str:
+    """Return the checks of a profile as a table."""
+    rows = [[f"profile {profile.name}", "figure", _places_of(figures), "limits", "verdict"]]
+    return aligned(rows + [_check_row(result) for result in profile.results])
+
+
+def _places_of(figures: Figures) -> str:
+    """Return the head of a column of places."""
+    grid = figures.grid
+    return f"at {_PLACES[1 + len(grid.blocks[0].counts) if grid.topology == 'blocks' else 2]}"
 
 
 def _check_row(result: CheckResult) -> list[str]:
     value = "-" if result.value is None else figure(result.value)
     place = _place(result.at) if result.at else ""
     limits = ", ".join(limit_text(limit) for limit in result.check.limits)
-    return [result.check.figure, value, place, limits, _VERDICTS.get(result.verdict, result.verdict)]
+    return [result.check.figure, value, place, limits, verdict_word(result.verdict)]
 
 
 def limit_text(limit: Limit) -> str:

@@ -14,6 +14,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import find_corners, turning
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -65,7 +66,7 @@ def _with_edge(new: Airfoil, gap: float, *, blunt: bool, rounded: bool) -> tuple
     if blunt or not new.blunt:
         return new, new.notes
     how = "rounded, as the wall's is" if rounded else "closed by a wedge, as the wall ends in an edge"
-    notes = (*new.notes, f"the base of the new outline is {how}")
+    notes = (*new.notes, Change(f"the base of the new outline is {how}"))
     return new.rounded() if rounded else new.wedged(), notes
 
 

@@ -19,7 +19,7 @@ from meshonet.solvers.method import Method
 from meshonet.solvers.pipeline.choose_method import method_of
 from meshonet.solvers.pipeline.fallback import guard, refuse_folded
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.result import Result, judged
+from meshonet.solvers.pipeline.result import Result, judged, with_changes
 from meshonet.solvers.pipeline.sample_shape import sampled
 from meshonet.solvers.pipeline.volumes import make_volume
 from meshonet.solvers.progress import History, listening
@@ -176,7 +176,7 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     quality = measure(checked.grid, percentiles=request.percentiles)
     seconds["quality"] = time.perf_counter() - begun
     checked = replace(checked, grid=replace(checked.grid, origin=boundary.origin))
-    return Result(checked, quality, seconds, notes, rows)
+    return Result(with_changes(checked, notes), quality, seconds, notes, rows)
 
 
 def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:

@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any, TypeAlias
 
+from meshonet.geometry.errors import meant
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.method import UnknownSettingError
+from meshonet.solvers.pipeline.choose_method import method_of
 from meshonet.solvers.pipeline.request import GridRequest
 
 Counts: TypeAlias = int | tuple[int, int] | tuple[int, int, int]
@@ -46,7 +49,14 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
     sampling = sampling_of(res, parameters)
     of_request = {name: parameters.pop(name) for name in REQUESTED if name in parameters}
     settings = {name: value for name, value in parameters.items() if value is not None}
-    return GridRequest(sampling, method, settings, **of_request)
+    request = GridRequest(sampling, method, settings, **of_request)
+    if settings:
+        try:
+            method_of(request)
+        except UnknownSettingError as error:
+            error.remedy = meant(error.setting, ("res", *SAMPLED, *REQUESTED)) + error.remedy
+            raise
+    return request
 
 
 def sampling_of(res: Counts | None, parameters: dict[str, Any]) -> Sampling:

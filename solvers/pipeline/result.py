@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.notes import change_facts
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.summary import Quality
 from meshonet.solvers.progress import Row
@@ -76,4 +77,10 @@ def judged(
     if quality.folded and not request.allow_invalid:
         problem = f"{quality.folded} of {quality.cells} cells are folded; {remedy}"
         raise NoValidGridError(problem, worst_cells_of(solution.grid))
-    return Result(solution, quality, seconds, solution.notes)
+    return Result(with_changes(solution, solution.notes), quality, seconds, solution.notes)
+
+
+def with_changes(solution: Solution, notes: tuple[str, ...]) -> Solution:
+    """Return a solution whose grid says, in files too, what was changed of the shape by its `notes`."""
+    facts = change_facts(notes)
+    return replace(solution, grid=solution.grid.with_provenance(**facts)) if facts else solution

@@ -10,9 +10,12 @@ import numpy as np
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Advice
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
-from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.geometry.spacing.sampling import DEFAULT_FAR_FIELD, Sampling
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.volumes import check_plane
 
@@ -34,12 +37,24 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | DomainShape | Spat
 
         domain = as_blocks(shape, request)
         if domain is not None:
-            return domain
+            default = domain.far_field and request.pitch is None
+            return domain.noted(*_far_field_advice(request, "extents of the bodies")) if default else domain
     sampling = request.shape_sampling()
     boundary = edges_of(shape, sampling)
     if request.refine:
         boundary = edges_of(shape, _finer(sampling, shape, boundary, 2**request.refine))
-    return boundary
+    if boundary.topology == "quad" or not isinstance(shape, Airfoil | Outline):
+        return boundary
+    unit = "chords" if isinstance(shape, Airfoil) else "extents of the body"
+    return replace(boundary, notes=(*boundary.notes, *_far_field_advice(request, unit)))
+
+
+def _far_field_advice(request: GridRequest, unit: str) -> tuple[str, ...]:
+    """Return advice on forces, where cells are thin at walls and the far field is where it is by default."""
+    if not request.at_walls or request.sampling.far_field is not None:
+        return ()
+    where = f"the far field is {DEFAULT_FAR_FIELD:g} {unit} away, the default"
+    return (Advice(f"{where}: for lift and drag give {{far_field}} 100 or more"),)
 
 
 def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Sampling:

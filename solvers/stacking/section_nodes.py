@@ -19,6 +19,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.sections.section import Section
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -92,7 +93,7 @@ def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
         height = float(np.hypot(*(upper[0] - lower[0])))
         if height < plan.gap * (1 - 1e-9):
             upper, lower = _opened(upper, lower, plan.gap)
-            note = (
+            note = Change(
                 f"{name} is changed: its trailing edge, {height:.2g} chords high, is opened to a base of "
                 f"{plan.gap:g} chords"
             )

@@ -32,11 +32,34 @@ def test_the_table_is_the_result(meshonet: Meshonet, grid_vts: Path) -> None:
     done = meshonet("quality", grid_vts)
     assert (done.code, done.err) == (0, "")
     assert "grid.vts: 21 x 11 nodes, quad grid, 200 cells, none folded" in done.out
-    rows = {line.split()[0] for line in done.out.splitlines()[2:]}
-    assert rows == set(NAMES)
-    widths = {len(line) for line in done.out.splitlines()[1:]}
-    assert len(widths) == 1  # columns are aligned
-    assert meshonet("quality", grid_vts, "--quiet").out == done.out
+    lines = done.out.splitlines()
+    table, growth = lines[1:-3], lines[-3:]
+    assert {line.split()[0] for line in table[1:]} == set(NAMES)
+    assert [line[:9] for line in growth] == ["growth   ", "along xi ", "along eta"]
+    assert [len({len(line) for line in rows}) for rows in (table, growth)] == [1, 1]  # columns are aligned
+
+
+def test_quiet_leaves_gates_that_are_not_met(meshonet: Meshonet, grid_vts: Path) -> None:
+    done = meshonet("quality", grid_vts, "--quiet", "--fail-on", "max_angle>91")
+    assert (done.code, done.out) == (1, "")
+    assert done.err.startswith("gate not met: grid.vts: max_angle.max is")
+    assert meshonet("quality", grid_vts, grid_vts, "--quiet", "--summary").out == ""
+    assert meshonet("quality", grid_vts, "--quiet", "--json").only["folded"] == 0
+
+
+def test_plain_quality_has_the_growth_that_gates_judge(meshonet: Meshonet, grid_vts: Path) -> None:
+    told = meshonet("quality", grid_vts, "--json").only
+    greatest = max(extreme["max"] for extreme in told["growth"].values() if extreme)
+    assert meshonet("quality", grid_vts, "--fail-on", f"growth>{greatest * (1 + 1e-9)!r}").code == 0
+    assert meshonet("quality", grid_vts, "--fail-on", f"growth>{greatest * (1 - 1e-9)!r}").code == 1
+
+
+def test_verdicts_are_the_same_words_in_table_and_json(meshonet: Meshonet) -> None:
+    meshonet("infer", "naca:0012", "--res", "81", "--first-cell", "1e-4", "-o", "g.h5", "-q")
+    checks = meshonet("quality", "g.h5", "--profile", "viscous", "--json").only["profile"]["checks"]
+    table = meshonet("quality", "g.h5", "--profile", "viscous").out.splitlines()[-len(checks) :]
+    assert {check["verdict"] for check in checks} >= {"pass", "warn"}
+    assert [line.split()[-1].lower() for line in table] == [check["verdict"] for check in checks]
 
 
 def test_json_has_every_figure(meshonet: Meshonet, grid_vts: Path) -> None:
@@ -128,12 +151,12 @@ def test_a_warning_of_a_profile_passes_and_is_in_the_table(meshonet: Meshonet) -
     words = ("--res", "81", "--first-cell", "1e-4", "--growth", "1.2", "-o", "g.h5", "-q")
     meshonet("infer", "naca:0012", *words)
     done = meshonet("quality", "g.h5", "g.h5", "--summary", "--profile", "viscous")
-    assert (done.code, "warning  equal_wall_cells 1 < 2, far_field 14" in done.out, " < 100" in done.out) == (
+    assert (done.code, "warn     equal_wall_cells 1 < 2, far_field 14" in done.out, " < 100" in done.out) == (
         0,
         True,
         True,
     )
-    assert done.out.splitlines()[-1] == "verdicts: 2 warning"
+    assert done.out.splitlines()[-1] == "verdicts: 2 warn"
 
 
 def test_a_figure_of_a_profile_is_no_gate_and_the_error_names_the_profile(

@@ -38,7 +38,7 @@ def test_each_threshold_is_told_with_its_figure(meshonet: Meshonet, grid_vts: Pa
     for line, check in zip(table[1:], PROFILES[profile], strict=True):
         assert line.startswith(check.figure)
         assert all(f"{limit.level} {limit.compare} {limit.value:g}" in line for limit in check.limits)
-        assert re.search(r"(pass|warning|FAIL)$", line)
+        assert re.search(r"(pass|warn|FAIL)$", line)
     told = meshonet("quality", grid_vts, "--profile", profile, "--json").only
     assert told["profile"]["name"] == profile
     assert [row["figure"] for row in told["profile"]["checks"]] == [c.figure for c in PROFILES[profile]]

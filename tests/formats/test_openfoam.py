@@ -10,6 +10,7 @@ from format_shapes import c_grid, channel, file_names, ring
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOGeometry import vtkOpenFOAMReader
 
+import meshonet
 from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.formats.openfoam.write import write_grids
 from meshonet.geometry.blocks.extrude import extruded
@@ -166,3 +167,17 @@ def test_overlapping_parts_give_every_face_to_one_patch(tmp_path: Path) -> None:
     assert {name: told[1] for name, told in found.items()} == {
         "wall": 10, "slot": 2, "far": 12, "frontAndBack": 96,
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["run", "runs/first", "run/case.foam", "."])
+def test_a_case_is_written_into_the_folder_that_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    meshonet.write(ring(), name, to_format="openfoam")
+    folder = Path(name).parent if name.endswith(".foam") else Path(name)
+    (marker,) = folder.glob("*.foam")
+    assert file_names(folder) == sorted([marker.name, "constant", "system"])
+    assert (marker.stat().st_size, (folder / "constant/polyMesh/points").exists()) == (0, True)
+    assert folder == Path() or not Path("constant").exists()

@@ -18,12 +18,12 @@ from meshonet.geometry.quality.gates import Gate
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import Metric, metrics_of
 from meshonet.geometry.quality.report import QualityReport
+from meshonet.geometry.quality.verdicts import verdict_word
 
 _WORST = 3
 """Worst places of a metric that are listed."""
 _DOTS = 110
 """Dots an inch of pictures."""
-_VERDICTS = {"fail": "FAIL", "warn": "warning", "pass": "pass", "none": "no figure"}
 
 
 def article(label: str, report: QualityReport, gates: Sequence[Gate], number: int) -> str:
@@ -65,7 +65,7 @@ def passed(report: QualityReport, gates: Sequence[Gate]) -> bool:
 
 def verdict(name: str, words: str = "") -> str:
     """Return ``pass``, ``warn`` or ``fail`` as a word in its colour."""
-    return f'<span class="{name}">{words or _VERDICTS.get(name, name)}</span>'
+    return f'<span class="{name}">{words or verdict_word(name)}</span>'
 
 
 def _picture(grid: Grid) -> str:

@@ -13,6 +13,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, clean_section
 from meshonet.geometry.shapes.airfoil.section_curve import (
@@ -230,9 +231,9 @@ class Airfoil:
         base = f"the outline is changed: its base, {self.gap / self.chord:.3g} chords wide,"
         if self.blunt and te == "wedge":
             length = float(np.hypot(*(body.trailing_edge - self.trailing_edge))) / self.chord
-            return (f"{base} is closed by a wedge {length:.3g} chords long",)
+            return (Change(f"{base} is closed by a wedge {length:.3g} chords long"),)
         if self.blunt and te == "round":
-            return (f"{base} is rounded at its corners",)
+            return (Change(f"{base} is rounded at its corners"),)
         if not self.blunt and sampling.te in ("round", "wedge"):
             return (f"{{te}} {te} changes nothing, as the trailing edge is not blunt",)
         return ()

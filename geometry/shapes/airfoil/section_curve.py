@@ -7,6 +7,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing, find_crossings
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, Section
 
@@ -25,11 +26,11 @@ def section_curve(section: Section, places: Sequence[str]) -> tuple[Curve, list[
     Points whose surfaces touch or cross by rounding are moved apart first
     (`meshonet.geometry.shapes.airfoil.separate_surfaces`).
     """
-    notes = []
+    notes: list[str] = []
     if section.swapped:
         named = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
         more = ", ..." if len(section.swapped) > 6 else ""
-        notes.append(f"the outline is changed: points in the wrong order are swapped ({named}{more})")
+        notes.append(Change(f"the outline is changed: points in the wrong order are swapped ({named}{more})"))
     crossing = find_crossing(section.points)
     if crossing is not None:
         before, section = section, section.moved_apart()
@@ -48,10 +49,9 @@ def section_curve(section: Section, places: Sequence[str]) -> tuple[Curve, list[
             break
         straight[where if left > 1 else slice(None)] = True
     if straight.any():
-        notes.append(
-            f"the outline follows straight lines between {straight.sum()} of its {len(points)} pairs of "
-            "points, where a smooth curve would cross itself"
-        )
+        pairs = f"{straight.sum()} of its {len(points)} pairs of points"
+        why = "where a smooth curve would cross itself"
+        notes.append(Change(f"the outline follows straight lines between {pairs}, {why}"))
     return curve, notes
 
 
@@ -63,7 +63,7 @@ def moved_note(before: Section, section: Section) -> str:
     most = float(np.hypot(*off.T).max()) / chord
     k = int(np.argmax(np.hypot(*off.T)))
     x, y = before.points[k]
-    return (
+    return Change(
         f"the outline is changed: its surfaces touch near ({x:.6g}, {y:.6g}) and are moved apart, by at most "
         f"{most:.2g} chords"
     )
