@@ -24,17 +24,20 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import line_neighbours
 from meshonet.solvers.blocking.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
+from meshonet.solvers.blocking.on_loops import on_loops
 from meshonet.solvers.least_squares import NormalEquations, Residuals
 
 ANGLE, MOVE = 1.0, 1e-3
 """ν, σ."""
-MARGIN = 0.012
+MARGIN = 0.018
 """How far below the limit, in logarithms, ratios are to come."""
 AROUND, REACH = 6, 2.0
 """Cells around ratios that exceed the limit in which nodes move, and more for each cell of excess."""
-ROUNDS, STEPS = 6, 3
+ROUNDS, STEPS = 8, 3
 """How often it is looked which nodes move, and the steps for each such set."""
-WORTH = 0.7
+RAIL = 1e9
+"""What holds nodes that slide on their tangent, by σ."""
+WORTH = 0.9
 """Part of what exceeds the limit that may be left by a round for another one."""
 _ANGLES = np.radians(60.0), np.radians(120.0)
 
@@ -44,21 +47,35 @@ Bools = NDArray[np.bool_]
 def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:
     """Return the mesh with nodes, but for `held` (n,) ones, moved where edges along lines grow too fast.
 
+    Nodes on loops that are not held slide along them, all but corners and those with a partner.
     `limit` is the logarithm of the ratio that neighbouring edges may have. Where that cannot be reached they
     differ by as little more as cells of good angles allow.
     """
     lines = consecutive_edges(mesh)
-    z = mesh.nodes[:, 0] + 1j * mesh.nodes[:, 1]
+    sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0) & (mesh.places.partner < 0)
+    fixed = held | (mesh.wall_nodes & ~sliding)
     weight, before = EXCESS, np.inf
     for _ in range(ROUNDS):
+        z = mesh.nodes[:, 0] + 1j * mesh.nodes[:, 1]
         growth = growth_along(z, lines)
-        free = _near(mesh, lines, growth, limit) & ~held
+        free = _near(mesh, lines, growth, limit) & ~fixed
         excess = np.maximum(np.abs(growth) - limit, 0.0).sum()
         if not free.any() or excess > WORTH * before:
             break
         before = excess
-        z, weight = _Patch.of(mesh, lines, z, free, limit).evened(z, weight)
-    return mesh.with_nodes(np.stack([z.real, z.imag], axis=1))
+        z, weight = _Patch.of(mesh, lines, z, free, _tangents(mesh, sliding & free), limit).evened(z, weight)
+        mesh = on_loops(mesh.with_nodes(np.stack([z.real, z.imag], axis=1)), sliding & free)
+    return mesh
+
+
+def _tangents(mesh: QuadMesh, sliding: Bools) -> Complexes:
+    """Return the directions (n,) of the loops at the nodes that slide, 0 at others."""
+    tangents = np.zeros(len(mesh.nodes), dtype=np.complex128)
+    for number, loop in enumerate(mesh.domain.loops):
+        on = np.flatnonzero(sliding & (mesh.places.loop == number))
+        x, y = loop.tangent(mesh.places.arc[on]).T
+        tangents[on] = x + 1j * y
+    return tangents
 
 
 def consecutive_edges(mesh: QuadMesh) -> Indices:
@@ -129,12 +146,18 @@ class _Patch:
     """(m,) z0."""
     stiffness: Floats
     """(m,) σ / h²."""
+    axes: Complexes
+    """(n,) direction of the first of the two unknowns of each node: the tangent where it slides."""
+    across: Floats
+    """(m,) what the stiffness of the second is multiplied by: those that slide stay on the tangent."""
     equations: NormalEquations
     part: Indices
     """(n,) number of the part of the patch that a node is in, -1 for none; parts do not change each other."""
 
     @classmethod
-    def of(cls, mesh: QuadMesh, lines: Indices, z: Complexes, free: Bools, limit: float) -> _Patch:
+    def of(
+        cls, mesh: QuadMesh, lines: Indices, z: Complexes, free: Bools, tangents: Complexes, limit: float
+    ) -> _Patch:
         nodes = np.flatnonzero(free)
         lines = lines[free[lines].any(axis=1)]
         quads = mesh.quads[free[mesh.quads].any(axis=1)]
@@ -154,6 +177,7 @@ class _Patch:
             GrowthLimit.at(growth_along(z, lines), limit - MARGIN),
             np.clip(_angles(z, corners), *_ANGLES),
             z[nodes], MOVE / shortest[nodes] ** 2,
+            np.where(tangents == 0, 1.0, tangents), np.where(tangents[nodes] == 0, 1.0, RAIL),
             NormalEquations(2 * len(nodes), kinds), _parts(free, (lines, quads)),
         )  # fmt: skip
 
@@ -190,16 +214,21 @@ class _Patch:
         by_line = np.stack([1.0 / before, -1.0 / before - 1.0 / after, 1.0 / after], axis=1)
         by_corner = np.stack([1.0 / along - 1.0 / back, -1.0 / along, 1.0 / back], axis=1)
         growth, turned = growth_along(z, self.lines), _angles(z, self.corners) - self.angles
-        pull = self.stiffness * (z[self.nodes] - self.start)
+        axes = self.axes[self.nodes]
+        pull = np.conj(axes) * self.stiffness * (z[self.nodes] - self.start)
         step = self.equations.step(
             [
-                self.growth.residuals(growth, _by_coordinates(by_line), weight),
-                Residuals(_by_coordinates(-1j * by_corner), np.full(len(turned), ANGLE), ANGLE * turned),
+                self.growth.residuals(growth, _by_coordinates(self.axes[self.lines] * by_line), weight),
+                Residuals(
+                    _by_coordinates(-1j * self.axes[self.corners] * by_corner),
+                    np.full(len(turned), ANGLE),
+                    ANGLE * turned,
+                ),
             ],
-            np.repeat(self.stiffness, 2),
+            np.stack([self.stiffness, self.across * self.stiffness], axis=1).ravel(),
             np.stack([pull.real, pull.imag], axis=1).ravel(),
         )
-        return np.asarray(step[::2] + 1j * step[1::2])
+        return np.asarray(axes * (step[::2] + 1j * step[1::2]))
 
 
 def _angles(z: Complexes, corners: Indices) -> Floats:
@@ -229,5 +258,5 @@ def _parts(free: Bools, groups: Sequence[Indices]) -> Indices:
 
 
 def _by_coordinates(derivatives: Complexes) -> Floats:
-    """Return derivatives (k, 6) by x and y of the real part of `derivatives` (k, 3) times moves."""
+    """Return derivatives (k, 6) by both parts of moves of the real part of `derivatives` (k, 3) by these."""
     return np.stack([derivatives.real, -derivatives.imag], axis=2).reshape(len(derivatives), 6)

@@ -96,7 +96,7 @@ def finished(ways: Sequence[Layout], settings: LayerSettings, corners: Collectio
 
 def _evened(layout: Layout, settings: LayerSettings, corners: Collection[int]) -> Layout:
     """Return the layout with cells that grow by no more than a limit, as far as first cells allow it."""
-    held = layout.mesh.wall_nodes.copy()
+    held = np.zeros(len(layout.mesh.nodes), dtype=bool)
     for number in layout.layers:
         held[layout.blocks[number][:, : settings.constant + 1]] = True
     for number in corners:

@@ -26,6 +26,8 @@ CHANGE = 1.0
 """μ."""
 NEARLY = 0.05
 """How far below the limit, in logarithms, ratios count as if they exceeded it."""
+LINEAR = 0.1
+"""Excess beyond which it counts in proportion: what cannot be mended is not to bend all cells around."""
 HALVINGS = 10
 
 Numbers = TypeVar("Numbers", Floats, Complexes)
@@ -46,14 +48,16 @@ class GrowthLimit:
     def values(self, growth: Floats, weight: float) -> Floats:
         """Return what each ratio (k,) adds to the term, for w = `weight`."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
-        return np.asarray(weight * excess**2 + CHANGE * (growth - self.wanted) ** 2)
+        near = np.minimum(excess, LINEAR)
+        return np.asarray(weight * near * (2.0 * excess - near) + CHANGE * (growth - self.wanted) ** 2)
 
     def residuals(self, growth: Floats, derivatives: Floats, weight: float) -> Residuals:
         """Return what a step of Gauss-Newton needs, of derivatives (k, m) of the logarithms."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
-        exceeding = np.abs(growth) > self.limit - NEARLY
-        slope = CHANGE * (growth - self.wanted) + weight * np.copysign(excess, growth)
-        return Residuals(derivatives, np.where(exceeding, CHANGE + weight, CHANGE), slope)
+        pull = weight * np.minimum(1.0, LINEAR / np.maximum(excess, LINEAR))
+        stiffness = np.where(np.abs(growth) > self.limit - NEARLY, CHANGE + pull, CHANGE)
+        slope = CHANGE * (growth - self.wanted) + pull * np.copysign(excess, growth)
+        return Residuals(derivatives, stiffness, slope)
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:

@@ -71,8 +71,13 @@ def mesh():
     block = np.arange(625).reshape(25, 25)
     loop = Loop.of_polygon(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]))
     places = Places.inside(625)
-    rim = np.concatenate([block[0], block[-1], block[:, 0], block[:, -1]])
-    places.loop[rim] = 0
+    sides = block[:-1, 0], block[-1, :-1], block[:0:-1, -1], block[0, :0:-1]
+    for number, side in enumerate(sides):
+        places.loop[side] = 0
+        places.arc[side] = number + np.abs(
+            nodes.reshape(-1, 2)[side] - loop.at(np.array([float(number)]))
+        ).sum(axis=1)
+        places.cells[side[0]] = 1
     return QuadMesh(Domain((loop,)), nodes.reshape(-1, 2), lattice_quads([block]), places)
 
 
@@ -83,11 +88,13 @@ def growth_of(mesh, free):
 
 
 def test_nodes_of_a_mesh_move_until_cells_grow_by_no_more_than_the_limit(mesh):
-    held = np.isin(mesh.nodes[:, 1], [0.0, 1.0])  # nodes of the other sides are to move with the rows
+    held = np.isin(mesh.nodes[:, 1], [0.0, 1.0])  # nodes of the other sides slide
     new = evened_mesh(mesh, held, np.log(1.25))
     assert growth_of(mesh, ~held) > 3.9
     assert growth_of(new, ~held) <= 1.25
     np.testing.assert_array_equal(new.nodes[held], mesh.nodes[held])
+    sides = mesh.wall_nodes & ~held
+    np.testing.assert_array_equal(new.nodes[sides, 0], mesh.nodes[sides, 0])
 
 
 def test_a_mesh_that_grows_evenly_is_not_changed(mesh):
