@@ -100,14 +100,31 @@ def test_another_attempt_where_one_fails(monkeypatch: pytest.MonkeyPatch) -> Non
     seeds = []
     found = decomposition.seamless_map
 
-    def failing(domain, count, seed):
+    def failing(domain, count, seed, fewer):
         seeds.append(seed)
         if seed < 2:
             raise SolverError("no map")
-        return found(domain, count=count, seed=seed)
+        return found(domain, count=count, seed=seed, fewer=fewer)
 
     monkeypatch.setattr(decomposition, "seamless_map", failing)
     assert len(decompose(Domain.of_polygons([STEP])).blocks) == 3
     assert seeds == [0, 1, 2]
     with pytest.raises(BlockingError, match="no blocks found in 2 attempts: no map"):
         decompose(Domain.of_polygons([STEP]), attempts=2)
+
+
+def test_walls_that_many_cells_would_cut_off_get_them_where_they_bend() -> None:
+    turn = np.radians(np.linspace(0.0, 180.0, 25))
+    bump = np.stack([-np.cos(turn), np.sin(turn)], axis=1)
+    end = np.stack([2.0 + np.sin(turn), 1.0 - np.cos(turn)], axis=1)
+    top = np.array([[1.0, 2.0], [0.756848, 1.85605], [0.520726, 1.70056], [0.273237, 1.56446], [0.0, 1.5]])
+    left = top[-2::-1] * np.array([-1.0, 1.0])
+    outline = np.concatenate([bump, end, top, left, [[-2.0, 2.0], [-2.0, 0.0]]])
+    corners = [0, 24, 50, 58, 59, 60]
+    domain = Domain.of_polygons([outline], corners=[corners])
+    for cells in (1500, 2500):
+        nodes = fine_layout(decompose(domain), cells=cells).mesh
+        (x, y) = nodes.nodes[nodes.quads].transpose(2, 0, 1)
+        covered = 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum())
+        assert covered == pytest.approx(domain.area, rel=1e-3)
+        assert len(nodes.quads) == pytest.approx(cells, rel=0.2)
