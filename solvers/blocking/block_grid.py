@@ -28,12 +28,12 @@ OPTIMISED = 6000
 ITERATIONS = 150
 CUT_OFF = 7e-4
 """Most of the area that cells may cut off along walls, before walls get more of them."""
-ROUNDS, STEP, MORE = 5, 1.12, 1.19
+ROUNDS, STEP, MORE = 7, 1.12, 1.19
 """How often at the most, by which factor, and up to how many times the cells asked for."""
 MOST_CUT_OFF = 9.5e-4
 """With that many cells, what they cut off less what they add, before wall nodes are held closer at bends."""
-LEAST_TURNING, MARGIN = np.radians(5.0), 0.9
-"""Least angle by which a wall may turn along an edge then, and the part taken of what should be enough."""
+HELD_BACK = 0.6
+"""Part of the angle that a wall may turn by along an edge, from then on from round to round."""
 
 
 @dataclass(frozen=True)
@@ -109,11 +109,13 @@ def fine_layout(
         else:
             counts = chords.counts_for_cells(int(wanted / 4**halvings), least)
         if fine is not None and chords.cells(counts) > MORE * wanted / 4**halvings:
-            off = abs(cut_off(fine)) / finer
-            if off < MOST_CUT_OFF:
+            if abs(cut_off(fine)) / finer < MOST_CUT_OFF:
                 break
-            turning, counts = _held_back(Chords.of(fine), turning, off), before
-        fine = _optimised(chords, counts, 2**own, turning, timings)
+            turning, counts = _held_back(Chords.of(fine), turning), before
+        trial = _optimised(chords, counts, 2**own, turning, timings)
+        if fine is not None and turning < ALLOWED and abs(cut_off(trial)) > abs(cut_off(fine)):
+            break
+        fine = trial
         more = _more_along_walls(Chords.of(fine), finer, 2**own)
         if (more <= counts).all():
             break
@@ -130,13 +132,9 @@ def cut_off(fine: Layout) -> float:
     return 1.0 - 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()) / area
 
 
-def _held_back(fine: Chords, turning: float, off: float) -> float:
-    """Return by how many radians walls may turn along an edge for less than the part `off` to be cut off.
-
-    What an arc's chord cuts off goes with the square of that. Before it was `turning`.
-    """
-    steepest = fine.bend(int(np.argmax(fine.cut_off())))
-    return max(LEAST_TURNING, MARGIN * min(turning, steepest) * float(np.sqrt(CUT_OFF / off)))
+def _held_back(fine: Chords, turning: float) -> float:
+    """Return by how many radians walls may turn along an edge: less than now, where most is cut off."""
+    return HELD_BACK * min(turning, fine.bend(int(np.argmax(fine.cut_off()))))
 
 
 def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timings: Timings) -> Layout:

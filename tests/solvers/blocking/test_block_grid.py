@@ -7,10 +7,12 @@ from known_meshes import circle
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import SolverError
+from meshonet.solvers.blocking import block_grid as blocks
 from meshonet.solvers.blocking import decompose as decomposition
-from meshonet.solvers.blocking.block_grid import block_grid, fine_layout
+from meshonet.solvers.blocking.block_grid import block_grid, cut_off, fine_layout
 from meshonet.solvers.blocking.decompose import decompose
 from meshonet.solvers.blocking.errors import BlockingError
+from meshonet.solvers.blocking.score import largest_turning
 
 STEP = np.array([[0.0, 1], [3, 1], [3, 0], [12, 0], [12, 2], [0, 2]])
 
@@ -113,18 +115,15 @@ def test_another_attempt_where_one_fails(monkeypatch: pytest.MonkeyPatch) -> Non
         decompose(Domain.of_polygons([STEP]), attempts=2)
 
 
-def test_walls_that_many_cells_would_cut_off_get_them_where_they_bend() -> None:
-    turn = np.radians(np.linspace(0.0, 180.0, 25))
-    bump = np.stack([-np.cos(turn), np.sin(turn)], axis=1)
-    end = np.stack([2.0 + np.sin(turn), 1.0 - np.cos(turn)], axis=1)
-    top = np.array([[1.0, 2.0], [0.756848, 1.85605], [0.520726, 1.70056], [0.273237, 1.56446], [0.0, 1.5]])
-    left = top[-2::-1] * np.array([-1.0, 1.0])
-    outline = np.concatenate([bump, end, top, left, [[-2.0, 2.0], [-2.0, 0.0]]])
-    corners = [0, 24, 50, 58, 59, 60]
-    domain = Domain.of_polygons([outline], corners=[corners])
-    for cells in (1500, 2500):
-        nodes = fine_layout(decompose(domain), cells=cells).mesh
-        (x, y) = nodes.nodes[nodes.quads].transpose(2, 0, 1)
-        covered = 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum())
-        assert covered == pytest.approx(domain.area, rel=1e-3)
-        assert len(nodes.quads) == pytest.approx(cells, rel=0.2)
+def test_wall_nodes_come_closer_where_walls_bend_when_more_than_allowed_is_cut_off(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    angle = 2.0 * np.pi * np.arange(200) / 200
+    domain = Domain.of_polygons([np.stack([2.0 * np.cos(angle), 0.5 * np.sin(angle)], axis=1)])
+    layout = decompose(domain)
+    held = fine_layout(layout, cells=300)
+    monkeypatch.setattr(blocks, "MOST_CUT_OFF", 1.0)
+    free = fine_layout(layout, cells=300)
+    assert held.cells == free.cells
+    assert largest_turning(held.mesh) < 0.8 * largest_turning(free.mesh)
+    assert cut_off(held) < 0.9 * cut_off(free)
