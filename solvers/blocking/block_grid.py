@@ -18,6 +18,7 @@ from meshonet.solvers.blocking.collapse import irregular_inside
 from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.errors import most_folded
 from meshonet.solvers.blocking.refine import multiplied, refine
+from meshonet.solvers.energy.quad_problem import ALLOWED
 from meshonet.solvers.energy.quads import optimise
 
 CELLS = 2500
@@ -27,8 +28,12 @@ OPTIMISED = 6000
 ITERATIONS = 150
 CUT_OFF = 7e-4
 """Most of the area that cells may cut off along walls, before walls get more of them."""
-ROUNDS, STEP, MORE = 5, 1.12, 1.19
+ROUNDS, STEP, MORE = 7, 1.12, 1.19
 """How often at the most, by which factor, and up to how many times the cells asked for."""
+MOST_CUT_OFF = 9.5e-4
+"""With that many cells, what they cut off less what they add, before wall nodes are held closer at bends."""
+HELD_BACK = 0.6
+"""Part of the angle that a wall may turn by along an edge, from then on from round to round."""
 
 
 @dataclass(frozen=True)
@@ -95,16 +100,23 @@ def fine_layout(
         own += 1
     chords = Chords.of(layout)
     least = chords.least
+    turning, counts, finer = ALLOWED, least, 4.0 ** (halvings - own)
     fine: Layout | None = None
     for _ in range(ROUNDS):
+        before = counts
         if cell_size and not cells:
             counts = chords.counts_for_size(cell_size * 2**halvings, least)
         else:
             counts = chords.counts_for_cells(int(wanted / 4**halvings), least)
         if fine is not None and chords.cells(counts) > MORE * wanted / 4**halvings:
+            if abs(cut_off(fine)) / finer < MOST_CUT_OFF:
+                break
+            turning, counts = _held_back(Chords.of(fine), turning), before
+        trial = _optimised(chords, counts, 2**own, turning, timings)
+        if fine is not None and turning < ALLOWED and abs(cut_off(trial)) > abs(cut_off(fine)):
             break
-        fine = _optimised(chords, counts, 2**own, timings)
-        more = _more_along_walls(Chords.of(fine), 4.0 ** (halvings - own), 2**own)
+        fine = trial
+        more = _more_along_walls(Chords.of(fine), finer, 2**own)
         if (more <= counts).all():
             break
         least = np.maximum(least, more)
@@ -114,12 +126,23 @@ def fine_layout(
         return multiplied(fine, times) if times > 1 else fine
 
 
-def _optimised(chords: Chords, counts: Indices, times: int, timings: Timings) -> Layout:
+def cut_off(fine: Layout) -> float:
+    """Return which part of the area cells along walls cut off; less than 0 where they add some."""
+    (x, y), area = fine.mesh.nodes[fine.mesh.quads].transpose(2, 0, 1), fine.mesh.domain.area
+    return 1.0 - 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()) / area
+
+
+def _held_back(fine: Chords, turning: float) -> float:
+    """Return by how many radians walls may turn along an edge: less than now, where most is cut off."""
+    return HELD_BACK * min(turning, fine.bend(int(np.argmax(fine.cut_off()))))
+
+
+def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timings: Timings) -> Layout:
     with timings.stage("refine"):
         fine = refine(chords.layout, counts, chords)
         fine = multiplied(fine, times) if times > 1 else fine
     with timings.stage("optimum"):
-        optimum = optimise(fine.mesh, iterations=ITERATIONS)
+        optimum = optimise(fine.mesh, iterations=ITERATIONS, turning=turning)
     if not optimum.valid:
         where = most_folded(optimum.mesh)
         raise NoValidGridError(f"cells of the blocks stay folded after optimisation, most {where}")

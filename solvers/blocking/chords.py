@@ -121,6 +121,12 @@ class Chords:
             lost[edge] = 0.5 * np.abs((np.conj(z[:, :-1]) * z[:, 1:]).imag.sum(axis=1)).sum()
         return lost
 
+    def bend(self, edge: int) -> float:
+        """Return the most radians by which the wall turns along one cell of a wall edge."""
+        arcs = np.sort(self.arcs(edge))
+        loop = self.layout.mesh.domain.loops[self.layout.mesh.places.loop[self.edges[edge][0]]]
+        return float(np.radians(turning_between(loop, arcs[:-1], arcs[1:]).max()))
+
     def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
         """Return counts (chords,) for cells of a size: the geometric mean over edges of length / size.
 

@@ -13,10 +13,12 @@ from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.laplacian import Laplacian, solve_complex
+from meshonet.solvers.blocking.singular_pairs import without_pairs
 from meshonet.solvers.blocking.surface import NEXT, PREVIOUS, Surface
 from meshonet.solvers.blocking.wall_directions import QUARTER, WallDirections, wall_directions
 
-_STEPS = 6
+_STEPS, _AFTER = 6, 3
+"""Steps of diffusion, and more of them after pairs of singular points were taken out."""
 _DIFFUSION = 0.003
 """Time of a step of diffusion, by the domain's area."""
 
@@ -48,16 +50,17 @@ class CrossField:
         return np.flatnonzero((self.valence != 4) & (self.valence > 0))
 
 
-def cross_field(surface: Surface) -> CrossField:
+def cross_field(surface: Surface, fewer: bool = True) -> CrossField:
     """Return the smooth cross field of a surface whose walls are lines of it.
 
     A harmonic u, then steps of normalisation and diffusion (Viertel, Osting, SIAM J. Sci. Comput. 41 (2019)
-    A452-A479), which take singularities apart that the harmonic one has in a heap.
+    A452-A479), which take singularities apart that the harmonic one has in a heap. If `fewer`,
+    pairs of them are then taken out that are not worth it.
 
     Raises SolverError: the sum of the singularities is not what the surface's topology asks for.
     """
     walls = wall_directions(surface)
-    crosses, shears = _smooth(surface, walls)
+    crosses, shears = _smooth(surface, walls, fewer)
     angles = np.angle(crosses[surface.vertices].sum(axis=1)) / 4.0
     inner = surface.neighbours >= 0
     lag = (angles[:, None] - angles[surface.neighbours]) / QUARTER
@@ -70,7 +73,7 @@ def cross_field(surface: Surface) -> CrossField:
     return field
 
 
-def _smooth(surface: Surface, walls: WallDirections) -> tuple[Complexes, Complexes]:
+def _smooth(surface: Surface, walls: WallDirections, fewer: bool) -> tuple[Complexes, Complexes]:
     """Return the crosses (n,), unit numbers, and the harmonic shears."""
     crosses = np.where(surface.on_wall, np.exp(4j * walls.vertices), 0.0)
     free = surface.used & ~surface.on_wall
@@ -86,6 +89,12 @@ def _smooth(surface: Surface, walls: WallDirections) -> tuple[Complexes, Complex
     for _ in range(_STEPS):
         inside = solve_complex(step, lag * _unit(inside) + flow)
     crosses[free] = _unit(inside)
+    changed = without_pairs(surface, laplacian, factor, crosses) if fewer else crosses
+    if changed is not crosses:
+        inside = changed[free]
+        for _ in range(_AFTER):
+            inside = solve_complex(step, lag * _unit(inside) + flow)
+        crosses[free] = _unit(inside)
     return crosses, shears
 
 

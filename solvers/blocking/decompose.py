@@ -40,6 +40,8 @@ MOST = 9_000
 """Blocks, before any collapse, beyond which there is no answer in good time: of too many corners, say."""
 COUNT = 1500
 """About how many points the triangulation has."""
+FEWER = 1
+"""Attempts with as few singularities as are worth it; the smoothest field of all comes after these."""
 PADDED = 3
 """Attempts in which stretches without singularities are asked for."""
 
@@ -151,6 +153,6 @@ def _quad_mesh(
 ) -> QuadMesh:
     """Return a quad mesh along a cross field."""
     with timings.stage("map"):
-        seamless = seamless_map(domain, count=count, seed=seed)
+        seamless = seamless_map(domain, count=count, seed=seed, fewer=seed < FEWER)
     with timings.stage("quad mesh"):
         return quad_mesh(seamless, cells=cells, sizes=sizes)

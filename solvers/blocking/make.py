@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from time import perf_counter
 
-import numpy as np
-
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
@@ -16,7 +14,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.domain_shape import DomainShape
-from meshonet.solvers.blocking.block_grid import fine_layout
+from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
 from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.request import CELLS, LAYERED_CELLS, MOST_CELLS, BlockRequest
 from meshonet.solvers.blocking.reuse import carried_over
@@ -56,9 +54,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
 
 def _cut_off(fine: Layout) -> str:
     """Return a note where cells along walls cut off, or add, more than `CUT_OFF` of the area."""
-    (x, y), area = fine.mesh.nodes[fine.mesh.quads].transpose(2, 0, 1), fine.mesh.domain.area
-    covered = 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum())
-    off = abs(covered / area - 1.0)
+    off = abs(cut_off(fine))
     if off <= CUT_OFF:
         return ""
     return (

@@ -104,24 +104,24 @@ class SeamlessMap:
         return np.flatnonzero((self.valence != 4) & (self.valence > 0))
 
 
-def seamless_map(domain: Domain, count: int = 1500, seed: int = 0) -> SeamlessMap:
+def seamless_map(domain: Domain, count: int = 1500, seed: int = 0, fewer: bool = True) -> SeamlessMap:
     """Return a seamless map of a domain, triangulated by about `count` vertices.
 
     Where the field has singularities inside, the domain is triangulated anew with smaller triangles there. A
     map that is nearly folded is solved again with larger weights where it is; `SeamlessMap.folded` says
-    whether that was enough.
+    whether that was enough. The field has as few singularities as are worth it if `fewer`.
 
     Raises SolverError: the field or the map have no solution; InputError: the domain cannot be triangulated.
     """
     surface = _surface(triangulate(domain, count, seed=seed))
-    field = cross_field(surface)
+    field = cross_field(surface, fewer)
     singular = field.singular
     if len(singular):
         points, sizes = surface.triangulation.points[singular], _FINER * surface.edge_size(singular)
         if domain.periodic is not None:
             shift = np.asarray(domain.periodic.shift)
             points, sizes = np.concatenate([points, points + shift, points - shift]), np.tile(sizes, 3)
-        field = cross_field(_surface(triangulate(domain, count, finer=(points, sizes), seed=seed)))
+        field = cross_field(_surface(triangulate(domain, count, finer=(points, sizes), seed=seed)), fewer)
     return map_of_field(field)
 
 

@@ -63,7 +63,13 @@ class Problem:
     descent: QuadDescent
 
     def __init__(
-        self, mesh: QuadMesh, unknowns: Unknowns, walls: Walls, aspects: Floats | None, targets: Floats | None
+        self,
+        mesh: QuadMesh,
+        unknowns: Unknowns,
+        walls: Walls,
+        aspects: Floats | None,
+        targets: Floats | None,
+        turning: float = ALLOWED,
     ) -> None:
         self.mesh, self.walls, self.unknowns = mesh, walls, unknowns
         self.centre = 0.5 * (mesh.nodes.min(axis=0) + mesh.nodes.max(axis=0))
@@ -74,7 +80,7 @@ class Problem:
         self.nodes = (self._on_walls(mesh.nodes, walls.arc) - self.centre) / self.unit
         self.arc = walls.arc / self.unit
         self._number()
-        self.descent = self._descent(aspects, targets)
+        self.descent = self._descent(aspects, targets, turning)
 
     def _number(self) -> None:
         """Give coordinates of inner nodes the first numbers, then come arc lengths."""
@@ -90,7 +96,7 @@ class Problem:
         self.unknown[known.images] = self.unknown[known.originals]
         self.moves = self.unknown >= 0
 
-    def _descent(self, aspects: Floats | None, targets: Floats | None) -> QuadDescent:
+    def _descent(self, aspects: Floats | None, targets: Floats | None, turning: float) -> QuadDescent:
         known, walls = self.unknowns, self.walls
         movable = self.moves[self.mesh.quads].any(axis=1)
         self.quads = np.ascontiguousarray(self.mesh.quads[movable])
@@ -112,8 +118,8 @@ class Problem:
             (walls.nodes, self.of_wall, self.arc),
             (walls.edges, walls.round / self.unit),
             tuple(self._loop(number) for number in range(len(self.mesh.domain.loops))),
-            BENT / min(max(len(self.quads), 1), MANY),
-            ALLOWED,
+            BENT * (ALLOWED / turning) ** 2 / min(max(len(self.quads), 1), MANY),
+            turning,
         )
 
     def _areas(self) -> Floats:

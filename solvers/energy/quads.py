@@ -3,7 +3,7 @@
 The functional is that of `meshonet.solvers.energy.functional` in the corners of cells, with the squared
 differences of log lengths over all pairs of edges that follow or face each other along a grid line, across
 interfaces as inside of blocks. Nodes of interfaces and singular vertices are unknowns like any other; wall
-nodes slide along their loops, in order, and edges of walls that turn by more than `ALLOWED` are held back:
+nodes slide along their loops, in order, and edges of walls that turn too much are held back:
 angles alone are best where tips are cut off.
 
 Folded meshes are unfolded first, with Jacobians regularised; cells that could then gain by shrinking to
@@ -21,7 +21,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.energy.quad_problem import Problem, smallest_jacobian, unknowns_of
+from meshonet.solvers.energy.quad_problem import ALLOWED, Problem, smallest_jacobian, unknowns_of
 from meshonet.solvers.energy.walls import Bools, walls_of
 
 SHAPE = 0.9  # w of the functional
@@ -47,22 +47,23 @@ class Optimum:
 
 def optimise(
     mesh: QuadMesh, *, iterations: int = 60, held: Bools | None = None, aspects: Floats | None = None,
-    targets: Floats | None = None, tolerance: float = 1e-4,
+    targets: Floats | None = None, tolerance: float = 1e-4, turning: float = ALLOWED,
 ) -> Optimum:  # fmt: skip
     """Return the mesh with all nodes moved to where the functional is least.
 
     Corners (`Places.cells` > 0) and `held` nodes (n,) stay bitwise; a node with a partner is where that one
     is, moved by the domain's period, and both move freely. `aspects` (m,) are the wanted ratios of the sides
     1-2 and 0-3 of a quad to 0-1 and 3-2; `targets` (e,), for `mesh.edges`, lengths in any unit whose ratios
-    those of neighbouring edges should have. It ends after so many `iterations`, not counting
-    those of unfolding, or when three in a row gain less than a hundredth of `tolerance` of the value. Cells
+    those of neighbouring edges should have. Edges along which a wall turns by more than `turning` radians are
+    held back. It ends after so many `iterations`, not counting those of unfolding, or when three in a row
+    gain less than a hundredth of `tolerance` of the value. Cells
     with no node that moves are left out, but a mesh where one of them is folded is not valid.
     """
     unknowns = unknowns_of(mesh, held)
     walls = walls_of(mesh, unknowns.fixed, unknowns.tied)
     if walls is None:
         return Optimum(mesh, False, np.inf, 0)
-    problem = Problem(mesh, unknowns, walls, aspects, targets)
+    problem = Problem(mesh, unknowns, walls, aspects, targets, turning)
     low, done = problem.smallest(), 0
     if low <= 0.0:
         low, done = _unfold(problem, low)

@@ -3,14 +3,17 @@
 import numpy as np
 import pytest
 from known_meshes import circle
+from planar_domains import blob
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import SolverError
+from meshonet.solvers.blocking import block_grid as blocks
 from meshonet.solvers.blocking import decompose as decomposition
-from meshonet.solvers.blocking.block_grid import block_grid, fine_layout
+from meshonet.solvers.blocking.block_grid import block_grid, cut_off, fine_layout
 from meshonet.solvers.blocking.decompose import decompose
 from meshonet.solvers.blocking.errors import BlockingError
+from meshonet.solvers.blocking.score import largest_turning
 
 STEP = np.array([[0.0, 1], [3, 1], [3, 0], [12, 0], [12, 2], [0, 2]])
 
@@ -100,14 +103,27 @@ def test_another_attempt_where_one_fails(monkeypatch: pytest.MonkeyPatch) -> Non
     seeds = []
     found = decomposition.seamless_map
 
-    def failing(domain, count, seed):
+    def failing(domain, count, seed, fewer):
         seeds.append(seed)
         if seed < 2:
             raise SolverError("no map")
-        return found(domain, count=count, seed=seed)
+        return found(domain, count=count, seed=seed, fewer=fewer)
 
     monkeypatch.setattr(decomposition, "seamless_map", failing)
     assert len(decompose(Domain.of_polygons([STEP])).blocks) == 3
     assert seeds == [0, 1, 2]
     with pytest.raises(BlockingError, match="no blocks found in 2 attempts: no map"):
         decompose(Domain.of_polygons([STEP]), attempts=2)
+
+
+def test_wall_nodes_come_closer_where_walls_bend_when_more_than_allowed_is_cut_off(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    domain = Domain.of_polygons([blob(2, 2.0), circle(0.4, 60, (-0.3, 0.1))])
+    layout = decompose(domain)
+    held = fine_layout(layout, cells=500)
+    monkeypatch.setattr(blocks, "MOST_CUT_OFF", 1.0)
+    free = fine_layout(layout, cells=500)
+    assert held.cells == free.cells
+    assert largest_turning(held.mesh) < 0.8 * largest_turning(free.mesh)
+    assert abs(cut_off(held)) < 1e-3 < abs(cut_off(free))
