@@ -37,8 +37,8 @@ ROUNDS, STEPS = 8, 3
 """How often it is looked which nodes move, and the steps for each such set."""
 RAIL = 1e9
 """What holds nodes that slide on their tangent, by σ."""
-WORTH = 0.9
-"""Part of what exceeds the limit that may be left by a round for another one."""
+WORTH, FEW = 0.7, 5e-4
+"""Part of what exceeds the limit that a round may leave for another one, and share of ratios that are few."""
 _ANGLES = np.radians(60.0), np.radians(120.0)
 
 Bools = NDArray[np.bool_]
@@ -60,7 +60,8 @@ def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:
         growth = growth_along(z, lines)
         free = _near(mesh, lines, growth, limit) & ~fixed
         excess = np.maximum(np.abs(growth) - limit, 0.0).sum()
-        if not free.any() or excess > WORTH * before:
+        many = np.count_nonzero(np.abs(growth) > limit) > FEW * len(lines)
+        if not free.any() or (many and excess > WORTH * before):
             break
         before = excess
         z, weight = _Patch.of(mesh, lines, z, free, _tangents(mesh, sliding & free), limit).evened(z, weight)

@@ -20,7 +20,7 @@ from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.least_squares import Residuals
 
-EXCESS, RISE, MOST_WEIGHT = 10.0, 1.4, 1000.0
+EXCESS, RISE, MOST_WEIGHT = 10.0, 1.6, 1e4
 """w at first, what it is multiplied by in each step, and at the most."""
 CHANGE = 1.0
 """μ."""

@@ -7,6 +7,8 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.to_grid import to_grid
+from meshonet.geometry.quality.blocks import block_figures
 from meshonet.solvers.blocking.folds import smallest_corner
 from meshonet.solvers.blocking.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layered import layered
@@ -18,13 +20,13 @@ def cylinder(x, y, radius, points=80):
     return Loop(Curve(places, closed=True, corners=()), (), ("cylinder",))
 
 
-def blunt_airfoil(x, y, thickness=0.12, points=61):
+def blunt_airfoil(x, y, thickness=0.12, points=61, chord=1.0):
     at = 0.5 * (1 - np.cos(np.linspace(0, np.pi, points)))
     half = (
         5 * thickness * (0.2969 * np.sqrt(at) - 0.126 * at - 0.3516 * at**2 + 0.2843 * at**3 - 0.1015 * at**4)
     )
     upper, lower = np.stack([at, half], axis=1), np.stack([at, -half], axis=1)
-    places = np.concatenate([upper, lower[:0:-1]]) + np.array([x, y])
+    places = chord * np.concatenate([upper, lower[:0:-1]]) + np.array([x, y])
     corners = (points - 1, points)
     return Loop(Curve(places, closed=True, corners=corners), corners, ("airfoil",))
 
@@ -53,13 +55,32 @@ def test_bodies_get_layers_of_the_first_cells_asked_for(name):
         np.testing.assert_allclose(height, first, rtol=1e-6)
 
 
-def test_a_cylinder_in_a_far_field_has_cells_that_grow_evenly():
-    layout = layered(Domain((FAR, cylinder(0, 0, 0.5))), [1], LayerSettings(1e-4), cells=8000)
-    for block in layout.blocks:
-        nodes = layout.mesh.nodes[block]
-        for lines in (nodes, nodes.transpose(1, 0, 2)):
-            cells = np.hypot(*np.diff(lines, axis=0).transpose(2, 0, 1))
-            assert np.abs(np.diff(np.log(cells), axis=0)).max() < np.log(1.25)
+GROWING = {  # of which all ratios can be kept: enough cells
+    "cylinder in a far field": (Domain((FAR, cylinder(0, 0, 0.5))), 1e-4, 8000),
+    "cylinder in a channel": (*ARRANGEMENTS["cylinder in a channel"], 6000),
+    "two cylinders close together": (*ARRANGEMENTS["two cylinders close together"], 20000),
+    "slat, main element and flap": (
+        Domain(
+            (
+                FAR,
+                blunt_airfoil(-0.28, -0.1, chord=0.25),
+                blunt_airfoil(0, 0),
+                blunt_airfoil(1.0, -0.1, chord=0.3),
+            )
+        ),
+        1e-5,
+        60000,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", GROWING)
+def test_neighbouring_cells_differ_by_a_quarter_at_most_across_blocks_too(name):
+    domain, first, cells = GROWING[name]
+    layout = layered(domain, list(range(1, len(domain.loops))), LayerSettings(first), cells=cells)
+    lines = block_figures(to_grid(layout)).lines
+    assert lines.growth_inside.max <= 1.25
+    assert lines.growth_across.max <= 1.25
 
 
 def test_cells_can_be_given_by_their_size():
