@@ -7,6 +7,8 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.to_grid import to_grid
+from meshonet.geometry.quality.blocks import block_figures
 from meshonet.solvers.blocking.even_growth import evened
 from meshonet.solvers.blocking.folds import smallest_corner
 from meshonet.solvers.blocking.layer_rows import LayerSettings
@@ -61,6 +63,35 @@ def test_a_cylinder_in_a_far_field_has_cells_that_grow_evenly():
         for lines in (nodes, nodes.transpose(1, 0, 2)):
             cells = np.hypot(*np.diff(lines, axis=0).transpose(2, 0, 1))
             assert np.abs(np.diff(np.log(cells), axis=0)).max() < np.log(1.25)
+
+
+BOX = Loop.of_polygon(np.array([[-10.0, -10.0], [20.0, -10.0], [20.0, 10.0], [-10.0, 10.0]]))
+ELLIPSE = Loop(Curve(cylinder(0, 0, 1.0, 120).curve.points * [1.0, 0.3], closed=True, corners=()), (), ("e",))
+LARGE_BOXES = {
+    "cylinder": Domain((BOX, cylinder(0, 0, 0.5))),
+    "ellipse": Domain((BOX, ELLIPSE)),
+    "two cylinders": Domain((BOX, cylinder(0, 0, 0.5), cylinder(3.0, 0.2, 0.5))),
+}
+
+
+@pytest.mark.parametrize("name", LARGE_BOXES)
+@pytest.mark.parametrize(
+    ("cells", "first", "most"), [(20_000, 1e-2, 1.35), (20_000, 1e-4, 1.35), (4000, 1e-4, 1.8)]
+)
+def test_cells_outside_layers_go_on_with_their_heights_in_a_large_box(name, cells, first, most):
+    domain = LARGE_BOXES[name]
+    layout = layered(domain, list(range(1, len(domain.loops))), LayerSettings(first), cells=cells)
+    figures = block_figures(to_grid(layout))
+    assert figures.lines.by_wall
+    for growth in figures.lines.by_wall.values():
+        assert growth.max < most
+        assert growth.p99 < 1.27
+
+
+@pytest.mark.parametrize("cells", [6000, 20_000, 60_000])
+def test_more_cells_make_angles_no_worse(cells):
+    layout = layered(LARGE_BOXES["cylinder"], [1], LayerSettings(1e-3), cells=cells)
+    assert block_figures(to_grid(layout)).deviation.p99 < 12.0
 
 
 def test_cells_can_be_given_by_their_size():
