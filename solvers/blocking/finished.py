@@ -72,7 +72,9 @@ def finished(ways: Sequence[Layout], settings: LayerSettings, corners: Collectio
     folded; with the place.
     """
     limit = MARGIN * float(np.log(settings.growth))
-    layout = best_of([*ways, *(evened_rows(layout, limit, settings.constant) for layout in ways)])
+    with np.errstate(invalid="ignore"):  # cells that shrink to nothing have no angles, and are not the best
+        evened = [evened_rows(layout, limit, settings.constant) for layout in ways]
+    layout = best_of([*ways, *evened])
     held = np.zeros(len(layout.mesh.nodes), dtype=bool)
     for number in layout.layers:
         block = layout.blocks[number]
