@@ -24,7 +24,7 @@ from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings
 from meshonet.solvers.blocking.even_loops import evened_loops
 from meshonet.solvers.blocking.even_metric import metric_places
-from meshonet.solvers.blocking.finished import finished, respaced_layers
+from meshonet.solvers.blocking.finished import best_of, finished, respaced_layers
 from meshonet.solvers.blocking.folds import smallest_corner, unfolded
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_rows
 from meshonet.solvers.blocking.on_loops import on_loops
@@ -37,8 +37,12 @@ from meshonet.solvers.blocking.wall_layers import WallLayers, wanted_counts
 from meshonet.solvers.energy.quads import optimise
 
 ITERATIONS, STRIDING = 120, 60
+COUNTINGS = 3
+"""How often cells are counted, nodes optimised after each, before nodes on fronts are evened and held."""
+COMPARED = 2
+"""By how much cells may be multiplied after they are optimised for the first counts to be tried as well."""
 FREE = 2
-"""Optimisations, each with the sizes at the nodes of the one before, before one with fronts held."""
+"""Optimisations of C sheets, each with the sizes at the nodes of the one before, until fronts are held."""
 EVEN = float(np.log(1.2))
 """Logarithm of the ratio by which neighbouring cells along fronts may differ."""
 
@@ -71,16 +75,42 @@ def layered(
 def _whole(
     walls: WallLayers, layout: Layout, size: tuple[int, float], timings: Timings, even: bool
 ) -> Layout:
-    """Return the fine layout, its cells evened along fronts or not."""
-    fine = _outside(walls, layout, size, timings, even)
-    with timings.stage("layers"):
-        return _joined(walls, fine)
+    """Return the fine layout, its cells evened along fronts or not.
+
+    Blocks change in size while nodes are optimised, and cells are counted again for the new ones. Where cells
+    are few, the better of the first and the last counts is taken: blocks that grow may cost more in angles
+    than they gain in growth.
+    """
+    counted: list[tuple[Layout, int, SizeMetric]] = []
+    wholes: list[Layout] = []
+    problem = NoValidGridError("cells outside the layers stay folded")
+    for _ in range(COUNTINGS):
+        try:
+            counted.append(_optimum(walls, counted[-1][0] if counted else layout, size, timings))
+        except NoValidGridError as error:
+            problem = error
+            break
+    for coarse, times, metric in (*counted[:0:-1][:1], *counted[:1]):
+        if wholes and times > COMPARED:
+            break
+        try:
+            fine = _fine(walls, coarse, times, metric, timings, even)
+            with timings.stage("layers"):
+                wholes.append(_joined(walls, fine))
+        except NoValidGridError as error:
+            problem = error
+    if not wholes:
+        raise problem
+    return best_of(wholes) if len(wholes) > 1 else wholes[0]
 
 
-def _outside(
-    walls: WallLayers, layout: Layout, size: tuple[int, float], timings: Timings, even: bool
-) -> Layout:
-    """Return the fine layout outside the rings, optimised."""
+def _optimum(
+    walls: WallLayers, layout: Layout, size: tuple[int, float], timings: Timings
+) -> tuple[Layout, int, SizeMetric]:
+    """Return the layout outside the rings with cells counted anew, optimised.
+
+    With it come by how much it is to be finer, and the sizes that it follows.
+    """
     chords = Chords.of(layout)
     with timings.stage("refine"):
         counts, stride, times, metric = wanted_counts(walls, chords, *size)
@@ -90,8 +120,14 @@ def _outside(
             with suppress(NoValidGridError):  # so few cells may stay folded, and more not
                 coarse = _optimised(coarse, metric, STRIDING)
             coarse = multiplied(coarse, stride)
-        for _ in range(FREE):
-            coarse = _optimised(coarse, metric, ITERATIONS)
+        return _optimised(coarse, metric, ITERATIONS), times, metric
+
+
+def _fine(
+    walls: WallLayers, coarse: Layout, times: int, metric: SizeMetric, timings: Timings, even: bool
+) -> Layout:
+    """Return the fine layout outside the rings, `times` as fine as the coarse one."""
+    with timings.stage("optimum"):
         if even:
             coarse = evened_loops(coarse, walls.measures, times * EVEN)
             on = np.isin(coarse.mesh.places.loop, list(walls.measures))

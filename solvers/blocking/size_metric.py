@@ -27,20 +27,21 @@ class Near:
     Parameters
     ----------
     point : (p, m) the nearest point of each of p parts to each edge.
-    rise : (p, m) what distance adds to lengths.
+    distance : (p, m) to it.
     square : (p, m) square of the cosine between edge and normal.
     scale : (m,) of the map there.
     """
 
     point: Indices
-    rise: Floats
+    distance: Floats
     square: Floats
     scale: Floats
 
-    def length(self, across: Floats, along: Floats, largest: float) -> Floats:
-        """Return the lengths (m,) of the edges, the least of all parts, from those (n,) at the points."""
-        high = np.minimum(across[self.point] + self.rise, largest)
-        wide = np.minimum(along[self.point] + self.rise, largest)
+    def length(self, sizes: SizeMetric) -> Floats:
+        """Return the lengths (m,) of the edges, the least of all parts, for any sizes at the same points."""
+        rise = sizes.grading * self.distance
+        high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
+        wide = np.minimum(sizes.along[self.point] + rise, sizes.largest)
         most = np.sqrt(self.square / high**2 + (1.0 - self.square) / wide**2).max(axis=0)
         return np.asarray(self.scale / most)
 
@@ -89,7 +90,7 @@ class SizeMetric:
 
     def length(self, places: Floats, directions: Floats) -> Floats:
         """Return the lengths (m,) of edges at `places` (m, 2) in `directions` (m, 2) of any length."""
-        return self.near(places, directions).length(self.across, self.along, self.largest)
+        return self.near(places, directions).length(self)
 
     def near(self, places: Floats, directions: Floats) -> Near:
         """Return what `length` needs of `places` (m, 2) and `directions` (m, 2) whatever the sizes are."""
@@ -97,7 +98,7 @@ class SizeMetric:
         scale = np.ones(len(places)) if self.scale is None else self.scale(places)
         size = np.maximum(np.hypot(directions[:, 0], directions[:, 1]), 1e-300)
         shape = len(self.starts), len(places)
-        point, rise, square = np.empty(shape, dtype=np.intp), np.empty(shape), np.empty(shape)
+        point, away, square = np.empty(shape, dtype=np.intp), np.empty(shape), np.empty(shape)
         for part, (start, stop) in enumerate(pairwise((*self.starts, len(self.points)))):
             k, squares = nearest_points(places, self.points[start:stop])
             k += start
@@ -105,8 +106,8 @@ class SizeMetric:
             if self.scale is not None:
                 distance = distance / np.sqrt(scale * self.scale(self.points)[k])
             cosine = np.abs((directions * self.normals[k]).sum(axis=1)) / size
-            point[part], rise[part], square[part] = k, self.grading * distance, cosine**2
-        return Near(point, rise, square, scale)
+            point[part], away[part], square[part] = k, distance, cosine**2
+        return Near(point, away, square, scale)
 
     def edges(self, mesh: QuadMesh) -> Floats:
         """Return the lengths (e,) of the edges of a mesh, where they are now."""

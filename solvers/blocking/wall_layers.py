@@ -98,8 +98,10 @@ class WallLayers:
         if size:
             along = self._metric.along * max(size / self._metric.along.max(), 1.0) ** 0.5
             return replace(self._metric, along=np.minimum(along, size), largest=size)
+        parts = self._metric
+        finer = min(scale, 1.0)  # as sizes at walls are, so that sizes grow alike at any count of cells
         largest = self.rest.extent / 12.0 * scale**0.5
-        return replace(self._metric, along=scale * self._metric.along, largest=largest)
+        return replace(parts, along=scale * parts.along, largest=largest, grading=finer * parts.grading)
 
     @property
     def measures(self) -> dict[int, Measures]:

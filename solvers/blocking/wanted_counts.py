@@ -25,7 +25,7 @@ class WantedCounts:
 
     def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
         """Return counts (chords,), multiples near what edges want: its geometric mean, by length."""
-        parts = [self.length / near.length(metric.across, metric.along, metric.largest) for near in self.near]
+        parts = [self.length / near.length(metric) for near in self.near]
         chords = self.chords
         wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
         weight = np.bincount(chords.chord, wanted, chords.count)

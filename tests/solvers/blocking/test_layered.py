@@ -83,6 +83,35 @@ def test_neighbouring_cells_differ_by_a_quarter_at_most_across_blocks_too(name):
     assert lines.growth_across.max <= 1.25
 
 
+BOX = Loop.of_polygon(np.array([[-10.0, -10.0], [20.0, -10.0], [20.0, 10.0], [-10.0, 10.0]]))
+ELLIPSE = Loop(Curve(cylinder(0, 0, 1.0, 120).curve.points * [1.0, 0.3], closed=True, corners=()), (), ("e",))
+LARGE_BOXES = {
+    "cylinder": Domain((BOX, cylinder(0, 0, 0.5))),
+    "ellipse": Domain((BOX, ELLIPSE)),
+    "two cylinders": Domain((BOX, cylinder(0, 0, 0.5), cylinder(3.0, 0.2, 0.5))),
+}
+
+
+@pytest.mark.parametrize("name", LARGE_BOXES)
+@pytest.mark.parametrize(
+    ("cells", "first", "most"), [(20_000, 1e-2, 1.35), (20_000, 1e-4, 1.35), (4000, 1e-4, 1.8)]
+)
+def test_cells_outside_layers_go_on_with_their_heights_in_a_large_box(name, cells, first, most):
+    domain = LARGE_BOXES[name]
+    layout = layered(domain, list(range(1, len(domain.loops))), LayerSettings(first), cells=cells)
+    figures = block_figures(to_grid(layout))
+    assert figures.lines.by_wall
+    for growth in figures.lines.by_wall.values():
+        assert growth.max < most
+        assert growth.p99 < 1.27
+
+
+@pytest.mark.parametrize("cells", [6000, 20_000, 60_000])
+def test_more_cells_make_angles_no_worse(cells):
+    layout = layered(LARGE_BOXES["cylinder"], [1], LayerSettings(1e-3), cells=cells)
+    assert block_figures(to_grid(layout)).deviation.p99 < 12.0
+
+
 def test_cells_can_be_given_by_their_size():
     domain = Domain((FAR, cylinder(0, 0, 0.5)))
     few = layered(domain, [1], LayerSettings(1e-3), cell_size=0.2)
