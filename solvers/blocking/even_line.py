@@ -25,7 +25,7 @@ MOVE = 1e-2
 MARGIN = 0.006
 """How far below the limit, in logarithms, ratios are to come."""
 STEPS = 24
-MOST, RELAXED, TRIES = 10.0, 1.5, 6
+MOST, RELAXED, TRIES = 6.0, 1.5, 6
 """Steps by which places may move, and by what limits that take more are multiplied, so often."""
 
 FINER = 8

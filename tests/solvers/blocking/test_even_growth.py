@@ -32,7 +32,7 @@ def test_arcs_keep_their_ends_and_grow_by_no_more_than_the_limit():
 
 
 def test_held_arcs_stay():
-    arcs = np.concatenate([[0.0, 0.1], 0.1 + np.arange(1.0, 41.0)])
+    arcs = np.concatenate([[0.0, 0.3], 0.3 + np.arange(1.0, 41.0)])
     new = evened_arcs(arcs, LIMIT, 2)
     np.testing.assert_array_equal(new[[0, 1, -2, -1]], arcs[[0, 1, -2, -1]])
     assert largest_growth(np.diff(new)) <= 1.2 + 1e-9
