@@ -13,7 +13,7 @@ from types import ModuleType
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from PIL import Image
+from reduce_pictures import reduce
 
 import meshonet
 from meshonet.geometry.arrays import SIDES
@@ -25,7 +25,7 @@ DOCS = Path(__file__).parent
 CELLS = 900
 COLUMNS, ROWS = 3, 2
 PICTURE = COLUMNS * ROWS
-COLOURS = 24
+WIDTH, COLOURS = 1320, 24
 FEW, MANY = "#f2b705", "#e4572e"
 
 HEAD = """# Domains of many blocks
@@ -71,7 +71,7 @@ def montage(files: list[Path], number: int, rows: list[str]) -> str:
     figure.tight_layout()
     picture = DOCS / "img" / f"gallery-{number}.png"
     figure.savefig(picture, dpi=120)
-    reduce(picture)
+    reduce(picture, WIDTH, COLOURS)
     return f"\n![{', '.join(path.stem for path in files)}](../img/{picture.name})\n"
 
 
@@ -103,12 +103,6 @@ def draw(ax: Axes, grid: Grid, name: str) -> str:
     angles = deviation(grid)
     cells = sum((each.shape[0] - 1) * (each.shape[1] - 1) for each in nodes)
     return f"| {name} | {len(nodes)} | {cells} | {len(points)} | {angles.mean:.1f}, {angles.max:.0f} |"
-
-
-def reduce(path: Path) -> None:
-    """Keep a few colours of a picture: a third of the bytes."""
-    picture = Image.open(path).convert("RGB")
-    picture.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
+from reduce_pictures import reduce
 
 from meshonet.formats.catalogue import markdown
 from meshonet.geometry.families.family import FAMILIES, family
@@ -220,16 +220,10 @@ def pictures(folder: Path) -> None:
         meshonet("solve-pde", boundary, "-o", grid)
         meshonet("plot", grid, *zoom, "-o", DOCS / "img" / f"{name}.png")
     for path in (DOCS / "img").glob("*.png"):
-        reduce(path)
+        if not path.name.startswith("gallery-"):  # make_gallery.py draws these
+            reduce(path)
     for path in (DOCS / "benchmarks" / "paper").glob("*.*.png"):  # four in a row
         reduce(path, 560)
-
-
-def reduce(path: Path, width: int = 860) -> None:
-    """Rewrite a picture with at most `width` pixels a row and 64 colours: an eighth of the bytes."""
-    picture = Image.open(path).convert("RGB")
-    picture.thumbnail((width, width), Image.Resampling.LANCZOS)
-    picture.quantize(64, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def meshonet(*words: object) -> None:

@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from PIL import Image, ImageChops
+from reduce_pictures import reduce
 
 import meshonet
 from meshonet.geometry.arrays import Floats
@@ -19,7 +20,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.polygon.corners import Indices
 
 FOLDER = Path(__file__).parent / "img"
-COLOURS, GAP = 64, 40
+GAP = 40
 PAGES = Path(__file__).parent
 LIGHT = np.array([0.35, -0.5, 0.8]) / np.linalg.norm([0.35, -0.5, 0.8])
 
@@ -123,14 +124,15 @@ def image(fig: plt.Figure) -> Image.Image:
 
 
 def save(images: list[Image.Image], name: str) -> None:
-    """Write images side by side, in few colours."""
+    """Write images side by side."""
     width = sum(each.width for each in images) + GAP * (len(images) - 1)
     whole = Image.new("RGB", (width, max(each.height for each in images)), "white")
     x = 0
     for each in images:
         whole.paste(each, (x, (whole.height - each.height) // 2))
         x += each.width + GAP
-    whole.quantize(COLOURS).save(FOLDER / name, optimize=True)
+    whole.save(FOLDER / name)
+    reduce(FOLDER / name)
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ ROOT = Path(__file__).parents[2]
 FOLDER = Path(__file__).parent
 PAGES = sorted(set(FOLDER.glob("*.md")) - {FOLDER / "index.md"})
 TOLERANCE = 0.02
-WIDTH, COLOURS = 800, 64
+WIDTH = 800
 _BLOCK = re.compile(
     r"(?:^<!-- needs: (\S+) -->\n)?^```(bash|python|text|toml)\n(.*?)^```$", re.DOTALL | re.MULTILINE
 )
@@ -186,16 +186,10 @@ def fill(page: Path, results: list[Result]) -> None:
 
 def keep_pictures(page: Path, folder: Path) -> None:
     """Put the pictures of a page that was run beside it, small."""
-    from PIL import Image
-
-    for name in pictures_of(page):
-        picture = Image.open(folder / name).convert("RGB")
-        if picture.width > WIDTH:
-            size = (WIDTH, round(picture.height * WIDTH / picture.width))
-            picture = picture.resize(size, Image.Resampling.LANCZOS)
-        (FOLDER / "img").mkdir(exist_ok=True)
-        few = picture.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
-        few.save(FOLDER / "img" / name, optimize=True)
+    (FOLDER / "img").mkdir(exist_ok=True)
+    kept = [shutil.copy(folder / name, FOLDER / "img" / name) for name in pictures_of(page)]
+    words = [sys.executable, ROOT / "docs" / "reduce_pictures.py", "--width", str(WIDTH), *kept]
+    subprocess.run(words, check=True)  # noqa: S603
 
 
 def main() -> int:

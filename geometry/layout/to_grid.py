@@ -7,6 +7,7 @@ and what is left patches, named by the loops of the domain.
 from __future__ import annotations
 
 from itertools import groupby
+from operator import itemgetter
 
 import numpy as np
 
@@ -34,8 +35,10 @@ def to_grid(layout: Layout, name: str = "") -> Grid:
     nodes = _with_partners(layout)
     lines = [(b, side, line) for b, block in enumerate(layout.blocks) for side, line in _sides(block)]
     connections, open_lines = _shared(lines)
-    periodic, walls = _periodic(layout, open_lines)
-    patches = [patch for line in walls for patch in _patches(layout, line)]
+    periodic, alone = _periodic(layout, open_lines)
+    partly, walls = _shared_in_part(alone)
+    connections += partly
+    patches = [patch for line, start in walls for patch in _patches(layout, line, start)]
     patches += [
         Patch(f"periodic{2 - first}", side, 0, len(line) - 1, block=block, kind="periodic")
         for joined in periodic
@@ -84,12 +87,44 @@ def _key(nodes: Indices) -> tuple[int, ...]:
     return min(line, line[::-1])
 
 
-def _connection(own: Line, donor: Line, transform: Motion | None = None) -> Connection:
-    """Return the connection of two whole sides with the same nodes, whichever way they run."""
+def _connection(
+    own: Line, donor: Line, transform: Motion | None = None, at: tuple[int, int] = (0, 0)
+) -> Connection:
+    """Return the connection of two sides with the same nodes, whichever way they run.
+
+    Of parts of sides, `at` says with which nodes they begin.
+    """
     (block, side, nodes), (other, other_side, others) = own, donor
-    whole = ((0, len(nodes) - 1),)
+    begin, end = (((first, first + len(nodes) - 1),) for first in at)
     same = int(nodes[0]) == int(others[0]) and int(nodes[1]) == int(others[1])
-    return Connection(block, side, whole, other, other_side, whole, (1 if same else -1,), transform)
+    return Connection(block, side, begin, other, other_side, end, (1 if same else -1,), transform)
+
+
+def _shared_in_part(lines: list[Line]) -> tuple[list[Connection], list[tuple[Line, int]]]:
+    """Return the connections of parts of lines, and the parts that are alone with their first nodes.
+
+    Blocks of which one side meets those of several others share the nodes of a part of it with each.
+    """
+    places: dict[tuple[int, ...], list[tuple[int, int]]] = {}
+    for number, (_, _, nodes) in enumerate(lines):
+        for cell in range(len(nodes) - 1):
+            places.setdefault(_key(nodes[cell : cell + 2]), []).append((number, cell))
+    connections, alone = [], []
+    for number, (block, side, nodes) in enumerate(lines):
+        cells = [places[_key(nodes[cell : cell + 2])] for cell in range(len(nodes) - 1)]
+        met = [next((at for at in each if at[0] != number), (-1, 0)) for each in cells]
+        start = 0
+        for other, run in groupby(met, key=itemgetter(0)):
+            beside = [cell for _, cell in run]
+            own: Line = (block, side, nodes[start : start + len(beside) + 1])
+            if other < 0:
+                alone.append((own, start))
+            elif number < other:
+                first, (donor, donor_side, others) = min(beside), lines[other]
+                part = (donor, donor_side, others[first : first + len(beside) + 1])
+                connections.append(_connection(own, part, at=(start, first)))
+            start += len(beside)
+    return connections, alone
 
 
 def _periodic(layout: Layout, lines: list[Line]) -> tuple[list[tuple[Line, Line]], list[Line]]:
@@ -107,13 +142,13 @@ def _periodic(layout: Layout, lines: list[Line]) -> tuple[list[tuple[Line, Line]
     return pairs, [line for line in lines if id(line) not in taken]
 
 
-def _patches(layout: Layout, line: Line) -> list[Patch]:
-    """Return the patches of a wall, cut where its name changes."""
+def _patches(layout: Layout, line: Line, start: int) -> list[Patch]:
+    """Return the patches of a wall from node `start` of a side on, cut where its name changes."""
     block, side, nodes = line
     places, domain = layout.mesh.places, layout.mesh.domain
     number = int(places.loop[nodes[0]])
     names = _names(domain, number, places.arc[nodes])
-    patches, start = [], 0
+    patches = []
     for name, cells in groupby(names):
         stop = start + len(list(cells))
         kind = kind_of(name)

@@ -6,6 +6,8 @@ from meshonet.geometry.errors import InputError
 
 FORMULA = "y = y+ c / (Re sqrt(Cf/2)), Cf = (2 log10(Re x/c) - 0.65)^-2.3"
 SOURCE = "Schlichting, Boundary-Layer Theory, 7th ed. (1979), chapter XXI"
+SAME = 1e-6
+"""Relative difference up to which heights are those that were asked for."""
 
 
 def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> float:
@@ -40,3 +42,17 @@ def height_note(y_plus: float | None, reynolds: float | None, where: str, height
     if y_plus is None:
         return ""
     return f"y+ {y_plus:g} at Re {reynolds:g} {where} is {height}: {FORMULA} ({SOURCE})"
+
+
+def first_cell_note(
+    low: float, high: float, asked: float, growth: float | None, where: str = "wall node"
+) -> str:
+    """Return the sentence on the first cells, from `low` to `high`, where `asked` was their height.
+
+    `growth` is the mean ratio of neighbouring cells from the wall on, None where it is not known; `where` a
+    word for the nodes of which this is said.
+    """
+    if max(abs(low / asked - 1.0), abs(high / asked - 1.0)) > SAME:
+        return f"first cells are {low:.3g} to {high:.3g} instead of {asked:.6g}"
+    rows = "" if growth is None else f", growing by {growth:.3f} a row on average"
+    return f"first cell {asked:.6g} at every {where}{rows}"

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-WITHOUT_EFFECT = ("threads", "percentiles", "history")
-"""Fields of requests on which no node depends."""
+WITHOUT_EFFECT = ("threads", "percentiles", "history", "criteria")
+"""Fields of requests, and of what makes them, on which no node depends."""
 _MODEL = ".safetensors"
 
 

@@ -18,6 +18,7 @@ from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
 from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.request import CELLS, LAYERED_CELLS, MOST_CELLS, BlockRequest
 from meshonet.solvers.blocking.reuse import carried_over
+from meshonet.solvers.blocking.wall_note import wall_note
 from meshonet.solvers.solution import Solution
 
 METHOD = "blocks"
@@ -47,7 +48,14 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     else:
         fine, about = _with_layers(domain, request, height, layout, timings)
     grid = to_grid(around_body(fine)).with_provenance(method=METHOD, cells=fine.cells)
-    said = (request.note(shape.unit), *about, _cut_off(fine), *_folded_coarser(grid, request.refine))
+    at_walls = "" if height is None else wall_note(grid, domain, request.walls, height)
+    said = (
+        request.note(shape.unit),
+        at_walls,
+        *about,
+        _cut_off(fine),
+        *_folded_coarser(grid, request.refine),
+    )
     notes = (*domain.notes, *(note for note in said if note))
     return Solution(grid, METHOD, seconds=_stages(timings, perf_counter() - begun), notes=notes)
 

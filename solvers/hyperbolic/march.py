@@ -22,6 +22,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
+from meshonet.geometry.spacing.y_plus import first_cell_note
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import hyperbolic_march, redistribute
 from meshonet.solvers.hyperbolic.front import Front, distance_to_march
@@ -208,9 +209,7 @@ def _first_cell_note(boundary: Boundary, nodes: Floats, first: float) -> str:
     behind = boundary.wake
     wall = nodes[behind : len(nodes) - behind]
     heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T)
-    if np.abs(heights / first - 1.0).max() > 1e-6:
-        return f"first cells are {heights.min():.3g} to {heights.max():.3g} instead of {first:.6g}"
     some = wall[:: max(len(wall) // 16, 1)]
     length = float(np.hypot(*np.diff(some, axis=1).T).sum(axis=0).mean())
     growth = growth_ratio(first, length, nodes.shape[1] - 1)
-    return f"first cell {first:.6g} at every wall node, growing by {growth:.3f} a row on average"
+    return first_cell_note(float(heights.min()), float(heights.max()), first, growth)

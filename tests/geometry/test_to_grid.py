@@ -46,6 +46,17 @@ def test_blocks_meet_however_they_are_turned(turn):
     assert grid.name == "box"
 
 
+@pytest.mark.parametrize("turn", range(4))
+def test_a_block_meets_two_others_along_one_side(turn):
+    layout = two_squares()
+    left, right = layout.blocks
+    grid = to_grid(replace(layout, blocks=(left, np.rot90(right[:, :2], turn), right[:, 1:])))
+    ranges = {joint.donor: joint.range for joint in grid.connections if joint.block == 0}
+    assert ranges == {1: ((0, 1),), 2: ((1, 2),)}
+    assert len(grid.connections) == 3
+    assert sum(patch.stop - patch.start for patch in grid.outer_patches()) == 2 * (4 + 2)
+
+
 def test_a_patch_ends_where_its_name_does():
     """One block over a wall of two names."""
     layout = two_squares()

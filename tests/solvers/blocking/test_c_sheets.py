@@ -91,6 +91,7 @@ def test_both_sides_of_a_wake_share_its_nodes(case):
     assert {patch.name for patch in grid.patches} == {name for loop in domain.loops for name in loop.names}
     edge_nodes = layout.mesh.edges[layout.mesh.on_wall]
     assert (layout.mesh.places.loop[edge_nodes] >= 0).all()  # no cut is left open
+    assert sum(patch.stop - patch.start for patch in grid.patches) == len(edge_nodes)
 
 
 @pytest.mark.parametrize("name", ["tunnel, 0 degrees", "tunnel, 12 degrees", "far field, 4 degrees"])

@@ -1,0 +1,34 @@
+"""What a grid of blocks has at its walls with layers, measured there: for the report."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.vertices import vertices
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.quality.lines import lines
+from meshonet.geometry.quality.walls import wall_rows
+from meshonet.geometry.spacing.y_plus import first_cell_note
+
+
+def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) -> str:
+    """Return the heights of first cells and the growth of rows at the walls with layers.
+
+    Parameters
+    ----------
+    grid : the grid, of blocks or of one ring.
+    domain : its domain.
+    names : names of the walls with layers; none stands for all holes.
+    first : height that was asked for, in the domain's unit.
+    """
+    layered = set(names) or {name for loop in domain.loops[1:] for name in loop.names}
+    patches = tuple(replace(p, kind="wall") if p.name in layered else p for p in grid.patches)
+    grid = replace(grid, patches=patches)
+    walls = [patch for patch in grid.walls() if patch.name in layered]
+    rows = wall_rows(grid, walls, lines(grid, vertices(grid)).by_wall)
+    low, high = min(row.height.min for row in rows), max(row.height.max for row in rows)
+    growth = max((row.growth.mean for row in rows if row.growth), default=None)
+    where = f"node of {', '.join(names)}" if names else "wall node"
+    return first_cell_note(low, high, first, growth, where)

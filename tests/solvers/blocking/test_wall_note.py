@@ -1,0 +1,54 @@
+"""What is said of the cells at walls with layers is what a grid has there."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from block_grids import o_ring
+
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.shapes.domain_shape import DomainShape
+from meshonet.solvers.blocking.make import make_blocks
+from meshonet.solvers.blocking.request import BlockRequest
+from meshonet.solvers.blocking.wall_note import wall_note
+
+RING = o_ring(n=9, m=12, growth=1.3)
+FIRST = 2.0 / (1.3 ** np.arange(11)).sum()
+SQUARE = Domain.of_polygons([np.array([[-4.0, -4], [4, -4], [4, 4], [-4, 4]])])
+
+
+def test_heights_and_growth_are_those_of_the_grid() -> None:
+    note = wall_note(RING, SQUARE, ("wall",), FIRST)
+    assert note == f"first cell {FIRST:.6g} at every node of wall, growing by 1.300 a row on average"
+
+
+def test_heights_that_are_not_as_asked_are_told() -> None:
+    nodes = RING.blocks[0].nodes.copy()
+    nodes[3, 1] = nodes[3, 0] + 0.5 * (nodes[3, 1] - nodes[3, 0])
+    grid = replace(RING, blocks=(Block(nodes), *RING.blocks[1:]))
+    note = wall_note(grid, SQUARE, ("wall",), FIRST)
+    assert note == f"first cells are {0.5 * FIRST:.3g} to {FIRST:.3g} instead of {FIRST:.6g}"
+
+
+@pytest.mark.parametrize(("walls", "where"), [((), "wall node"), (("body",), "node of body")])
+def test_a_body_in_a_square_is_told_with_its_first_cell(walls: tuple[str, ...], where: str) -> None:
+    turn = -2 * np.pi * np.arange(80) / 80
+    body = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    shape = DomainShape(Domain.of_polygons([SQUARE.loops[0].curve.points, body]))
+    grown = {}
+    for growth in (1.1, 1.3):
+        request = BlockRequest(cells=1500, first_cell=1e-2, growth=growth, walls=walls)
+        (note,) = (n for n in make_blocks(shape, request).notes if n.startswith("first cell"))
+        found = re.fullmatch(rf"first cell 0[.]01 at every {where}, growing by (\S+) a row on average", note)
+        assert found, note
+        grown[growth] = float(found[1])
+    assert 1.0 < grown[1.1] < grown[1.3] < 1.3
+
+
+def test_nothing_is_said_of_walls_without_layers() -> None:
+    notes = make_blocks(DomainShape(SQUARE), BlockRequest(cells=50)).notes
+    assert not [note for note in notes if note.startswith("first cell")]
