@@ -27,9 +27,9 @@ from meshonet.solvers.blocking.growth_limit import EXCESS, MOST_WEIGHT, RISE, Gr
 from meshonet.solvers.blocking.on_loops import on_loops
 from meshonet.solvers.least_squares import NormalEquations, Residuals
 
-ANGLE, MOVE = 1.0, 1e-3
+ANGLE, MOVE = 2.0, 1e-3
 """ν, σ."""
-MARGIN = 0.018
+MARGIN = 0.03
 """How far below the limit, in logarithms, ratios are to come."""
 AROUND, REACH = 6, 2.0
 """Cells around ratios that exceed the limit in which nodes move, and more for each cell of excess."""

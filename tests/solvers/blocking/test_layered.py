@@ -57,7 +57,7 @@ def test_bodies_get_layers_of_the_first_cells_asked_for(name):
 
 GROWING = {  # of which all ratios can be kept: enough cells
     "cylinder in a far field": (Domain((FAR, cylinder(0, 0, 0.5))), 1e-4, 8000),
-    "cylinder in a channel": (*ARRANGEMENTS["cylinder in a channel"], 6000),
+    "cylinder in a channel": (*ARRANGEMENTS["cylinder in a channel"], 20000),
     "two cylinders close together": (*ARRANGEMENTS["two cylinders close together"], 20000),
     "slat, main element and flap": (
         Domain(
