@@ -21,6 +21,7 @@ from meshonet.solvers.blocking.attach import Rows, loop_nodes
 from meshonet.solvers.blocking.cascade import Cascade
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings
+from meshonet.solvers.blocking.finished import best_of, evened
 from meshonet.solvers.blocking.folds import smallest_corner
 from meshonet.solvers.blocking.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.blocking.passage import BLADE, INLET, OUTLET, Passage, extended, laid_out, turned_round
@@ -69,6 +70,7 @@ def cascade_layout(
         rows = _rows(cascade, flat.layout, metric)
         whole = extended(flat, passage, cascade.blade, rows)
         whole = respaced(whole, cascade.layers)
+        whole = best_of([whole, evened(whole, cascade.layers)])
     if smallest_corner(whole.mesh) <= 0.0:
         raise NoValidGridError("cells of the passage are folded")
     return turned_round(whole) if cascade.opposite else whole

@@ -79,7 +79,7 @@ def finished(ways: Sequence[Layout], settings: LayerSettings, corners: Collectio
     folded; with the place.
     """
     layout = best_of(ways)
-    layout = best_of([layout, _evened(layout, settings, corners)])
+    layout = best_of([layout, evened(layout, settings, corners)])
     held = np.zeros(len(layout.mesh.nodes), dtype=bool)
     for number in layout.layers:
         block = layout.blocks[number]
@@ -94,8 +94,11 @@ def finished(ways: Sequence[Layout], settings: LayerSettings, corners: Collectio
     return layout
 
 
-def _evened(layout: Layout, settings: LayerSettings, corners: Collection[int]) -> Layout:
-    """Return the layout with cells that grow by no more than a limit, as far as first cells allow it."""
+def evened(layout: Layout, settings: LayerSettings, corners: Collection[int] = ()) -> Layout:
+    """Return the layout with cells that grow by no more than a limit, as far as first cells allow it.
+
+    Nodes of blocks with the numbers `corners` stay.
+    """
     held = np.zeros(len(layout.mesh.nodes), dtype=bool)
     for number in layout.layers:
         held[layout.blocks[number][:, : settings.constant + 1]] = True

@@ -7,6 +7,7 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
+from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.blocking.cascade import Cascade
 from meshonet.solvers.blocking.cascade_layout import cascade_layout
@@ -103,6 +104,14 @@ def test_a_blade_with_a_base_has_nodes_on_its_wall():
     loop = mesh.domain.loops[1]
     np.testing.assert_allclose(mesh.nodes[on], loop.at(mesh.places.arc[on]), atol=1e-9)
     assert deviations(mesh).max() < 90.0
+
+
+@pytest.mark.parametrize(("stagger", "pitch"), [(20.0, 0.8), (45.0, 1.0)])
+def test_cells_outside_layers_go_on_with_their_heights(stagger, pitch):
+    layers = LayerSettings(2e-5)
+    grid = to_grid(cascade_layout(Cascade(blade(stagger), (0.0, pitch), settings=layers), cells=16000))
+    (growth,) = block_figures(grid).lines.by_wall.values()
+    assert growth.max < 1.3
 
 
 def test_blades_that_cross_are_refused():
