@@ -40,6 +40,8 @@ from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.blocking.wall_layers import wanted_counts
 from meshonet.solvers.energy.quads import optimise
 
+FREE = 3
+"""Optimisations, each with the sizes at the nodes of the one before, until fronts are held."""
 SKEW_DEG = 35.0
 """Deviation from a right angle, of one corner in a hundred, beyond which other ways are tried too."""
 
@@ -124,12 +126,12 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
         for k in range(len(sheets.cut.layers)):
             mesh = _balanced(mesh, sheets.cut, k)
         held, fronts = None, sheets.measures
-        for turn in range(layered.FREE + 1):
+        for turn in range(FREE + 1):
             optimum = optimise(mesh, iterations=layered.ITERATIONS, targets=metric.edges(mesh), held=held)
             if not optimum.valid:
                 raise NoValidGridError("cells outside the layers stay folded")
             mesh = optimum.mesh
-            if turn == layered.FREE - 1:
+            if turn == FREE - 1:
                 held = np.zeros(len(mesh.nodes), dtype=bool)
                 for k in range(len(sheets.cut.layers)):
                     mesh, on = _tied(mesh, sheets.cut, k, times * layered.EVEN if even else 0.0)

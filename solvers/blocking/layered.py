@@ -41,8 +41,6 @@ COUNTINGS = 3
 """How often cells are counted, nodes optimised after each, before nodes on fronts are evened and held."""
 COMPARED = 2
 """By how much cells may be multiplied after they are optimised for the first counts to be tried as well."""
-FREE = 2
-"""Optimisations of C sheets, each with the sizes at the nodes of the one before, until fronts are held."""
 EVEN = float(np.log(1.2))
 """Logarithm of the ratio by which neighbouring cells along fronts may differ."""
 
