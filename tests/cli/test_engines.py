@@ -75,6 +75,33 @@ def test_a_task_that_kills_twice_fails_alone() -> None:
 
 
 @needs_dask
+def test_a_result_that_died_with_its_worker_is_made_again(tmp_path: Path) -> None:
+    code = (
+        "import asyncio\n"
+        "from concurrent.futures import Future\n"
+        "from distributed.cfexecutor import _cascade_future\n"
+        "from engine_tasks import double\n"
+        "from meshonet_cli.batch.executors.engine import Engine\n"
+        "class Lost:\n"
+        "    status = 'pending'\n"  # it was 'finished' when its result was asked for
+        "    async def _result(self, raiseit): return 4\n"
+        "async def hand_on(future): await _cascade_future(Lost(), future)\n"
+        "if __name__ == '__main__':\n"
+        "    with Engine('dask', 1).workers(print) as workers:\n"
+        "        future = Future()\n"
+        "        asyncio.run(hand_on(future))\n"
+        "        workers._tasks[future] = double, 2\n"
+        "        print(repr(future.exception())[:9], workers.result(future))\n"
+    )
+    (tmp_path / "run.py").write_text(code)
+    environment = ENVIRONMENT | {"PYTHONPATH": os.pathsep.join([str(ROOT), str(Path(__file__).parent)])}
+    done = subprocess.run(
+        [sys.executable, "run.py"], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    assert done.stdout == "TypeError 4\n"
+
+
+@needs_dask
 def test_a_cluster_of_its_own_survives_its_workers(tmp_path: Path) -> None:
     """In a process of its own: what Dask loads and logs is kept from other tests."""
     code = (

@@ -17,7 +17,9 @@ from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from multiprocessing.resource_tracker import ensure_running
 from pathlib import Path
+from traceback import walk_tb
 from typing import TYPE_CHECKING, Any, TypeVar
+from weakref import WeakKeyDictionary
 
 from meshonet import __version__
 from meshonet.geometry.errors import InputError
@@ -124,6 +126,7 @@ class _Dask(Workers):
         self._client, self._warn = client, warn
         self._address = client.scheduler.address  # a client that is closed has no scheduler
         self._events: deque[dict[str, Any]] = deque()
+        self._tasks: WeakKeyDictionary[Any, tuple[Any, Any]] = WeakKeyDictionary()
         self._wait()
         client.subscribe_topic("all", self._hear)
         super().__init__(client.get_executor(pure=False), len(client.nthreads()))
@@ -156,9 +159,11 @@ class _Dask(Workers):
         from distributed.client import ClosedClientError
 
         try:
-            return self.executor.submit(_call, function, task, self._folder, self._words)
+            future = self.executor.submit(_call, function, task, self._folder, self._words)
         except ClosedClientError as error:
             raise self.lost() from error
+        self._tasks[future] = function, task
+        return future
 
     def result(self, future: Any) -> Any:
         """Return the result of a task, or raise what it ended in."""
@@ -167,6 +172,10 @@ class _Dask(Workers):
 
         try:
             return super().result(future)
+        except TypeError as error:
+            if not _died_with_its_result(error):
+                raise
+            return self.result(self.submit(*self._tasks[future]))
         except KilledWorker as error:
             raise WorkerDiedError from error
         except CommClosedError as error:
@@ -190,6 +199,15 @@ class _Dask(Workers):
                 raise InputError(
                     f"it has {has}, and this is {__version__}", remedy, source=f"worker {worker}"
                 )
+
+
+def _died_with_its_result(error: TypeError) -> bool:
+    """Return whether a worker died while its result was handed on.
+
+    Dask's executor then takes the result for an error, of three parts (distributed 2026.8, cfexecutor.py).
+    """
+    frames = list(walk_tb(error.__traceback__))
+    return bool(frames) and frames[-1][0].f_code.co_name == "_cascade_future"
 
 
 def _version() -> str:
