@@ -1,5 +1,6 @@
 """The program: ``meshonet``, or ``python -m meshonet_cli``."""
 
+import gc
 import sys
 from typing import NoReturn
 
@@ -13,6 +14,8 @@ def main() -> NoReturn:
     except KeyboardInterrupt:
         sys.stderr.write("interrupted\n")
         sys.exit(130)
+    finally:
+        gc.freeze()  # else the interpreter's last search for cycles goes through every module: 0.03 s
 
 
 if __name__ == "__main__":
