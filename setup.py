@@ -34,6 +34,7 @@ NUMERICS = (
 )
 OWN_FLAGS = {
     "conformal/strip_rows.c": ["-fno-associative-math"],  # order matters to argument reduction
+    "geometry/nearest.c": ["-ffp-contract=off"],  # equal distances must be equal in every loop
     # what is decided from a sign must be the same wherever it is asked
     "motorcycle/trace.c": ["-fno-associative-math", "-fno-reciprocal-math", "-ffp-contract=off"],
     "motorcycle/walk.c": ["-fno-associative-math", "-fno-reciprocal-math", "-ffp-contract=off"],

@@ -138,8 +138,9 @@ def crossing_segments(points, order, low, top, ptrdiff_t limit, long long budget
 
 
 cdef extern from "geometry/nearest.h":
-    void c_nearest_points "nearest_points"(const double *places, ptrdiff_t m, const double *x, const double *y,
-                                           ptrdiff_t n, ptrdiff_t *index, double *square) nogil
+    enum: nearest_block
+    void c_nearest_points "nearest_points"(const double *places, ptrdiff_t m, const double *x, const double *y, ptrdiff_t n,
+                                           const double *low, const double *high, ptrdiff_t *index, double *square) nogil
 
 
 def nearest_points(places, points):
@@ -148,10 +149,13 @@ def nearest_points(places, points):
     if n < 1:
         raise ValueError("no points")
     planes = np.ascontiguousarray(points.T)
+    begins = np.arange(0, n, nearest_block)
+    lows, highs = np.minimum.reduceat(points, begins), np.maximum.reduceat(points, begins)
     index, square = np.empty(m, dtype=np.intp), np.empty(m)
     cdef Read p = reads(places, (m, 2)), x = reads(planes[0], (n,)), y = reads(planes[1], (n,))
+    cdef Read low = reads(lows, (len(begins), 2)), high = reads(highs, (len(begins), 2))
     cdef ptrdiff_t *at = <ptrdiff_t *>numbers(index, b"i", sizeof(ptrdiff_t), (m,), True)
     cdef Written out = fills(square, (m,))
     with nogil:
-        c_nearest_points(p, m, x, y, n, at, out)
+        c_nearest_points(p, m, x, y, n, low, high, at, out)
     return index, square
