@@ -104,7 +104,7 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "vtm", ".vtm", "VTK multi-block file: an index and a folder of .vts, one a block",
-        "vtk.vtm:read_grids vtk.vtm:write_grids",
+        "vtk.vtm_read:read_grids vtk.vtm:write_grids",
         sniff=partial(holds, (b"<VTKFile", b"vtkMultiBlockDataSet")),
         names_patches=True, blocks="kept", many=True, beside=True, space=_BOTH,
     ),

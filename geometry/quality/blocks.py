@@ -9,7 +9,6 @@ from meshonet.geometry.blocks.vertices import vertices
 from meshonet.geometry.quality.deviation import Deviation, deviation, solid_deviation
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.lines import Lines, lines
-from meshonet.geometry.quality.solid_lines import solid_lines
 from meshonet.geometry.quality.summary import Quality
 
 BLOCK_FIGURES = ("irregular", "deviation_mean", "deviation_p99", "growth", "growth_across", "bend_across")
@@ -75,6 +74,7 @@ def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
     Lines of volumes have percentiles where their quality has.
     """
     if grid.form == "volume":
+        from meshonet.geometry.quality.solid_lines import solid_lines
         from meshonet.geometry.quality.volumes import measure_volumes
 
         angles = solid_deviation(quality or measure_volumes(grid, percentiles=True))

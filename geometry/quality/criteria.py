@@ -4,8 +4,6 @@ from dataclasses import dataclass
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.gates import Gate, Judgement, need_percentiles
-from meshonet.geometry.quality.profiles import Figures, profile_report
-from meshonet.geometry.quality.report import QualityReport
 from meshonet.geometry.quality.summary import Quality
 
 
@@ -37,6 +35,9 @@ class Criteria:
 
         Raises InputError: a gate names a figure that these cells do not have.
         """
+        from meshonet.geometry.quality.profiles import Figures, profile_report
+        from meshonet.geometry.quality.report import QualityReport
+
         figures = Figures(grid, quality, grid.walls())
         profile = profile_report(figures, self.profile) if self.profile else None
         return QualityReport(grid, quality, (), figures, profile).judgement(self.gates)

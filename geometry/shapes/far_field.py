@@ -6,7 +6,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.conformal.lift import lift_body, mirrored
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 
@@ -33,6 +32,8 @@ TURNED = 10.0
 
 def _start(wall: Floats, behind: float) -> tuple[float, str]:
     """Return the angle of the first far-field node, in a body's map where its wall's is, and a note."""
+    from meshonet.geometry.conformal.lift import lift_body, mirrored  # which domains of blocks do not need
+
     try:
         lift, w, _ = lift_body(mirrored(wall[:-1]))
     except InputError:

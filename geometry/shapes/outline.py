@@ -15,7 +15,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.conformal.spacing import conformal_knots
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
@@ -205,6 +204,8 @@ class Outline:
         notes: tuple[str, ...] = ()
         if sampling.spacing == "conformal" or (sampling.spacing == "auto" and curve.corners.size == 0):
             try:
+                from meshonet.geometry.conformal.spacing import conformal_knots
+
                 return conformal_knots(curve, curve.corners[curve.corners > 0], ni), ()
             except InputError as error:
                 if sampling.spacing == "conformal":

@@ -75,7 +75,7 @@ def test_another_spacing_than_the_usual_one_is_named(monkeypatch: pytest.MonkeyP
         raise InputError("the lifted wall is not star-shaped")
 
     monkeypatch.setattr("meshonet.geometry.shapes.airfoil.wall_nodes.conformal_knots", refused)
-    monkeypatch.setattr("meshonet.geometry.shapes.outline.conformal_knots", refused)
+    monkeypatch.setattr("meshonet.geometry.conformal.spacing.conformal_knots", refused)
     because = "is used instead of conformal: the lifted wall is not star-shaped"
     assert Airfoil(selig(0.12)).boundary(O_GRID).notes == (f"spacing tanh {because}",)
     turn = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,10 +24,11 @@ from meshonet.geometry.shapes.airfoil.section_curve import (
     shape_notes,
 )
 from meshonet.geometry.shapes.airfoil.trailing_edge import rounded_base, wedged_base
-from meshonet.geometry.shapes.airfoil.wall_nodes import Stations, wall_arcs
 from meshonet.geometry.shapes.far_field import o_boundary
-from meshonet.geometry.shapes.wake import C_EDGE, Wake, c_boundary, cells_of_wake, wake_axis
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling, TrailingEdge
+
+if TYPE_CHECKING:
+    from meshonet.geometry.shapes.airfoil.wall_nodes import Stations
 
 __all__ = ["SHARP_GAP", "Airfoil"]
 
@@ -123,6 +125,8 @@ class Airfoil:
     @property
     def stations(self) -> Stations:
         """Where its base, its sides and its nose are along the curve."""
+        from meshonet.geometry.shapes.airfoil.wall_nodes import Stations
+
         return Stations(self.curve, *self._arcs, self.chord, self.nose_radius, self._round)
 
     def normalised(self) -> Airfoil:
@@ -165,6 +169,8 @@ class Airfoil:
         return self._nodes(ni, replace(sampling, spacing="tanh")), notes
 
     def _nodes(self, ni: int, sampling: Sampling) -> Floats:
+        from meshonet.geometry.shapes.airfoil.wall_nodes import wall_arcs  # which not every domain needs
+
         nodes = self.curve.at(wall_arcs(self.stations, ni, sampling))
         nodes[-1] = nodes[0]
         crossing = find_crossing(nodes[:-1])
@@ -240,6 +246,8 @@ class Airfoil:
 
     def _c_boundary(self, sampling: Sampling, original: Airfoil, notes: tuple[str, ...]) -> Boundary:
         """Return the C boundary around this body, which was `given` once, with its units."""
+        from meshonet.geometry.shapes.wake import C_EDGE, Wake, c_boundary, cells_of_wake, wake_axis
+
         if self.blunt or self._round:
             remedy = "close it with {te} wedge, or use {topology} o"
             raise InputError("a C grid needs a sharp trailing edge", remedy)
