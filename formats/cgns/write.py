@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from meshonet.formats.cgns.joints import write_connections
-from meshonet.formats.cgns.nodes import NAME_LENGTH, Node, child, root
+from meshonet.formats.cgns.nodes import NAME_LENGTH, VERSIONS, Node, child, root
 from meshonet.formats.cgns.ranges import range_of
 from meshonet.formats.format import at_least_one
 from meshonet.formats.hdf5.file import created
@@ -40,7 +40,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     rest = iter(grids)
     first = at_least_one(rest)
     small = len(first.blocks) > 1 and sum(block.nodes.size for block in first.blocks) < _IN_MEMORY
-    with created(path, in_memory=small, track_order=True, libver=("earliest", "v108")) as file:
+    with created(path, in_memory=small, track_order=True, libver=VERSIONS) as file:
         top = root(file)
         bases: dict[tuple[int, int], tuple[Node, dict[str, Kind]]] = {}
         zones: set[str] = set()
