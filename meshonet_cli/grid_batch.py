@@ -51,6 +51,7 @@ class GridMaker:
 
     request: GridRequest
     criteria: Criteria
+    detailed: bool = True
 
     def __call__(self, members: Iterable[Item[Shape]]) -> Iterator[tuple[Grid, Report] | Exception]:
         """Yield grid and report of each member, or the error that it ended in."""
@@ -67,13 +68,17 @@ class GridMaker:
 
     def _reported(self, member: Item[Shape], result: Result) -> tuple[Grid, Report] | Exception:
         try:
-            return reported(member, result, self.criteria)
+            return reported(member, result, self.criteria, detailed=self.detailed)
         except MeshonetError as error:
             return error
 
 
-def reported(member: Item[Shape], result: Result, criteria: Criteria) -> tuple[Grid, Report]:
+def reported(
+    member: Item[Shape], result: Result, criteria: Criteria, *, detailed: bool = True
+) -> tuple[Grid, Report]:
     """Return the grid of `member` with the command in its provenance, and the report, judged by `criteria`.
+
+    A `detailed` one has angles and lines of grids of blocks, which only programs are told.
 
     Raises InputError: a gate names a figure that these cells do not have.
     """
@@ -86,10 +91,10 @@ def reported(member: Item[Shape], result: Result, criteria: Criteria) -> tuple[G
     )  # fmt: skip
     report.seconds |= result.seconds
     if grid.topology == "blocks":
-        from meshonet.geometry.quality.blocks import block_figures
+        from meshonet.geometry.quality.blocks import block_counts, block_figures
 
         with report.timed("quality"):
-            report.blocks = block_figures(grid, result.quality)
+            report.blocks = block_figures(grid, result.quality) if detailed else block_counts(grid)
     if criteria:
         with report.timed("quality"):
             report.judgement = criteria.judge(grid, result.quality)
@@ -144,7 +149,7 @@ def write_grids(
 
     with listening(Live(session.status)) if session.live else contextlib.nullcontext():
         deliver(
-            members, GridMaker(request, criteria), destination, session, written,
+            members, GridMaker(request, criteria, session.as_json), destination, session, written,
             skip_existing=files.skip_existing, together=_together(request), engine=engine,
         )  # fmt: skip
     if history and cycles:

@@ -5,7 +5,7 @@ from typing import Any
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.shared_nodes import node_count
-from meshonet.geometry.blocks.vertices import vertices
+from meshonet.geometry.blocks.vertices import Vertices, vertices
 from meshonet.geometry.quality.deviation import Deviation, deviation, solid_deviation
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.lines import Lines, lines
@@ -16,17 +16,23 @@ BLOCK_FIGURES = ("irregular", "deviation_mean", "deviation_p99", "growth", "grow
 
 
 @dataclass(frozen=True)
-class BlockFigures:
-    """Counts, angles and lines of a grid of blocks.
+class BlockCounts:
+    """Blocks and irregular vertices of a grid.
 
-    `sizes` are the nodes of each block, `nodes` those of all without doubles, `irregular` the inner vertices
-    (block, i, j) where other than four cells meet, each with the cells that meet there; None in volumes.
+    `sizes` are the nodes of each block, `irregular` the inner vertices (block, i, j) where other than four
+    cells meet, each with the cells that meet there; None in volumes.
     """
 
     sizes: tuple[tuple[int, ...], ...]
+    irregular: tuple[tuple[tuple[int, int, int], int], ...] | None
+
+
+@dataclass(frozen=True)
+class BlockFigures(BlockCounts):
+    """Counts, angles and lines of a grid of blocks; `nodes` are those of all blocks without doubles."""
+
     nodes: int
     interfaces: int
-    irregular: tuple[tuple[tuple[int, int, int], int], ...] | None
     deviation: Deviation
     lines: Lines
 
@@ -81,12 +87,25 @@ def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
         sizes = tuple(block.counts for block in grid.blocks)
         count = node_count(sizes, grid.connections)
         run = solid_lines(grid, percentiles=angles.p99 is not None)
-        return BlockFigures(sizes, count, len(grid.connections), None, angles, run)
+        return BlockFigures(sizes, None, count, len(grid.connections), angles, run)
     nodes = vertices(grid)
-    irregular = [(nodes.place(int(node)), int(nodes.valence[node])) for node in nodes.irregular]
+    counts, angles = _counts(grid, nodes), deviation(grid)
+    return BlockFigures(
+        counts.sizes, counts.irregular, len(nodes.valence), len(grid.connections), angles, lines(grid, nodes)
+    )
+
+
+def block_counts(grid: Grid) -> BlockCounts:
+    """Return the blocks and irregular vertices of a grid in the plane, on a surface or of volumes."""
+    return _counts(grid, None if grid.form == "volume" else vertices(grid))
+
+
+def _counts(grid: Grid, nodes: Vertices | None) -> BlockCounts:
     sizes = tuple(block.counts for block in grid.blocks)
-    count, angles = len(nodes.valence), deviation(grid)
-    return BlockFigures(sizes, count, len(grid.connections), tuple(irregular), angles, lines(grid, nodes))
+    if nodes is None:
+        return BlockCounts(sizes, None)
+    irregular = [(nodes.place(int(node)), int(nodes.valence[node])) for node in nodes.irregular]
+    return BlockCounts(sizes, tuple(irregular))
 
 
 def extreme_dict(extreme: Extreme | None) -> dict[str, Any] | None:

@@ -11,7 +11,7 @@ from meshonet_cli.errors import with_options
 from meshonet_cli.text import named, span
 
 if TYPE_CHECKING:
-    from meshonet.geometry.quality.blocks import BlockFigures
+    from meshonet.geometry.quality.blocks import BlockCounts
     from meshonet.geometry.quality.gates import Judgement
     from meshonet.geometry.quality.summary import Quality
     from meshonet.solvers.progress import Row
@@ -40,14 +40,16 @@ class Report(Timed):
     residual: float | None = None
     cycles: int | None = None
     history: tuple[Row, ...] = ()
-    blocks: BlockFigures | None = None
+    blocks: BlockCounts | None = None
     judgement: Judgement | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
+        from meshonet.geometry.quality.blocks import BlockFigures
         from meshonet.geometry.quality.report import quality_dict
 
-        blocks = {} if self.blocks is None else {"cells": self.quality.cells, **self.blocks.as_dict()}
+        figures = self.blocks.as_dict() if isinstance(self.blocks, BlockFigures) else None
+        blocks = {} if figures is None else {"cells": self.quality.cells, **figures}
         return {
             **self.member_json(), "method": self.method, "model": self.model, "ni": self.ni, "nj": self.nj,
             "topology": self.topology, **self._along_wall(), **blocks, "folded": self.quality.folded,
