@@ -1,7 +1,7 @@
 #pragma once
 #include <stddef.h>
 
-enum { nearest_block = 64 };
+enum { nearest_block = 32 };
 
 /* Index of the nearest of n points (x, y) to each of m places (m, 2), the first of equally near ones, and the square of
    its distance. `low` and `high` (blocks, 2) are corners of the boxes around each `nearest_block` points: of those in the
