@@ -31,7 +31,7 @@ ANGLE, MOVE = 2.0, 1e-3
 """ν, σ."""
 MARGIN = 0.03
 """How far below the limit, in logarithms, ratios are to come."""
-AROUND, REACH = 6, 2.0
+AROUND, REACH = 5, 1.0
 """Cells around ratios that exceed the limit in which nodes move, and more for each cell of excess."""
 ROUNDS, STEPS = 8, 3
 """How often it is looked which nodes move, and the steps for each such set."""
