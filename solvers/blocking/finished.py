@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, percentiles_of
-from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.errors import NoValidGridError, SolverError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -105,7 +105,10 @@ def evened(layout: Layout, settings: LayerSettings, corners: Collection[int] = (
     for number in corners:
         held[layout.blocks[number]] = True
     limit = max(MARGIN * np.log(settings.growth), np.log(MOST_GROWTH))
-    return replace(layout, mesh=evened_mesh(layout.mesh, held, float(limit)))
+    try:
+        return replace(layout, mesh=evened_mesh(layout.mesh, held, float(limit)))
+    except SolverError:  # nodes that coincide
+        return layout
 
 
 def _guarded(nodes: Floats, change: Floats, mesh: QuadMesh) -> Floats:
