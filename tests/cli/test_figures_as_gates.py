@@ -43,14 +43,17 @@ def test_a_limit_of_the_user_replaces_that_of_the_profile_and_the_tables_say_so(
 ) -> None:
     words = ("quality", c_vts, "--profile", "openfoam")
     before = meshonet(*words, "--summary").out
-    assert re.search(r"warn     box_ratio \S+ > 1000$", before, re.MULTILINE)
+    assert re.search(r"warn     non_orthogonality \S+ > 70, box_ratio \S+ > 1000$", before, re.MULTILINE)
     (check,) = (c for c in meshonet(*words, "--json").only["profile"]["checks"] if c["figure"] == "box_ratio")
     above, below = f"box_ratio>{check['value'] * 1.1:.6g}", f"box_ratio>{check['value'] * 0.9:.6g}"
-    accepted = meshonet(*words, "--fail-on", above, "--summary")
+    accepted = meshonet(*words, "--fail-on", above, "--fail-on", "non_orthogonality>89", "--summary")
     assert accepted.code == 0
     assert accepted.out.splitlines()[-1] == "verdicts: 1 pass"
     limit = f"{float(above.split('>')[1]):g}"
-    assert f"--fail-on in place of the profile's limit: box_ratio > {limit}" in accepted.out
+    assert (
+        f"--fail-on in place of the profile's limit: non_orthogonality > 89, box_ratio > {limit}"
+        in accepted.out
+    )
     (row,) = (r for r in meshonet(*words, "--fail-on", above).out.splitlines() if r.startswith("box_ratio"))
     assert "1000" not in row
     assert row.endswith(f"fail > {limit} (--fail-on)     pass")
