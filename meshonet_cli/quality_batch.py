@@ -35,7 +35,7 @@ def measure_grids(
     table over all; `plot` and `per_cell` are pictures and files of metrics to write, `html` is a page about
     all grids.
     """
-    gates, profile = criteria.gates, criteria.profile
+    gates = criteria.gates
     session.summary = summary
     outputs = [picture_file(plot, None, Picture())] if plot else []
     outputs += [_metrics_file(per_cell)] if per_cell else []
@@ -51,7 +51,8 @@ def measure_grids(
             reference = references.match(item.what.name) if references else None
             paired = time.perf_counter()
             reached("quality")
-            measured = Measured(item, quality(item.what, profile=profile, compare=reference))
+            report = quality(item.what, profile=criteria.profiles, compare=reference)
+            measured = Measured(item, report.under(gates))
             measured.seconds["quality"] = time.perf_counter() - paired
             if references:
                 measured.seconds["compare"] = paired - begun

@@ -94,7 +94,11 @@ class Summary:
         whole = [f"{line:<{width}}  {end}".rstrip() for line, end in zip(lines, ends, strict=False)]
         verdicts = [row.verdict for row in self.rows]
         counts = [f"{verdicts.count(word)} {verdict_word(word)}" for word in VERDICTS if word in verdicts]
-        return "\n".join([*whole, *lines[len(ends) :], f"verdicts: {', '.join(counts)}"])
+        replaced = dict.fromkeys(
+            text for row in self.rows if row.judgement for text in row.judgement.replaced
+        )
+        note = [f"--fail-on in place of the profile's limit: {', '.join(replaced)}"] if replaced else []
+        return "\n".join([*whole, *lines[len(ends) :], *note, f"verdicts: {', '.join(counts)}"])
 
     def _columns(self) -> list[str]:
         return [column for column in LABELS if any(column in row.figures for row in self.rows)]

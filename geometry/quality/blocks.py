@@ -11,9 +11,6 @@ from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.lines import Lines, lines
 from meshonet.geometry.quality.summary import Quality
 
-BLOCK_FIGURES = ("irregular", "deviation_mean", "deviation_p99", "growth", "growth_across", "bend_across")
-"""Figures that gates may name."""
-
 
 @dataclass(frozen=True)
 class BlockCounts:
@@ -35,21 +32,6 @@ class BlockFigures(BlockCounts):
     interfaces: int
     deviation: Deviation
     lines: Lines
-
-    def figures(self) -> dict[str, float]:
-        """Return the figures by the names of `BLOCK_FIGURES`; growth 1 and bend 0 where no line runs."""
-        run = self.lines
-        inside, across, bend = run.growth_inside, run.growth_across, run.bend_across
-        most = max((each.max for each in (inside, across) if each), default=1.0)
-        figures = {
-            "deviation_mean": self.deviation.mean,
-            "growth": most,
-            "growth_across": across.max if across else 1.0,
-            "bend_across": bend.max if bend else 0.0,
-        }
-        if self.deviation.p99 is not None:
-            figures["deviation_p99"] = self.deviation.p99
-        return figures if self.irregular is None else figures | {"irregular": len(self.irregular)}
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as what JSON can hold."""

@@ -41,6 +41,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.checkmesh_solid import cells_of, solid_faces
 from meshonet.geometry.quality.growth import Extreme, Tally, beyond_seam, strips
 
+FACES = ("non_orthogonality", "face_skewness", "box_ratio")
+"""Figures of `Faces`."""
+
 SEVERE = 70.0
 """Non-orthogonality from which checkMesh counts faces."""
 
@@ -76,10 +79,8 @@ def faces(grid: Grid) -> Faces:
         only: Iterator[Values] = ((i, 0, _box_ratio(part), None) for i, part in strips(grid.nodes, 1))
         return _summed(_inside(grid), _outside(grid), only)
     if grid.form == "surface":
-        problem = "a surface has no faces between cells, which this profile judges"
-        raise InputError(
-            problem, "make a volume of it, or judge it by pointwise or verdict", parameter="profile"
-        )
+        problem = f"a surface has no faces between cells, of which {', '.join(FACES)} are"
+        raise InputError(problem, "make a volume of it, or judge it by other figures")
     blocks = list(enumerate(grid.blocks))
     within = (face for number, block in blocks for face in _within(block.nodes, number))
     boxes = ((0, 0, _box_ratio(block.nodes), number) for number, block in blocks)

@@ -1,4 +1,4 @@
-"""What a user accepts of a grid: gates, and the limits of a profile."""
+"""What a user accepts of a grid: gates, and the limits of profiles."""
 
 from dataclasses import dataclass
 
@@ -9,21 +9,21 @@ from meshonet.geometry.quality.summary import Quality
 
 @dataclass(frozen=True)
 class Criteria:
-    """Gates, and the name of a profile; what is false asks for nothing.
+    """Gates, and names of profiles; what is false asks for nothing.
 
     Parameters
     ----------
     gates : tuple of Gate, optional
         Conditions under which a grid fails.
-    profile : str, optional
-        One of `meshonet.geometry.quality.profiles.PROFILES`.
+    profiles : tuple of str, optional
+        Of `meshonet.geometry.quality.profiles.PROFILES`.
     """
 
     gates: tuple[Gate, ...] = ()
-    profile: str | None = None
+    profiles: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
-        return bool(self.gates or self.profile)
+        return bool(self.gates or self.profiles)
 
     @property
     def percentiles(self) -> bool:
@@ -35,9 +35,10 @@ class Criteria:
 
         Raises InputError: a gate names a figure that these cells do not have.
         """
-        from meshonet.geometry.quality.profiles import Figures, profile_report
+        from meshonet.geometry.quality.figures import Figures
+        from meshonet.geometry.quality.profiles import profile_report
         from meshonet.geometry.quality.report import QualityReport
 
         figures = Figures(grid, quality, grid.walls())
-        profile = profile_report(figures, self.profile) if self.profile else None
+        profile = profile_report(figures, *self.profiles) if self.profiles else None
         return QualityReport(grid, quality, (), figures, profile).judgement(self.gates)

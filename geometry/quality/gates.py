@@ -5,21 +5,17 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from meshonet.geometry.errors import InputError, meant
+from meshonet.geometry.quality.figure import COUNTS, FIGURES, Figure
 from meshonet.geometry.quality.metrics import ALL_NAMES
-from meshonet.geometry.quality.summary import Quality
+
+if TYPE_CHECKING:
+    from meshonet.geometry.quality.figures import Figures
 
 COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
-NO_MORE: Mapping[str, float] = MappingProxyType({})
-COUNTS = ("folded", "bezier_folded")
-"""Counts of cells that gates may name: by corners, and by the Bezier test of volumes."""
-OF_PROFILES: Mapping[str, str] = MappingProxyType({
-    "non_orthogonality": "openfoam", "face_skewness": "openfoam", "box_ratio": "openfoam",
-    "wall_growth": "viscous", "equal_wall_cells": "viscous", "far_field": "viscous",
-})  # fmt: skip
-"""Figures that are no metrics of cells, so that only profiles of ``quality`` judge them."""
+NO_MORE: Mapping[str, Figure] = MappingProxyType({})
 _STATISTICS = ("min", "mean", "max", "p01", "p99")
 _GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASCII)
 
@@ -30,51 +26,67 @@ class Gate:
 
     text: str
     metric: str
-    """Of `meshonet.geometry.quality.metrics`, one of `COUNTS`, or a figure beside them."""
+    """Of `meshonet.geometry.quality.metrics`, one of `COUNTS` or `FIGURES`, or a figure beside them."""
     statistic: str
     """Of the metric over all cells: min, mean, max, p01 or p99."""
     compare: str
     limit: float
     """In the metric's unit."""
 
-    def figure(self, quality: Quality, more: Mapping[str, float] = NO_MORE) -> float:
-        """Return what the gate looks at, of `quality` or a figure of `more`.
+    def figure(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> Figure:
+        """Return what the gate looks at, of `figures` or of `more`.
 
-        Raises InputError: a metric or count that these cells do not have.
+        Raises InputError: a figure that this grid does not have.
         """
-        has_statistics = self.metric in ALL_NAMES
-        counts = {"folded": quality.folded, "bezier_folded": quality.bezier_folded}
-        if has_statistics and self.metric in quality.metrics:
-            value = getattr(quality[self.metric], self.statistic)
-        else:
-            value = {**counts, **more}.get(self.metric)
-        if value is None:
-            known = ", ".join(name for name, figure in counts.items() if figure is not None)
-            remedy = f"use {known}, " + ", ".join((*quality.metrics, *more))
+        figure = more.get(self.metric) or figures(self.metric, self.statistic)
+        if figure is None:
+            known = [name for name in COUNTS if figures(name)]
+            remedy = f"use {', '.join((*known, *figures.quality.metrics, *more))}"
             raise InputError(f"this grid has no {self.metric}", remedy, parameter="fail_on")
-        return float(value)
+        return figure
 
     def beyond(self, value: float) -> bool:
-        """Say whether a figure is beyond the limit."""
-        return bool(COMPARE[self.compare](value, self.limit))
+        """Say whether a figure is beyond the limit; what is not a number is."""
+        return bool(COMPARE[self.compare](value, self.limit)) or value != value
 
-    def broken(self, quality: Quality, more: Mapping[str, float] = NO_MORE) -> str | None:
+    def broken(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> str | None:
         """Return a line for the user if the `figure` is beyond the limit, else None.
 
-        Raises InputError: a metric or count that these cells do not have.
+        Raises InputError: a figure that this grid does not have.
         """
-        value = self.figure(quality, more)
-        if not self.beyond(value):
+        figure = self.figure(figures, more)
+        if not self.beyond(figure.value):
             return None
-        return f"{self._what} is {value:.6g}, and {{fail_on}} '{self.text}'"
+        return f"{self._what} is {figure.value:.6g}{figure.where}, and {{fail_on}} '{self.text}'"
 
-    def in_short(self, value: float) -> str:
+    def in_short(self, figure: Figure) -> str:
         """Return a figure beyond the limit and the limit: ``max_angle.max 178.2 > 170``."""
-        return f"{self._what} {value:.4g} {self.compare} {self.limit:g}"
+        return in_short(self._what, figure, self.compare, self.limit)
+
+    def replaces(self, figure: str, compare: str) -> bool:
+        """Say whether the gate limits what a check of `figure` does, which has a limit of this sense too.
+
+        Of metrics that is the greatest cell, or the least: a gate on a mean is beside such a check.
+        """
+        return (self.metric, self.compare[0], self.statistic) == (figure, compare[0], end_of(compare))
 
     @property
     def _what(self) -> str:
         return f"{self.metric}.{self.statistic}" if self.metric in ALL_NAMES else self.metric
+
+
+def end_of(compare: str) -> str:
+    """Return which end of a metric a limit is for, ``max`` or ``min``."""
+    return "max" if compare in (">", ">=") else "min"
+
+
+def in_short(name: str, figure: Figure, compare: str, limit: float) -> str:
+    """Return a figure beyond a limit; of growth and bend with direction and place, which no table has.
+
+    >>> in_short("growth", Figure(1.417, (12, 0), "xi"), ">", 1.3)
+    'growth 1.417 > 1.3 along xi at i=12, j=0'
+    """
+    return f"{name} {figure.value:.4g} {compare} {limit:g}{figure.where if figure.along else ''}"
 
 
 @dataclass(frozen=True)
@@ -87,10 +99,13 @@ class Judgement:
         A line for each gate, and each check of the profile, that failed.
     beyond : tuple of str
         The same in short, warnings of the profile among them: ``max_angle 178.2 > 170``.
+    replaced : tuple of str
+        Limits of gates that are in place of the profile's: ``box_ratio > 4000``.
     """
 
     problems: tuple[str, ...] = ()
     beyond: tuple[str, ...] = ()
+    replaced: tuple[str, ...] = ()
 
     @property
     def verdict(self) -> Literal["pass", "warn", "fail"]:
@@ -99,7 +114,7 @@ class Judgement:
 
 
 def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
-    """Return the gate that `text` describes; `more` are figures beside the metrics, without statistics.
+    """Return the gate that `text` describes; `more` are figures beside `FIGURES`, without statistics too.
 
     Without a statistic, ``>`` looks at the greatest cell and ``<`` at the least.
 
@@ -120,17 +135,14 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
             parameter="fail_on",
         )
     metric, statistic, compare = match[1], match[2], match[3]
-    if metric not in (*ALL_NAMES, *COUNTS, *more):
-        if metric in OF_PROFILES:
-            remedy = f"judge the grid by the profile: meshonet quality GRID --profile {OF_PROFILES[metric]}"
-            raise InputError(f"{metric!r} is no metric of cells", remedy, parameter="fail_on")
-        names = ("folded", *ALL_NAMES, "bezier_folded", *more)
+    names = ("folded", *ALL_NAMES, "bezier_folded", *FIGURES, *more)
+    if metric not in names:
         known = meant(metric, names) + "use one of " + ", ".join(names)
         raise InputError(f"metric {metric!r} is not known", known, parameter="fail_on")
     if statistic and (statistic not in _STATISTICS or metric not in ALL_NAMES):
         known = "one of " + ", ".join(_STATISTICS) if metric in ALL_NAMES else f"no statistic with {metric}"
         raise InputError(f"statistic {statistic!r} is not known", f"use {known}", parameter="fail_on")
-    return Gate(text, metric, statistic or ("max" if compare in (">", ">=") else "min"), compare, limit)
+    return Gate(text, metric, statistic or end_of(compare), compare, limit)
 
 
 def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[Gate, ...]:

@@ -18,6 +18,8 @@ Singles = NDArray[np.float32]
 ROWS = 128
 """Columns of nodes processed at a time, so that large grids need little memory besides their own."""
 
+DIRECTIONS = ("xi", "eta", "zeta")
+
 LARGE = 1e30
 """Growth beside a step of no length."""
 
@@ -27,13 +29,14 @@ class Extreme:
     """Greatest and mean value of something over a grid, and the node or cell (i, j) of the greatest.
 
     In a grid of many blocks the place is (block, i, j), in a volume (block, i, j, k); there is the 99th
-    percentile too.
+    percentile too. `along` is the direction of the line with the greatest, one of `DIRECTIONS`.
     """
 
     max: float
     mean: float
     at: tuple[int, ...]
     p99: float | None = None
+    along: str | None = None
 
 
 @dataclass(frozen=True)
@@ -58,34 +61,37 @@ class Tally:
     def __init__(self, *, kept: bool = False) -> None:
         self._max, self._total, self._count = -np.inf, 0.0, 0
         self._at: tuple[int, ...] = (0, 0)
+        self._along: str | None = None
         self._values: list[Floats | Singles] | None = [] if kept else None
 
-    def add(self, i: int, j: int, values: Floats, block: int | None = None) -> None:
+    def add(self, i: int, j: int, values: Floats, block: int | None = None, along: str | None = None) -> None:
         """Add values (m, n) of the nodes or cells from (i, j) on."""
-        self.add_from((i, j) if block is None else (block, i, j), values)
+        self.add_from((i, j) if block is None else (block, i, j), values, along)
 
-    def add_from(self, place: tuple[int, ...], values: Floats) -> None:
+    def add_from(self, place: tuple[int, ...], values: Floats, along: str | None = None) -> None:
         """Add values (m, n) or (m, n, l) of the nodes or cells from `place` on, (block, i, j) say."""
         if values.size == 0:
             return
         here = np.unravel_index(int(values.argmax()), values.shape)
         number = len(place) - values.ndim
         at = (*place[:number], *(first + int(k) for first, k in zip(place[number:], here, strict=True)))
-        self.add_summed(float(values[here]), float(values.sum()), values.size, at)
+        self.add_summed(float(values[here]), float(values.sum()), values.size, at, along)
         if self._values is not None:
             self._values.append(values.ravel())
 
-    def add_summed(self, high: float, total: float, count: int, at: tuple[int, ...]) -> None:
+    def add_summed(
+        self, high: float, total: float, count: int, at: tuple[int, ...], along: str | None = None
+    ) -> None:
         """Add `count` values, the greatest of them and their sum, the greatest at node or cell `at`."""
         if high > self._max:
-            self._max, self._at = high, at
+            self._max, self._at, self._along = high, at, along
         self._total += total
         self._count += count
 
     def add_all(self, other: "Tally") -> None:
         """Add what another one holds, its values where both keep them."""
         if other._count:
-            self.add_summed(other._max, other._total, other._count, other._at)
+            self.add_summed(other._max, other._total, other._count, other._at, other._along)
         if self._values is not None and other._values is not None:
             self._values.extend(other._values)
 
@@ -100,17 +106,17 @@ class Tally:
         if not self._count:
             return None
         p99 = None if self._values is None else percentiles_of(np.concatenate(self._values), (99,))[0]
-        return Extreme(self._max, self._total / self._count, self._at, p99)
+        return Extreme(self._max, self._total / self._count, self._at, p99, self._along)
 
 
 def growth(grid: Grid) -> Growth:
     """Return the growth of the steps of `grid` along xi and eta."""
     xi, eta = Tally(), Tally()
     for i, block in strips(beyond_seam(grid), 2):
-        xi.add(i + 1, 0, ratios(block))
+        xi.add(i + 1, 0, ratios(block), along="xi")
     for i, block in strips(grid.nodes, 0):
-        eta.add(i, 1, ratios(block.swapaxes(0, 1)).T)
-    eta.add(0, 0, ratios(across_wake(grid).swapaxes(0, 1)).T)
+        eta.add(i, 1, ratios(block.swapaxes(0, 1)).T, along="eta")
+    eta.add(0, 0, ratios(across_wake(grid).swapaxes(0, 1)).T, along="eta")
     return Growth(xi.extreme, eta.extreme)
 
 

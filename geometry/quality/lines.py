@@ -17,7 +17,7 @@ from meshonet.geometry.blocks.families import families
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.vertices import Vertices
 from meshonet.geometry.polygon.corners import angle_between
-from meshonet.geometry.quality.growth import Extreme, Growth, Tally, ratios
+from meshonet.geometry.quality.growth import DIRECTIONS, Extreme, Growth, Tally, ratios
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def lines(grid: Grid, nodes: Vertices) -> Lines:
 def _of(parts: list[_Part], what: str) -> Extreme | None:
     tally = Tally(kept=True)
     for part in parts:
-        tally.add(part.i, part.j, getattr(part, what), part.block)
+        tally.add(part.i, part.j, getattr(part, what), part.block, DIRECTIONS[part.axis])
     return tally.extreme
 
 

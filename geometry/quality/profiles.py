@@ -15,23 +15,14 @@ Equiangle Skewness; C. J. Stimpson et al., SAND2007-1751 (2007); J. C. Vassberg 
 the AIAA Drag Prediction Workshops.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
-import numpy as np
-
-from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.blocks import BlockFigures, block_figures
-from meshonet.geometry.quality.checkmesh import Faces, faces
-from meshonet.geometry.quality.gates import COMPARE
-from meshonet.geometry.quality.growth import Extreme, Growth, growth
-from meshonet.geometry.quality.summary import Quality
-from meshonet.geometry.quality.walls import WallRow, wall_rows
+from meshonet.geometry.quality.figure import Figure
+from meshonet.geometry.quality.figures import Figures
+from meshonet.geometry.quality.gates import COMPARE, Gate, end_of, in_short
 
 Level = Literal["warn", "fail"]
 Verdict = Literal["pass", "warn", "fail", "none"]
@@ -42,7 +33,8 @@ class Limit:
     """A condition that a figure must not fulfil, and what follows when it does."""
 
     level: Level
-    compare: Literal[">", ">=", "<"]
+    compare: str
+    """One of `COMPARE`."""
     value: float
 
     def broken(self, value: float) -> bool:
@@ -60,50 +52,111 @@ class Check:
 
 @dataclass(frozen=True)
 class CheckResult:
-    """The outcome of a check: the figure (None: this grid has none), its node or cell, the verdict."""
+    """The outcome of a check: the figure (None: this grid has none) and the verdict.
+
+    `profile` is where the check is from, `gated` whether a user's gates replace its limits.
+    """
 
     check: Check
-    value: float | None
-    at: tuple[int, ...] | None
-    verdict: Verdict
+    figure: Figure | None
+    profile: str
+    gated: bool = False
+
+    @property
+    def value(self) -> float | None:
+        """The figure's value."""
+        return self.figure.value if self.figure else None
+
+    @property
+    def at(self) -> tuple[int, ...] | None:
+        """Its node or cell."""
+        return self.figure.at if self.figure else None
+
+    @property
+    def verdict(self) -> Verdict:
+        """The worst that a limit says."""
+        if self.figure is None:
+            return "none"
+        broken = [limit.level for limit in self.check.limits if limit.broken(self.figure.value)]
+        return "fail" if "fail" in broken else "warn" if broken else "pass"
+
+    def under(self, gates: Sequence[Gate]) -> "CheckResult":
+        """Return the outcome with the limits of those `gates` that look at the same figure."""
+        compare = self.check.limits[0].compare
+        own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
+        limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)
+        if not own or limits == self.check.limits:
+            return self
+        return replace(self, check=Check(self.check.figure, limits), gated=True)
 
 
 @dataclass(frozen=True)
 class ProfileReport:
-    """The results of a profile's checks on one grid."""
+    """The results of the checks of profiles on one grid."""
 
-    name: str
+    names: tuple[str, ...]
     results: tuple[CheckResult, ...]
+
+    @property
+    def name(self) -> str:
+        """The profiles."""
+        return ", ".join(self.names)
 
     @property
     def passed(self) -> bool:
         """Whether no check failed; warnings pass."""
         return all(result.verdict != "fail" for result in self.results)
 
+    def under(self, gates: Sequence[Gate]) -> "ProfileReport":
+        """Return it with the limits of `gates` in place of those that profiles have for the same figures."""
+        return replace(self, results=_once(result.under(gates) for result in self.results))
+
+    def replaced(self) -> list[str]:
+        """Return the limits of gates that are in place of a profile's: ``box_ratio > 4000``."""
+        return [
+            f"{result.check.figure} {limit.compare} {limit.value:g}"
+            for result in self.results
+            if result.gated
+            for limit in result.check.limits
+        ]
+
     def beyond(self) -> list[str]:
         """Return in short which limits are exceeded, those that warn too: ``face_skewness 5.2 > 4``."""
-        return [_in_short(result) for result in self.results if result.verdict in ("warn", "fail")]
+        return [
+            _in_short(result.check, result.figure)
+            for result in self.results
+            if result.figure and result.verdict in ("warn", "fail")
+        ]
 
     def failures(self) -> list[str]:
-        """Return a line for each check that failed."""
+        """Return a line for each check that failed; what a gate limits is told by the gate."""
         return [
-            f"profile {self.name}: {result.check.figure} is {result.value:.6g}, and it must "
+            f"profile {result.profile}: {result.check.figure} is {result.value:.6g}{result.figure.where}, "
+            "and it must "
             + " nor ".join(
                 f"not be {x.compare} {x.value:g}" for x in result.check.limits if x.level == "fail"
             )
             for result in self.results
-            if result.verdict == "fail" and result.value is not None
+            if result.verdict == "fail" and result.figure and not result.gated
         ]
 
 
-def _in_short(result: CheckResult) -> str:
+def _once(results: Iterable[CheckResult]) -> tuple[CheckResult, ...]:
+    """Return the results without checks that are there already: all profiles count folded cells."""
+    checks: dict[Check, CheckResult] = {}
+    for result in results:
+        checks.setdefault(result.check, result)
+    return tuple(checks.values())
+
+
+def _in_short(check: Check, figure: Figure) -> str:
     """Return which limit a figure is beyond, the one that fails it where it is beyond several."""
-    value = result.value or 0.0
-    limit = max((x for x in result.check.limits if x.broken(value)), key=lambda x: x.level == "fail")
-    return f"{result.check.figure} {value:.4g} {limit.compare} {limit.value:g}"
+    broken = [limit for limit in check.limits if limit.broken(figure.value)]
+    limit = max(broken, key=lambda limit: limit.level == "fail")
+    return in_short(check.figure, figure, limit.compare, limit.value)
 
 
-def _check(figure: str, *limits: tuple[Level, Literal[">", ">=", "<"], float]) -> Check:
+def _check(figure: str, *limits: tuple[Level, str, float]) -> Check:
     return Check(figure, tuple(Limit(*limit) for limit in limits))
 
 
@@ -132,91 +185,17 @@ PROFILES: dict[str, tuple[Check, ...]] = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class Figures:
-    """The figures of a grid by name, each group of them measured when it is first asked for."""
-
-    grid: Grid
-    quality: Quality
-    walls: Sequence[Patch]
-
-    @cached_property
-    def faces(self) -> Faces:
-        """What checkMesh says of its faces."""
-        return faces(self.grid)
-
-    @cached_property
-    def growth(self) -> Growth:
-        """How fast its cells grow."""
-        return self.blocks.lines.growth if self.grid.topology == "blocks" else growth(self.grid)
-
-    @cached_property
-    def blocks(self) -> BlockFigures:
-        """Its blocks, their vertices and how lines run through them."""
-        return block_figures(self.grid, self.quality)
-
-    @cached_property
-    def wall_rows(self) -> tuple[WallRow, ...]:
-        """The cells at its walls."""
-        by_wall = self.blocks.lines.by_wall if self.walls and self.grid.topology == "blocks" else {}
-        return wall_rows(self.grid, self.walls, by_wall)
-
-    def value(self, name: str, *, low: bool) -> tuple[float, tuple[int, ...] | None] | None:
-        """Return figure `name` and its place: the least of a metric when `low`, otherwise the greatest.
-
-        ``wall_growth`` is the growth along the lines that leave the walls, ``far_field`` the least distance
-        of the far field from the middle of the walls in chords, where there is one.
-        """
-        if name == "folded":
-            return float(self.quality.folded), None
-        if name in self.quality.metrics:
-            summary = self.quality[name]
-            return (summary.min if low else summary.max), summary.worst
-        if name == "equal_wall_cells":
-            return (float(min(row.equal_cells for row in self.wall_rows)), None) if self.wall_rows else None
-        if name == "far_field":
-            return self._far_field()
-        figure = self._wall_growth() if name == "wall_growth" else getattr(self.faces, name)
-        return None if figure is None else (figure.max, figure.at)
-
-    def _wall_growth(self) -> Extreme | None:
-        if self.grid.topology == "blocks":
-            return self.blocks.lines.leaving
-        sides = {patch.side for patch in self.walls}
-        families = (self.growth.eta, {"south", "north"}), (self.growth.xi, {"west", "east"})
-        leaving = [extreme for extreme, ends in families if extreme and sides & ends]
-        return max(leaving, key=lambda extreme: extreme.max, default=None)
-
-    def _far_field(self) -> tuple[float, None] | None:
-        grid = self.grid
-        far = [_nodes(grid, patch) for patch in grid.patches if patch.kind == "farfield"]
-        if not self.walls or not (grid.around_body or (grid.topology == "blocks" and far)):
-            return None
-        wall = np.concatenate([_nodes(grid, patch) for patch in self.walls])
-        beyond = grid.nodes[:, -1] if grid.around_body else np.concatenate(far)
-        middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))
-        start = wall[np.argmax(norms(wall - middle))]
-        chord = float(norms(wall - start).max())
-        return float(norms(beyond - middle).min()) / chord, None
+def profile_report(figures: Figures, *profiles: str) -> ProfileReport:
+    """Return the results of all `profiles` for a grid; raise InputError unless they are of `PROFILES`."""
+    for profile in profiles:
+        if profile not in PROFILES:
+            known = "use one of " + ", ".join(PROFILES)
+            raise InputError(f"profile {profile!r} is not known", known, parameter="profile")
+    names = tuple(dict.fromkeys(profiles))
+    return ProfileReport(
+        names, _once(_result(check, figures, name) for name in names for check in PROFILES[name])
+    )
 
 
-def _nodes(grid: Grid, patch: Patch) -> Floats:
-    face = grid.face(patch.block, patch.side)
-    spans = patch.range(face.shape[:-1])
-    return face[tuple(slice(first, last + 1) for first, last in spans)].reshape(-1, face.shape[-1])
-
-
-def profile_report(figures: Figures, profile: str) -> ProfileReport:
-    """Return the results of `profile` for a grid; raise InputError unless it is one of `PROFILES`."""
-    if profile not in PROFILES:
-        known = "use one of " + ", ".join(PROFILES)
-        raise InputError(f"profile {profile!r} is not known", known, parameter="profile")
-    return ProfileReport(profile, tuple(_result(check, figures) for check in PROFILES[profile]))
-
-
-def _result(check: Check, figures: Figures) -> CheckResult:
-    figure = figures.value(check.figure, low=check.limits[0].compare == "<")
-    if figure is None:
-        return CheckResult(check, None, None, "none")
-    broken = [limit.level for limit in check.limits if limit.broken(figure[0])]
-    return CheckResult(check, *figure, "fail" if "fail" in broken else "warn" if broken else "pass")
+def _result(check: Check, figures: Figures, profile: str) -> CheckResult:
+    return CheckResult(check, figures(check.figure, end_of(check.limits[0].compare)), profile)

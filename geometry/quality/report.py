@@ -1,16 +1,18 @@
 """Everything that is measured of a grid: its metrics, its walls, a profile, its distance from another."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
-from meshonet.geometry.quality.blocks import BLOCK_FIGURES, extreme_dict
+from meshonet.geometry.quality.blocks import extreme_dict
 from meshonet.geometry.quality.compare import Difference, compare
+from meshonet.geometry.quality.figure import Figure
+from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import Gate, Judgement
 from meshonet.geometry.quality.measure import measure, worst_cells_of
-from meshonet.geometry.quality.profiles import CheckResult, Figures, ProfileReport, profile_report
+from meshonet.geometry.quality.profiles import CheckResult, ProfileReport, profile_report
 from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.quality.walls import Spread, WallRow
 
@@ -51,30 +53,35 @@ class QualityReport:
     profile: ProfileReport | None = None
     comparison: Comparison | None = None
 
+    def under(self, gates: Sequence[Gate]) -> "QualityReport":
+        """Return it with the limits of `gates` in place of those of its profiles for the same figures."""
+        return replace(self, profile=self.profile.under(gates)) if self.profile else self
+
     def broken(self, gates: Sequence[Gate]) -> list[str]:
-        """Return a line for each gate, and each check of the profile, that is not met."""
-        more = self._beside(gates)
-        lines = [line for gate in gates if (line := gate.broken(self.quality, more))]
-        return lines + (self.profile.failures() if self.profile else [])
+        """Return a line for each gate, and each check of the profiles, that is not met."""
+        more = self._compared()
+        lines = [line for gate in gates if (line := gate.broken(self.figures, more))]
+        return lines + (self.profile.under(gates).failures() if self.profile else [])
 
     def judgement(self, gates: Sequence[Gate]) -> Judgement:
-        """Return what comes of the gates and of the profile."""
-        beyond = [gate.in_short(value) for gate, value, broken in self.judged(gates) if broken]
-        beyond += self.profile.beyond() if self.profile else []
-        return Judgement(tuple(self.broken(gates)), tuple(dict.fromkeys(beyond)))
+        """Return what comes of the gates and of the profiles."""
+        beyond = [gate.in_short(figure) for gate, figure, broken in self.judged(gates) if broken]
+        profile = self.profile.under(gates) if self.profile else None
+        beyond += profile.beyond() if profile else []
+        replaced = profile.replaced() if profile else []
+        return Judgement(tuple(self.broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced))
 
-    def judged(self, gates: Sequence[Gate]) -> list[tuple[Gate, float, bool]]:
+    def judged(self, gates: Sequence[Gate]) -> list[tuple[Gate, Figure, bool]]:
         """Return for each gate the figure that it looks at, and whether that is beyond its limit."""
-        more = self._beside(gates)
-        figures = [gate.figure(self.quality, more) for gate in gates]
-        return [(gate, value, gate.beyond(value)) for gate, value in zip(gates, figures, strict=True)]
+        more = self._compared()
+        figures = [gate.figure(self.figures, more) for gate in gates]
+        pairs = zip(gates, figures, strict=True)
+        return [(gate, figure, gate.beyond(figure.value)) for gate, figure in pairs]
 
-    def _beside(self, gates: Sequence[Gate]) -> dict[str, float]:
-        """Return the figures beside the metrics that gates may name."""
-        more = self.comparison.figures() if self.comparison else {}
-        if any(gate.metric in BLOCK_FIGURES for gate in gates):
-            more |= self.figures.blocks.figures()
-        return more
+    def _compared(self) -> dict[str, Figure]:
+        """Return the figures of the comparison."""
+        values = self.comparison.figures() if self.comparison else {}
+        return {name: Figure(value) for name, value in values.items()}
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as what JSON can hold."""
@@ -101,11 +108,14 @@ class QualityReport:
         return facts
 
 
-def quality_report(grid: Grid, profile: str | None = None, reference: Grid | None = None) -> QualityReport:
-    """Measure `grid`, judge it by a profile of `PROFILES` and compare it with a `reference` of the same size.
+def quality_report(
+    grid: Grid, profile: str | Sequence[str] = (), reference: Grid | None = None
+) -> QualityReport:
+    """Measure `grid`, judge it by profiles of `PROFILES` and compare it with a `reference` of the same size.
 
     Raises InputError: no such profile, a reference of another size.
     """
+    profiles = (profile,) if isinstance(profile, str) else profile
     quality = measure(grid, percentiles=True)
     figures = Figures(grid, quality, grid.walls())
     return QualityReport(
@@ -113,7 +123,7 @@ def quality_report(grid: Grid, profile: str | None = None, reference: Grid | Non
         quality,
         tuple(worst_cells_of(grid)) if quality.folded else (),
         figures,
-        profile_report(figures, profile) if profile else None,
+        profile_report(figures, *profiles) if profiles else None,
         None if reference is None else _comparison(grid, quality, reference),
     )
 
@@ -158,9 +168,11 @@ def _wall(row: WallRow) -> dict[str, Any]:
 
 def _check(result: CheckResult) -> dict[str, Any]:
     return {
+        "profile": result.profile,
         "figure": result.check.figure,
         "value": result.value,
         "at": list(result.at) if result.at else None,
         "limits": [{"level": x.level, "when": x.compare, "value": x.value} for x in result.check.limits],
+        "gated": result.gated,
         "verdict": result.verdict,
     }

@@ -13,7 +13,7 @@ from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.families import families
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.growth import Extreme, Growth, Tally, ratios
+from meshonet.geometry.quality.growth import DIRECTIONS, Extreme, Growth, Tally, ratios
 from meshonet.geometry.quality.lines import Lines, bends
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
@@ -80,7 +80,7 @@ def _inside(grid: Grid, kept: bool) -> Iterator[_Part]:
                 at = number, *(int(k) for k in where[plane, axis, m])
                 high, total = float(summary[plane, axis, m, 0]), float(summary[:, axis, m, 1].sum())
                 if size:
-                    tally.add_summed(high, total, size, at)
+                    tally.add_summed(high, total, size, at, DIRECTIONS[axis])
                     if values is not None:
                         tally.keep(values[axis, m][inner])
             yield _Part(number, axis, True, *measures)
@@ -98,6 +98,7 @@ def _across(grid: Grid, kept: bool) -> Iterator[_Part]:
         measures = []
         for measure in (ratios, bends):
             tally = Tally(kept=kept)
-            tally.add_from((each.block, *at), np.expand_dims(measure(line)[0], axis))
+            values = np.expand_dims(measure(line)[0], axis)
+            tally.add_from((each.block, *at), values, DIRECTIONS[axis])
             measures.append(tally)
         yield _Part(each.block, axis, False, *measures)

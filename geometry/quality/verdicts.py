@@ -11,3 +11,13 @@ def verdict_word(verdict: str) -> str:
     ('warn', 'FAIL')
     """
     return verdict.upper() if verdict == "fail" else verdict
+
+
+def named(at: tuple[int, ...]) -> str:
+    """Return the place (i, j), (block, i, j) or (block, i, j, k) of a node or cell in words.
+
+    >>> named((3, 0, 7)), named((0, 1, 2, 3))
+    ('block=3, i=0, j=7', 'block=0, i=1, j=2, k=3')
+    """
+    names = ("i", "j") if len(at) == 2 else ("block", "i", "j", "k")
+    return ", ".join(f"{name}={k}" for name, k in zip(names, at, strict=False))

@@ -9,14 +9,13 @@ from meshonet.formats.output import whole_file
 from meshonet.formats.registry import format_for_output, read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.blocks import BLOCK_FIGURES
 from meshonet.geometry.quality.gates import parse_gates
 from meshonet.geometry.quality.report import QualityReport, quality_report
 from meshonet.geometry.threads import limited_to
 
 
 def quality(
-    grid: Grid | str | Path, *, profile: str | None = None, compare: Grid | str | Path | None = None,
+    grid: Grid | str | Path, *, profile: str | Sequence[str] = (), compare: Grid | str | Path | None = None,
     threads: int | None = None,
 ) -> QualityReport:  # fmt: skip
     """Measure a grid: folded cells, angles, skewness, walls, growth.
@@ -25,8 +24,8 @@ def quality(
     ----------
     grid : Grid, str or Path
         A grid, or a file that holds one.
-    profile : str, optional
-        Thresholds to judge by: ``openfoam``, ``pointwise``, ``verdict`` or ``viscous``.
+    profile : str or sequence of str, optional
+        Thresholds to judge by: ``openfoam``, ``pointwise``, ``verdict`` or ``viscous``, or several of them.
     compare : Grid, str or Path, optional
         Reference grid of the same size, or a file that holds one.
     threads : int, optional
@@ -59,7 +58,7 @@ def quality(
 
 def quality_page(
     grids: Iterable[Grid | str | Path], output: str | Path, *,
-    profile: str | None = None, fail_on: Sequence[str] = (),
+    profile: str | Sequence[str] = (), fail_on: Sequence[str] = (),
 ) -> bool:  # fmt: skip
     """Write the quality of grids as one page, and return whether all of them pass.
 
@@ -69,10 +68,10 @@ def quality_page(
         Grids, or files that hold one each.
     output : str or Path
         Page to write, ``.html``.
-    profile : str, optional
+    profile : str or sequence of str, optional
         Thresholds to judge by, as for `quality`.
     fail_on : sequence of str
-        Gates, ``max_angle>170`` for instance.
+        Gates, ``max_angle>170`` for instance; a limit for a figure that a profile has too replaces its.
 
     Returns
     -------
@@ -84,7 +83,7 @@ def quality_page(
     InputError
         As `quality`; something that is no gate; an output that cannot be written.
     """
-    gates = parse_gates(fail_on, BLOCK_FIGURES)
+    gates = parse_gates(fail_on)
     if format_for_output(str(output)).name != "html":
         raise InputError("a report is a page", "name it FILE.html", parameter="output", source=str(output))
     page = QualityPage(gates)

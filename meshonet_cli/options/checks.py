@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal
+from enum import Enum
+from typing import TYPE_CHECKING, Annotated
 
 from meshonet_cli.options.groups import CHECKS, option_of
 
@@ -12,6 +13,16 @@ if TYPE_CHECKING:
     from meshonet.geometry.quality.criteria import Criteria
 
 _option = option_of(CHECKS)
+
+
+class Profile(Enum):
+    """Profiles of `meshonet.geometry.quality.profiles`; typer repeats choices of an enumeration only."""
+
+    openfoam = "openfoam"
+    pointwise = "pointwise"
+    verdict = "verdict"
+    viscous = "viscous"
+
 
 # fmt: off
 AllowInvalid = Annotated[bool, _option(
@@ -38,22 +49,25 @@ class GateOptions:
     fail_on: Annotated[list[str] | None, _option(
         "--fail-on", metavar="GATE",
         help="Exit with 1 when this holds, e.g. 'max_angle>170', 'skewness.p99>0.8', 'folded>0'; repeatable. "
+        "Names: folded; max_angle, skewness and the other metrics; growth, wall_growth, equal_wall_cells, "
+        "far_field; non_orthogonality, face_skewness, box_ratio; of blocks irregular and more (the page on "
+        "quality in the documentation has all). Replaces the limit that a --profile has for the same figure. "
         "Of several grids a table says which pass.",
     )] = None
-    profile: Annotated[Literal["openfoam", "pointwise", "verdict", "viscous"] | None, _option(
+    profile: Annotated[list[Profile] | None, _option(
         "--profile", metavar="openfoam|pointwise|verdict|viscous",
         help="Judge by the thresholds of other programs as by gates: pass, warn or FAIL, and exit with 1 "
-        "when one fails. The page on quality in the documentation lists them.",
+        "when one fails; repeatable. The page on quality in the documentation lists them.",
     )] = None
 
     def criteria(self, more: Sequence[str] = ()) -> Criteria:
-        """Return gates and profile; gates may name figures of grids of blocks, and of `more`.
+        """Return gates and profiles; gates may name figures of `more` too.
 
         Raises InputError: a gate that is none.
         """
-        from meshonet.geometry.quality.blocks import BLOCK_FIGURES
         from meshonet.geometry.quality.criteria import Criteria
         from meshonet.geometry.quality.gates import parse_gates
 
-        return Criteria(parse_gates(self.fail_on, (*BLOCK_FIGURES, *more)), self.profile)
+        profiles = tuple(profile.value for profile in self.profile or ())
+        return Criteria(parse_gates(self.fail_on, more), profiles)
 # fmt: on

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from meshonet.geometry.notes import changes_in
+from meshonet.geometry.quality.verdicts import named
 from meshonet_cli.batch.timed import Timed
 from meshonet_cli.errors import with_options
-from meshonet_cli.text import named, span
+from meshonet_cli.text import span
 
 if TYPE_CHECKING:
     from meshonet.geometry.quality.blocks import BlockCounts

@@ -5,16 +5,17 @@ from typing import Any
 
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.blocks import LINES, BlockFigures
+from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.metrics import METRICS, SOLID_METRICS
-from meshonet.geometry.quality.profiles import CheckResult, Figures, Limit, ProfileReport
+from meshonet.geometry.quality.profiles import CheckResult, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
 from meshonet.geometry.quality.summary import Quality
-from meshonet.geometry.quality.verdicts import verdict_word
+from meshonet.geometry.quality.verdicts import named, verdict_word
 from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet_cli.batch.timed import Timed
 from meshonet_cli.summary import figures
-from meshonet_cli.text import aligned, figure, named
+from meshonet_cli.text import aligned, figure
 
 _PLACES = {2: "i, j", 3: "block, i, j", 4: "block, i, j, k"}
 """Places of nodes and cells by how many numbers they have."""
@@ -172,6 +173,7 @@ def _check_row(result: CheckResult) -> list[str]:
     value = "-" if result.value is None else figure(result.value)
     place = _place(result.at) if result.at else ""
     limits = ", ".join(limit_text(limit) for limit in result.check.limits)
+    limits += " (--fail-on)" if result.gated else ""
     return [result.check.figure, value, place, limits, verdict_word(result.verdict)]
 
 

@@ -7,10 +7,8 @@ import pytest
 from command_line import Meshonet, dataset, duct
 
 from meshonet.formats.registry import read_grids
-from meshonet.geometry.quality.gates import COUNTS, OF_PROFILES
 from meshonet.geometry.quality.measure import per_cell
 from meshonet.geometry.quality.metrics import NAMES
-from meshonet.geometry.quality.profiles import PROFILES
 from meshonet.geometry.quality.report import COMPARED
 
 
@@ -157,19 +155,6 @@ def test_a_warning_of_a_profile_passes_and_is_in_the_table(meshonet: Meshonet) -
         True,
     )
     assert done.out.splitlines()[-1] == "verdicts: 2 warn"
-
-
-def test_a_figure_of_a_profile_is_no_gate_and_the_error_names_the_profile(
-    meshonet: Meshonet, grid_vts: Path
-) -> None:
-    done = meshonet("quality", grid_vts, "--fail-on", "face_skewness>4")
-    assert done.code == 2
-    assert "is no metric of cells; judge the grid by the profile: meshonet quality GRID --profile" in done.err
-
-
-def test_figures_of_profiles_are_known_by_their_profile() -> None:
-    figures = {check.figure: name for name, checks in PROFILES.items() for check in checks}
-    assert {key: name for key, name in figures.items() if key not in (*NAMES, *COUNTS)} == OF_PROFILES
 
 
 def test_a_mesh_that_is_read_as_a_boundary_is_no_grid(meshonet: Meshonet, grid_vts: Path) -> None:

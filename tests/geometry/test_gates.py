@@ -5,6 +5,8 @@ import pytest
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.figure import FIGURES, Figure
+from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import need_percentiles, parse_gate, parse_gates
 from meshonet.geometry.quality.measure import measure
 
@@ -12,6 +14,10 @@ from meshonet.geometry.quality.measure import measure
 def parallelogram() -> Grid:
     x, y = np.meshgrid(np.arange(4.0), np.arange(3.0), indexing="ij")
     return Grid.from_nodes(np.stack([x + 0.5 * y, np.sqrt(0.75) * y], axis=-1))
+
+
+def figures_of(grid: Grid) -> Figures:
+    return Figures(grid, measure(grid), grid.walls())
 
 
 @pytest.mark.parametrize(
@@ -44,11 +50,10 @@ def test_what_is_no_gate_is_refused_with_an_example(text: str) -> None:
 
 def test_a_gate_may_name_a_figure_beside_the_metrics() -> None:
     gate = parse_gate("relative_l2>1e-2", ("relative_l2",))
-    quality = measure(parallelogram())
-    assert gate.broken(quality, {"relative_l2": 0.009}) is None
-    assert (
-        gate.broken(quality, {"relative_l2": 0.02}) == "relative_l2 is 0.02, and {fail_on} 'relative_l2>1e-2'"
-    )
+    figures = figures_of(parallelogram())
+    assert gate.broken(figures, {"relative_l2": Figure(0.009)}) is None
+    told = gate.broken(figures, {"relative_l2": Figure(0.02)})
+    assert told == "relative_l2 is 0.02, and {fail_on} 'relative_l2>1e-2'"
     with pytest.raises(InputError, match="statistic 'mean' is not known; use no statistic with relative_l2"):
         parse_gate("relative_l2.mean>1e-2", ("relative_l2",))
     with pytest.raises(InputError, match="metric 'relative_l2' is not known; use one of folded, max_angle"):
@@ -69,20 +74,63 @@ def test_a_gate_may_name_a_figure_beside_the_metrics() -> None:
     ],
 )
 def test_a_gate_is_broken_when_it_holds(text: str, broken: bool) -> None:
-    told = parse_gate(text).broken(measure(parallelogram()))
+    told = parse_gate(text).broken(figures_of(parallelogram()))
     assert (told is not None) == broken
     assert told is None or f"{{fail_on}} '{text}'" in told
 
 
 def test_equality_counts_only_when_asked_for() -> None:
-    quality = measure(parallelogram())
-    assert parse_gate("folded>=0").broken(quality)
-    assert not parse_gate("folded>0").broken(quality)
-    assert parse_gate("folded<=0").broken(quality)
-    assert not parse_gate("folded<0").broken(quality)
+    figures = figures_of(parallelogram())
+    assert parse_gate("folded>=0").broken(figures)
+    assert not parse_gate("folded>0").broken(figures)
+    assert parse_gate("folded<=0").broken(figures)
+    assert not parse_gate("folded<0").broken(figures)
 
 
 def test_percentiles_are_asked_for_only_when_needed() -> None:
     assert need_percentiles(parse_gates(["max_angle>1", "skewness.p01<0"]))
     assert not need_percentiles(parse_gates(["max_angle>1", "skewness.mean>0"]))
     assert parse_gates(None) == ()
+
+
+def stretched() -> Grid:
+    """Steps of 1, 1, 1.5 along i, and of 1, 1.25 along j away from the walls south and north."""
+    x, y = np.meshgrid([0.0, 1.0, 2.0, 3.5], [0.0, 1.0, 2.25], indexing="ij")
+    return Grid.from_nodes(np.stack([x, y], axis=-1))
+
+
+def test_growth_is_the_greatest_along_both_families_and_wall_growth_along_those_that_leave_walls() -> None:
+    figures = figures_of(stretched())
+    assert figures("growth") == Figure(1.5, (2, 0), "xi")
+    assert figures("wall_growth") == Figure(1.25, (0, 1), "eta")
+    told = parse_gate("growth>1.4").broken(figures)
+    assert told == "growth is 1.5 along xi at i=2, j=0, and {fail_on} 'growth>1.4'"
+    assert parse_gate("wall_growth>1.4").broken(figures) is None
+
+
+def test_places_of_metrics_are_told_where_they_are_of_the_figure() -> None:
+    nodes = stretched().nodes.copy()
+    nodes[3, 2] += [0.4, 0.0]
+    figures = figures_of(Grid.from_nodes(nodes))
+    assert "at i=2, j=1, and" in str(parse_gate("max_angle>91").broken(figures))
+    assert " at " not in str(parse_gate("max_angle.mean>0").broken(figures))
+
+
+def test_every_figure_is_a_gate_and_only_what_is_named_is_measured() -> None:
+    figures = figures_of(parallelogram())
+    assert parse_gate("max_angle>170").broken(figures) is None
+    assert not {"faces", "growth", "blocks", "wall_rows"} & set(vars(figures))
+    assert parse_gate("face_skewness>100").broken(figures) is None
+    assert "blocks" not in vars(figures)
+    for name in FIGURES:
+        assert parse_gate(f"{name}>5").metric == name
+
+
+def test_what_is_not_a_number_is_beyond_every_gate() -> None:
+    assert parse_gate("growth>2").beyond(float("nan"))
+    assert parse_gate("far_field<2").beyond(float("nan"))
+
+
+def test_a_figure_that_a_grid_lacks_is_refused() -> None:
+    with pytest.raises(InputError, match="this grid has no far_field; use folded, max_angle"):
+        parse_gate("far_field<20").broken(figures_of(parallelogram()))

@@ -5,11 +5,11 @@ import pytest
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.measure import measure
 from meshonet.geometry.quality.profiles import (
     PROFILES,
     CheckResult,
-    Figures,
     Limit,
     ProfileReport,
     profile_report,

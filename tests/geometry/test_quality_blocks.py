@@ -16,6 +16,7 @@ from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.deviation import deviation
+from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import parse_gates
 from meshonet.geometry.quality.growth import growth
 from meshonet.geometry.quality.measure import measure, per_cell_of_blocks, worst_cells_of
@@ -45,11 +46,12 @@ def test_a_grid_cut_into_blocks_has_the_figures_of_the_whole() -> None:
     for figure in ("non_orthogonality", "face_skewness", "box_ratio"):
         assert getattr(own, figure).max == pytest.approx(getattr(other, figure).max, rel=1e-12)
         assert getattr(own, figure).mean == pytest.approx(getattr(other, figure).mean, rel=1e-12)
-    most = block_figures(parts).figures()["growth"]
+    most = Figures(parts, four, ())("growth")
+    assert most
     steps = growth(whole)
     assert steps.xi
     assert steps.eta
-    assert most == pytest.approx(max(steps.xi.max, steps.eta.max), rel=1e-12)
+    assert most.value == pytest.approx(max(steps.xi.max, steps.eta.max), rel=1e-12)
 
 
 def test_the_worst_cell_is_named_by_its_block() -> None:
@@ -96,7 +98,9 @@ def test_area_ratios_look_across_sides() -> None:
     parts = [turned(nodes[:3], 1), nodes[2:]]
     grid = joined(parts, lambda _: "wall")
     assert [cells.max() for cells in per_cell_of_blocks(grid, "area_ratio")] == [3.0, 3.0]
-    assert block_figures(grid).figures()["growth_across"] == 3.0
+    across = Figures(grid, measure(grid), ())("growth_across")
+    assert across
+    assert across.value == 3.0
 
 
 def test_a_kink_at_an_interface_is_a_bend_there_and_nowhere_else() -> None:

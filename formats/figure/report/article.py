@@ -83,8 +83,8 @@ def _gates(report: QualityReport, gates: Sequence[Gate]) -> str:
     if not gates:
         return ""
     rows = [
-        [html.escape(f"not {gate.text}"), f"{value:.4g}", verdict("fail" if broken else "pass")]
-        for gate, value, broken in report.judged(gates)
+        [html.escape(f"not {gate.text}"), f"{figure.value:.4g}", verdict("fail" if broken else "pass")]
+        for gate, figure, broken in report.judged(gates)
     ]
     return _table(["gate", "is", ""], rows)
 
@@ -95,6 +95,7 @@ def _profile(report: QualityReport) -> str:
     rows = []
     for result in report.profile.results:
         limits = ", ".join(f"{x.level} {x.compare} {x.value:g}" for x in result.check.limits)
+        limits += " (gate)" if result.gated else ""
         value = "-" if result.value is None else f"{result.value:.4g}"
         rows.append([result.check.figure, value, html.escape(limits), verdict(result.verdict)])
     return _table([f"profile {report.profile.name}", "is", "limits", ""], rows)

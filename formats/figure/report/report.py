@@ -32,6 +32,7 @@ class QualityPage:
 
     def add(self, label: str, report: QualityReport) -> None:
         """Add the report of a grid called `label`; raise InputError for a gate that it has no figure for."""
+        report = report.under(self._gates)
         good, angle = passed(report, self._gates), report.quality["max_angle"].max
         number = next(self._numbers)
         self._rows.append((label, size_words(report), angle, good))

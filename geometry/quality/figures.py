@@ -1,0 +1,120 @@
+"""The figures of a grid by name, as gates and profiles judge them, with their places."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.quality.blocks import BlockFigures, block_figures
+from meshonet.geometry.quality.checkmesh import FACES, Faces, faces
+from meshonet.geometry.quality.figure import COUNTS, FIGURES, Figure
+from meshonet.geometry.quality.growth import Extreme, Growth, growth
+from meshonet.geometry.quality.metrics import metrics_of
+from meshonet.geometry.quality.summary import Quality
+from meshonet.geometry.quality.walls import WallRow, wall_rows
+
+
+@dataclass(frozen=True, eq=False)
+class Figures:
+    """The figures of a grid by name, each group of them measured when it is first asked for."""
+
+    grid: Grid
+    quality: Quality
+    walls: Sequence[Patch]
+
+    @cached_property
+    def faces(self) -> Faces:
+        """What checkMesh says of its faces."""
+        return faces(self.grid)
+
+    @cached_property
+    def growth(self) -> Growth:
+        """How fast its cells grow."""
+        return self.blocks.lines.growth if self.grid.topology == "blocks" else growth(self.grid)
+
+    @cached_property
+    def blocks(self) -> BlockFigures:
+        """Its blocks, their vertices and how lines run through them."""
+        return block_figures(self.grid, self.quality)
+
+    @cached_property
+    def wall_rows(self) -> tuple[WallRow, ...]:
+        """The cells at its walls."""
+        by_wall = self.blocks.lines.by_wall if self.walls and self.grid.topology == "blocks" else {}
+        return wall_rows(self.grid, self.walls, by_wall)
+
+    def __call__(self, name: str, statistic: str = "max") -> Figure | None:
+        """Return figure `name`, of a metric its `statistic`; None where this grid has none.
+
+        Raises InputError: faces of a surface.
+        """
+        if name in COUNTS:
+            count = getattr(self.quality, name)
+            return None if count is None else Figure(float(count))
+        if name in self.quality.metrics:
+            return self._metric(name, statistic)
+        if name in FACES:
+            return _figure(getattr(self.faces, name))
+        if name == "growth":
+            return _greatest(self.growth.families().values()) or Figure(1.0)
+        if name == "wall_growth":
+            return self._wall_growth()
+        if name == "equal_wall_cells":
+            equal = [row.equal_cells for row in self.wall_rows]
+            return Figure(float(min(equal))) if equal else None
+        if name == "far_field":
+            return self._far_field()
+        return self._of_blocks(name) if name in FIGURES else None
+
+    def _metric(self, name: str, statistic: str) -> Figure | None:
+        summary = self.quality[name]
+        value = getattr(summary, statistic)
+        end = next(metric.worst for metric in metrics_of(self.grid) if metric.name == name)
+        return None if value is None else Figure(float(value), summary.worst if statistic == end else None)
+
+    def _of_blocks(self, name: str) -> Figure | None:
+        blocks = self.blocks
+        if name == "irregular":
+            return None if blocks.irregular is None else Figure(float(len(blocks.irregular)))
+        if name in ("growth_across", "bend_across"):
+            # no line runs across any side: steps are equal there, and nothing turns
+            return _figure(getattr(blocks.lines, name)) or Figure(1.0 if name == "growth_across" else 0.0)
+        value = blocks.deviation.mean if name == "deviation_mean" else blocks.deviation.p99
+        return None if value is None else Figure(value)
+
+    def _wall_growth(self) -> Figure | None:
+        if self.grid.topology == "blocks":
+            return _figure(self.blocks.lines.leaving)
+        sides = {patch.side for patch in self.walls}
+        families = (self.growth.eta, {"south", "north"}), (self.growth.xi, {"west", "east"})
+        return _greatest(extreme for extreme, ends in families if extreme and sides & ends)
+
+    def _far_field(self) -> Figure | None:
+        grid = self.grid
+        far = [_nodes(grid, patch) for patch in grid.patches if patch.kind == "farfield"]
+        if not self.walls or not (grid.around_body or (grid.topology == "blocks" and far)):
+            return None
+        wall = np.concatenate([_nodes(grid, patch) for patch in self.walls])
+        beyond = grid.nodes[:, -1] if grid.around_body else np.concatenate(far)
+        middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))
+        start = wall[np.argmax(norms(wall - middle))]
+        chord = float(norms(wall - start).max())
+        return Figure(float(norms(beyond - middle).min()) / chord)
+
+
+def _figure(extreme: Extreme | None) -> Figure | None:
+    return None if extreme is None else Figure(extreme.max, extreme.at, extreme.along)
+
+
+def _greatest(extremes: Iterable[Extreme]) -> Figure | None:
+    return _figure(max(extremes, key=lambda extreme: extreme.max, default=None))
+
+
+def _nodes(grid: Grid, patch: Patch) -> Floats:
+    face = grid.face(patch.block, patch.side)
+    spans = patch.range(face.shape[:-1])
+    return face[tuple(slice(first, last + 1) for first, last in spans)].reshape(-1, face.shape[-1])
