@@ -268,7 +268,7 @@ class Airfoil:
             sampling.nj or DEFAULT_NJ,
             wake,
             centre,
-            sampling.radius * chord,
+            sampling.radius * self.chord,
             axis=axis,
             curve=self.curve,
             name=original.name,
