@@ -24,10 +24,11 @@ _NEAR = 0.3
 """First cells beside a wake are higher than at the wall by 1 + 5 x²/(x + 0.3), x chords behind the edge."""
 
 _CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.016
-"""How levels differ from those around a circle, measured on airfoils, where it leaves 1 %: around slender bodies
-they come out farther by a part of the first times slenderness and the square of the rate at which steps grow, and
-are nearest at less than their mean distance by a part of the second times slenderness; in front of C grids they
-come out farther by a part of the third times the cube of that rate; the last puts these on the safe side."""
+"""How levels differ from those around a circle, measured on airfoils, where it leaves 1 %. Around slender
+bodies they come out farther by a part of the first times slenderness and the square of the rate at which
+steps grow, and are nearest at less than their mean distance by a part of the second times slenderness. In
+front of C grids they come out farther by a part of the third times the cube of that rate; the last puts these
+on the safe side."""
 
 
 class Front:

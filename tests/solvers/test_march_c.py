@@ -5,7 +5,6 @@ import pytest
 from march_shapes import deviation, first_cells
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
