@@ -214,4 +214,5 @@ def _first_cell_note(boundary: Boundary, nodes: Floats, first: float) -> str:
     some = wall[:: max(len(wall) // 16, 1)]
     length = float(np.hypot(*np.diff(some, axis=1).T).sum(axis=0).mean())
     growth = growth_ratio(first, length, nodes.shape[1] - 1)
-    return first_cell_note(float(heights.min()), float(heights.max()), first, growth)
+    low, high = float(heights.min()), float(heights.max())
+    return first_cell_note(low, high, first, growth, chord=boundary.chord)
