@@ -42,8 +42,9 @@ class QualityReport:
     """What was measured of a grid: with a profile and a reference, its verdicts and the comparison too.
 
     ``report.quality.folded`` is the number of folded cells, ``report.quality["max_angle"].max`` a metric
-    (with min, mean, p01, p99 and the worst cell), ``report.figures.wall_rows`` the first cells and their angles,
-    ``report.figures.growth`` the growth along xi and eta, ``report.profile.passed`` the verdict of a profile.
+    (with min, mean, p01, p99 and the worst cell), ``report.figures.wall_rows`` the first cells and their
+    angles, ``report.figures.growth`` the growth along xi and eta, ``report.profile.passed`` the verdict of a
+    profile.
     ``report.as_dict()`` has all of it, as ``meshonet quality --json`` prints it.
     """
 
