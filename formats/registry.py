@@ -140,13 +140,13 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     record = _selectable(source, format_of(source, fmt))
     if record.read_grids is not None:
         return _Records(source, partial(record.read_grids, source))
+    if record.read_shapes is not None and record.write_grids is not None:
+        problem = f"{record.name} files are read as boundaries, without the grid"
+        remedy = "write the grid as .cgns or .vtm too, by the command that made it, and read that"
+        raise InputError(problem, remedy, source=source.name)
     if record.read_shapes is not None:
         remedy = f"make a grid of it first: meshonet infer {source.name} -o grid.vts"
-        if record.write_grids is None:
-            raise InputError("holds a boundary, not a grid", remedy, source=source.name)
-        problem = f"{record.name} files are read as boundaries, without the grid"
-        remedy = f"write the grid as .cgns or .vtm to read it again, or {remedy}"
-        raise InputError(problem, remedy, source=source.name)
+        raise InputError("holds a boundary, not a grid", remedy, source=source.name)
     raise _unreadable(record, source.name)
 
 

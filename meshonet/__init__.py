@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.errors import NoValidGridError as NoValidGridError
     from meshonet.geometry.errors import SolverError as SolverError
     from meshonet.geometry.layout.layout import Layout as Layout
+    from meshonet.geometry.quality.report import QualityReport as QualityReport
     from meshonet.geometry.sections.section import Section as Section
     from meshonet.geometry.sections.stack import Stack as Stack
     from meshonet.geometry.spacing.sampling import Sampling as Sampling
@@ -81,6 +82,7 @@ _MODULES = {
     "meshonet.geometry.domain.domain": ("Domain",),
     "meshonet.geometry.errors": ("InputError", "MeshonetError", "NoValidGridError", "SolverError"),
     "meshonet.geometry.layout.layout": ("Layout",),
+    "meshonet.geometry.quality.report": ("QualityReport",),
     "meshonet.geometry.sections.section": ("Section",),
     "meshonet.geometry.sections.stack": ("Stack",),
     "meshonet.geometry.spacing.sampling": ("Sampling",),

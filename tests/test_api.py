@@ -214,3 +214,12 @@ def test_boundaries_of_domains_are_named(turned: bool) -> None:
     assert {patch.name for patch in made.patches} == {*middles, "post"}
     with pytest.raises(meshonet.InputError, match="names of 1 polygons, and 2 polygons; name each of them"):
         meshonet.Domain.of_polygons([box, hole], names=["box"])
+
+
+def test_a_report_of_quality_is_shown_in_one_line() -> None:
+    report = meshonet.quality(meshonet.grid("naca:0012", res=(80, 30), first_cell=1e-3), profile="viscous")
+    assert isinstance(report, meshonet.QualityReport)
+    assert report.profile is not None
+    verdict = "passed" if report.profile.passed else "failed"
+    angle = f"{report.quality['max_angle'].max:.1f}"
+    assert repr(report) == f"<QualityReport: 2291 cells, 0 folded, max angle {angle}, viscous {verdict}>"

@@ -41,7 +41,14 @@ class Comparison:
 
 @dataclass(frozen=True, eq=False)
 class QualityReport:
-    """What was measured of a grid: with a profile and a reference, its verdicts and the comparison too."""
+    """What was measured of a grid: with a profile and a reference, its verdicts and the comparison too.
+
+    ``report.quality.folded`` is the number of folded cells, ``report.quality["max_angle"].max`` a metric
+    (with min, mean, p01, p99 and the worst cell), ``report.figures.wall_rows`` the first cells and their
+    angles, ``report.figures.growth`` the growth along xi and eta, ``report.profile.passed`` the verdict of a
+    profile.
+    ``report.as_dict()`` has all of it, as ``meshonet quality --json`` prints it.
+    """
 
     grid: Grid
     quality: Quality
@@ -52,6 +59,15 @@ class QualityReport:
     """Walls and growth."""
     profile: ProfileReport | None = None
     comparison: Comparison | None = None
+
+    def __repr__(self) -> str:
+        angle = self.quality["max_angle"].max if "max_angle" in self.quality.metrics else None
+        told = [f"{self.quality.cells} cells", f"{self.quality.folded} folded"]
+        told += [] if angle is None else [f"max angle {angle:.1f}"]
+        told += (
+            [f"{self.profile.name} {'passed' if self.profile.passed else 'failed'}"] if self.profile else []
+        )
+        return f"<QualityReport: {', '.join(told)}>"
 
     def under(self, gates: Sequence[Gate]) -> "QualityReport":
         """Return it with the limits of `gates` in place of those of its profiles for the same figures."""

@@ -36,9 +36,9 @@ class Sampling:
     le_spacing, te_spacing : float, optional
         Wall cell at the leading and at the trailing edge, in chords.
     far_field : float, optional
-        Radius of the outer boundary, in chords or, around other bodies, in their largest extent; None is
-        `DEFAULT_FAR_FIELD`, and all that shapes without one take. Off a surface in space the distance to
-        march, in its unit.
+        Radius of the outer boundary, its least distance from the middle of the body, in chords or, around
+        other bodies, in their largest extent; None is `DEFAULT_FAR_FIELD`, and all that shapes without one
+        take. Off a surface in space the distance to march, in its unit.
     corners : tuple of 4 int, optional
         The points, counted from 0, that become the corners of a quad domain.
     te : {'auto', 'exact', 'round', 'wedge'}, optional

@@ -45,14 +45,25 @@ def height_note(y_plus: float | None, reynolds: float | None, where: str, height
 
 
 def first_cell_note(
-    low: float, high: float, asked: float, growth: float | None, where: str = "wall node"
+    low: float,
+    high: float,
+    asked: float,
+    growth: float | None,
+    where: str = "wall node",
+    chord: float = 1.0,
 ) -> str:
     """Return the sentence on the first cells, from `low` to `high`, where `asked` was their height.
 
     `growth` is the mean ratio of neighbouring cells from the wall on, None where it is not known; `where` a
-    word for the nodes of which this is said.
+    word for the nodes of which this is said. Heights are in the unit of the points, and those asked for are
+    told in chords too where a `chord` is not 1.
     """
+    size = (
+        f"{asked:.6g}"
+        if chord == 1.0
+        else f"{asked:.6g} in the unit of the points ({asked / chord:.6g} chords)"
+    )
     if max(abs(low / asked - 1.0), abs(high / asked - 1.0)) > SAME:
-        return f"first cells are {low:.3g} to {high:.3g} instead of {asked:.6g}"
+        return f"first cells are {low:.3g} to {high:.3g} instead of {size}"
     rows = "" if growth is None else f", growing by {growth:.3f} a row on average"
-    return f"first cell {asked:.6g} at every {where}{rows}"
+    return f"first cell {size} at every {where}{rows}"

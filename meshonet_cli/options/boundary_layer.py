@@ -25,7 +25,8 @@ FirstCell = Annotated[float | None, _option(
     "and infer then march the grid from the wall.",
 )]
 YPlus = Annotated[float | None, _option(
-    "--y-plus", metavar="Y", help="The same as a y+, estimated for a turbulent flat plate; needs --reynolds.",
+    "--y-plus", metavar="Y",
+    help="The same as a y+ of its height, estimated for a turbulent flat plate; needs --reynolds.",
 )]
 Reynolds = Annotated[float | None, _option(
     "--reynolds", metavar="RE",

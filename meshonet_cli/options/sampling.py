@@ -52,8 +52,9 @@ class SamplingOptions:
     )] = "auto"
     far_field: Annotated[float | None, _option(
         "--far-field", metavar="R",
-        help="Distance of the far field, in chords; off a surface in space, in its unit. For lift and drag "
-        "100 chords or more. [default: 15; of a surface, 15 times its largest extent]",
+        help="Least distance of the far field from the middle of the body, in chords; off a surface in "
+        "space, in its unit. For lift and drag 100 chords or more. [default: 15; of a surface, 15 times its "
+        "largest extent]",
     )] = None
     wake: Annotated[float | None, _option(
         "--wake", metavar="L",

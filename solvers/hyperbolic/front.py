@@ -2,9 +2,11 @@
 
 ::
 
-    o: one ring, node after node; the far field is as large as a circle of the same area
+    o: one ring, node after node; the far field asked for is a circle of the area of the boundary's
     c: from outlet to outlet; the ends move along the outlet, the cells beside the wake may open, and the far
-       field is as large as half a circle with two straight sides of the same area
+       field asked for is half a circle with two straight sides of the same area
+
+The last level is rounder or flatter than that: what is asked for is its least distance from the middle.
 """
 
 import math
@@ -21,10 +23,12 @@ _OPENING = 5.0
 _NEAR = 0.3
 """First cells beside a wake are higher than at the wall by 1 + 5 x²/(x + 0.3), x chords behind the edge."""
 
-_CLOSED_AHEAD, _OPEN_BEHIND = 1.8, 0.26
-"""By how much, as a part, levels around slender bodies come out farther than around a circle, over
-slenderness and the square of the rate at which steps grow; and levels of C grids less far than two straight
-sides and half a circle, over that rate. Measured on airfoils, where it leaves half a percent."""
+_CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.016
+"""How levels differ from those around a circle, measured on airfoils, where it leaves 1 %. Around slender
+bodies they come out farther by a part of the first times slenderness and the square of the rate at which
+steps grow, and are nearest at less than their mean distance by a part of the second times slenderness. In
+front of C grids they come out farther by a part of the third times the cube of that rate; the last puts these
+on the safe side."""
 
 
 class Front:
@@ -33,7 +37,7 @@ class Front:
     inner: float  # radius of the circle of the body's area
     slender: float
     """1 - l/L, with l the perimeter of the circle of the body's area and L its own: 0 for a circle."""
-    outer: float  # radius of the far field
+    outer: float  # radius of the far field: the least distance of the last level from the middle
     ends: Floats | None  # (2, 2) unit directions in which the ends of an open front move
     widening: Floats | None  # (n,) how much larger than at the wall first steps are, for an open front
     edge: Edge | None  # the sharpest corner of a closed front
@@ -46,6 +50,7 @@ class Front:
         if self._closed:
             self.edge = sharpest_edge(boundary.south[:-1])
             self.inner, self.outer = _radius(boundary.south[:-1]), _radius(boundary.north[:-1])
+            self._middle = _middle(boundary.south)
             perimeter = float(np.hypot(*np.diff(boundary.south, axis=0).T).sum())
             self.slender = 1.0 - 2.0 * math.pi * self.inner / perimeter
             return
@@ -60,7 +65,8 @@ class Front:
         self.widening[len(self._south) - self._wake :] = opening[::-1]
         body = self._south[self._wake - 1 : len(self._south) - self._wake + 1]
         self.inner = 0.5 * math.sqrt(abs(polygon_area(body)) / math.pi)
-        self._behind = float(0.5 * np.hypot(*(self._south[[0, -1]] - body.mean(axis=0)).T).sum())
+        self._middle = _middle(body)
+        self._behind = float(0.5 * np.hypot(*(self._south[[0, -1]] - self._middle).T).sum())
         self.outer = self._far(boundary.north)
 
     def start(self) -> Floats:
@@ -68,14 +74,8 @@ class Front:
         return self._south[:-1] if self._closed else self._south
 
     def reach(self, levels: Floats) -> float:
-        """Return how far the last of `levels` (2, m, n) is away: a length to compare with `outer`."""
-        last = levels[:, -1].T
-        return _radius(last) if self._closed else self._far(last)
-
-    def curved(self, radius: float) -> float:
-        """Return the part of a level of that radius that is a circle: all, or all but the sides of a C."""
-        half = math.pi * radius
-        return 1.0 if self._closed else half / (half + 2.0 * self._behind)
+        """Return the least distance of the last of `levels` (2, m, n) from the middle of the body."""
+        return float(np.hypot(*(levels[:, -1].T - self._middle).T).min())
 
     def nodes(self, levels: Floats) -> Floats:
         """Return `levels` (2, m, n) as nodes (ni, m, 2)."""
@@ -107,6 +107,12 @@ def _radius(ring: Floats) -> float:
     return math.sqrt(abs(polygon_area(ring)) / math.pi)
 
 
+def _middle(wall: Floats) -> Floats:
+    """Return the middle (2,) between the first node of a wall (n, 2) and the one farthest from it."""
+    farthest = wall[np.argmax(np.hypot(*(wall - wall[0]).T))]
+    return np.asarray(0.5 * (wall[0] + farthest))
+
+
 def distance_to_march(
     front: Front, first: float, cells: int, settings: MarchSettings, constant: int, edge: Edge | None
 ) -> float:
@@ -114,8 +120,7 @@ def distance_to_march(
 
     Around a circle of n nodes a step s leads from r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the weight
     of the flux along a level, e = 2π ε q/n + b h/r the dissipation, q what is left of it where lines spread.
-    Along the straight sides of a C it leads to r + s. Airfoils are no circles: `_CLOSED_AHEAD` and
-    `_OPEN_BEHIND`.
+    So it does in front of a C. Airfoils are no circles: `_CLOSED_AHEAD` and what stands beside it.
     """
     distance = front.outer - front.inner
     around = 2.0 * math.pi * settings.dissipation / len(front.start())
@@ -128,12 +133,12 @@ def distance_to_march(
             height += step
             slow = min(around * max((before / r) ** power, 0.1) + settings.bend * height / r, 0.1)
             part = step * (1.0 - slow) / (1.0 + (1.0 + settings.theta + 2.0 * slow) * step / r)
-            curved, before = front.curved(r), r
-            r += curved * part + (1.0 - curved) * step
+            before, r = r, r + part
         if abs(r - front.outer) < 3e-3 * front.outer:
             break
         distance *= (front.outer - front.inner) / (r - front.inner)
     rate = math.log(steps[-1] / steps[-2]) if cells > 1 else 0.0
     if front.ends is not None:
-        return distance * (1.0 + _OPEN_BEHIND * rate)
-    return distance * (1.0 - min(_CLOSED_AHEAD * front.slender * rate**2, 0.1))
+        return (1.0 + _OPEN_MORE) * distance / (1.0 + _OPEN_AHEAD * rate**3)
+    ahead = min(_CLOSED_AHEAD * front.slender * rate**2, 0.1)
+    return distance * (1.0 + _ASIDE * front.slender - ahead)

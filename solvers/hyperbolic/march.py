@@ -38,7 +38,9 @@ from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import filling
 
 FADE_ROWS = 12.0  # rows over which the correction of the first cell fades out
-REACHED = 0.025  # relative error of the far field's distance up to which no other distance is tried
+NEAREST, FARTHEST = 1.001, 1.025
+"""Distances of the last level, in those of the far field, between which no other one is tried; further tries
+aim a quarter of the way from the first to the second."""
 
 MOST_GROWTH = 1.5
 """Ratio of neighbouring cells beyond which no march is begun: it would not get away from the wall."""
@@ -147,9 +149,9 @@ def _marched(
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None
-        if abs(reached / front.outer - 1.0) < REACHED:
+        if NEAREST <= reached / front.outer <= FARTHEST:
             break
-        distance *= front.outer / reached
+        distance *= (0.75 * NEAREST + 0.25 * FARTHEST) * front.outer / reached
     nodes = front.nodes(levels)
     _snap(nodes, front.heights(first), steps)
     _equalise(nodes, min(constant, cells - 1), front.heights(1.0))
@@ -212,4 +214,5 @@ def _first_cell_note(boundary: Boundary, nodes: Floats, first: float) -> str:
     some = wall[:: max(len(wall) // 16, 1)]
     length = float(np.hypot(*np.diff(some, axis=1).T).sum(axis=0).mean())
     growth = growth_ratio(first, length, nodes.shape[1] - 1)
-    return first_cell_note(float(heights.min()), float(heights.max()), first, growth)
+    low, high = float(heights.min()), float(heights.max())
+    return first_cell_note(low, high, first, growth, chord=boundary.chord)

@@ -149,7 +149,7 @@ def test_a_warning_of_a_profile_passes_and_is_in_the_table(meshonet: Meshonet) -
     words = ("--res", "81", "--first-cell", "1e-4", "--growth", "1.2", "-o", "g.h5", "-q")
     meshonet("infer", "naca:0012", *words)
     done = meshonet("quality", "g.h5", "g.h5", "--summary", "--profile", "viscous")
-    assert (done.code, "warn     equal_wall_cells 1 < 2, far_field 14" in done.out, " < 100" in done.out) == (
+    assert (done.code, "warn     equal_wall_cells 1 < 2, far_field 15" in done.out, " < 100" in done.out) == (
         0,
         True,
         True,
@@ -161,6 +161,7 @@ def test_a_mesh_that_is_read_as_a_boundary_is_no_grid(meshonet: Meshonet, grid_v
     assert meshonet("convert", grid_vts, "g.msh").code == 0
     done = meshonet("quality", "g.msh")
     assert "gmsh files are read as boundaries, without the grid; write the grid as .cgns or .vtm" in done.err
+    assert "meshonet infer" not in done.err  # another grid, which would be measured instead
 
 
 def test_every_grid_is_measured_and_the_worst_decides(

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from command_line import Meshonet
 
 from meshonet.formats.registry import read_grids
+from meshonet.geometry.shapes.airfoil.naca import naca_points
 
 WEDGE = "the outline is changed: its base, 0.00252 chords wide, is closed by a wedge"
 LEFT_OUT = "line 3, '0.50  .....', is no pair of numbers and is left out"
@@ -31,8 +34,9 @@ def test_changes_stand_below_the_line_of_a_grid_and_are_counted(meshonet: Meshon
     assert lines[0].startswith("naca:0012 -> ")
     assert lines[1].startswith(f"  {WEDGE}")
     assert (lines[2].startswith("torn.dat -> "), lines[3]) == (True, f"  {LEFT_OUT}")
-    assert lines[4].startswith("naca:0012-sharp -> ")
-    assert lines[6:] == ["2 shapes were changed, as is said below the line of the grid", FAR]
+    assert "leaves the straight lines between them by up to 0.012 chords" in lines[4]
+    assert lines[5].startswith("naca:0012-sharp -> ")
+    assert lines[7:] == ["2 shapes were changed, as is said below the line of the grid", FAR]
     assert meshonet("infer", *shapes, *C_GRIDS, "-o", "{index}.vts", "-q").err == ""
 
 
@@ -81,3 +85,15 @@ def test_a_c_grid_says_how_many_nodes_the_body_has(meshonet: Meshonet) -> None:
     (wall,) = (patch for patch in grid.patches if patch.name == "wall")
     assert wall.stop - wall.start + 1 == 60
     assert "body_nodes" not in meshonet("infer", "naca:0012", "--res", "60x30", "-o", "o.h5", "--json").only
+
+
+def test_a_hole_in_the_points_is_told_in_a_batch(meshonet: Meshonet) -> None:
+    points = naca_points("2412-sharp", 61)
+    gap = (np.arange(len(points)) > 60) & (points[:, 0] > 0.2) & (points[:, 0] < 0.8)
+    Path("hole.dat").write_text("hole\n" + "\n".join(f"{x:.8f} {y:.8f}" for x, y in points[~gap]))
+    words = ("infer", "hole.dat", "naca:0012", "--topology", "o", "--res", "80x30", "-o", "{index}.vts")
+    lines = meshonet(*words).err.splitlines()
+    assert re.match(r"  the wall is a smooth curve .* by up to 0[.]00\d+ chords", lines[1])
+    assert lines[2].startswith("naca:0012 -> ")
+    told = meshonet(*words, "--json").objects
+    assert [len(one["changes"]) for one in told] == [1, 0]

@@ -86,3 +86,10 @@ def test_mean_lines_are_smooth_where_their_parts_meet(designation):
 def test_designations_that_stand_for_nothing_are_refused(designation, message):
     with pytest.raises(InputError, match=message):
         naca(designation)
+
+
+def test_five_digits_without_lift_are_refused_and_very_thick_sections_are_noted():
+    with pytest.raises(InputError, match="NACA 03012 has no design lift; use 1 to 9"):
+        naca("03012")
+    assert naca("24065").notes == ("NACA 24065 is 65 % thick, as its last two digits say",)
+    assert naca("24024").notes == naca("0040").notes == ()

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.y_plus import first_cell
+from meshonet.geometry.spacing.y_plus import first_cell, first_cell_note
 
 
 def test_it_is_the_height_worked_out_by_hand() -> None:
@@ -27,3 +27,10 @@ def test_it_is_proportional_to_y_plus() -> None:
 def test_values_out_of_range_are_refused(values: tuple[float, float, float]) -> None:
     with pytest.raises(InputError, match="use"):
         first_cell(*values)
+
+
+def test_a_first_cell_names_its_unit_where_that_is_not_the_chord() -> None:
+    assert first_cell_note(1e-5, 1e-5, 1e-5, None) == "first cell 1e-05 at every wall node"
+    told = first_cell_note(2.5e-3, 2.5e-3, 2.5e-3, 1.2, chord=250.0)
+    assert told.startswith("first cell 0.0025 in the unit of the points (1e-05 chords) at every wall node")
+    assert "0.0025 in the unit of the points" in first_cell_note(1e-3, 1e-2, 2.5e-3, 1.2, chord=250.0)

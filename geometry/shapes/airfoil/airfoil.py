@@ -16,6 +16,7 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.self_intersection import find_crossing
+from meshonet.geometry.shapes.airfoil.base_cells import base_note
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, clean_section
 from meshonet.geometry.shapes.airfoil.section_curve import (
     farthest_arc,
@@ -229,8 +230,15 @@ class Airfoil:
         centre = 0.5 * (body.leading_edge + body.trailing_edge)
         wall, replaced = body._wall(sampling.ni or DEFAULT_NI, sampling)
         radius, nj = sampling.radius * body.chord, sampling.nj or DEFAULT_NJ
-        notes, turned = notes + replaced, not sampling.viscous
+        notes, turned = notes + replaced + body._base_note(wall), not sampling.viscous
         return o_boundary(wall, nj, centre, radius, body.curve, self.name, self.unit, turned, notes)
+
+    def _base_note(self, wall: Floats) -> tuple[str, ...]:
+        """Return a note where cells of the wall (n, 2) differ much at the corners of the base."""
+        if not self.blunt:
+            return ()
+        corner = self.curve.at(np.array([self._arcs[0]]))[0]
+        return base_note(wall, corner, 2.0 * self._arcs[0], self.chord)
 
     def _edge_notes(self, body: Airfoil, te: TrailingEdge, sampling: Sampling) -> tuple[str, ...]:
         """Return what became of the base in `body`, or that there is none where one was to be changed."""
@@ -268,7 +276,7 @@ class Airfoil:
             sampling.nj or DEFAULT_NJ,
             wake,
             centre,
-            sampling.radius * chord,
+            sampling.radius * self.chord,
             axis=axis,
             curve=self.curve,
             name=original.name,

@@ -25,6 +25,9 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 POINTS = 161
 """Points a surface: the spline through them is then within 2e-6 chord of the formula."""
 
+THICK = 40
+"""Thickness in percent of the chord from which on it is noted; those of the reports are 6 to 25."""
+
 _SIMPLE = {
     1: (0.0580, 361.400), 2: (0.1260, 51.640), 3: (0.2025, 15.957), 4: (0.2900, 6.643), 5: (0.3910, 3.230),
 }  # fmt: skip
@@ -43,7 +46,10 @@ def naca(designation: str) -> Airfoil:
     >>> naca("2412").name, naca("0012").blunt, naca("0012-sharp").blunt
     ('NACA 2412', True, False)
     """
-    return Airfoil(naca_points(designation), f"NACA {_split(designation)[0]}")
+    digits = _split(designation)[0]
+    percent = int(digits[-2:])
+    notes = (f"NACA {digits} is {percent} % thick, as its last two digits say",) if percent > THICK else ()
+    return Airfoil(naca_points(designation), f"NACA {digits}", notes=notes)
 
 
 def naca_points(designation: str, n: int = POINTS) -> Floats:
@@ -83,6 +89,8 @@ def _split(designation: str) -> tuple[str, bool]:
         remedy = "use 1 to 9 as the second digit"
         raise InputError(f"NACA {digits} has its camber at the leading edge", remedy)
     if len(digits) == 5:
+        if digits[0] == "0":
+            raise InputError(f"NACA {digits} has no design lift", "use 1 to 9 as the first of five digits")
         known = {"0": set(_SIMPLE), "1": set(_REFLEX)}.get(digits[2], set())
         if int(digits[1]) not in known:
             remedy = "use 10 to 50 or 21 to 51 as its second and third digit"

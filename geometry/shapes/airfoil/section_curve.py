@@ -13,7 +13,7 @@ from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, Section
 
 _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31 / 32])
 """Where an interval of the curve is cut into straight pieces to be searched for crossings."""
-DEPARTURE = 1e-3
+DEPARTURE, FAR_OFF = 1e-3, 5e-3
 """Distance in chords beyond which the curve counts as another wall than the lines between its points."""
 OBLIQUE = 30.0  # degrees off the normal of the chord from which on a base is called oblique
 MOST_BASE = 0.25  # chords; a wider last piece of a surface is none
@@ -74,10 +74,11 @@ def shape_notes(section: Section, curve: Curve, chord: float) -> tuple[str, ...]
     notes = _oblique_base(section, chord)
     off = departure(curve) / chord
     if off > DEPARTURE:
-        notes += (
+        note = (
             f"the wall is a smooth curve through the points, which leaves the straight lines between them by "
-            f"up to {off:.2g} chords; more points would say where it runs",
+            f"up to {off:.2g} chords; more points would say where it runs"
         )
+        notes += (Change(note) if off > FAR_OFF else note,)
     return notes
 
 
