@@ -239,7 +239,7 @@ def _on_loop(strip: Strip) -> Strip:
 def joined_strips(strips: Sequence[Strip]) -> list[Strip]:
     """Return the strips of a loop, cut off where their fronts meet.
 
-    Raises InputError: they do not meet.
+    Raises InputError: they do not meet, or do so beyond a short wall.
     """
     cut = list(strips)
     begins: dict[int, tuple[float, Floats]] = {}
@@ -258,6 +258,12 @@ def joined_strips(strips: Sequence[Strip]) -> list[Strip]:
         begins[after] = begin, point
     for k, (begin, point) in begins.items():
         cut[k] = cut[k].cut_off(begin, point, at_end=False)
+        if len(cut[k].arcs) < 2:
+            raise InputError(
+                "the wall is too short for the layers of those beside it",
+                "use thinner first cells, or leave its layers out",
+                place=place(strips[k].wall, strips[k].stretch.span(strips[k].wall)[0]),
+            )
     return cut
 
 

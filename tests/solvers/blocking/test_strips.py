@@ -180,3 +180,13 @@ def test_corners_too_tight_for_layers_are_refused_with_the_place():
     with pytest.raises(InputError, match=r"leaves no room for layers") as caught:
         layered(domain, [], LayerSettings(FIRST), stretches=layered_walls(domain, ["floor"])[1], cells=1000)
     assert "floor" in str(caught.value)
+
+
+def test_a_wall_between_two_corners_too_short_for_layers_is_refused_with_its_place():
+    star = [[11.77, 2.17], [11.28, 2.48], [11.47, 2.7], [11.55, 2.79], [11.54, 2.92], [11.63, 2.69]]
+    star += [[11.99, 2.76], [11.99, 2.57]]
+    box, hole = polygon([[9, 0], [14, 0], [14, 4], [9, 4]], "a b c d"), polygon(star, "star")
+    domain = Domain((box, hole))
+    loops, stretches = layered_walls(domain, ("star",))
+    with pytest.raises(InputError, match="too short for the layers"):
+        layered(domain, loops, LayerSettings(1.7e-3), stretches=stretches, cells=2000)
