@@ -223,7 +223,10 @@ class Session:
                 self._write(f"error: {more} more input{'s' if more > 1 else ''}: {with_options(problem)}")
         table = Summary(self.rows)
         if self.summary and table.members:
-            self.conclude(table)
+            if self.as_json:
+                self.conclude(table)
+            else:  # it was asked for: quiet leaves out what comes beside it
+                self.print(table.lines())
         elif table.judged and self.batch and not (self.quiet or self.as_json):
             (self._write if self._stdout_is_taken else self.print)(table.lines())
         if self.batch and not (self.quiet or self.as_json):
