@@ -135,13 +135,14 @@ class Session:
         JSON says which gates it does not meet, `problems`, unless None.
         """
         self.done += 1
-        self.conclude(report, problems)
+        if self.as_json or not self.quiet:
+            self.conclude(report, problems)
 
     def conclude(self, total: Printed, problems: Sequence[str] | None = None) -> None:
-        """Print the report of all members together: on standard output, as JSON even when quiet."""
+        """Print the report of all members together: on standard output, even when quiet."""
         if self.as_json:
             self.result({**total.as_json(), **_not_met(problems)})
-        elif not self.quiet:
+        else:
             self.print(total.lines())
 
     def note(self, text: str) -> None:
@@ -223,10 +224,7 @@ class Session:
                 self._write(f"error: {more} more input{'s' if more > 1 else ''}: {with_options(problem)}")
         table = Summary(self.rows)
         if self.summary and table.members:
-            if self.as_json:
-                self.conclude(table)
-            else:  # it was asked for: quiet leaves out what comes beside it
-                self.print(table.lines())
+            self.conclude(table)
         elif table.judged and self.batch and not (self.quiet or self.as_json):
             (self._write if self._stdout_is_taken else self.print)(table.lines())
         if self.batch and not (self.quiet or self.as_json):

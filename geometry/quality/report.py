@@ -62,12 +62,12 @@ class QualityReport:
 
     def __repr__(self) -> str:
         angle = self.quality["max_angle"].max if "max_angle" in self.quality.metrics else None
-        told = [f"{self.quality.cells} cells", f"{self.quality.folded} folded"]
-        told += [] if angle is None else [f"max angle {angle:.1f}"]
-        told += (
+        parts = [f"{self.quality.cells} cells", f"{self.quality.folded} folded"]
+        parts += [] if angle is None else [f"max angle {angle:.1f}"]
+        parts += (
             [f"{self.profile.name} {'passed' if self.profile.passed else 'failed'}"] if self.profile else []
         )
-        return f"<QualityReport: {', '.join(told)}>"
+        return f"<QualityReport: {', '.join(parts)}>"
 
     def under(self, gates: Sequence[Gate]) -> "QualityReport":
         """Return it with the limits of `gates` in place of those of its profiles for the same figures."""

@@ -29,7 +29,7 @@ from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.decompose import Timings
 from meshonet.solvers.blocking.even_line import evened_places
-from meshonet.solvers.blocking.even_loops import evened_loops, spread
+from meshonet.solvers.blocking.even_loops import evened_loops, followed
 from meshonet.solvers.blocking.even_metric import metric_places
 from meshonet.solvers.blocking.finished import best_of, finished, respaced_layers
 from meshonet.solvers.blocking.folds import smallest_corner, unfolded
@@ -151,10 +151,8 @@ def _evened_fronts(fine: Layout, sheets: Sheets) -> Layout:
     mesh = fine.mesh
     for k in range(len(sheets.cut.layers)):
         mesh, _ = _tied(mesh, sheets.cut, k, layered.EVEN)
-    shift = mesh.nodes - fine.mesh.nodes
-    fronts = shift.any(axis=1)
-    nodes = fine.mesh.nodes + spread(fine, 0, shift)
-    nodes[fronts] = mesh.nodes[fronts]
+    fronts = np.flatnonzero((mesh.nodes != fine.mesh.nodes).any(axis=1))
+    nodes = followed(fine, fine.mesh.nodes, 0, fronts, mesh.nodes[fronts])
     fine = replace(fine, mesh=mesh.with_nodes(nodes))
     return evened_loops(fine, sheets.measures, layered.EVEN)
 
@@ -186,9 +184,10 @@ def _tied(mesh: QuadMesh, cut: CutLoop[Sheet], k: int, limit: float) -> tuple[Qu
     order, index = cut.front_nodes(mesh, 0, k)
     last = len(cut.layers[k].levels) - 1.0
     edge = int(np.flatnonzero(index == cut.layers[k].edge)[0])
-    new, measures = index.copy(), cut.layers[k].along(cut.front_arcs(k, np.arange(last + 1.0)))
+    new = index.copy()
     mean = 0.5 * (index[: edge + 1] + last - index[::-1][: edge + 1])
     if limit:
+        measures = cut.layers[k].along(cut.front_arcs(k, np.arange(last + 1.0)))
         mean = evened_places(mean, _ends(len(mean), 1), measures, limit, closed=False)
     new[: edge + 1], new[::-1][: edge + 1] = mean, last - mean
     held = np.concatenate([order[: edge + 1], order[::-1][: edge + 1]])

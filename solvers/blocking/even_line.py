@@ -11,6 +11,7 @@ t0 are the places at first, s the steps there.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,8 +59,12 @@ class Measures:
             turns, places = np.divmod(places, self.arcs[-1])
         k = np.clip(np.searchsorted(self.arcs, places, side="right") - 1, 0, len(self.arcs) - 2)
         slope = (self.values[:, k + 1] - self.values[:, k]) / (self.arcs[k + 1] - self.arcs[k])
-        whole = self.values[:, -1:] - self.values[:, :1]
-        return self.values[:, k] + slope * (places - self.arcs[k]) + turns * whole, slope
+        return self.values[:, k] + slope * (places - self.arcs[k]) + turns * self.whole, slope
+
+    @property
+    def whole(self) -> Floats:
+        """(k, 1) by how much they rise in all."""
+        return self.values[:, -1:] - self.values[:, :1]
 
 
 def evened_places(places: Floats, fixed: Bools, measures: Measures, limit: float, closed: bool) -> Floats:
@@ -71,10 +76,8 @@ def evened_places(places: Floats, fixed: Bools, measures: Measures, limit: float
     """
     line = _Line.of(places, fixed, measures, closed)
     new = places
-    if fixed.all():
-        return places
     for _ in range(TRIES):
-        if not line.exceeded(places, limit):
+        if fixed.all() or not line.exceeded(places, limit):
             return places
         new = line.evened(places, limit)
         if (np.abs(new - places)[line.free] ** 2 * line.stiffness).max() < MOVE * MOST**2:
@@ -102,7 +105,6 @@ class _Line:
     """(r, 3) numbers of places, of the two steps of each ratio."""
     stiffness: Floats
     """(f,) σ / s²."""
-    equations: NormalEquations
 
     @classmethod
     def of(cls, places: Floats, fixed: Bools, measures: Measures, closed: bool) -> _Line:
@@ -110,22 +112,24 @@ class _Line:
         first = np.arange(n if closed else n - 2)
         triples = (first[:, None] + np.arange(3)) % n
         free = np.flatnonzero(~fixed)
-        unknown = np.full(n, -1, dtype=np.intp)
-        unknown[free] = np.arange(len(free))
         around = np.concatenate([[places[-1] - measures.arcs[-1]], places, [places[0] + measures.arcs[-1]]])
         if not closed:
             around[[0, -1]] = 2.0 * places[0] - places[1], 2.0 * places[-1] - places[-2]
         step = np.diff(around)
-        kinds = [unknown[triples]] * len(measures.values)
-        equations = NormalEquations(len(free), kinds)
-        return cls(measures, closed, free, triples, (MOVE / (step[1:] * step[:-1]))[free], equations)
+        return cls(measures, closed, free, triples, (MOVE / (step[1:] * step[:-1]))[free])
+
+    @cached_property
+    def equations(self) -> NormalEquations:
+        """Those of the places that move; most lines are even, and need none."""
+        unknown = np.full(self.triples.max() + 1, -1, dtype=np.intp)
+        unknown[self.free] = np.arange(len(self.free))
+        return NormalEquations(len(self.free), [unknown[self.triples]] * len(self.measures.values))
 
     def _steps(self, places: Floats) -> tuple[Floats, Floats]:
         """Return the steps (k, r + 1 or n) of each measure, and the derivatives (k, n) of the measures."""
         value, slope = self.measures.at(places, self.closed)
         if self.closed:
-            whole = self.measures.values[:, -1:] - self.measures.values[:, :1]
-            value = np.concatenate([value, value[:, :1] + whole], axis=1)
+            value = np.concatenate([value, value[:, :1] + self.measures.whole], axis=1)
         return np.diff(value, axis=1), slope
 
     def growth(self, places: Floats) -> Floats:

@@ -9,6 +9,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.attach import loop_nodes
 from meshonet.solvers.blocking.even_line import Measures, evened_places
 
@@ -27,17 +28,26 @@ def evened_loops(layout: Layout, measures: Mapping[int, Measures], limit: float)
         if not fixed.any():
             fixed[0] = True  # else all may go round
         new = np.mod(evened_places(arcs[order], fixed, measure, limit, closed=True), measure.arcs[-1])
-        shift = np.zeros_like(nodes)
-        shift[order] = mesh.domain.loops[number].at(new) - mesh.nodes[order]
         arcs[order] = new
-        nodes += spread(layout, number, shift)
-        nodes[order] = mesh.domain.loops[number].at(new)
+        nodes = followed(layout, nodes, number, order, mesh.domain.loops[number].at(new))
     fixed = mesh.places.cells > 0
     nodes[fixed] = mesh.nodes[fixed]
     return replace(layout, mesh=mesh.with_nodes(nodes, arcs))
 
 
-def spread(layout: Layout, loop: int, shift: Floats) -> Floats:
+def followed(layout: Layout, nodes: Floats, loop: int, moved: Indices, places: Floats) -> Floats:
+    """Return `nodes` (n, 2) with some of a loop, `moved` (k,), put in `places` (k, 2), and others after them.
+
+    Those in the blocks beside the loop follow less and less.
+    """
+    shift = np.zeros_like(nodes)
+    shift[moved] = places - layout.mesh.nodes[moved]
+    nodes = nodes + _spread(layout, loop, shift)
+    nodes[moved] = places
+    return nodes
+
+
+def _spread(layout: Layout, loop: int, shift: Floats) -> Floats:
     """Return what nodes (n, 2) move by, when those on a loop do by `shift` (n, 2)."""
     moved = np.zeros_like(shift)
     on = layout.mesh.places.loop == loop

@@ -132,6 +132,7 @@ def _sines(nodes: Floats, quads: Indices) -> Floats:
     """Return the smallest sine (m,) of the angles of quads, negative where they are folded."""
     z = nodes[quads]
     edge = np.roll(z, -1, axis=1) - z
-    edge /= np.hypot(edge[..., 0], edge[..., 1])[..., None]
+    with np.errstate(invalid="ignore"):  # edges of no length have no angles
+        edge /= np.hypot(edge[..., 0], edge[..., 1])[..., None]
     before = np.roll(edge, 1, axis=1)
     return np.asarray((before[..., 0] * edge[..., 1] - before[..., 1] * edge[..., 0]).min(axis=1))

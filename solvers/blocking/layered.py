@@ -88,7 +88,7 @@ def _whole(
         except NoValidGridError as error:
             problem = error
             break
-    for coarse, times, metric in (*counted[:0:-1][:1], *counted[:1]):
+    for coarse, times, metric in (counted[-1], counted[0]) if len(counted) > 1 else counted:
         if wholes and times > COMPARED:
             break
         try:

@@ -46,9 +46,8 @@ def solve(
     """Return a grid inside each O boundary, whose nodes it has bitwise.
 
     `polish`: Picard steps; `correction`: what is added to the harmonic base before them, for all boundaries
-    at once; `model`: name of the operator that
-    makes the correction; `substitute`: is offered a boundary that cannot
-    be lifted, and why, before the elliptic solver.
+    at once; `model`: name of the operator that makes the correction; `substitute`: is offered a boundary
+    that cannot be lifted, and why, before the elliptic solver.
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()

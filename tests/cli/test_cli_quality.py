@@ -48,8 +48,8 @@ def test_quiet_leaves_gates_that_are_not_met(meshonet: Meshonet, grid_vts: Path)
 
 
 def test_plain_quality_has_the_growth_that_gates_judge(meshonet: Meshonet, grid_vts: Path) -> None:
-    told = meshonet("quality", grid_vts, "--json").only
-    greatest = max(extreme["max"] for extreme in told["growth"].values() if extreme)
+    report = meshonet("quality", grid_vts, "--json").only
+    greatest = max(extreme["max"] for extreme in report["growth"].values() if extreme)
     assert meshonet("quality", grid_vts, "--fail-on", f"growth>{greatest * (1 + 1e-9)!r}").code == 0
     assert meshonet("quality", grid_vts, "--fail-on", f"growth>{greatest * (1 - 1e-9)!r}").code == 1
 
@@ -63,9 +63,9 @@ def test_verdicts_are_the_same_words_in_table_and_json(meshonet: Meshonet) -> No
 
 
 def test_json_has_every_figure(meshonet: Meshonet, grid_vts: Path) -> None:
-    told = meshonet("quality", grid_vts, "--json").only
+    report = meshonet("quality", grid_vts, "--json").only
     (grid,) = read_grids("grid.vts")
-    assert (told["ni"], told["nj"], told["topology"], told["folded"], told["worst_cells"]) == (
+    assert (report["ni"], report["nj"], report["topology"], report["folded"], report["worst_cells"]) == (
         21,
         11,
         "quad",
@@ -74,7 +74,7 @@ def test_json_has_every_figure(meshonet: Meshonet, grid_vts: Path) -> None:
     )
     for name in NAMES:
         values = per_cell(grid, name)
-        figures = told["quality"][name]
+        figures = report["quality"][name]
         assert figures["max"] == values.max()
         assert figures["p99"] == pytest.approx(np.percentile(values, 99), rel=1e-12)
         assert values[tuple(figures["worst"])] in (values.min(), values.max())
@@ -137,10 +137,10 @@ def test_a_judged_batch_ends_in_a_table_of_verdicts_and_limits(
         assert "scaled_jacobian" in bad
         assert none.split() == ["missing.vts", "-", "-", "-", "error"]
         assert counts == "verdicts: 1 pass, 1 FAIL, 1 error"
-    told = meshonet(*words, "--summary", "--json").objects[-1]["summary"]
-    assert told["members"] == 2
-    assert [row["verdict"] for row in told["verdicts"]] == ["pass", "fail", "error"]
-    assert [text.split()[0] for text in told["verdicts"][1]["beyond"]] == [
+    report = meshonet(*words, "--summary", "--json").objects[-1]["summary"]
+    assert report["members"] == 2
+    assert [row["verdict"] for row in report["verdicts"]] == ["pass", "fail", "error"]
+    assert [text.split()[0] for text in report["verdicts"][1]["beyond"]] == [
         "folded", "scaled_jacobian", "max_angle", "min_angle",
     ]  # fmt: skip
     without = meshonet("quality", grid_vts, folded_vts, "--summary").out

@@ -88,13 +88,16 @@ def test_profiles_given_together_are_all_judged_in_one_table(meshonet: Meshonet,
 
 
 def test_gates_on_growth_name_direction_and_place(meshonet: Meshonet, c_vts: Path) -> None:
-    told = meshonet("quality", c_vts, "--json").only["growth"]
-    for gate, along in (("wall_growth", "eta"), ("growth", max(("xi", "eta"), key=lambda x: told[x]["max"]))):
-        i, j = told[along]["at"]
+    greatest = meshonet("quality", c_vts, "--json").only["growth"]
+    for gate, along in (
+        ("wall_growth", "eta"),
+        ("growth", max(("xi", "eta"), key=lambda x: greatest[x]["max"])),
+    ):
+        i, j = greatest[along]["at"]
         where = f" along {along} at i={i}, j={j}"
         done = meshonet("quality", c_vts, c_vts, "--summary", "--fail-on", f"{gate}>1.01")
-        assert f"{gate} is {told[along]['max']:.6g}{where}, and --fail-on" in done.err
-        assert f"{gate} {told[along]['max']:.4g} > 1.01{where}" in done.out
+        assert f"{gate} is {greatest[along]['max']:.6g}{where}, and --fail-on" in done.err
+        assert f"{gate} {greatest[along]['max']:.4g} > 1.01{where}" in done.out
 
 
 def test_gates_on_growth_of_blocks_name_the_block(meshonet: Meshonet) -> None:

@@ -43,10 +43,10 @@ def test_changes_stand_below_the_line_of_a_grid_and_are_counted(meshonet: Meshon
 @pytest.mark.parametrize("words", [(), ("--jobs", "2")])
 def test_changes_are_in_json(meshonet: Meshonet, words: tuple[str, ...]) -> None:
     shapes = ("naca:0012", "naca:0012-sharp")
-    told = meshonet("infer", *shapes, *C_GRIDS, *words, "-o", "{index}.vts", "--json").objects
-    assert [len(one["changes"]) for one in told] == [1, 0]
-    assert told[0]["changes"][0].startswith(WEDGE)
-    assert told[0]["changes"][0] in told[0]["notes"]
+    reports = meshonet("infer", *shapes, *C_GRIDS, *words, "-o", "{index}.vts", "--json").objects
+    assert [len(one["changes"]) for one in reports] == [1, 0]
+    assert reports[0]["changes"][0].startswith(WEDGE)
+    assert reports[0]["changes"][0] in reports[0]["notes"]
 
 
 @pytest.mark.parametrize("output", ["g.vts", "g.h5", "g.cgns", "g.vtk"])
@@ -79,8 +79,8 @@ def test_bodies_that_are_no_airfoils_have_their_own_unit(meshonet: Meshonet) -> 
 def test_a_c_grid_says_how_many_nodes_the_body_has(meshonet: Meshonet) -> None:
     words = ("infer", "naca:0012-sharp", *C_GRIDS, "--wake-nodes", "31", "-o", "g.h5")
     assert "120 x 40 nodes, c grid with 60 nodes on the body and 31 on the wake" in meshonet(*words).err
-    told = meshonet(*words, "--json").only
-    assert (told["body_nodes"], told["wake_nodes"]) == (60, 31)
+    report = meshonet(*words, "--json").only
+    assert (report["body_nodes"], report["wake_nodes"]) == (60, 31)
     (grid,) = read_grids("g.h5")
     (wall,) = (patch for patch in grid.patches if patch.name == "wall")
     assert wall.stop - wall.start + 1 == 60
@@ -95,5 +95,5 @@ def test_a_hole_in_the_points_is_told_in_a_batch(meshonet: Meshonet) -> None:
     lines = meshonet(*words).err.splitlines()
     assert re.match(r"  the wall is a smooth curve .* by up to 0[.]00\d+ chords", lines[1])
     assert lines[2].startswith("naca:0012 -> ")
-    told = meshonet(*words, "--json").objects
-    assert [len(one["changes"]) for one in told] == [1, 0]
+    reports = meshonet(*words, "--json").objects
+    assert [len(one["changes"]) for one in reports] == [1, 0]

@@ -35,9 +35,9 @@ def test_grids_on_standard_output_leave_the_table_on_standard_error(process: Pro
 
 
 def test_json_has_what_is_not_met_and_no_table(meshonet: Meshonet) -> None:
-    told = meshonet("infer", *FOILS[:2], *VISCOUS, "--json").objects
-    assert [len(grid["gates_not_met"]) for grid in told] == [1, 1]
-    assert told[0]["gates_not_met"][0].startswith("profile viscous: wall_growth is ")
+    reports = meshonet("infer", *FOILS[:2], *VISCOUS, "--json").objects
+    assert [len(grid["gates_not_met"]) for grid in reports] == [1, 1]
+    assert reports[0]["gates_not_met"][0].startswith("profile viscous: wall_growth is ")
 
 
 def test_what_is_not_judged_has_no_table(meshonet: Meshonet) -> None:

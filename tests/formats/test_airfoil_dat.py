@@ -227,8 +227,8 @@ def test_files_that_hold_no_airfoil_are_refused_with_the_line(text, message):
 def test_wrong_counts_of_lednicer_s_order_are_a_note(counts, note):
     got = parse(f"TEST\n{counts}\n\n{lines(UPPER)}\n{lines(LOWER)}", "a.dat")
     assert got.notes == note
-    *told, coarse = edges_of(got, Sampling(ni=41, nj=9)).notes
-    assert (tuple(told), "the wall is a smooth curve" in coarse) == (note, True)
+    *others, coarse = edges_of(got, Sampling(ni=41, nj=9)).notes
+    assert (tuple(others), "the wall is a smooth curve" in coarse) == (note, True)
 
 
 @pytest.mark.parametrize("row", ["1.000000 nan", "1.0 O.O0"])

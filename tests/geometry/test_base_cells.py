@@ -16,9 +16,9 @@ def notes(name: str, te_spacing: float | None, **more: str) -> str:
 
 @pytest.mark.parametrize("name", ["0012", "2424", "4415"])
 def test_unlike_cells_at_a_base_are_noted_with_their_ratio_and_a_size_that_fits(name: str) -> None:
-    told = notes(name, 1e-3)
+    note = notes(name, 1e-3)
     found = re.search(
-        r"base are (\S+) times smaller than those beside it: use {te_spacing} near (\S+),", told
+        r"base are (\S+) times smaller than those beside it: use {te_spacing} near (\S+),", note
     )
     assert found is not None
     ratio, fits = map(float, found.groups())

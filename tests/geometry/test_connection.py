@@ -130,5 +130,5 @@ def test_o_and_c_are_names_of_connections() -> None:
 
 
 def test_a_side_that_cannot_be_printed_is_named_in_ascii() -> None:
-    told = str(Connection(0, "west", ((0, 1),), 0, "\x85\ufffd", ((0, 1),), (1,)))  # type: ignore[arg-type]
-    assert told == "the connection of west of block 0 to \\x85\\ufffd of block 0"
+    words = str(Connection(0, "west", ((0, 1),), 0, "\x85\ufffd", ((0, 1),), (1,)))  # type: ignore[arg-type]
+    assert words == "the connection of west of block 0 to \\x85\\ufffd of block 0"

@@ -52,8 +52,8 @@ def test_a_gate_may_name_a_figure_beside_the_metrics() -> None:
     gate = parse_gate("relative_l2>1e-2", ("relative_l2",))
     figures = figures_of(parallelogram())
     assert gate.broken(figures, {"relative_l2": Figure(0.009)}) is None
-    told = gate.broken(figures, {"relative_l2": Figure(0.02)})
-    assert told == "relative_l2 is 0.02, and {fail_on} 'relative_l2>1e-2'"
+    message = gate.broken(figures, {"relative_l2": Figure(0.02)})
+    assert message == "relative_l2 is 0.02, and {fail_on} 'relative_l2>1e-2'"
     with pytest.raises(InputError, match="statistic 'mean' is not known; use no statistic with relative_l2"):
         parse_gate("relative_l2.mean>1e-2", ("relative_l2",))
     with pytest.raises(InputError, match="metric 'relative_l2' is not known; use one of folded, max_angle"):
@@ -74,9 +74,9 @@ def test_a_gate_may_name_a_figure_beside_the_metrics() -> None:
     ],
 )
 def test_a_gate_is_broken_when_it_holds(text: str, broken: bool) -> None:
-    told = parse_gate(text).broken(figures_of(parallelogram()))
-    assert (told is not None) == broken
-    assert told is None or f"{{fail_on}} '{text}'" in told
+    message = parse_gate(text).broken(figures_of(parallelogram()))
+    assert (message is not None) == broken
+    assert message is None or f"{{fail_on}} '{text}'" in message
 
 
 def test_equality_counts_only_when_asked_for() -> None:
@@ -103,8 +103,8 @@ def test_growth_is_the_greatest_along_both_families_and_wall_growth_along_those_
     figures = figures_of(stretched())
     assert figures("growth") == Figure(1.5, (2, 0), "xi")
     assert figures("wall_growth") == Figure(1.25, (0, 1), "eta")
-    told = parse_gate("growth>1.4").broken(figures)
-    assert told == "growth is 1.5 along xi at i=2, j=0, and {fail_on} 'growth>1.4'"
+    message = parse_gate("growth>1.4").broken(figures)
+    assert message == "growth is 1.5 along xi at i=2, j=0, and {fail_on} 'growth>1.4'"
     assert parse_gate("wall_growth>1.4").broken(figures) is None
 
 

@@ -29,12 +29,12 @@ def test_an_oblique_base_is_named_with_width_and_angle(ratio: float, kept: str) 
     points = oblique(ratio)
     ends = points[0] - points[-1]
     for normalise in (False, True):
-        told = notes(points, normalise=normalise)
-        assert told.count("oblique") == 1
-        words = told.split("trailing edge, ")[1].split()
+        text = notes(points, normalise=normalise)
+        assert text.count("oblique") == 1
+        words = text.split("trailing edge, ")[1].split()
         assert float(words[0]) == pytest.approx(np.hypot(*ends), rel=0.01)
         assert float(words[5]) == pytest.approx(np.degrees(np.arctan(ends[0] / ends[1])), abs=2)
-        assert ("last piece of the lower surface" in told) == bool(kept)
+        assert ("last piece of the lower surface" in text) == bool(kept)
     assert ("the upper surface" in notes(points * [1.0, -1.0])) == bool(kept)
     assert "oblique" not in notes(oblique(0.21))  # 25 degrees
     assert "oblique" not in notes(section())
@@ -43,9 +43,9 @@ def test_an_oblique_base_is_named_with_width_and_angle(ratio: float, kept: str) 
 
 def test_a_coarse_outline_says_how_far_the_wall_leaves_it() -> None:
     assert "straight lines" not in notes(section(201))
-    told = notes(section(31))
-    assert "the wall is a smooth curve through the points, which leaves the straight lines" in told
-    off = float(told.split("by up to ")[1].split()[0])
+    text = notes(section(31))
+    assert "the wall is a smooth curve through the points, which leaves the straight lines" in text
+    off = float(text.split("by up to ")[1].split()[0])
     wall = Airfoil(section(31)).boundary(Sampling(ni=2001, nj=11)).south
     a, b = section(31)[:-1, None], np.diff(section(31), axis=0)[:, None]
     along = np.clip(((wall - a) * b).sum(-1) / (b**2).sum(-1), 0.0, 1.0)[..., None]
