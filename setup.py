@@ -16,29 +16,14 @@ KERNELS = sorted(str(path) for path in ROOM.glob("*/*.c"))
 HEADERS = sorted(str(path) for end in ("h", "pxi", "pyx") for path in ROOM.rglob(f"*.{end}"))
 WINDOWS = sys.platform == "win32"
 
-# Contracted, reassociated arithmetic for speed; infinities and NaN keep their meaning so that a diverging
-# iteration can be seen. No -march: include/clones.h picks the instruction set when the module is loaded.
+# The same bits on every processor: the operations as they are written, sums in the order they are written in
+# (include/sums.h), no products and sums contracted. No -march: include/clones.h picks the instruction set when the
+# module is loaded.
 NUMERICS = (
     ["/O2"]
     if WINDOWS
-    else [
-        "-O3",
-        "-g0",
-        "-fno-math-errno",
-        "-fno-trapping-math",
-        "-fassociative-math",
-        "-fno-signed-zeros",
-        "-freciprocal-math",
-        "-ffp-contract=fast",
-    ]
+    else ["-O3", "-g0", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off"]
 )
-OWN_FLAGS = {
-    "conformal/strip_rows.c": ["-fno-associative-math"],  # order matters to argument reduction
-    "geometry/nearest.c": ["-ffp-contract=off"],  # equal distances must be equal in every loop
-    # what is decided from a sign must be the same wherever it is asked
-    "motorcycle/trace.c": ["-fno-associative-math", "-fno-reciprocal-math", "-ffp-contract=off"],
-    "motorcycle/walk.c": ["-fno-associative-math", "-fno-reciprocal-math", "-ffp-contract=off"],
-}
 GLUE = [] if WINDOWS else ["-O0", "-g0"]  # checks and calls: nothing to gain
 LINK = ["-Wl,-s"] if sys.platform == "linux" else []  # no symbols but those that are looked up
 
@@ -53,12 +38,11 @@ class BuildKernels(build_ext):
         super().build_extension(ext)
 
     def _compile(self, source: str) -> list[str]:
-        name = Path(source).relative_to(ROOM).as_posix()
         return self.compiler.compile(
             [source],
             output_dir=self.build_temp,
             include_dirs=FOLDERS,
-            extra_postargs=NUMERICS + ([] if WINDOWS else OWN_FLAGS.get(name, [])),
+            extra_postargs=NUMERICS,
             depends=HEADERS,
         )
 

@@ -8,6 +8,7 @@ from libc.stdlib cimport calloc, free, malloc
 
 include "include/arrays.pxi"
 include "include/complex.pxi"
+include "elementary/elementary.pxi"
 include "geometry/geometry.pxi"
 include "algebraic/algebraic.pxi"
 include "elliptic/elliptic.pxi"

@@ -2,41 +2,18 @@
 #pragma once
 #include <math.h>
 
-#include "exponential.h"
+#include "elementary.h"
 #include "lift.h"
-
-/* glibc's vector versions of these, for the loops below; elsewhere they stay scalar calls */
-#if defined(__GLIBC__) && defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 35)
-extern double log(double) __attribute__((simd("notinbranch")));
-extern double atan2(double, double) __attribute__((simd("notinbranch")));
-#endif
 
 #define CHUNK 256
 #define FAR 0.0625 /* |e^2| up to which it holds to round-off: FAR^TERMS is 2e-16 */
 #define TOGETHER 8 /* points for which one tells whether it does */
 
-/* sin and cos for |x| < 1e5: quadrant by rounding, Cody & Waite reduction, Taylor on |r| < pi/4: 2 ulp */
-MESHONET_INLINE void fast_sincos(double x, double *s, double *c) {
-    static const double sine[7] = {-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362880.0, -1.0 / 39916800.0,
-                                   1.0 / 6227020800.0, -1.0 / 1307674368000.0};
-    static const double cosine[8] = {-0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40320.0, -1.0 / 3628800.0,
-                                     1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
-    double n = rint(x * 0.63661977236758134308);
-    double r = ((x - n * 1.57079632673412561417e+00) - n * 6.07710050630396597660e-11) - n * 2.02226624879595063154e-21;
-    double z = r * r;
-    const double ps = r + r * z * polynomial(sine, 7, z), pc = 1.0 + z * polynomial(cosine, 8, z);
-    int quadrant = (int)n & 3;
-    double a = (quadrant & 1) ? pc : ps, b = (quadrant & 1) ? ps : pc;
-    *s = (quadrant & 2) ? -a : a;
-    *c = ((quadrant + 1) & 2) ? -b : b;
-}
-
 /* v = exp(psi + i (phi + phase)) */
 MESHONET_INLINE void unroll(const double *psi, const double *phi, double phase, long n, double *vr, double *vi) {
     for (long j = 0; j < n; j++) {
         double s, c, r = exp_double(psi[j]);
-        fast_sincos(phi[j] + phase, &s, &c);
+        sincos_double(phi[j] + phase, &s, &c);
         vr[j] = r * c;
         vi[j] = r * s;
     }
@@ -51,12 +28,12 @@ MESHONET_INLINE void restore_corner(const LiftCorner *m, long n, double *restric
         vr[j] = a * c + b * d; /* (v - P) conj(v - Q): the quotient's direction */
         vi[j] = b * c - a * d;
     }
-    for (long j = 0; j < n; j++) lr[j] = log(lr[j]);
-    for (long j = 0; j < n; j++) an[j] = atan2(vi[j], vr[j]);
+    for (long j = 0; j < n; j++) lr[j] = log_double(lr[j]);
+    for (long j = 0; j < n; j++) an[j] = angle_double(vi[j], vr[j]);
     const double k = m->k;
     for (long j = 0; j < n; j++) {
         double s, c, size = exp_double(0.5 * k * (lr[j] > -600.0 ? lr[j] : -600.0)); /* at the corner itself: 0 */
-        fast_sincos(k * an[j], &s, &c);
+        sincos_double(k * an[j], &s, &c);
         double rr = size * c, ri = size * s;
         double nr = m->q.re * rr - m->q.im * ri - m->p.re, ni = m->q.re * ri + m->q.im * rr - m->p.im;
         double dr = rr - 1.0, w = 1.0 / (dr * dr + ri * ri);

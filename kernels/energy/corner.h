@@ -1,7 +1,7 @@
 /* What the functional of functional.h, over blocks, and that of quads/energy.c, over quads of shared nodes, are made of:
    the terms of one corner of a cell, and the logarithm of a length. */
 #pragma once
-#include "exponential.h"
+#include "elementary.h"
 #include <stdint.h>
 #include <string.h>
 

@@ -67,10 +67,12 @@ MESHONET_INLINE void from_space(const Space *s, const float *restrict unknowns, 
     for (ptrdiff_t i = first; i < last; i++) {
         const float *restrict along = s->along + i * SPACE;
         float *restrict row = result + i * mj, v[SPACE];
-        memset(v, 0, sizeof v);
-        for (int l = 0; l < SPACE; l++)
-            for (int k = 0; k < SPACE; k++)
-                v[k] += along[l] * total[l][k];
+        for (int k = 0; k < SPACE; k += LANES) {
+            Lanes sum = {0.0f};
+            for (int l = 0; l < SPACE; l++)
+                sum += along[l] * *(const Lanes *)(total[l] + k);
+            *(Lanes *)(v + k) = sum;
+        }
         for (int k = 0; k < SPACE; k += 4) {
             const float *restrict a = s->across_t + k * mj, *restrict b = a + mj;
             const float *restrict e = b + mj, *restrict f = e + mj;

@@ -11,11 +11,12 @@
    the forces of each into row buffers, which vectorises, then onto the nodes. */
 #pragma once
 #include "corner.h"
+#include "sums.h"
 #include "variational.h"
 
-/* Forces on the four edges of each cell of a row, in x and y, and its smallest Jacobian. */
+/* Forces on the four edges of each cell of a row, in x and y, its smallest Jacobian and its energy. */
 typedef struct {
-    double *sx, *sy, *nx, *ny, *wx, *wy, *ex, *ey, *least;
+    double *sx, *sy, *nx, *ny, *wx, *wy, *ex, *ey, *least, *energy;
 } CellRow;
 
 MESHONET_INLINE double cell_row(const double *restrict xa, const double *restrict ya, const double *restrict xb,
@@ -24,9 +25,8 @@ MESHONET_INLINE double cell_row(const double *restrict xa, const double *restric
 {
     double *restrict sx = row->sx, *restrict sy = row->sy, *restrict nx = row->nx, *restrict ny = row->ny;
     double *restrict wx = row->wx, *restrict wy = row->wy, *restrict ex = row->ex, *restrict ey = row->ey;
-    double *restrict least = row->least;
+    double *restrict least = row->least, *restrict energy = row->energy;
     const Factors f = *at_corner, fm = *at_centre;
-    double energy = 0.0;
     MESHONET_INDEPENDENT
     for (ptrdiff_t j = 0; j < cells; j++) {
         const double south_x = xb[j] - xa[j], south_y = yb[j] - ya[j];
@@ -38,7 +38,7 @@ MESHONET_INLINE double cell_row(const double *restrict xa, const double *restric
         const Corner c = corner(north_x, north_y, east_x, east_y, &f, regular);
         const Corner d = corner(north_x, north_y, west_x, west_y, &f, regular);
         const Corner m = corner(south_x + north_x, south_y + north_y, west_x + east_x, west_y + east_y, &fm, regular);
-        energy += ((a.energy + b.energy) + (c.energy + d.energy)) + m.energy;
+        energy[j] = ((a.energy + b.energy) + (c.energy + d.energy)) + m.energy;
         const double south = a.jacobian < b.jacobian ? a.jacobian : b.jacobian;
         const double north = c.jacobian < d.jacobian ? c.jacobian : d.jacobian;
         least[j] = south < north ? south : north;
@@ -47,7 +47,7 @@ MESHONET_INLINE double cell_row(const double *restrict xa, const double *restric
         wx[j] = a.dv_x + d.dv_x + m.dv_x, wy[j] = a.dv_y + d.dv_y + m.dv_y;
         ex[j] = b.dv_x + c.dv_x + m.dv_x, ey[j] = b.dv_y + c.dv_y + m.dv_y;
     }
-    return energy;
+    return sum_of(energy, cells);
 }
 
 /* An edge force pushes its end node and pulls its start node; one coordinate of one row of cells. */
@@ -111,27 +111,26 @@ MESHONET_INLINE void length_rows(const double *x, const double *y, const Family 
     const double by_i = f->by_i, by_j = f->by_j;
     const double *length = f->length, *inverse = f->inverse;
     const int along_i = next != 1, periodic = f->periodic;
+    double *restrict change = force + n; /* to the next edge; room that the push of a row takes later */
     for (ptrdiff_t i = first; i < last; i++, gx += nj, gy += nj) {
         const double *restrict l = length + i * n;
         const double *restrict west = i > 0 ? l - n : along_i && periodic ? length + (rows - 1) * n : l;
         const double *restrict east = i < rows - 1 ? l + n : along_i && periodic ? length : l;
         const double on_rim = !along_i && (i == 0 || i == rows - 1) ? 0.5 * by_j : by_j;
-        double sum_i = 0.0, sum_j = 0.0;
         MESHONET_INDEPENDENT
         for (ptrdiff_t j = 0; j < n; j++) {
-            const double d = east[j] - l[j];
-            sum_i += d * d;
-            force[j] = 2.0 * by_i * ((l[j] - west[j]) - d);
+            change[j] = east[j] - l[j];
+            force[j] = 2.0 * by_i * ((l[j] - west[j]) - change[j]);
         }
+        double sum_i = product_of(change, change, n);
         if (along_i) {
             const double start = east[0] - l[0], end = east[n - 1] - l[n - 1];
             sum_i -= 0.5 * (start * start + end * end);
         }
         MESHONET_INDEPENDENT
-        for (ptrdiff_t j = 0; j < n - 1; j++) {
-            const double d = l[j + 1] - l[j];
-            sum_j += d * d;
-        }
+        for (ptrdiff_t j = 0; j < n - 1; j++)
+            change[j] = l[j + 1] - l[j];
+        const double sum_j = product_of(change, change, n - 1);
         MESHONET_INDEPENDENT
         for (ptrdiff_t j = 1; j < n - 1; j++)
             force[j] += 2.0 * on_rim * (2.0 * l[j] - l[j - 1] - l[j + 1]);

@@ -11,6 +11,7 @@
 #include "clones.h"
 #include "functional.h"
 #include "spectral.h"
+#include "sums.h"
 #include <math.h>
 #include <string.h>
 
@@ -252,9 +253,6 @@ void solve_band(const Band *b, float *restrict r)
     }
     for (ptrdiff_t c = n - 1; c >= 0; c--) {
         const float *restrict column = b->column + c * b->stride;
-        float sum = 0.0f;
-        for (ptrdiff_t l = 1; l <= width; l++)
-            sum += column[l] * r[c + l];
-        r[c] = (r[c] - sum) / column[0];
+        r[c] = (r[c] - product_of_floats(column + 1, r + c + 1, width)) / column[0];
     }
 }

@@ -8,6 +8,7 @@
    NIPS 27 (2014). */
 #include "steps.h"
 #include "clones.h"
+#include "sums.h"
 #include "team.h"
 #include <math.h>
 #include <string.h>
@@ -31,14 +32,8 @@ MESHONET_CLONES
 static void chunk_products(const Products *p, ptrdiff_t start, double *products)
 {
     const ptrdiff_t n = p->n, stop = start + CHUNK < n ? start + CHUNK : n;
-    const double *v = p->v;
-    for (int r = 0; r < p->rows; r++) {
-        const float *restrict row = p->table + r * n;
-        double sum = 0.0;
-        for (ptrdiff_t k = start; k < stop; k++)
-            sum += (double)row[k] * v[k];
-        products[r] = sum;
-    }
+    for (int r = 0; r < p->rows; r++)
+        products[r] = product_of_mixed(p->table + r * n + start, p->v + start, stop - start);
 }
 
 static void products_share(void *data, Member member)
@@ -148,15 +143,19 @@ typedef struct {
 MESHONET_CLONES
 static Change span_change(const Steps *s, ptrdiff_t start, ptrdiff_t stop)
 {
-    const double *restrict old = s->gradient, *restrict fresh = s->fresh;
-    const float *restrict step = s->direction;
-    double steps = 0.0, changes = 0.0, curvature = 0.0, turned = 0.0;
-    for (ptrdiff_t k = start; k < stop; k++) {
-        const double p = (double)step[k], y = fresh[k] - old[k];
-        steps += p * p, changes += y * y, curvature += p * y;
-        turned += old[k] * (double)(s->turned[k] - s->steepest[k]);
+    enum { PARTS = 64 };
+    Change sum = {0.0, 0.0, 0.0, 0.0};
+    for (ptrdiff_t k = start; k < stop; k += PARTS) {
+        const ptrdiff_t n = stop - k < PARTS ? stop - k : PARTS;
+        double step[PARTS], change[PARTS], turned[PARTS];
+        for (ptrdiff_t l = 0; l < n; l++) {
+            step[l] = (double)s->direction[k + l], change[l] = s->fresh[k + l] - s->gradient[k + l];
+            turned[l] = (double)(s->turned[k + l] - s->steepest[k + l]);
+        }
+        sum.steps += product_of(step, step, n), sum.changes += product_of(change, change, n);
+        sum.curvature += product_of(step, change, n), sum.turned += product_of(s->gradient + k, turned, n);
     }
-    return (Change){steps, changes, curvature, turned};
+    return sum;
 }
 
 static ptrdiff_t end_of_span(const Steps *s, ptrdiff_t k)

@@ -9,7 +9,7 @@
 #define TRIES 25  /* lengths of a step of Newton's method that are tried */
 #define GAIN 1e-4 /* part of the value that such a change wins at the most */
 
-#define ROWS_EACH 13 /* rows of a member of the team: nine of forces, two pairs of gradients */
+#define ROWS_EACH 14 /* rows of a member of the team: ten of cells, two pairs of gradients */
 
 size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj, int threads)
 {
@@ -40,7 +40,7 @@ static void corner_terms(const Task *t, ptrdiff_t first, ptrdiff_t last, double 
     const ptrdiff_t nj = t->nj;
     const Factors at_corner = t->at_corner, at_centre = t->at_centre;
     const CellRow r = {rows,          rows + nj,     rows + 2 * nj, rows + 3 * nj, rows + 4 * nj,
-                       rows + 5 * nj, rows + 6 * nj, rows + 7 * nj, rows + 8 * nj};
+                       rows + 5 * nj, rows + 6 * nj, rows + 7 * nj, rows + 8 * nj, rows + 9 * nj};
     for (ptrdiff_t i = first; i < last; i++, gx += nj, gy += nj) {
         const double *xa = t->x + i * nj, *ya = t->y + i * nj;
         double low = INFINITY;
@@ -77,7 +77,7 @@ static void to_own_nodes(const Task *t, Terms terms, ptrdiff_t first, ptrdiff_t 
 {
     const ptrdiff_t nj = t->nj;
     const size_t line = (size_t)nj * sizeof(double);
-    double *px = rows + 9 * nj, *py = px + 2 * nj, *least = t->least; /* pairs of rows */
+    double *px = rows + 10 * nj, *py = px + 2 * nj, *least = t->least; /* pairs of rows */
     double *spare = t->spare, *spare_least = spare + t->ni;
     if (first > 0 && first < last) {
         memset(px, 0, 4 * line);
@@ -139,15 +139,6 @@ static void across_share(void *data, Member member)
     across_terms(t, first, last, t->gx + first * nj, t->gy + first * nj, t->lengths, member_rows(t, member));
 }
 
-/* The sum of n values, one after another; volatile, or the compiler would take several at a time. */
-static double in_order(const double *values, ptrdiff_t n)
-{
-    volatile double sum = 0.0;
-    for (ptrdiff_t k = 0; k < n; k++)
-        sum += values[k];
-    return sum;
-}
-
 double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights,
                           int threads, double *gx, double *gy, double *smallest, double *work)
 {
@@ -166,7 +157,7 @@ double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdif
         eps > 0.0, sums, sums + ni, sums + 2 * ni, sums + 3 * ni, sums + 6 * ni,
     };
     team_run(threads, corner_share, &t);
-    double energy = in_order(t.cells, ni - 1);
+    double energy = sum_of(t.cells, ni - 1);
     for (ptrdiff_t i = 0; i < ni - 1; i++)
         low = t.least[i] < low ? t.least[i] : low;
     *smallest = low;
@@ -174,9 +165,9 @@ double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdif
         return INFINITY;
     if (weights->smoothness > 0.0) {
         team_run(threads, along_share, &t);
-        energy += in_order(t.lengths, ni - 1);
+        energy += sum_of(t.lengths, ni - 1);
         team_run(threads, across_share, &t);
-        energy += in_order(t.lengths, ni);
+        energy += sum_of(t.lengths, ni);
     }
     if (weights->relief && !(eps > 0.0))
         energy -= relieve(x, y, ni, nj, weights, one * weights->shape, gx, gy);

@@ -21,7 +21,7 @@
 #define BLOCK 128
 
 /* Folded cells of one row of cells: any corner Jacobian <= 0, or not a number. x, y point at node (i, 0). */
-MESHONET_CLONES SAME_EVERYWHERE
+MESHONET_CLONES
 static ptrdiff_t cells_folded_in_row(const double *restrict x, const double *restrict y, ptrdiff_t nj, ptrdiff_t cells)
 {
     const double *restrict xb = x + nj, *restrict yb = y + nj;

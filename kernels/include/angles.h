@@ -1,17 +1,8 @@
 /* Angles in degrees in a form that loops are vectorised with, and what goes with them. */
 #pragma once
-#include "exponential.h"
+#include "elementary.h"
 
 #define DEGREES 57.295779513082320876798154814105170332
-
-/* The sign of a corner Jacobian decides what is folded, so it must not depend on the processor: no fused
-   multiply-add, whose one rounding less gives three nodes in a line a Jacobian that is not 0. */
-#if defined(__GNUC__) && !defined(__clang__)
-#define SAME_EVERYWHERE __attribute__((optimize("fp-contract=off", "no-associative-math")))
-#else
-#define SAME_EVERYWHERE
-#pragma STDC FP_CONTRACT OFF
-#endif
 
 MESHONET_INLINE double magnitude(double value) { return value < 0 ? -value : value; }
 MESHONET_INLINE double larger(double a, double b) { return a > b ? a : b; }

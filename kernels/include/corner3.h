@@ -17,7 +17,7 @@
    40 (2000) 1617-1637 (regularisation); Knupp, SIAM J. Sci. Comput. 23 (2001) 193-218 (shape, the inverse mean ratio). */
 #pragma once
 #include "clones.h"
-#include "exponential.h"
+#include "elementary.h"
 #include <math.h>
 
 typedef struct {

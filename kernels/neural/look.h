@@ -65,10 +65,7 @@ void NAME(network_look)(const double *planes, const double *steps, ptrdiff_t bat
     T row[LOOK_FEATURES][LOOK_MOST];
     const ptrdiff_t plane = n * n;
     for (ptrdiff_t b = 0; b < batch; b++, planes += 2 * plane, steps += 2 * plane) {
-        double square = 0.0;
-        for (ptrdiff_t k = 0; k < 2 * plane; k++)
-            square += steps[k] * steps[k];
-        const double size = sqrt(square / (double)plane + LOOK_TINY * LOOK_TINY) + LOOK_STILL;
+        const double square = product_of(steps, steps, 2 * plane), size = sqrt(square / (double)plane + LOOK_TINY * LOOK_TINY) + LOOK_STILL;
         for (ptrdiff_t i = 0; i < n; i++, out += n * LOOK_FEATURES)
             NAME(look_row)(planes, planes + plane, steps, steps + plane, size, n, i, row, out);
     }

@@ -1,7 +1,6 @@
-/* Argument reduction in the exponentials lives on the order of its operations. Minima and maxima are single
-   instructions when NaN need not come out of them; it comes out of what they are in. */
+/* Minima and maxima are single instructions when NaN need not come out of them; it comes out of what they are in. */
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-associative-math", "finite-math-only")
+#pragma GCC optimize("finite-math-only")
 #endif
 
 #include "network.h"
@@ -10,14 +9,8 @@
 #include <string.h>
 
 #include "clones.h"
-#include "exponential.h"
-
-/* glibc's vector versions of them; elsewhere they stay scalar calls */
-#if defined(__GLIBC__) && defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 35)
-extern double log(double) __attribute__((simd("notinbranch")));
-extern float logf(float) __attribute__((simd("notinbranch")));
-#endif
+#include "elementary.h"
+#include "sums.h"
 
 /* exp(x) = 2^n exp(r): n = x / ln 2 to the nearest by adding 1.5 2^23, whose low bits then are n. The polynomial of degree 5 has the least relative error, 8e-8. */
 MESHONET_INLINE float exp_float(float x)
@@ -50,7 +43,6 @@ MESHONET_INLINE float log_float(float x)
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 #define NAME(name) JOIN(name, SUFFIX)
-#define log_double log
 #define sqrt_double sqrt
 #define sqrt_float sqrtf
 

@@ -4,7 +4,7 @@
 #define BLOCK 128
 
 /* Cells of a row of which a corner Jacobian is not positive, or not a number. */
-MESHONET_CLONES SAME_EVERYWHERE
+MESHONET_CLONES
 static ptrdiff_t corners_not_positive(const SolidLines *lines, ptrdiff_t cells)
 {
     const SolidLines own = *lines;
@@ -23,7 +23,7 @@ static ptrdiff_t corners_not_positive(const SolidLines *lines, ptrdiff_t cells)
 }
 
 /* Cells of a row of which a Bezier coefficient is not positive. */
-MESHONET_CLONES SAME_EVERYWHERE
+MESHONET_CLONES
 static ptrdiff_t bezier_not_positive(const SolidLines *lines, ptrdiff_t cells)
 {
     const SolidLines own = *lines;
@@ -53,7 +53,6 @@ static ptrdiff_t bezier_not_positive(const SolidLines *lines, ptrdiff_t cells)
 static int is_point(Vector edge) { return edge.x == 0 && edge.y == 0 && edge.z == 0; }
 
 /* Whether cell k of a row passes neither the test nor, where edges have no length, what is left of it. */
-SAME_EVERYWHERE
 static int fails(const SolidLines *lines, ptrdiff_t k, int test)
 {
     const SolidEdges e = solid_edges(lines, k);

@@ -3,7 +3,7 @@
    cubic Hermite curves through the marched ones. Eight lines are worked on together. */
 #include "lines.h"
 #include "clones.h"
-#include "exponential.h"
+#include "elementary.h"
 #include "team.h"
 #include <math.h>
 #include <stdlib.h>

@@ -10,7 +10,7 @@
    along the normal: hollows. With M other than 4 the smoothing is alike in all directions. A node at an edge sharper
    than `sharp` moves with the mean of its neighbours. */
 #include "step.h"
-#include "exponential.h"
+#include "elementary.h"
 #include <math.h>
 
 static const double LEAST_SPREAD = 0.1, MOST_SPREAD = 1e3; /* of the factor d */

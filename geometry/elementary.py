@@ -1,0 +1,163 @@
+"""Elementary functions of arrays and products of matrices, the same to the bit on every processor.
+
+NumPy takes these from libraries that round by the processor: a BLAS for products, vector forms of the functions where
+there is AVX-512. What nodes or decisions come from uses those here. Sums, square roots, `np.hypot`, differences and
+quotients are NumPy's own, which are the same everywhere; `docs/reference/reproducibility.md` has the list.
+
+Functions take what those of NumPy of the same name take, and give float64 (float32 for float32). Complex numbers are
+left to the C library, which NumPy calls one by one for them.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.kernels import _native
+
+
+def exp(x: Any) -> Any:
+    """Return e to the power `x`, to 2 units in the last place."""
+    return _function(b"exp", x) if not np.iscomplexobj(x) else np.exp(x)
+
+
+def log(x: Any) -> Any:
+    """Return the natural logarithm of `x`, to 2 units in the last place."""
+    return _function(b"log", x) if not np.iscomplexobj(x) else np.log(x)
+
+
+def sin(x: Any) -> Any:
+    """Return the sine of `x` in radians, to 2 units in the last place."""
+    return _function(b"sin", x)
+
+
+def cos(x: Any) -> Any:
+    """Return the cosine of `x` in radians, to 2 units in the last place."""
+    return _function(b"cos", x)
+
+
+def expm1(x: Any) -> Any:
+    """Return exp(x) - 1."""
+    return _function(b"expm1", x)
+
+
+def log1p(x: Any) -> Any:
+    """Return log(1 + x)."""
+    return _function(b"log1p", x)
+
+
+def log2(x: Any) -> Any:
+    """Return the logarithm of `x` to the base 2."""
+    return _function(b"log2", x)
+
+
+def log10(x: Any) -> Any:
+    """Return the logarithm of `x` to the base 10."""
+    return _function(b"log10", x)
+
+
+def tan(x: Any) -> Any:
+    """Return the tangent of `x` in radians."""
+    return _function(b"tan", x)
+
+
+def arcsin(x: Any) -> Any:
+    """Return the angle in radians whose sine is `x`."""
+    return _function(b"arcsin", x)
+
+
+def arccos(x: Any) -> Any:
+    """Return the angle in radians whose cosine is `x`."""
+    return _function(b"arccos", x)
+
+
+def arctan(x: Any) -> Any:
+    """Return the angle in radians whose tangent is `x`."""
+    return _function(b"arctan", x)
+
+
+def sinh(x: Any) -> Any:
+    """Return the hyperbolic sine of `x`."""
+    return _function(b"sinh", x)
+
+
+def cosh(x: Any) -> Any:
+    """Return the hyperbolic cosine of `x`."""
+    return _function(b"cosh", x)
+
+
+def tanh(x: Any) -> Any:
+    """Return the hyperbolic tangent of `x`."""
+    return _function(b"tanh", x)
+
+
+def arccosh(x: Any) -> Any:
+    """Return the number whose hyperbolic cosine is `x`."""
+    return _function(b"arccosh", x)
+
+
+def cbrt(x: Any) -> Any:
+    """Return the cube root of `x`."""
+    return _function(b"cbrt", x)
+
+
+def arctan2(y: Any, x: Any) -> Any:
+    """Return the angle of the points (x, y) from -pi to pi, to 2 units in the last place."""
+    return _function_of_two(_native.angles_of, y, x)
+
+
+def angle(z: Any) -> Any:
+    """Return the angle of complex numbers from -pi to pi."""
+    values = np.asarray(z)
+    return arctan2(values.imag, values.real)
+
+
+def power(x: Any, exponent: Any) -> Any:
+    """Return `x` to the power `exponent`."""
+    return _function_of_two(_native.powers_of, x, exponent)
+
+
+def product(a: Any, b: Any) -> Any:
+    """Return the matrix product of `a` and `b`, of one or two directions each; as ``a @ b``, its sums in a fixed order."""
+    if np.iscomplexobj(a) or np.iscomplexobj(b):
+        return _complex_product(np.asarray(a), np.asarray(b))
+    left, right = np.asarray(a, np.float64), np.asarray(b, np.float64)
+    rows = np.ascontiguousarray(left.reshape(-1, left.shape[-1]))
+    columns = np.ascontiguousarray(right.reshape(len(right), -1))
+    out = np.zeros((len(rows), columns.shape[1]))
+    if out.size and len(columns):
+        _native.matrix_product(rows, columns, out)
+    answer = out.reshape(left.shape[:-1] + right.shape[1:])
+    return answer if answer.ndim else answer[()]
+
+
+def _complex_product(a: Complexes, b: Complexes) -> Any:
+    real = product(a.real, b.real) - product(a.imag, b.imag)
+    return real + 1j * (product(a.real, b.imag) + product(a.imag, b.real))
+
+
+def _function(name: bytes, x: Any) -> Any:
+    values = np.asarray(x)
+    flat = np.ascontiguousarray(values, np.float64).reshape(-1)
+    out = np.empty(flat.shape)
+    if out.size:
+        _native.elementary(name, flat, out)
+    return _shaped(out, values)
+
+
+def _function_of_two(kernel: Any, x: Any, y: Any) -> Any:
+    one, two = np.broadcast_arrays(np.asarray(x), np.asarray(y))
+    a, b = (np.ascontiguousarray(v, np.float64).reshape(-1) for v in (one, two))
+    out = np.empty(a.shape)
+    if out.size:
+        kernel(a, b, out)
+    return _shaped(out, one if one.dtype == two.dtype else two)
+
+
+def _shaped(out: Floats, like: Any) -> Any:
+    """Return results in the shape and, for single precision, the type of what they are of."""
+    answer = out.reshape(like.shape)
+    answer = answer.astype(np.float32) if like.dtype == np.float32 else answer
+    return answer if answer.ndim else answer[()]

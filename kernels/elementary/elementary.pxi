@@ -1,0 +1,47 @@
+cdef extern from "elementary/functions.h":
+    ctypedef void (*Function)(const double *x, ptrdiff_t n, double *out) noexcept nogil
+    Function function_named(const char *name) nogil
+    void function_angle(const double *y, const double *x, ptrdiff_t n, double *out) nogil
+    void function_power(const double *x, const double *y, ptrdiff_t n, double *out) nogil
+    void c_matrix_product "matrix_product"(const double *a, const double *b, ptrdiff_t rows, ptrdiff_t inner,
+                                           ptrdiff_t columns, double *out) nogil
+
+
+def elementary(bytes name, x, out):
+    """Fill `out` with the function `name` of `x`; both are one-dimensional, of one length."""
+    cdef Function function = function_named(name)
+    cdef ptrdiff_t n = len(x)
+    cdef Read px = reads(x, (n,))
+    cdef Written to = fills(out, (n,))
+    if function is NULL:
+        raise ValueError("no function of this name")
+    with nogil:
+        function(px, n, to)
+
+
+def angles_of(y, x, out):
+    """Fill `out` (n,) with the angles of the points `x`, `y` (n,), as atan2."""
+    cdef ptrdiff_t n = len(x)
+    cdef Read px = reads(x, (n,)), py = reads(y, (n,))
+    cdef Written to = fills(out, (n,))
+    with nogil:
+        function_angle(py, px, n, to)
+
+
+def powers_of(x, y, out):
+    """Fill `out` (n,) with `x` to the power `y` (n,)."""
+    cdef ptrdiff_t n = len(x)
+    cdef Read px = reads(x, (n,)), py = reads(y, (n,))
+    cdef Written to = fills(out, (n,))
+    with nogil:
+        function_power(px, py, n, to)
+
+
+def matrix_product(a, b, out):
+    """Fill `out` (rows, columns) with the product of `a` (rows, inner) and `b` (inner, columns)."""
+    cdef ptrdiff_t rows, inner, columns = b.shape[1]
+    rows, inner = a.shape
+    cdef Read pa = reads(a, (rows, inner)), pb = reads(b, (inner, columns))
+    cdef Written to = fills(out, (rows, columns))
+    with nogil:
+        c_matrix_product(pa, pb, rows, inner, columns, to)
