@@ -12,6 +12,8 @@ from meshonet.geometry.domain.loop import Loop
 
 IN_FRONT = 0.6
 """Cosine of the angle to the normal up to which a wall counts as being in front: 53 degrees."""
+_SAME = 1e-9
+"""Distance over the extent of the walls up to which a point of a wall is the place itself, and no gap."""
 _SAMPLES = 2000  # of all walls together
 _ROWS = 256
 
@@ -35,12 +37,13 @@ def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:
 
     `along` (n, 2) are unit directions; in front is within `IN_FRONT` of their normals.
     """
-    gaps = np.empty(len(points))
+    gaps, same = np.empty(len(points)), _SAME * float(np.ptp(walls, axis=0).max())
     for start in range(0, len(points), _ROWS):
         rows = slice(start, start + _ROWS)
         dx = walls[:, 0] - points[rows, :1]
         dy = walls[:, 1] - points[rows, 1:]
         distance = np.hypot(dx, dy)
         height = dy * along[rows, :1] - dx * along[rows, 1:]
-        gaps[rows] = np.where(height > IN_FRONT * distance, distance, np.inf).min(axis=1)
+        ahead = (height > IN_FRONT * distance) & (distance > same)
+        gaps[rows] = np.where(ahead, distance, np.inf).min(axis=1)
     return gaps

@@ -1,0 +1,37 @@
+"""The room in front of walls is what is ahead of them, never the place itself or what rounding makes of it."""
+
+import numpy as np
+import pytest
+
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.gap import wall_gaps
+from meshonet.geometry.domain.loop import Loop
+
+
+def tube(x, y, radius=0.2, points=96):
+    t = -2 * np.pi * np.arange(points) / points
+    return Loop(Curve(np.c_[x + radius * np.cos(t), y + radius * np.sin(t)], closed=True, corners=()), (), ("tube",))
+
+
+BOX = Loop.of_polygon(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]]), (0, 1, 2, 3), ("box",))
+
+
+@pytest.mark.parametrize("turn", np.radians([0.0, 1.0, 17.0, 30.0, 45.0, 61.0]))
+def test_tubes_have_the_gap_to_their_neighbours_in_any_direction(turn):
+    apart = 0.7 * np.array([np.cos(turn), np.sin(turn)])
+    tubes = [tube(*(np.array([2.0, 1.0]) + side * apart)) for side in (-0.5, 0.5)]
+    domain = Domain((BOX, *tubes))
+    for loop in tubes:
+        arcs = np.linspace(0.0, loop.length, 400, endpoint=False)
+        gaps = wall_gaps(domain, loop, arcs)
+        assert gaps.min() == pytest.approx(0.7 - 2 * 0.2, rel=2e-3)
+
+
+def test_places_that_samples_of_the_walls_hit_are_no_gap():
+    bank = [tube(1.0 + k, y, 0.25, 160) for k in range(3) for y in (0.5, 1.5)]
+    domain = Domain((BOX, *bank))
+    for loop in bank:
+        for count in (32, 64, 96, 128, 400, 2000):
+            arcs = np.linspace(0.0, loop.length, count, endpoint=False)
+            assert wall_gaps(domain, loop, arcs).min() > 0.2
