@@ -8,7 +8,7 @@
 #define COLUMNS (4 * QUADS)
 #define DEPTH 256 /* terms of a sum at a time: the columns they need stay in the first cache */
 
-typedef double Quad __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double))));
+typedef double Quad __attribute__((vector_size(4 * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 /* out (count rows, COLUMNS) += a (count, terms), rows `inner` apart, times b, rows of COLUMNS. */
 MESHONET_INLINE void tile(const double *restrict a, ptrdiff_t inner, const double *restrict b, ptrdiff_t terms,

@@ -21,7 +21,7 @@
 #define DEPTH 192 /* terms of a sum at a time: their panel stays in the first cache */
 #define FOLDED 0.70710678f
 
-typedef float Lanes __attribute__((vector_size(64), aligned(4)));
+typedef float Lanes __attribute__((vector_size(64), aligned(4), may_alias));
 
 /* `rows` (ROWS at the most) rows of c = a b, or of c += a b with `add`, one panel; b packed (k, PANEL), c with room for
    whole panels. */

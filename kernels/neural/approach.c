@@ -183,8 +183,10 @@ MESHONET_INLINE void extrapolate(const Places *p, int first)
     const double share = summed(along) / (summed(squares) + TINY), g = share < -1.0 ? -1.0 : share > 1.0 ? 1.0 : share;
     for (ptrdiff_t k = 0; k < 2 * p->field; k += LANES) {
         const Lanes f = OF(p->waves + k), change = f - OF(p->step + k);
-        AT(p->step + k) = f;
-        AT(p->waves + k) = AT(p->move + k) = first ? f : f - g * (change + OF(p->move + k));
+        Lanes move = f;
+        if (!first)
+            move -= g * (change + OF(p->move + k));
+        AT(p->step + k) = f, AT(p->waves + k) = AT(p->move + k) = move;
     }
 }
 
