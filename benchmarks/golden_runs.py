@@ -14,8 +14,8 @@ import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 BATCH = 25
@@ -85,19 +85,32 @@ def needed(lines: Sequence[str], chosen: Sequence[str]) -> list[str]:
     return [line for line in lines if line in wanted]
 
 
-def run_all(lines: Sequence[str], tree: Path, folder: Path, batch: int = BATCH) -> Iterator[tuple[str, Run]]:
+@dataclass(frozen=True)
+class Machine:
+    """What commands are run on: words before Python's, as an emulator's, settings of the environment, and cores."""
+
+    before: tuple[str, ...] = ()
+    settings: Mapping[str, str] = field(default_factory=dict)
+    cores: int = 0
+    """How many cores commands may use; 0: all."""
+
+
+def run_all(
+    lines: Sequence[str], tree: Path, folder: Path, batch: int = BATCH, machine: Machine = Machine()
+) -> Iterator[tuple[str, Run]]:
     """Yield every line with what its command left, run in `folder`, which holds the inputs."""
     jobs = [parse(line) for line in lines]
     for start in range(0, len(jobs), batch):
         here = range(start, min(start + batch, len(jobs)))
-        _run_batch([jobs[k] for k in here], [folder / f"runs/{k:03d}" for k in here], tree, folder)
+        folders = [folder / f"runs/{k:03d}" for k in here]
+        _run_batch([jobs[k] for k in here], folders, tree, folder, machine)
         yield from ((lines[k], _run(folder / f"runs/{k:03d}")) for k in here)
 
 
-def _run_batch(jobs: list[Job], folders: list[Path], tree: Path, folder: Path) -> None:
+def _run_batch(jobs: list[Job], folders: list[Path], tree: Path, folder: Path, machine: Machine) -> None:
     """Run jobs in one process, or in more where it dies."""
     while jobs:
-        code = _run_worker(jobs, folders, tree, folder)
+        code = _run_worker(jobs, folders, tree, folder, machine)
         done = sum((path / "exit").exists() for path in folders)
         if done < len(jobs) and not folders[done].exists():
             raise SystemExit(f"the worker did not start (exit code {code})")
@@ -106,17 +119,22 @@ def _run_batch(jobs: list[Job], folders: list[Path], tree: Path, folder: Path) -
         jobs, folders = jobs[done + 1 :], folders[done + 1 :]
 
 
-def _run_worker(jobs: list[Job], folders: list[Path], tree: Path, folder: Path) -> int | str:
+def _run_worker(
+    jobs: list[Job], folders: list[Path], tree: Path, folder: Path, machine: Machine
+) -> int | str:
     listed = [
         {"words": job.words, "input": job.input, "name": job.name, "folder": str(path)}
         for job, path in zip(jobs, folders, strict=True)
     ]
     (folder / "jobs.json").write_text(json.dumps(listed))
-    command = [sys.executable, "-P", str(WORKER), str(tree), "jobs.json"]
+    command = [*machine.before, sys.executable, "-P", str(WORKER), str(tree), "jobs.json"]
+    cores = sorted(os.sched_getaffinity(0))[: machine.cores or None]
+    environment = {**_environment(tree), **machine.settings}
     try:
         return subprocess.run(
-            command, cwd=folder, env=_environment(tree), timeout=TIMEOUT_S, check=False
-        ).returncode
+            command, cwd=folder, env=environment, timeout=TIMEOUT_S, check=False,
+            preexec_fn=lambda: os.sched_setaffinity(0, cores),  # noqa: PLW1509  no threads are running here
+        ).returncode  # fmt: skip
     except subprocess.TimeoutExpired:
         return "timeout"
 

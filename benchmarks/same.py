@@ -1,0 +1,136 @@
+"""The same grids on every machine: some forty commands on several processors, their results beside digests kept here.
+
+    python benchmarks/same.py                    what differs from benchmarks/same.json, and where
+    python benchmarks/same.py --emulated         on emulated processors too, where qemu-x86_64 is installed
+    python benchmarks/same.py --record           write benchmarks/same.json, after a change that moves nodes
+    python benchmarks/same.py --only 'infer' --machine emulated
+
+Kept of each command is one digest: exit code, nodes, counts, figures and messages of its report, times and versions
+left out. A machine here is this processor with the kernels of BLAS and the functions of NumPy that another one
+would be given, with one core, or another processor that is emulated. The exit code is 1 when a digest differs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import shutil
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from hashlib import sha256
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from golden_records import Record, record_of
+from golden_runs import Machine, needed, run_all
+from golden_shapes import write_inputs
+from same_commands import EMULATED, LINES, write_more_inputs
+
+ROOT = Path(__file__).resolve().parents[1]
+KEPT = Path(__file__).with_name("same.json")
+BLAS = ("Prescott", "Haswell", "Zen", "SkylakeX")
+PROCESSORS = ("Haswell-v4", "EPYC-v3")
+EMULATOR = "qemu-x86_64"
+Digests = dict[str, str]
+
+
+def main() -> int:
+    """Run the commands everywhere, compare or record their digests, and return the exit code."""
+    options = _options()
+    chosen = [line for line in LINES if re.search(options.only, line)]
+    if options.record:
+        KEPT.write_text(json.dumps(_digests(chosen, Machine()), indent=0) + "\n")
+        return 0
+    kept: Digests = json.loads(KEPT.read_text())
+    wanted = {name: one for name, one in machines(options.emulated).items() if options.machine in name}
+    begun, wrong = time.perf_counter(), 0
+    with ThreadPoolExecutor(2) as pool:
+        lines = {name: [x for x in chosen if x in EMULATED] if one.before else chosen for name, one in wanted.items()}
+        made = {name: pool.submit(_digests, lines[name], one) for name, one in wanted.items()}
+        for name, job in made.items():
+            digests = job.result()
+            other = [line for line, digest in digests.items() if digest != kept.get(line)]
+            wrong += len(other)
+            print(f"{name}: {len(digests) - len(other)} of {len(digests)} commands as kept", flush=True)
+            for line in other:
+                print(f"  DIFFERENT: {line}")
+    print(f"{len(wanted)} machines, {wrong} differences ({time.perf_counter() - begun:.0f} s)")
+    return int(wrong > 0)
+
+
+def machines(emulated: bool = False) -> dict[str, Machine]:
+    """Return the machines by name; those of which OpenBLAS has no kernels for this processor are left out."""
+    features = numpy_features()
+    without = {
+        "AVX-512": [name for name in features if "512" in name or name == "X86_V4"],
+        "AVX2": features,
+    }
+    found = {"this one": Machine(), "one core": Machine(cores=1)}
+    found |= {
+        f"BLAS of {core}": Machine(settings={"OPENBLAS_CORETYPE": core})
+        for core in BLAS
+        if core != "SkylakeX" or "AVX512F" in numpy_found()
+    }
+    found |= {
+        f"NumPy without {name}": Machine(settings={"NPY_DISABLE_CPU_FEATURES": " ".join(off)})
+        for name, off in without.items()
+        if off
+    }
+    found["two threads of BLAS"] = Machine(
+        settings=dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "2")
+    )
+    if emulated and shutil.which(EMULATOR) is None:
+        print(f"{EMULATOR} is not installed: no processors are emulated")
+    elif emulated:
+        found |= {f"emulated {name}": Machine((EMULATOR, "-cpu", name)) for name in PROCESSORS}
+    return found
+
+
+def numpy_features() -> list[str]:
+    """Return the names of the features that NumPy was built to pick functions by."""
+    return list(np._core._multiarray_umath.__cpu_dispatch__)
+
+
+def numpy_found() -> list[str]:
+    """Return the names of the features that NumPy knows this processor to have."""
+    return [name for name, there in np._core._multiarray_umath.__cpu_features__.items() if there]
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--record", action="store_true", help="keep the digests of this machine")
+    parser.add_argument("--emulated", action="store_true", help="with emulated processors")
+    parser.add_argument("--only", default="", metavar="REGEX", help="commands in which this is found")
+    parser.add_argument("--machine", default="", metavar="NAME", help="machines with this in their name")
+    options = parser.parse_args()
+    options.emulated |= "emulated" in options.machine
+    return options
+
+
+def _digests(chosen: list[str], machine: Machine) -> Digests:
+    """Return the digests of commands by line, run on a machine."""
+    with TemporaryDirectory(prefix="same-") as name:
+        folder = Path(name)
+        write_inputs(folder, ROOT / "examples" / "naca2412.dat")
+        write_more_inputs(folder, ROOT)
+        return dict(_each(chosen, folder, machine))
+
+
+def _each(chosen: list[str], folder: Path, machine: Machine) -> Iterator[tuple[str, str]]:
+    for line, run in run_all(needed(LINES, chosen), ROOT, folder, len(LINES), machine):
+        if line in chosen:
+            yield line, digest_of(record_of(run, ROOT))
+
+
+def digest_of(record: Record) -> str:
+    """Return the digest of what a command left, its numbers and its words."""
+    text = json.dumps([record.numbers, record.words], sort_keys=True)
+    return sha256(text.encode()).hexdigest()[:16]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
