@@ -49,7 +49,10 @@ def main() -> int:
     wanted = {name: one for name, one in machines(options.emulated).items() if options.machine in name}
     begun, wrong = time.perf_counter(), 0
     with ThreadPoolExecutor(2) as pool:
-        lines = {name: [x for x in chosen if x in EMULATED] if one.before else chosen for name, one in wanted.items()}
+        lines = {
+            name: [x for x in chosen if x in EMULATED] if one.before else chosen
+            for name, one in wanted.items()
+        }
         made = {name: pool.submit(_digests, lines[name], one) for name, one in wanted.items()}
         for name, job in made.items():
             digests = job.result()

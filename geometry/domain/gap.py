@@ -12,6 +12,8 @@ from meshonet.geometry.domain.loop import Loop
 
 IN_FRONT = 0.6
 """Cosine of the angle to the normal up to which a wall counts as being in front: 53 degrees."""
+_BEYOND = 1.0 + 1e-9
+"""Times a limit: what is on it but for rounding is not beyond it."""
 _SAME = 1e-9
 """Distance over the extent of the walls up to which a point of a wall is the place itself, and no gap."""
 _SAMPLES = 2000  # of all walls together
@@ -44,6 +46,6 @@ def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:
         dy = walls[:, 1] - points[rows, 1:]
         distance = np.hypot(dx, dy)
         height = dy * along[rows, :1] - dx * along[rows, 1:]
-        ahead = (height > IN_FRONT * distance) & (distance > same)
+        ahead = (height > _BEYOND * IN_FRONT * distance) & (distance > same)
         gaps[rows] = np.where(ahead, distance, np.inf).min(axis=1)
     return gaps

@@ -10,7 +10,7 @@
 static const int NEXT[3] = {1, 2, 0}, AFTER[3] = {2, 0, 1};
 
 typedef struct {
-    double worth;
+    float worth; /* single: triangles that are alike but for rounding are equally bad, and come in order */
     int32_t triangle;
     uint32_t stamp;
 } Entry;
@@ -104,7 +104,7 @@ static int consider(const Mesh *mesh, Heap *heap, const Sizes *sizes, int32_t t)
         const double limit = size_of_sources(sizes, centre);
         size = limit < size ? limit : size;
     }
-    return radius > RADIUS * size ? heap_push(heap, (Entry){radius / size, t, here->stamp}) : 0;
+    return radius > RADIUS * size ? heap_push(heap, (Entry){(float)(radius / size), t, here->stamp}) : 0;
 }
 
 /* Whether p, inside of triangle t, lies in the circle over a wall that it would see; or OUT_OF_MEMORY. */

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#define BEYOND 1.000000001 /* times a limit: what is on it but for rounding is not beyond it */
+
 typedef struct {
     double left, bottom, width;
     ptrdiff_t across, up;
@@ -49,7 +51,7 @@ static int fill(Buckets *b, const double *p, ptrdiff_t n)
 static int round_corner(const WallPoints *wall, ptrdiff_t k, ptrdiff_t other, double distance)
 {
     for (int i = 0; i < 2; i++)
-        if (wall->piece[other] == wall->beside[2 * k + i] && distance > wall->corner[2 * k + i])
+        if (wall->piece[other] == wall->beside[2 * k + i] && distance > BEYOND * wall->corner[2 * k + i])
             return 1;
     return 0;
 }
@@ -71,7 +73,7 @@ int wall_gaps(const WallPoints *wall, double part, double cone, double *size)
                 const ptrdiff_t other = b.point[i];
                 const double dx = points[2 * other] - x, dy = points[2 * other + 1] - y, d2 = dx * dx + dy * dy;
                 const double ahead = dx * nx + dy * ny;
-                if (d2 < reach * reach && ahead > 0 && ahead * ahead > cone * cone * d2 &&
+                if (d2 < reach * reach && ahead > 0 && ahead * ahead > BEYOND * cone * cone * d2 &&
                     !round_corner(wall, k, other, sqrt(d2)))
                     reach = sqrt(d2);
             }

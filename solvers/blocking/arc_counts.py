@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from meshonet.geometry import ties
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.errors import BlockingError
@@ -24,9 +25,8 @@ OPTIONS: dict[str, bool | int | float | str] = {
     "presolve": "off",
     "mip_rel_gap": 0.02,
     "mip_max_nodes": 2000,
-    "time_limit": 10.0,
 }
-"""Of HiGHS. One thread and a fixed seed: the same numbers always."""
+"""Of HiGHS. One thread, a fixed seed and no limit of time: the same numbers always."""
 STEPS = (1.0, 1.05, 1.1, 1.2, 1.4, 1.6, 2.0, 2.0, np.inf)
 """Factors by which a number goes up or down in each step, by 1 at least."""
 LOOP = 4
@@ -72,7 +72,7 @@ def nearest_whole(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices
 
     Of these, the sum of n / wanted + wanted / n is smallest: of squared logarithms, where they are small.
 
-    Raises BlockingError: there are none, or none was found in time.
+    Raises BlockingError: there are none, or none was found.
     """
     if not len(wanted):
         return np.zeros(0, dtype=np.intp)
@@ -113,14 +113,14 @@ def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Float
     def cost(n: Floats) -> Floats:
         return np.asarray(n / size + size / np.maximum(n, 0.5))
 
-    base = np.maximum(least, np.round(wanted))
+    base = np.maximum(least, ties.nearest_whole(wanted))
     signs, lengths, costs = [], [], []
     for sign in (1.0, -1.0):
         at = base
         for factor in STEPS:
             ends = np.isinf(factor)
             times = 2.0 if ends else factor
-            to = np.round(at * times if sign > 0 else at / times)
+            to = ties.nearest_whole(at * times if sign > 0 else at / times)
             to = np.maximum(least, np.maximum(to, at + 1.0) if sign > 0 else np.minimum(to, at - 1.0))
             if ends and sign < 0:
                 to = least
@@ -130,7 +130,7 @@ def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Float
             lengths.append(np.full(len(base), np.inf) if ends and sign > 0 else far)
             costs.append(rise)
             at = to
-    return base, np.array(signs), np.array(lengths), np.array(costs)
+    return base, np.array(signs), np.array(lengths), ties.made_unlike(np.array(costs))
 
 
 def _model(steps: tuple[Floats, Floats, Floats, Floats], rows: Sequence[Row]) -> Any:

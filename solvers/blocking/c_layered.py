@@ -19,6 +19,7 @@ from meshonet.geometry.errors import NoValidGridError, SolverError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.ties import less
 from meshonet.solvers.blocking import layered
 from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.base_complex import base_complex
@@ -67,7 +68,7 @@ def bodies_with_layers(
         if sheeted is None:
             raise
         return sheeted
-    if sheeted is not None and skewness(sheeted[0].mesh) <= skewness(rings.mesh):
+    if sheeted is not None and not less(skewness(rings.mesh), skewness(sheeted[0].mesh)):
         return sheeted
     return rings, notes or (
         ("rings of layers, whose cells are less skew than those of C sheets",) if sheeted else ()

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.ties import nearest_whole
 from meshonet.kernels._native import joined_classes
 from meshonet.solvers.blocking.wall_turning import corners_between, turning_between
 
@@ -134,7 +135,7 @@ class Chords:
         """
         wanted = np.log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
-        return np.maximum(self.least if least is None else least, np.round(np.exp(mean)).astype(np.intp))
+        return np.maximum(self.least if least is None else least, nearest_whole(np.exp(mean)).astype(np.intp))
 
     def counts_for_cells(self, cells: int, least: Indices | None = None) -> Indices:
         """Return counts (chords,) for about so many cells in all; more where the fewest possible are more."""

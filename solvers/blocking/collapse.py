@@ -16,6 +16,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.ties import ascending, less
 from meshonet.solvers.blocking.base_complex import BaseComplex, base_complex
 from meshonet.solvers.blocking.contract import contract
 from meshonet.solvers.blocking.errors import BlockingError
@@ -72,7 +73,7 @@ def _first_gain(
 ) -> tuple[BaseComplex, float] | None:  # fmt: skip
     """Return the first collapse, and its score, that lowers `best`; None after `FAILURES` or `work`."""
     failures = 0
-    for chord in np.argsort(widths(current), kind="stable").tolist():
+    for chord in ascending(widths(current)).tolist():
         if work.left < 0.0:
             return None
         work.spend(current.mesh, PER_TRIAL)
@@ -88,7 +89,7 @@ def _first_gain(
             mesh = optimum.mesh
             judged = trial.moved(mesh)
             value = score(judged, price, sizes.edges(mesh) if sizes else None)
-            if value < best:
+            if less(value, best):
                 return judged, value
         failures += 1
         if failures >= FAILURES:

@@ -12,6 +12,7 @@ from meshonet.geometry.errors import NoValidGridError, SolverError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.ties import first_least
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.even_mesh import evened_mesh
 from meshonet.solvers.blocking.folds import corner_jacobians, smallest_corner, unfolded
@@ -37,7 +38,7 @@ def best_of(layouts: Sequence[Layout]) -> Layout:
     That is the least of the mean deviation of corners from 90 degrees, a twentieth of what one cell in a
     hundred exceeds, and `UNEVEN` for each percent of ratios of neighbouring cells beyond `MOST_GROWTH`.
     """
-    return min(layouts, key=lambda layout: _price(layout))
+    return first_least(layouts, key=_price)
 
 
 def _price(layout: Layout) -> float:

@@ -16,6 +16,7 @@ from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.domain.domain import Domain, Periodic
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.ties import less
 from meshonet.solvers.blocking.errors import BlockingError
 
 BEND = 0.5
@@ -108,7 +109,7 @@ def _path(mesh: QuadMesh, z: Complexes, ends: tuple[int, int], shift: complex) -
             now = cost + abs(step) * (1.0 + AWAY * 0.5 * (away[at] + away[to]))
             if before >= 0 and frozenset((before, at, to)) in beside:
                 now += BEND * pitch
-            if now < best.get((at, to), np.inf):
+            if less(now, best.get((at, to), np.inf)):
                 best[at, to], came[at, to] = now, (before, at)
                 heapq.heappush(heap, (now, at, to))
     raise BlockingError("no line of the mesh joins both ends of a periodic stretch")

@@ -127,7 +127,7 @@ def _sample(loop: Loop, largest: float) -> _Samples:
     long = stop - start
     usual = min(largest, OF_LOOP * loop.length)
     least = np.where(long < 4.0 * FLOOR * usual, 4.0, 12.0)
-    n = np.clip(5.0 * long / usual, least, 2000.0).astype(np.intp)
+    n = np.clip(5.0 * long / usual + 1e-9, least, 2000.0).astype(np.intp)
     piece = np.repeat(np.arange(len(n)), n)
     k = np.arange(len(piece)) - np.repeat(np.cumsum(n) - n, n)
     length = (long / n)[piece]

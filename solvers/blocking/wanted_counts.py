@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.ties import nearest_whole
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.size_metric import SizeMetric
 
@@ -30,4 +31,4 @@ class WantedCounts:
         wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
         weight = np.bincount(chords.chord, wanted, chords.count)
         mean = np.bincount(chords.chord, wanted * np.log(np.maximum(wanted, 1e-9)), chords.count) / weight
-        return multiple * np.maximum(chords.least, np.round(np.exp(mean) / multiple).astype(np.intp))
+        return multiple * np.maximum(chords.least, nearest_whole(np.exp(mean) / multiple).astype(np.intp))

@@ -20,6 +20,7 @@ import numpy as np
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.layout.from_grid import layout_of, with_nodes
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.ties import first_least
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.smoothing.hold_back import held_back
 from meshonet.solvers.smoothing.judge import Measures, measures
@@ -50,7 +51,7 @@ def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> 
             made = held_back(grid, given, layout, before)
         if made is not None:
             candidates.append((measures(made), made))
-    least, best = min(candidates, key=lambda pair: pair[0].score, default=(before, grid))
+    least, best = first_least(candidates or [(before, grid)], key=lambda pair: pair[0].score)
     better = least.folded < before.folded or least.score < before.score
     notes = () if better else (_AS_GOOD,)
     best = best if better else grid

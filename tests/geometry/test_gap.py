@@ -11,7 +11,9 @@ from meshonet.geometry.domain.loop import Loop
 
 def tube(x, y, radius=0.2, points=96):
     t = -2 * np.pi * np.arange(points) / points
-    return Loop(Curve(np.c_[x + radius * np.cos(t), y + radius * np.sin(t)], closed=True, corners=()), (), ("tube",))
+    return Loop(
+        Curve(np.c_[x + radius * np.cos(t), y + radius * np.sin(t)], closed=True, corners=()), (), ("tube",)
+    )
 
 
 BOX = Loop.of_polygon(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]]), (0, 1, 2, 3), ("box",))

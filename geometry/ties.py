@@ -1,0 +1,87 @@
+"""Choices that do not hang on a last bit: what is equal to `EQUAL` counts as equal, and the first is taken.
+
+Symmetric shapes have many ways that are equally good. Which of two is better by rounding alone depends on how a
+shape is turned or moved, or on a library; the order in which they stand does not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TypeVar
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.polygon.corners import Indices
+
+EQUAL = 1e-9
+"""Difference, over the larger of two values, up to which they are equal."""
+_NOISE = 1e-7
+"""Part by which costs are made unlike: above rounding, far below what differs in earnest."""
+
+Item = TypeVar("Item")
+
+
+def less(a: float, b: float) -> bool:
+    """Return whether `a` is less than `b` by more than rounding."""
+    return bool(a < b) if np.isinf(a) or np.isinf(b) else bool(a < b - EQUAL * max(abs(a), abs(b)))
+
+
+def first_least(items: Iterable[Item], key: Callable[[Item], float]) -> Item:
+    """Return the first item that no other's `key` is less than.
+
+    Raises ValueError: there are none.
+
+    Examples
+    --------
+    >>> first_least([2.0, 1.0 + 1e-12, 1.0], key=lambda value: value)
+    1.000000000001
+    """
+    left = iter(items)
+    try:
+        best = next(left)
+    except StopIteration:
+        raise ValueError("no items") from None
+    value = key(best)
+    for item in left:
+        other = key(item)
+        if less(other, value):
+            best, value = item, other
+    return best
+
+
+def ascending(values: Floats) -> Indices:
+    """Return the indices (n,) of values (n,) in ascending order, equal ones in theirs.
+
+    Examples
+    --------
+    >>> ascending(np.array([3.0, 1.0 + 1e-12, 1.0])).tolist()
+    [1, 2, 0]
+    """
+    order = np.argsort(values, kind="stable")
+    ordered = values[order]
+    apart = np.diff(ordered) > EQUAL * np.abs(ordered[1:])
+    rank = np.empty(len(values), dtype=np.intp)
+    rank[order] = np.append(0, np.cumsum(apart))[: len(values)]
+    return np.argsort(rank, kind="stable")
+
+
+def nearest_whole(values: Floats) -> Floats:
+    """Return the whole numbers nearest to positive values; of two as near, the smaller one.
+
+    Examples
+    --------
+    >>> nearest_whole(np.array([2.5 - 1e-13, 2.5 + 1e-13, 2.6])).tolist()
+    [2.0, 2.0, 3.0]
+    """
+    return np.ceil(values - 0.5 - EQUAL * np.maximum(values, 1.0))
+
+
+def made_unlike(costs: Floats) -> Floats:
+    """Return costs (..., n) of which hardly any sums are equal, so that a linear programme has one answer.
+
+    Each is changed by less than `_NOISE` of itself, by its place alone: digits of square roots, of which sums are
+    not equal.
+    """
+    digits = np.mod(1e3 * np.sqrt(np.arange(costs.size) + 0.618), 1.0)
+    return costs + _NOISE * np.abs(costs) * digits.reshape(costs.shape)
