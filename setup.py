@@ -1,4 +1,7 @@
-"""Build of the kernels: all C below ``kernels``, bound by one extension, ``meshonet.kernels._native``."""
+"""Where the packages are, and the build of the kernels.
+
+All C below ``kernels`` is bound by one extension, ``meshonet.kernels._native``.
+"""
 
 import os
 import sys
@@ -7,8 +10,13 @@ from itertools import chain
 from pathlib import Path
 
 from Cython.Build import cythonize
-from setuptools import Extension, setup
+from setuptools import Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
+
+# Imported as meshonet.geometry and so on. The links in meshonet/ are for checkers and editors alone: archives
+# and clones may have small text files in their place.
+ROOMS = ("geometry", "solvers", "formats", "kernels")
+OF_ROOMS = [f"meshonet.{name}" for room in ROOMS for name in find_packages(include=[room, f"{room}.*"])]
 
 ROOM = Path("kernels")
 FOLDERS = [str(ROOM / "include"), str(ROOM)]
@@ -48,6 +56,8 @@ class BuildKernels(build_ext):
 
 
 setup(
+    packages=sorted({*find_packages(include=["meshonet*"]), *OF_ROOMS}),
+    package_dir={f"meshonet.{room}": room for room in ROOMS},
     cmdclass={"build_ext": BuildKernels},
     ext_modules=cythonize(
         Extension(

@@ -97,6 +97,14 @@ def test_importing_the_package_loads_nothing_heavy() -> None:
     assert not {"numpy", "shapely", "vtk", "pyvista", "typer", *HEAVY} & loaded
 
 
+@pytest.mark.parametrize("room", ["geometry", "solvers", "formats", "kernels"])
+def test_a_room_has_one_name(room: str) -> None:
+    """As the folder that it also is, it would be loaded twice: no error of one is caught as the other's."""
+    done = python(f"import {room}")
+    assert done.returncode == 1
+    assert f"ImportError: import meshonet.{room} in place of {room}" in done.stderr
+
+
 def circles() -> Iterator[str]:
     """Packages among whose modules and folders are some that import each other, at first or second hand."""
     graph = grimp.build_graph("meshonet", "meshonet_cli", exclude_type_checking_imports=True)

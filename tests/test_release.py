@@ -14,6 +14,12 @@ from meshonet_cli.man import man_page
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+ROOMS = ("geometry", "solvers", "formats", "kernels")
+FOLDERS = {name: Path(name) for name in ("meshonet", "meshonet_cli")} | {
+    name: Path("meshonet") / name for name in ROOMS
+}
+"""Where each folder of the repository is installed."""
+NOT_INSTALLED = {"", ".c", ".h", ".pxi", ".pyx", ".pyc", ".so"}
 CONDA = {"matplotlib": "matplotlib-base"}
 """Packages of conda that are called otherwise than PyPI's."""
 
@@ -64,11 +70,27 @@ def test_pictures_are_small() -> None:
     assert (ROOT / first).stat().st_size < 200_000
 
 
-def test_programs_of_pages_go_with_the_package() -> None:
-    data = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]
-    kinds = {pattern.partition(".")[2] for pattern in data["meshonet.formats.figure"]}
-    files = {path.suffix[1:] for path in (ROOT / "formats" / "figure").rglob("*.*") if path.is_file()}
-    assert files - {"py", "pyc"} <= kinds
+@pytest.mark.parametrize("links", [True, False], ids=["with links", "without links"])
+def test_every_file_but_sources_of_c_is_installed(tmp_path: Path, links: bool) -> None:
+    for name in FOLDERS:
+        ignored = shutil.ignore_patterns("__pycache__", "*.so")
+        shutil.copytree(ROOT / name, tmp_path / name, symlinks=True, ignore=ignored)
+    for name in ("setup.py", "pyproject.toml", "README.md", "LICENSE", "NOTICE"):
+        shutil.copy2(ROOT / name, tmp_path)
+    for room in [] if links else ROOMS:  # as zipfile unpacks an archive, and git clones where links cannot be
+        (tmp_path / "meshonet" / room).unlink()
+        (tmp_path / "meshonet" / room).write_text(f"../{room}")
+    build = [sys.executable, "setup.py", "--quiet", "build_py", "--build-lib", "lib"]
+    subprocess.run(build, cwd=tmp_path, check=True, timeout=120)
+
+    library = tmp_path / "lib"
+    installed = {path.relative_to(library) for path in library.rglob("*") if path.is_file()}
+    assert installed == {
+        folder / path.relative_to(ROOT / name)
+        for name, folder in FOLDERS.items()
+        for path in (ROOT / name).rglob("*")
+        if path.suffix not in NOT_INSTALLED
+    }
 
 
 def test_the_manual_page_has_every_command_and_is_understood() -> None:
