@@ -58,5 +58,27 @@ def test_tests_that_are_to_ignore_a_signal_start_processes_that_heed_it() -> Non
     assert "1 passed" in done.stdout
 
 
+TWICE = """
+import os, signal
+from meshonet_cli.batch.executors.processes_engine import _begin, _call
+
+def task(_):
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+    finally:
+        os.kill(os.getpid(), signal.SIGTERM)
+        print("cleaned up", flush=True)
+
+_begin()
+_call(task, None)
+"""
+
+
+def test_a_worker_that_is_ended_twice_still_cleans_up() -> None:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", TWICE], env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (143, "cleaned up\n")
+
+
 def test_without_a_signal_nothing_is_raised() -> None:
     check()
