@@ -52,6 +52,10 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
             raise InputError("is a stream, and a folder is to be written", "name a file", source=name)
         part = _part_in_tmp() if stream else _part_beside(Path(destination), name, make_folder)
     try:
+        with _naming(name):
+            # not by tempfile, so that the permissions are those of the umask as for any new file; within the
+            # block, since a signal that comes while the system makes it is raised right behind this line
+            os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600 if stream else 0o666))
         with _naming(name, _FULL):
             yield part
         with _naming(name):
@@ -140,10 +144,7 @@ def _part_beside(destination: Path, name: str, make_folder: bool) -> Path:
         target.parent.mkdir(parents=True, exist_ok=True)
     check_place(destination, name)
     _sweep(target.parent)
-    part = _part_name(target)
-    # made here, not by tempfile, so that the permissions are those of the umask as for any new file
-    os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
-    return part
+    return _part_name(target)
 
 
 def _part_name(target: Path) -> Path:
@@ -193,9 +194,7 @@ def _alive(process: int) -> bool:
 def _part_in_tmp() -> Path:
     import tempfile
 
-    handle, name = tempfile.mkstemp(suffix=PART_SUFFIX)
-    os.close(handle)
-    return Path(name)
+    return Path(tempfile.gettempdir(), os.urandom(8).hex() + PART_SUFFIX)
 
 
 def _is_stream(path: Path) -> bool:

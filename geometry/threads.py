@@ -1,11 +1,13 @@
 """How many threads kernels work with on one grid. Results are the same to the bit for any number.
 
-The number is one of the whole process, as that of a BLAS is; `limited_to` sets it for a while.
+`limited_to` sets the number for a while, for the Python thread that it is called in: others that work at the
+same time keep theirs.
 """
 
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 
 from meshonet.geometry.errors import InputError
 
@@ -17,7 +19,7 @@ NODES_EACH = 1 << 17
 MANY_VISITS = 16
 """How often kernels that iterate, as descents and marches do, visit a node at the least."""
 
-_limit: int | None = None
+_limit: ContextVar[int | None] = ContextVar("threads", default=None)
 
 
 def cores() -> int:
@@ -29,7 +31,7 @@ def cores() -> int:
 
 def thread_count() -> int:
     """Return the number of threads to work with: as many as there are cores, unless limited."""
-    return min(cores() if _limit is None else _limit, MOST)
+    return min(_limit.get() or cores(), MOST)
 
 
 def threads_for(nodes: int, visits: int = 1) -> int:
@@ -41,14 +43,14 @@ def threads_for(nodes: int, visits: int = 1) -> int:
 def limited_to(threads: int | None) -> Iterator[None]:
     """Have kernels work with so many threads inside; None leaves the number as it is.
 
+    Python threads that are started inside do not inherit it.
+
     Raises InputError: fewer than one.
     """
-    global _limit
     if threads is not None and threads < 1:
         raise InputError(f"{threads} threads", "use 1 or more", parameter="threads")
-    before = _limit
-    _limit = before if threads is None else threads
+    token = _limit.set(_limit.get() if threads is None else threads)
     try:
         yield
     finally:
-        _limit = before
+        _limit.reset(token)

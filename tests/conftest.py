@@ -4,11 +4,24 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 from collections.abc import Iterator
 
 import pytest
 
 from meshonet.geometry import threads
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _children_heed_signals() -> None:
+    """Have processes that tests start heed signals, also where the tests themselves are to ignore them.
+
+    Who starts tests in the background (``nohup``, a shell's ``&``) has them ignore signals, and children
+    inherit that. They do not inherit a handler, even one that does nothing.
+    """
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) is signal.SIG_IGN:
+            signal.signal(number, lambda *_: None)
 
 
 @pytest.fixture

@@ -6,7 +6,8 @@
 
 A page may hold blocks of `bash` and `python`, which are run; blocks of `text` behind them, which are what is
 printed (a line `...` stands for any lines); blocks of `toml` that begin with `# NAME.toml`, which are files.
-A comment `<!-- needs: PROGRAM -->` in front of a block names a program or Python package that may be absent.
+A comment `<!-- needs: PROGRAM -->` in front of a block names a program or Python package that may be absent;
+`<!-- within: 0.02 -->` in front of a block of text says by which part its figures may differ: printed.py.
 """
 
 from __future__ import annotations
@@ -19,20 +20,19 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+
+from printed import differences
 
 ROOT = Path(__file__).parents[2]
 FOLDER = Path(__file__).parent
 PAGES = sorted(set(FOLDER.glob("*.md")) - {FOLDER / "index.md"})
-TOLERANCE = 0.02
 WIDTH = 800
 _BLOCK = re.compile(
-    r"(?:^<!-- needs: (\S+) -->\n)?^```(bash|python|text|toml)\n(.*?)^```$", re.DOTALL | re.MULTILINE
+    r"(?:^<!-- (?:needs|within): (\S+) -->\n)?^```(bash|python|text|toml)\n(.*?)^```$",
+    re.DOTALL | re.MULTILINE,
 )
-_TIME = re.compile(r"\d[\d.]* (ms|s|min)\b")
-_PLACE = re.compile(r"\b(block|i|j|k)=\d+|(?<=\s)\d+(?:, \d+)+(?=\s|$)")
-_NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?(?![\w])")
 _SETTING = re.compile(r"^export (\w+)=(\S+)$", re.MULTILINE)
 
 
@@ -44,6 +44,7 @@ class Step:
     text: str
     needs: str = ""
     prints: str = ""
+    within: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -54,16 +55,19 @@ class Result:
     printed: str
     status: int
 
+    def differences(self) -> list[str]:
+        """Return how the page differs from what was printed."""
+        return differences(self.step.prints, self.printed, self.step.within)
+
 
 def steps_of(page: Path) -> list[Step]:
     """Return the steps of a page in their order."""
     steps: list[Step] = []
-    for needs, language, text in _BLOCK.findall(page.read_text(encoding="utf-8")):
+    for comment, language, text in _BLOCK.findall(page.read_text(encoding="utf-8")):
         if language == "text":
-            last = steps.pop()
-            steps.append(Step(last.language, last.text, last.needs, text))
+            steps[-1] = replace(steps[-1], prints=text, within=float(comment or 0))
         else:
-            steps.append(Step(language, text, needs))
+            steps.append(Step(language, text, comment))
     return steps
 
 
@@ -131,43 +135,6 @@ def _file_name(step: Step) -> str:
     return name[1]
 
 
-def differences(expected: str, printed: str) -> list[str]:
-    """Return the lines of a page that were not printed where they should be; none for a page that is true."""
-    lines = [line for line in printed.splitlines() if line.strip()]
-    at, gap, missing = 0, False, []
-    for line in filter(str.strip, expected.splitlines()):
-        if line.strip() == "...":
-            gap = True
-            continue
-        last = len(lines) if gap else min(at + 1, len(lines))
-        hits = [k for k in range(at, last) if same_line(line, lines[k])]
-        if hits:
-            at, gap = hits[0] + 1, False
-        else:
-            missing.append(line)
-    extra = [] if gap or not expected.strip() else lines[at:]
-    return missing + [f"not on the page: {line}" for line in extra if not missing]
-
-
-def same_line(one: str, other: str) -> bool:
-    """Return whether lines have the same words, and numbers that are as good as equal.
-
-    Times are let pass, and where a worst cell is: others may be as bad.
-    """
-    one, other = (_PLACE.sub("PLACE", _TIME.sub("TIME", " ".join(line.split()))) for line in (one, other))
-    if _NUMBER.sub("#", one) != _NUMBER.sub("#", other):
-        return False
-    return all(map(_close, _NUMBER.findall(one), _NUMBER.findall(other)))
-
-
-def _close(one: str, other: str) -> bool:
-    """Within the tolerance, or a unit of the last digit that is shown."""
-    a, b = float(one), float(other)
-    digits = re.search(r"\.(\d*)", one)
-    unit = 10.0 ** -len(digits[1]) if digits and "e" not in one else 0.0
-    return abs(a - b) <= max(TOLERANCE * abs(a), 1.01 * unit)
-
-
 def fill(page: Path, results: list[Result]) -> None:
     """Write what the steps of a page printed into those of its blocks of text that are empty."""
     printed = iter(result.printed for result in results)
@@ -216,11 +183,11 @@ def report(page: Path, results: list[Result], verbose: bool) -> int:
     """Print how a page fared; return the number of its steps that failed or printed something else."""
     wrong = 0
     for result in results:
-        unlike = differences(result.step.prints, result.printed)
+        unlike = result.differences()
         wrong += bool(unlike or result.status)
         if unlike or result.status or verbose:
             print(f"--- {page.name}: exit {result.status}\n{result.step.text}=== printed\n{result.printed}")
-            print("\n".join(f"=== differs: {line}" for line in unlike))
+            print("\n".join(f"=== differs\n{each}" for each in unlike))
     print(f"{page.name}: {len(results)} steps, {wrong} wrong")
     return wrong
 

@@ -37,6 +37,8 @@ _DEFLATE_LIMIT = 1032
 """Most that deflate, the densest of HDF5's own filters, can shrink; a claim beyond it is a lie."""
 _MOST_SEARCHED = 1 << 28
 """Bytes of files that are searched for heaps: that must stay a small part of reading."""
+_DAMAGE = (OSError, RuntimeError, LookupError, TypeError, ValueError, ArithmeticError)
+"""What h5py makes of damaged data: almost anything, but no errors that only a program's mistakes are."""
 _TEXT = np.dtype([("length", "<u4"), ("heap", "<u8"), ("index", "<u4")])
 
 
@@ -163,7 +165,7 @@ class Checked:
             raise
         except (ValueError, RecursionError) as error:
             raise InputError(str(error), "write the dataset again", place=f"sample {k}") from error
-        except Exception as error:  # whatever h5py makes of damaged data
+        except _DAMAGE as error:
             raise _damaged(error, f"sample {k}") from error
 
     def _dataset(self, name: str) -> h5py.Dataset:
@@ -224,14 +226,14 @@ def opened(source: Source, *, texts: bool = True) -> Iterator[h5py.File]:
         try:
             target = source.path or stack.enter_context(source.open())
             file = stack.enter_context(h5py.File(target, "r", locking="best-effort"))
-        except Exception as error:  # a damaged file makes h5py raise almost anything
+        except _DAMAGE as error:
             problem = f"is not readable as HDF5 ({_short(error)})"
             raise InputError(problem, "check that the file is whole") from error
         try:
             yield file
         except InputError:
             raise
-        except Exception as error:
+        except _DAMAGE as error:
             raise _damaged(error) from error
 
 

@@ -55,7 +55,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     except Exception as error:  # whatever a damaged drawing makes of it
         reason = printable(str(error).split("\n")[0])[:100] or type(error).__name__
         problem = f"is no DXF drawing that can be read ({reason})"
-        raise InputError(problem, "save it again as ASCII DXF") from None
+        raise InputError(problem, "save it again as ASCII DXF") from error
     if not lines:
         raise InputError("has no curves in its model space", "draw lines, polylines, arcs or splines")
     yield from shapes_of(_joined(lines), source.stem)

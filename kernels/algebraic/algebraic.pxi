@@ -80,11 +80,7 @@ def add_spline_rows(x, first, weights, values, bends, bint rim, int threads=1):
 cdef Places places(tuple given, ptrdiff_t count, ptrdiff_t knots) except *:
     """Return pointers into an answer of `spline.places`."""
     cdef Places p
-    cdef ptrdiff_t k
-    p.first, p.weights = reads_indices(given[0], (count,)), reads(given[1], (count, 4))
-    for k in range(count):
-        if p.first[k] < 0 or p.first[k] > knots - 2:
-            raise ValueError("a place beyond the knots")
+    p.first, p.weights = reads_places(given[0], (count,), knots - 1), reads(given[1], (count, 4))
     return p
 
 

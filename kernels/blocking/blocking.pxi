@@ -17,11 +17,11 @@ cdef Surface surface_of(tuple arrays, ptrdiff_t vertices) except *:
     cdef Surface s
     cdef tuple shape = (len(vertex), 3)
     s.triangles, s.vertices = len(vertex), vertices
-    s.vertex, s.neighbour = reads_indices(vertex, shape), reads_indices(neighbour, shape)
-    s.across = reads_indices(across, shape)
-    if s.triangles == 0 or vertex.min() < 0 or vertex.max() >= vertices or neighbour.max() >= s.triangles:
+    if s.triangles == 0:
         raise ValueError("no surface")
-    if ((neighbour >= 0) & ((across < 0) | (across > 2))).any():
+    s.vertex, s.neighbour = reads_places(vertex, shape, vertices), reads_places(neighbour, shape, s.triangles, -1)
+    s.across = reads_places(across, shape, 3, -1)
+    if ((neighbour >= 0) & (across < 0)).any():
         raise ValueError("triangles have three edges")
     return s
 
@@ -54,5 +54,8 @@ def surface_prune(tuple surface, start, fan, keep, cut):
     cdef Surface s = surface_of(surface, len(keep))
     cdef unsigned char *cuts = <unsigned char *>numbers(cut, b"B", 1, (s.triangles, 3), True)
     cdef const unsigned char *kept = <const unsigned char *>numbers(keep, b"B", 1, (s.vertices,), False)
-    if c_surface_prune(&s, reads_indices(start, (s.vertices + 1,)), reads_indices(fan, (3 * s.triangles,)), kept, cuts):
+    if (cut.astype(bool) & (surface[1] < 0)).any():
+        raise ValueError("cuts along walls")
+    cdef const ptrdiff_t *begins = reads_starts(start, s.vertices, 3 * s.triangles)
+    if c_surface_prune(&s, begins, reads_places(fan, (3 * s.triangles,), 3 * s.triangles), kept, cuts):
         raise MemoryError

@@ -22,11 +22,9 @@ def connect_quads(quads, ptrdiff_t n):
     whether the mesh is manifold; see ``collapse/topology.h``."""
     cdef HalfEdges mesh
     cdef ptrdiff_t m = len(quads)
-    if m and not 0 <= quads.min() <= quads.max() < n:
-        raise ValueError("quads of nodes that do not exist")
     edge, twin, ends = np.empty((m, 4), np.intp), np.empty((m, 4), np.intp), np.empty((4 * m, 2), np.intp)
     room = np.empty(n + 1 + 4 * m, np.intp)
-    mesh.quads, mesh.m, mesh.n = reads_indices(quads, (m, 4)), m, n
+    mesh.quads, mesh.m, mesh.n = reads_places(quads, (m, 4), n), m, n
     mesh.edge, mesh.twin, mesh.ends = fills_indices(edge, (m, 4)), fills_indices(twin, (m, 4)), fills_indices(ends, (4 * m, 2))
     cdef ptrdiff_t *scratch = fills_indices(room, (n + 1 + 4 * m,))
     with nogil:
@@ -37,10 +35,8 @@ def connect_quads(quads, ptrdiff_t n):
 def joined_classes(pairs, ptrdiff_t n):
     """Return the class (n,), counted from 0 in order, of each of n numbers that `pairs` (k, 2) join, and their count."""
     cdef ptrdiff_t k = len(pairs), count
-    if k and not 0 <= pairs.min() <= pairs.max() < n:
-        raise ValueError("pairs of numbers that do not exist")
     label, parent = np.empty(n, np.intp), np.empty(n, np.intp)
-    cdef const ptrdiff_t *joined = reads_indices(pairs, (k, 2))
+    cdef const ptrdiff_t *joined = reads_places(pairs, (k, 2), n)
     cdef ptrdiff_t *to = fills_indices(label, (n,))
     cdef ptrdiff_t *room = fills_indices(parent, (n,))
     with nogil:
@@ -59,8 +55,9 @@ def split_quads(quads, named, edge, twin, irregular, marked):
     cdef ptrdiff_t m = len(quads), count, written = -1, chords = 0, n = len(irregular), edges = len(marked)
     label, chord = np.empty(m, np.intp), np.empty(edges, np.intp)
     sizes, lattices, room = np.empty((m, 2), np.intp), np.empty(4 * m, np.intp), np.empty(8 * m, np.intp)
-    mesh.quads, mesh.m, mesh.n, mesh.edges = reads_indices(quads, (m, 4)), m, n, edges
-    mesh.edge, mesh.twin, mesh.ends = fills_indices(edge, (m, 4)), fills_indices(twin, (m, 4)), NULL
+    mesh.quads, mesh.m, mesh.n, mesh.edges = reads_places(quads, (m, 4), n), m, n, edges
+    mesh.edge = <ptrdiff_t *>reads_places(edge, (m, 4), edges)
+    mesh.twin, mesh.ends = <ptrdiff_t *>reads_places(twin, (m, 4), 4 * m, -1), NULL
     cdef const ptrdiff_t *own = reads_indices(named, (m, 4))
     cdef const unsigned char *begins = <const unsigned char *>numbers(irregular, b"?", 1, (n,), False)
     cdef unsigned char *mark = <unsigned char *>numbers(marked, b"?", 1, (edges,), True)

@@ -50,7 +50,7 @@ def put_rows(out, rows, bytes text, at):
     cdef bint whole = rows.dtype.kind == "i"
     cdef row_form form
     n, m = rows.shape
-    form.text, form.at, form.m = text, reads_indices(at, (m + 2,)), m
+    form.text, form.at, form.m = text, reads_starts(at, m + 1, len(text)), m
     if form.at[0] != 0 or form.at[m + 1] != len(text):
         raise ValueError("the pieces of text do not fit the rows")
     if n == 0:

@@ -91,6 +91,8 @@ def curve_locate(s, table, start, stop, ptrdiff_t pieces, bint closed, interval,
     cdef ArcLengths curve
     cdef ptrdiff_t m = len(s), count = len(table) - 1
     curve.table, curve.start, curve.stop = reads(table, (count + 1,)), reads(start, (count,)), reads(stop, (count,))
+    if pieces < 1 or count < pieces or count % pieces:
+        raise ValueError("a table that does not fit its pieces")
     curve.n, curve.pieces, curve.closed = count // pieces, pieces, closed
     c_curve_locate(&curve, reads(s, (m,)), m, <ptrdiff_t *>numbers(interval, b"i", sizeof(ptrdiff_t), (m,), True),
                    fills(place, (m,)))
@@ -99,14 +101,14 @@ def curve_locate(s, table, start, stop, ptrdiff_t pieces, bint closed, interval,
 def curve_points(cubic, interval, place, end, points):
     """Fill `points` (m, 2) with the cubics (4, n, 2) at the places; at place 1 it is `end` (2,), bit for bit."""
     cdef ptrdiff_t n = cubic.shape[1], m = len(place)
-    c_curve_points(reads(cubic, (4, n, 2)), n, reads_indices(interval, (m,)), reads(place, (m,)), m, reads(end, (2,)),
+    c_curve_points(reads(cubic, (4, n, 2)), n, reads_places(interval, (m,), n), reads(place, (m,)), m, reads(end, (2,)),
                    fills(points, (m, 2)))
 
 
 def curve_slopes(cubic, interval, place, derivatives):
     """Fill `derivatives` (m, 2) by t at the places."""
     cdef ptrdiff_t n = cubic.shape[1], m = len(place)
-    c_curve_slopes(reads(cubic, (4, n, 2)), n, reads_indices(interval, (m,)), reads(place, (m,)), m,
+    c_curve_slopes(reads(cubic, (4, n, 2)), n, reads_places(interval, (m,), n), reads(place, (m,)), m,
                    fills(derivatives, (m, 2)))
 
 
@@ -128,7 +130,7 @@ def crossing_segments(points, order, low, top, ptrdiff_t limit, long long budget
     """Return pairs (k, 2) of segments of a polygon that meet, `limit` at the most, and whether all were compared."""
     cdef ptrdiff_t n = len(points), m = len(order), count
     cdef Read p = reads(points, (n, 2))
-    cdef const ptrdiff_t *sorted_by = reads_indices(order, (m,))
+    cdef const ptrdiff_t *sorted_by = reads_places(order, (m,), min(m, n))
     cdef Read first = reads(low, (m,)), last = reads(top, (m,))
     pairs = np.empty((limit, 2), np.intp)
     cdef ptrdiff_t *to = <ptrdiff_t *>numbers(pairs, b"i", sizeof(ptrdiff_t), (limit, 2), True)

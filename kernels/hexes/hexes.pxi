@@ -1,7 +1,8 @@
 cdef extern from "hexes/energy.h":
     int BRICK_I, BRICK_J, BRICK_K
     ctypedef struct Brick:
-        int64_t ragged
+        int64_t count[3]
+        int64_t nodes, cells, targets, forces
     ctypedef struct HexWeights:
         double shape, smoothness, epsilon, size, cells
     ctypedef struct HexMesh:
@@ -38,6 +39,27 @@ cdef extern from "hexes/descent.h":
 BRICK = BRICK_I, BRICK_J, BRICK_K
 
 
+cdef int check_brick(const Brick *brick, const HexMesh *mesh, ptrdiff_t nodes, ptrdiff_t *room) except -1:
+    """Raise ValueError unless a brick is small enough, lies in the tables, of so many numbers each, and has such nodes."""
+    cdef ptrdiff_t a = brick.count[0], b = brick.count[1], c = brick.count[2], i, j, k, least
+    if not (1 <= a <= BRICK_I and 1 <= b <= BRICK_J and 1 <= c <= BRICK_K):
+        raise ValueError("a brick of no cells, or too many")
+    cdef ptrdiff_t edges = (a + 2) * (b + 1) * (c + 1) + (a + 1) * (b + 2) * (c + 1) + (a + 1) * (b + 1) * (c + 2)
+    if (not 0 <= brick.nodes <= room[0] - (a + 3) * (b + 3) * (c + 3) or not 0 <= brick.cells <= room[1] - 3 * a * b * c
+            or not 0 <= brick.targets <= room[2] - edges
+            or not 0 <= brick.forces <= room[3] - 3 * (a + 1) * (b + 1) * (c + 1)):
+        raise ValueError("a brick beyond its tables")
+    cdef const int32_t *node = mesh.node + brick.nodes
+    for i in range(a + 3):
+        for j in range(b + 3):
+            for k in range(c + 3):
+                least = 0 if 0 < i < a + 2 and 0 < j < b + 2 and 0 < k < c + 2 else -1  # none beyond a side
+                if not least <= node[0] < nodes:
+                    raise ValueError("bricks of other nodes")
+                node += 1
+    return 0
+
+
 cdef class HexDescent:
     """Descents of the functional over hexahedra that share nodes, as ``descent.h`` has it; moves `nodes` (n, 3).
 
@@ -52,22 +74,25 @@ cdef class HexDescent:
                  int threads):
         cdef CHexDescent *d = &self.state
         cdef HexMesh *mesh = &d.mesh
-        cdef ptrdiff_t b = len(bricks), count = len(places[0])
-        if b and lattices.max() >= len(nodes):
-            raise ValueError("bricks of other nodes")
+        cdef ptrdiff_t b = len(bricks), count = len(places[0]), n = len(nodes), slid = len(slides[0]), k
+        cdef ptrdiff_t[4] rooms = [len(lattices), len(inverse), len(targets), 3 * len(lattices) + 3]
         mesh.bricks = b
         mesh.brick = <const Brick *>numbers(bricks, b"i", 8, (b, 8), False)
-        mesh.node = <const int32_t *>numbers(lattices, b"i", 4, lattices.shape, False)
-        mesh.moves = <const uint8_t *>numbers(moves, b"?", 1, (len(nodes),), False)
-        mesh.inverse, mesh.target = reads(inverse, inverse.shape), reads_single(targets, targets.shape)
-        d.threads, d.count, d.sliding_count, d.weights.cells = threads, count, len(slides[0]), cells
-        d.x = fills(nodes, (len(nodes), 3))
-        d.free, d.start = reads_indices(places[0], (count,)), reads_indices(places[1], (count + 1,))
+        mesh.node = <const int32_t *>numbers(lattices, b"i", 4, (rooms[0],), False)
+        mesh.moves = <const uint8_t *>numbers(moves, b"?", 1, (n,), False)
+        mesh.inverse, mesh.target = reads(inverse, (rooms[1],)), reads_single(targets, (rooms[2],))
+        for k in range(b):
+            check_brick(mesh.brick + k, mesh, n, rooms)
+        d.threads, d.count, d.sliding_count, d.weights.cells = threads, count, slid, cells
+        d.x = fills(nodes, (n, 3))
+        d.free, d.start = reads_places(places[0], (count,), n), reads_starts(places[1], count, len(places[2]))
         d.place = <const int32_t *>numbers(places[2], b"i", 4, places[2].shape, False)
+        for k in range(len(places[2])):
+            if not 0 <= d.place[k] <= rooms[0]:
+                raise ValueError("places of other forces")
         d.inverse_size = reads(places[3], (count,))
-        d.sliding = reads_indices(slides[0], (len(slides[0]),))
-        d.projection = reads(slides[1], (len(slides[0]), 9))
-        force = np.empty(3 * len(lattices) + 3)
+        d.sliding, d.projection = reads_places(slides[0], (slid,), count), reads(slides[1], (slid, 9))
+        force = np.empty(rooms[3])
         each = np.empty((2, max(b, 1)))
         mesh.force = fills(force, force.shape)
         mesh.energy = fills(each, each.shape)

@@ -42,6 +42,26 @@ cdef const ptrdiff_t *reads_indices(array, tuple shape) except NULL:
     return <const ptrdiff_t *>numbers(array, b"i", sizeof(ptrdiff_t), shape, False)
 
 
+cdef const ptrdiff_t *reads_places(array, tuple shape, ptrdiff_t limit, ptrdiff_t least=0) except NULL:
+    """Return indices, all of them from `least` to `limit` - 1."""
+    cdef const ptrdiff_t *index = reads_indices(array, shape)
+    cdef ptrdiff_t k, n = array.size
+    for k in range(n):
+        if index[k] < least or index[k] >= limit:
+            raise ValueError(f"index {index[k]} out of range")
+    return index
+
+
+cdef const ptrdiff_t *reads_starts(array, ptrdiff_t count, ptrdiff_t end) except NULL:
+    """Return where `count` pieces of a list begin, and where the last ends, which is `end` at the most."""
+    cdef const ptrdiff_t *start = reads_places(array, (count + 1,), end + 1)
+    cdef ptrdiff_t k
+    for k in range(count):
+        if start[k] > start[k + 1]:
+            raise ValueError("pieces that end before they begin")
+    return start
+
+
 cdef Written fills_room(array, ptrdiff_t least) except NULL:
     """Return the doubles of scratch of one direction, of which there are at least so many."""
     if len(array) < least:

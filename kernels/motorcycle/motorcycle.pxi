@@ -43,22 +43,20 @@ cdef TriangleMap seamless(tuple tables) except *:
     cdef ptrdiff_t t = len(coordinates)
     found.triangles = t
     found.coordinates = <const MapPoint *>reads(coordinates, (t, 3, 2))
-    found.neighbours = reads_indices(neighbours, (t, 3))
-    found.edges = reads_indices(edges, (t, 3))
+    found.neighbours = reads_places(neighbours, (t, 3), t, -1)
+    found.edges = reads_places(edges, (t, 3), 3, -1)
     found.turns = reads_indices(turns, (t, 3))
-    if np.any((neighbours < -1) | (neighbours >= t) | (edges < -1) | (edges > 2)):
-        raise ValueError("neighbours beyond the triangles")
+    if np.any((neighbours >= 0) & (edges < 0)):
+        raise ValueError("neighbours across no edge")
     return found
 
 
 cdef RayLines lines_of(tuple tables, node, port, ptrdiff_t nodes, ptrdiff_t ports, double near) except *:
     cdef RayLines lines
     lines.map = seamless(tables)
-    lines.node = reads_indices(node, (lines.map.triangles, 3))
-    lines.port = reads_indices(port, (lines.map.triangles, 3, 4))
+    lines.node = reads_places(node, (lines.map.triangles, 3), nodes, -1)
+    lines.port = reads_places(port, (lines.map.triangles, 3, 4), ports, -1)
     lines.nodes, lines.ports, lines.near = nodes, ports, near
-    if np.any((node < -1) | (node >= nodes)) or np.any((port < -1) | (port >= ports)):
-        raise ValueError("nodes or ports beyond the last")
     return lines
 
 
@@ -124,13 +122,11 @@ def walk_map(tuple tables, corners, points, start, at, first, targets, ptrdiff_t
     """Return (m, 2) the points where straight walks lead, as in ``motorcycle/walk.h``."""
     cdef TriangleMap seamless_map = seamless(tables)
     cdef ptrdiff_t walks = len(start), count = len(targets), t = seamless_map.triangles
-    if np.any((start < 0) | (start >= t)) or np.any((corners < 0) | (corners >= len(points))):
-        raise ValueError("starts or corners beyond the last")
-    if first[0] != 0 or first[-1] != count or np.any(first[1:] < first[:-1]):
+    cdef const ptrdiff_t *corner = reads_places(corners, (t, 3), len(points))
+    cdef const ptrdiff_t *starts = reads_places(start, (walks,), t)
+    cdef const ptrdiff_t *firsts = reads_starts(first, walks, count)
+    if firsts[0] != 0 or firsts[walks] != count:
         raise ValueError("visits beyond the last")
-    cdef const ptrdiff_t *corner = reads_indices(corners, (t, 3))
-    cdef const ptrdiff_t *starts = reads_indices(start, (walks,))
-    cdef const ptrdiff_t *firsts = reads_indices(first, (walks + 1,))
     cdef Read plane = reads(points, (len(points), 2)), froms = reads(at, (walks, 2)), goals = reads(targets, (count, 2))
     reached = np.empty((count, 2))
     cdef Written to = fills(reached, (count, 2))

@@ -19,11 +19,17 @@ typedef struct {
     double *room;           /* for a row at work */
 } Places;
 
-MESHONET_INLINE Places places(const Approach *a, double *scratch)
+MESHONET_INLINE Places sizes(const Approach *a)
 {
-    Places p;
+    Places p = {0};
     p.width = 2 * a->eta.line, p.field = a->xi.count * p.width;
     p.pitch = (a->n + 2 * LANES - 2) / LANES * LANES, p.plane = (a->xi.count + 4) * p.pitch;
+    return p;
+}
+
+MESHONET_INLINE Places places(const Approach *a, double *scratch)
+{
+    Places p = sizes(a);
     p.missed = scratch, p.other = p.missed + 2 * p.field, p.waves = a->xi.folded ? p.other : p.missed;
     p.step = p.other + 2 * p.field, p.move = p.step + 2 * p.field, p.room = p.move + 2 * p.field;
     p.z = p.room + 10 * p.pitch + BEFORE;
@@ -32,7 +38,7 @@ MESHONET_INLINE Places places(const Approach *a, double *scratch)
 
 ptrdiff_t approach_scratch(const Approach *a)
 {
-    const Places p = places(a, NULL);
+    const Places p = sizes(a);
     return 8 * p.field + 10 * p.pitch + 2 * p.plane + 2 * LANES;
 }
 

@@ -69,12 +69,11 @@ static int analyse(QuadDescent *d)
     ptrdiff_t *rows = malloc(2 * (size_t)(most + 1) * sizeof *rows);
     s->slot = malloc((size_t)(most + 1) * sizeof *s->slot);
     s->pattern.order = malloc(2 * (size_t)(n + 1) * sizeof(int));
-    s->pattern.parent = s->pattern.order + n + 1;
     s->pattern.start = malloc(2 * (size_t)(n + 1) * sizeof(ptrdiff_t));
-    s->pattern.fill = s->pattern.start + n + 1;
     s->pattern.row = malloc((size_t)(most + 1) * sizeof(int));
     int failed = !rows || !s->slot || !s->pattern.order || !s->pattern.start || !s->pattern.row;
     if (!failed) {
+        s->pattern.parent = s->pattern.order + n + 1, s->pattern.fill = s->pattern.start + n + 1;
         s->entries = assemble(d, rows, rows + most, NULL, NULL, NULL);
         s->pattern.n = (int)n;
         failed = sparse_analyse((int)n, s->entries, rows, rows + most, &s->pattern, s->slot) < 0;
@@ -90,6 +89,8 @@ static int analyse(QuadDescent *d)
         }
     }
     free(rows);
+    if (failed)
+        quad_descent_free(d);
     return failed ? -1 : 0;
 }
 
@@ -115,7 +116,8 @@ static int make_stiffness(QuadDescent *d)
         diagonal += s->values[s->slot[k]] / (double)n;
     for (ptrdiff_t k = 0; k < n; k++)
         s->values[s->slot[k]] += SHIFT * diagonal;
-    return sparse_factor(&s->pattern, s->values, s->lower_row, s->lower, s->pivots) != 0 ? -1 : 0;
+    const ptrdiff_t bad = sparse_factor(&s->pattern, s->values, s->lower_row, s->lower, s->pivots);
+    return bad < 0 ? -1 : bad > 0;
 }
 
 void quad_descent_free(QuadDescent *d)
@@ -258,10 +260,10 @@ int quad_descent_start(QuadDescent *d, int renew)
     set_sizes(d);
     get_unknowns(d, d->here);
     set_nodes(d, d->here);
-    if (s->n > 0 && (renew || !d->stiffness.values) && make_stiffness(d) < 0)
-        return -1;
-    steps_start(s);
-    return 0;
+    const int failed = s->n > 0 && (renew || !d->stiffness.values) ? make_stiffness(d) : 0;
+    if (!failed)
+        steps_start(s);
+    return failed;
 }
 
 void quad_descent_end(QuadDescent *d)

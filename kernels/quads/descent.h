@@ -31,7 +31,8 @@ typedef struct {
 void quad_descent_place(QuadDescent *d, ptrdiff_t unknowns, double *doubles, float *floats);
 size_t quad_descent_doubles(const QuadDescent *d, ptrdiff_t unknowns);
 
-/* Begin a descent at x, with the preconditioner there is or a new one; returns -1 where memory ran out.
+/* Begin a descent at x, with the preconditioner there is or a new one; returns -1 where memory ran out, 1 where the
+   preconditioner is not positive, as nodes that are not finite make it.
    `quad_descent_end` leaves the best nodes in x. */
 int quad_descent_start(QuadDescent *d, int renew);
 void quad_descent_end(QuadDescent *d);

@@ -59,12 +59,10 @@ def line_neighbours(quads, edge_of, node, edge):
     """Return the neighbours (e, 4) of edges along grid lines and the number of pairs, as ``topology.h`` has them."""
     cdef ptrdiff_t m = len(quads), n = len(node), e = len(edge), pairs
     line, room = np.empty((e, NEXT_EDGES), np.intp), np.empty(2 * n + 1 + 4 * m + 2 * e, np.intp)
-    if m and not (quads.max() < n and edge_of.max() < e):
-        raise ValueError("quads of other nodes or edges")
-    cdef const ptrdiff_t *q = reads_indices(quads, (m, 4))
-    cdef const ptrdiff_t *s = reads_indices(edge_of, (m, 4))
-    cdef const ptrdiff_t *v = reads_indices(node, (n,))
-    cdef const ptrdiff_t *w = reads_indices(edge, (e,))
+    cdef const ptrdiff_t *q = reads_places(quads, (m, 4), n)
+    cdef const ptrdiff_t *s = reads_places(edge_of, (m, 4), e)
+    cdef const ptrdiff_t *v = reads_places(node, (n,), n)
+    cdef const ptrdiff_t *w = reads_places(edge, (e,), e)
     cdef ptrdiff_t *to = fills_indices(line, (e, NEXT_EDGES))
     cdef ptrdiff_t *scratch = fills_indices(room, room.shape)
     with nogil:
@@ -88,24 +86,27 @@ cdef class QuadDescent:
     def __init__(self, nodes, tuple cells, tuple lines, tuple eased, inner, tuple tied, unknown, wall,
                  tuple wall_nodes, tuple wall_edges, tuple loops, double bent, double allowed):
         cdef ptrdiff_t n = len(nodes), m = len(cells[0]), e = len(lines[0]), k = len(wall_nodes[0]), j
+        cdef ptrdiff_t corners = len(eased[0]), ties = len(tied[0]), sides = len(wall_edges[0])
         cdef ptrdiff_t unknowns = 2 * len(inner) + np.count_nonzero(wall_nodes[1] >= 0)
         cdef QuadMesh *mesh = &self.state.mesh
         cdef Walls *walls = &self.state.walls
         self.state.x = fills(nodes, (n, 2))
-        mesh.nodes, mesh.cells, mesh.edges, mesh.pairs, mesh.eased_count = n, m, e, lines[2], len(eased[0])
-        mesh.quads, mesh.aspect = reads_indices(cells[0], (m, 4)), reads(cells[1], (m, 2))
-        mesh.area, mesh.edge = reads(cells[2], (m,)), reads_indices(lines[0], (e, 2))
-        mesh.line, mesh.target = reads_indices(lines[1], (e, NEXT_EDGES)), reads(lines[3], (e,))
-        mesh.eased, mesh.ease = reads_indices(eased[0], (len(eased[0]), 3)), reads(eased[1], (len(eased[0]),))
-        self.state.free_count, self.state.tied_count = len(inner), len(tied[0])
-        self.state.free, self.state.tied = reads_indices(inner, inner.shape), reads_indices(tied[0], (len(tied[0]), 2))
+        mesh.nodes, mesh.cells, mesh.edges, mesh.pairs, mesh.eased_count = n, m, e, lines[2], corners
+        mesh.quads, mesh.aspect = reads_places(cells[0], (m, 4), n), reads(cells[1], (m, 2))
+        mesh.area, mesh.edge = reads(cells[2], (m,)), reads_places(lines[0], (e, 2), n)
+        mesh.line, mesh.target = reads_places(lines[1], (e, NEXT_EDGES), e), reads(lines[3], (e,))
+        mesh.eased, mesh.ease = reads_places(eased[0], (corners, 3), n), reads(eased[1], (corners,))
+        self.state.free_count, self.state.tied_count = len(inner), ties
+        self.state.free, self.state.tied = reads_places(inner, inner.shape, n), reads_places(tied[0], (ties, 2), n)
         self.state.shift[0], self.state.shift[1] = tied[1]
-        self.state.unknown, self.state.wall = reads_indices(unknown, (n,)), reads_indices(wall, (n,))
+        self.state.unknown, self.state.wall = reads_places(unknown, (n,), unknowns, -1), reads_places(wall, (n,), k, -1)
+        for j in range(n):
+            if self.state.wall[j] < 0 and self.state.unknown[j] == unknowns - 1 >= 0:
+                raise ValueError("a free node of one unknown")
         walls.nodes, walls.loops = k, len(loops)
-        walls.node, walls.unknown = reads_indices(wall_nodes[0], (k,)), reads_indices(wall_nodes[1], (k,))
+        walls.node, walls.unknown = reads_places(wall_nodes[0], (k,), n), reads_places(wall_nodes[1], (k,), unknowns, -1)
         walls.arc = fills(wall_nodes[2], (k,))
-        walls.edge = reads_indices(wall_edges[0], (len(wall_edges[0]), 2))
-        walls.round = reads(wall_edges[1], (len(wall_edges[0]),))
+        walls.edge, walls.round = reads_places(wall_edges[0], (sides, 2), k), reads(wall_edges[1], (sides,))
         self.loop = <WallLoop *>calloc(max(1, len(loops)), sizeof(WallLoop))
         if self.loop == NULL:
             raise MemoryError
@@ -113,6 +114,8 @@ cdef class QuadDescent:
         for j, (cubic, table, start, stop, pieces, end, turned, first_node, last_node, first_edge, last_edge) in (
             enumerate(loops)
         ):
+            if not (0 <= first_node <= last_node <= k and 0 <= first_edge <= last_edge <= sides):
+                raise ValueError("loops of other nodes or edges")
             c = cubic.shape[1]
             self.loop[j].lengths = ArcLengths(
                 reads(table, (c * pieces + 1,)), reads(start, (c * pieces,)), reads(stop, (c * pieces,)), c, pieces, 1)
@@ -132,21 +135,28 @@ cdef class QuadDescent:
         quad_descent_free(&self.state)
         free(self.loop)
 
+    cdef int _start(self, bint renew) except -1:
+        cdef int status
+        with nogil:
+            status = quad_descent_start(&self.state, renew)
+        if status < 0:
+            raise MemoryError
+        if status > 0:
+            raise ValueError("nodes that are not finite")
+        return 0
+
     def run(self, double shape, double smoothness, double epsilon, double size, double gain, int most, bint renew):
         """Descend; return (value, smallest Jacobian over the area of its cell, iterations).
 
         It ends when the value falls by less than its part `gain` in each of three iterations, or after `most`. The
         preconditioner is made anew where the nodes are with `renew`.
         """
-        cdef int done = 0, state = GOES_ON, failed
+        cdef int done = 0, state = GOES_ON
         cdef QuadMesh *mesh = &self.state.mesh
         cdef Steps *steps = &self.state.steps
         mesh.shape, mesh.smoothness, mesh.epsilon, mesh.size = shape, smoothness, epsilon, size
         steps.reach, steps.farthest, steps.still, steps.gain = 0.125, 1.0, float("inf"), gain
-        with nogil:
-            failed = quad_descent_start(&self.state, renew)
-        if failed:
-            raise MemoryError
+        self._start(renew)
         while done < most and state == GOES_ON and steps.n > 0:
             PyErr_CheckSignals()
             with nogil:
@@ -162,8 +172,7 @@ cdef class QuadDescent:
         cdef ptrdiff_t k
         cdef Written to = fills(gradient, (self.state.steps.n,))
         mesh.shape, mesh.smoothness, mesh.epsilon, mesh.size = shape, smoothness, epsilon, size
-        with nogil:
-            quad_descent_start(&self.state, True)
+        self._start(True)
         for k in range(self.state.steps.n):
             to[k] = self.state.steps.gradient[k]
         return self.state.steps.value

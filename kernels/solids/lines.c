@@ -66,12 +66,13 @@ static void of_planes(void *data, Member member)
     Lines *lines = data;
     const SolidNodes *nodes = lines->nodes;
     const ptrdiff_t steps[3] = {nodes->nj * nodes->nk, nodes->nk, 1};
-    double *growth = malloc(2 * (size_t)nodes->nk * sizeof(double)), *bend = growth + nodes->nk;
+    double *growth = malloc(2 * (size_t)nodes->nk * sizeof(double));
     ptrdiff_t first, last;
     if (!growth) {
         lines->failed = 1;
         return;
     }
+    double *bend = growth + nodes->nk;
     team_share(nodes->ni, member, &first, &last);
     for (ptrdiff_t i = first; i < last; i++)
         for (ptrdiff_t j = 0; j < nodes->nj; j++)

@@ -65,14 +65,16 @@ typedef struct {
 static int scratch_made(Scratch *scratch, ptrdiff_t nk)
 {
     double *at = scratch->memory = malloc((9 + SOLID_METRICS) * (size_t)nk * sizeof(double));
-    for (int a = 0; at && a < 2; a++) {
+    if (at == NULL)
+        return 0;
+    for (int a = 0; a < 2; a++) {
         scratch->lengths.u[a] = at + a * nk;
         scratch->lengths.v[a] = at + (2 + a) * nk;
         for (int b = 0; b < 2; b++)
             scratch->lengths.w[a][b] = at + (4 + 2 * a + b) * nk;
     }
     scratch->metrics = at + 8 * nk;
-    return at != NULL;
+    return 1;
 }
 
 /* Inverse lengths of the edges of a row at j + b that are along i and k. */

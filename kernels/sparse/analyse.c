@@ -159,11 +159,13 @@ int sparse_analyse(int n, ptrdiff_t m, const ptrdiff_t *rows, const ptrdiff_t *c
                    ptrdiff_t *slot)
 {
     int *scratch = malloc(((size_t)n * 6 + 1) * sizeof *scratch), failed = -1;
+    if (!scratch)
+        return -1;
     int *place = scratch, *s = scratch + n, *post = scratch + 2 * n, *t = scratch + 3 * n, *u = scratch + 4 * n;
     int *v = scratch + 5 * n;
     Graph graph = {0};
     a->n = n;
-    if (scratch && !make_graph(n, m, rows, columns, place, &graph) && !minimum_degree(n, graph.start, graph.list, v)) {
+    if (!make_graph(n, m, rows, columns, place, &graph) && !minimum_degree(n, graph.start, graph.list, v)) {
         for (int k = 0; k < n; k++)
             place[v[k]] = k;
         eliminate_tree(n, &graph, v, place, a->parent, s);

@@ -26,11 +26,13 @@ ptrdiff_t sparse_factor(const SparsePattern *a, const double *values, int *lower
 {
     const int n = a->n;
     ptrdiff_t bad = 0;
-    int *scratch = malloc(((size_t)n * 3 + 1) * sizeof *scratch), *seen = scratch, *list = scratch + n, *path = list + n;
+    int *seen = malloc(((size_t)n * 3 + 1) * sizeof *seen), *list = NULL, *path = NULL;
     ptrdiff_t *end = malloc(((size_t)n + 1) * sizeof *end);
     double *y = calloc((size_t)n + 1, sizeof *y);
-    if (!scratch || !end || !y)
+    if (!seen || !end || !y)
         bad = -1;
+    else
+        list = seen + n, path = list + n;
     for (int k = 0; k < n && !bad; k++)
         seen[k] = -1;
     for (int k = 0; k < n && !bad; k++) {
@@ -54,7 +56,7 @@ ptrdiff_t sparse_factor(const SparsePattern *a, const double *values, int *lower
         if (pivot == 0.0 || !isfinite(pivot))
             bad = k + 1;
     }
-    free(scratch);
+    free(seen);
     free(end);
     free(y);
     return bad;

@@ -1,6 +1,7 @@
 # Surfaces of many patches, and volumes marched from them.
 
 cdef extern from "surfaces/graph.h":
+    int MOST_NEIGHBOURS
     ctypedef struct Graph:
         ptrdiff_t nodes, red, ghosts, odd, fixed
         const ptrdiff_t *near
@@ -46,13 +47,16 @@ def surface_march(levels, heights, graph, settings, int threads):
     the numbers of ``march.h`` in their order.
     """
     cdef ptrdiff_t n = levels.shape[2], count = len(heights), ghosts = len(graph.owner), odd = len(graph.odd_nodes)
-    cdef ptrdiff_t fixed = len(graph.fixed_nodes)
+    cdef ptrdiff_t fixed = len(graph.fixed_nodes), around = len(graph.odd_near), rows = n + ghosts
     cdef Graph g = Graph(
-        n, graph.red, ghosts, odd, fixed, reads_indices(graph.near, (4, n)), reads_indices(graph.odd_nodes, (odd,)),
-        reads_indices(graph.odd_start, (odd + 1,)), reads_indices(graph.odd_near, graph.odd_near.shape),
-        reads_indices(graph.owner, (ghosts,)), reads_indices(graph.base, (ghosts,)), reads(graph.own, (ghosts,)),
-        reads(graph.sign, (3, ghosts)), reads(graph.shift, (3, ghosts)), reads_indices(graph.fixed_nodes, (fixed,)),
-        reads(graph.boost, (n,)), reads(graph.moves, (3, fixed)))
+        n, graph.red, ghosts, odd, fixed, reads_places(graph.near, (4, n), rows),
+        reads_places(graph.odd_nodes, (odd,), n), reads_starts(graph.odd_start, odd, around),
+        reads_places(graph.odd_near, (around,), rows), reads_places(graph.owner, (ghosts,), n),
+        reads_places(graph.base, (ghosts,), n), reads(graph.own, (ghosts,)), reads(graph.sign, (3, ghosts)),
+        reads(graph.shift, (3, ghosts)), reads_places(graph.fixed_nodes, (fixed,), n), reads(graph.boost, (n,)),
+        reads(graph.moves, (3, fixed)))
+    if not 0 <= g.red <= n or (odd and np.diff(graph.odd_start).max() > MOST_NEIGHBOURS):
+        raise ValueError("red nodes beyond the last, or a node of too many neighbours")
     cdef SurfaceMarch s
     cdef SurfaceMarched made
     cdef int failed
@@ -71,7 +75,7 @@ def respace_lines(marched, steps, fade, order, ptrdiff_t sweeps, lines, int thre
     """Fill `lines` (3, n, levels) with the nodes of `marched` (levels, 3, n) moved along their lines (``lines.h``)."""
     cdef ptrdiff_t levels = len(marched), n = marched.shape[2]
     cdef Lines l = Lines(n, levels, reads(marched, (levels, 3, n)), reads(steps, (levels - 1,)),
-                         reads(fade, (levels - 1,)), reads_indices(order, (n,)), sweeps, fills(lines, (3, n, levels)))
+                         reads(fade, (levels - 1,)), reads_places(order, (n,), n), sweeps, fills(lines, (3, n, levels)))
     cdef int failed
     with nogil:
         failed = c_respace_lines(&l, threads)

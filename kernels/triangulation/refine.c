@@ -123,9 +123,9 @@ static int too_near_wall(Mesh *mesh, Node p, int32_t t)
                 continue;
             }
             const int32_t u = here->beside[i];
-            Triangle *there = &mesh->triangle[u];
-            if (u < 0 || there->seen == mesh->searches)
+            if (u < 0 || mesh->triangle[u].seen == mesh->searches)
                 continue;
+            Triangle *there = &mesh->triangle[u];
             there->seen = mesh->searches;
             if (in_circle(mesh->node[there->corner[0]], mesh->node[there->corner[1]], mesh->node[there->corner[2]],
                           p) && mesh_push(mesh, u, 0))

@@ -40,13 +40,6 @@ cdef extern from "energy/steps.h":
     void steps_forget(Steps *s) nogil
 
 
-cdef const ptrdiff_t *reads_places(array, tuple shape, ptrdiff_t limit) except NULL:
-    """Return indices, all of them from 0 to `limit` - 1."""
-    if array.size and (array.min() < 0 or array.max() >= limit):
-        raise ValueError("indices out of range")
-    return reads_indices(array, shape)
-
-
 def tfi_volume(nodes, tuple faces, tuple laws, int threads, spline=None):
     """Fill the planes `nodes` (3, n1, n2, n3) from six faces.
 
@@ -288,6 +281,8 @@ def closed_node(tuple walls, tuple ranges, int threads):
     for k in range(3):
         first[k], last[k] = ranges[k]
     for k, (nodes, axis, end) in enumerate(walls):
+        if not 0 <= axis < 3:
+            raise ValueError("no such direction")
         faces[k].n, faces[k].m = nodes.shape[:2]
         faces[k].nodes, faces[k].axis, faces[k].end = reads(nodes, (faces[k].n, faces[k].m, 3)), axis, end
         sizes = [faces[k].n, faces[k].m]

@@ -36,7 +36,7 @@ def solve_on(
 
     `polish`: Picard steps of the strip operator; ``auto`` or ``off`` for quad operators, which take none;
     `instead`: solves a boundary that cannot be solved on the device. Raises InputError: torch or the device
-    is not there; boundaries or polish that do not suit the operator.
+    is not there; boundaries or polish that do not suit the operator; MemoryError: the device has too little.
     """
     if not operator.batched:
         raise InputError(f"model {operator.name} has no grids on a device", "leave {device} out")
@@ -53,7 +53,10 @@ def solve_on(
     for rows in in_batches(boundaries):
         some = [boundaries[k] for k in rows]
         begun = time.perf_counter()
-        nodes = _nodes(grids, some, lifted=isinstance(operator, StripOperator))
+        try:
+            nodes = _nodes(grids, some, lifted=isinstance(operator, StripOperator))
+        except torch.OutOfMemoryError as error:
+            raise MemoryError(str(error).split("\n")[0]) from error
         spent = (time.perf_counter() - begun) / len(rows)
         for k, boundary, own in zip(rows, some, nodes, strict=True):
             if own is None or not np.isfinite(own).all():

@@ -11,6 +11,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.quality.measure import measure
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
@@ -123,7 +124,10 @@ def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> deque[_M
 
 
 def _solve_together(group: Iterable[_Member], method: Method) -> None:
-    """Solve those that the method takes in one call; when that fails each is solved in its turn."""
+    """Solve those that the method takes in one call.
+
+    When one of them cannot be solved, or memory does not suffice, each is solved in its turn.
+    """
     alike = [
         (member, member.boundary)
         for member in group
@@ -132,12 +136,18 @@ def _solve_together(group: Iterable[_Member], method: Method) -> None:
     if len(alike) < 2:
         return
     begun = time.perf_counter()
-    with contextlib.suppress(Exception):
+    try:
         solutions = method.solve([boundary for _, boundary in alike])
-        share = (time.perf_counter() - begun) / len(alike)
-        for (member, _), solution in zip(alike, solutions, strict=True):
-            member.solution = solution
-            _add_times(member.seconds, solution, share)
+    except (MeshonetError, MemoryError):
+        return
+    except Exception as error:
+        for member, _ in alike:
+            member.boundary = error
+        return
+    share = (time.perf_counter() - begun) / len(alike)
+    for (member, _), solution in zip(alike, solutions, strict=True):
+        member.solution = solution
+        _add_times(member.seconds, solution, share)
 
 
 def _finished_or_error(member: _Member, method: Method, request: GridRequest) -> Result | Exception:

@@ -29,6 +29,8 @@ def everything(folder: Path) -> dict[str, bytes]:
 @pytest.fixture(scope="module")
 def grid(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An O grid of 121 x 41 nodes."""
+    import matplotlib.font_manager  # noqa: F401 - which keeps a list of fonts: made here, not on the full disc
+
     path = tmp_path_factory.mktemp("faults") / "grid.vts"
     subprocess.run(
         [*MESHONET, "tfi", "naca:0012", "--res", "121x41", "-q", "-o", path], env=ENVIRONMENT, check=True

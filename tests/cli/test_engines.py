@@ -237,13 +237,7 @@ def test_a_batch_that_is_stopped_leaves_whole_files_and_no_process(
     meshonet: Meshonet, tmp_path: Path, number: signal.Signals
 ) -> None:
     assert meshonet(*FAMILY.split()).code == 0
-    code = (
-        f"import signal; signal.signal({int(number)}, signal.SIG_DFL); " if number != signal.SIGKILL else ""
-    )
-    code += (
-        "import runpy, sys; sys.argv[0] = 'meshonet'; runpy.run_module('meshonet_cli', run_name='__main__')"
-    )
-    command = [sys.executable, "-c", code, *SLOW.split(), "--jobs", "2", "-q"]
+    command = [sys.executable, "-m", "meshonet_cli", *SLOW.split(), "--jobs", "2", "-q"]
     running = subprocess.Popen(command, cwd=tmp_path, env=ENVIRONMENT, start_new_session=True)
     wait_for(tmp_path / "0.h5")
     running.send_signal(number)

@@ -11,12 +11,11 @@ from command_line import ROOT
 from meshonet_cli.stopping import check
 
 DROPPED = """
-import os, signal, sys, weakref
+import os, sys, weakref
 from meshonet_cli.session import Session
 from meshonet_cli.stopping import install
 
-number = int(sys.argv[1])  # which whoever runs the tests may have left ignored
-signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
+number = int(sys.argv[1])
 install()
 
 class Thing: pass
@@ -49,6 +48,36 @@ def test_an_ignored_signal_stays_ignored() -> None:
     code += "from meshonet_cli.stopping import install; install(); os.kill(os.getpid(), signal.SIGHUP)"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     assert subprocess.run([sys.executable, "-c", code], env=environment).returncode == 0
+
+
+def test_tests_that_are_to_ignore_a_signal_start_processes_that_heed_it() -> None:
+    line = 'trap "" INT; "$0" -m pytest -n 0 -p no:cacheprovider -k "dropped and KeyboardInterrupt" "$1"'
+    done = subprocess.run(
+        ["sh", "-c", line, sys.executable, __file__], cwd=ROOT, capture_output=True, text=True
+    )
+    assert "1 passed" in done.stdout
+
+
+TWICE = """
+import os, signal
+from meshonet_cli.batch.executors.processes_engine import _begin, _call
+
+def task(_):
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+    finally:
+        os.kill(os.getpid(), signal.SIGTERM)
+        print("cleaned up", flush=True)
+
+_begin()
+_call(task, None)
+"""
+
+
+def test_a_worker_that_is_ended_twice_still_cleans_up() -> None:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", TWICE], env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (143, "cleaned up\n")
 
 
 def test_without_a_signal_nothing_is_raised() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, memory, ring
 
-from meshonet.formats.hdf5.check import Checked
+from meshonet.formats.hdf5.check import Checked, opened
 from meshonet.formats.hdf5.read import read_grids, read_shapes
 from meshonet.formats.hdf5.write import write_boundaries, write_grids, writing
 from meshonet.formats.mesh.recover_topology import boundary_of
@@ -26,6 +26,15 @@ from meshonet.geometry.errors import InputError
 def written(path: Path, grids: list[Grid]) -> h5py.File:
     write_grids(path, grids)
     return h5py.File(path, "r")
+
+
+def test_a_mistake_of_the_program_is_not_taken_for_damaged_data(tmp_path: Path) -> None:
+    write_grids(tmp_path / "g.h5", [channel()])
+    source = open_source(str(tmp_path / "g.h5"))
+    with pytest.raises(AttributeError), opened(source) as file:
+        file.attrs.a_name_that_is_not_there  # noqa: B018
+    with pytest.raises(InputError, match="HDF5 data is damaged"), opened(source) as file:
+        file["not there"]
 
 
 def test_grids_whose_edges_are_no_boundary_are_written_all_the_same(tmp_path: Path) -> None:

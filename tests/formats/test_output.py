@@ -6,7 +6,9 @@ import signal
 import stat
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 from format_shapes import PYTHON, Pipe, file_names
@@ -41,6 +43,23 @@ def test_any_exception_leaves_the_old_file_and_no_part(error: type[BaseException
         stopped()
     assert target.read_text() == "old"
     assert file_names(tmp_path) == ["grid.vts"]
+
+
+@pytest.mark.parametrize("stream", [False, True])
+def test_a_signal_that_comes_while_the_part_is_made_leaves_nothing(
+    stream: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make = os.open
+
+    def interrupted(*words: Any) -> int:
+        os.close(make(*words))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "open", interrupted)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with pytest.raises(KeyboardInterrupt), whole_file("-" if stream else str(tmp_path / "a")):
+        pass
+    assert file_names(tmp_path) == []
 
 
 def test_what_a_killed_process_left_is_swept_and_nothing_else(tmp_path: Path) -> None:

@@ -83,7 +83,7 @@ def test_arrays_that_do_not_fit_are_refused() -> None:
         ((coarse[:1], edges.sides, fine, opened, *near, nodes), "is needed"),
         ((coarse, edges[:1].sides, fine, opened, *near, nodes), "is needed"),
         ((coarse, edges.sides, fine[::-1], opened, *near, nodes), "is needed"),
-        ((coarse, edges.sides, placed(8, 8, 9, 7)[0], opened, *near, nodes), "beyond the knots"),
+        ((coarse, edges.sides, placed(8, 8, 9, 7)[0], opened, *near, nodes), "index 4 out of range"),
         ((coarse, edges.sides, fine, opened, *near, nodes, straight), "is needed"),
     ):
         with pytest.raises(ValueError, match=told):

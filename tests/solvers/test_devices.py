@@ -64,6 +64,15 @@ def test_what_is_left_here_is_found() -> None:
                 wrong()
 
 
+def test_a_device_without_enough_memory_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise torch.OutOfMemoryError("CUDA out of memory.\nMore of it.")
+
+    monkeypatch.setattr("meshonet.solvers.neural.devices._nodes", full)
+    with pytest.raises(MemoryError, match=r"^CUDA out of memory\.$"):
+        infer_many(domains(), "quad-general", device="cpu")
+
+
 def test_a_missing_device_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
     for model, given in (("hole-o", bodies), ("quad-general", domains), ("airfoil-o", sections)):

@@ -5,7 +5,7 @@ import pytest
 from solver_shapes import arch, hole
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.errors import InputError, NoValidGridError
+from meshonet.geometry.errors import InputError, NoValidGridError, SolverError
 from meshonet.solvers.algebraic.tfi import solve as interpolate
 from meshonet.solvers.method import METHODS, Each, method_named
 from meshonet.solvers.pipeline.coarse import Coarse
@@ -80,7 +80,10 @@ def test_first_cells_that_the_guard_changes_are_noted(monkeypatch: pytest.Monkey
     assert any("the guard changed first cells" in note for note in result.notes)
 
 
-def test_many_are_solved_in_one_call_and_one_by_one_when_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("failure", [MemoryError, SolverError])
+def test_many_are_solved_in_one_call_and_one_by_one_when_that_fails(
+    monkeypatch: pytest.MonkeyPatch, failure: type[Exception]
+) -> None:
     calls: list[int] = []
 
     class Many:
@@ -89,7 +92,7 @@ def test_many_are_solved_in_one_call_and_one_by_one_when_that_fails(monkeypatch:
         def solve(self, problems: list[Boundary], start: object = None) -> list[Solution]:
             calls.append(len(problems))
             if len(problems) > 1 and any(problem.ni == 13 for problem in problems):
-                raise MemoryError
+                raise failure
             return [interpolate(problem) for problem in problems]
 
     monkeypatch.setattr(METHOD_OF, lambda _: Many())
@@ -99,6 +102,24 @@ def test_many_are_solved_in_one_call_and_one_by_one_when_that_fails(monkeypatch:
     calls.clear()
     assert len(list(make_grids([arch(21, 11), arch(13, 11)], GridRequest()))) == 2
     assert calls == [2, 1, 1]
+
+
+def test_a_mistake_in_a_method_that_solves_many_is_seen_and_not_worked_around(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Mistaken:
+        name, together = "mistaken", "quad"
+
+        def solve(self, problems: list[Boundary], start: object = None) -> list[Solution]:
+            if len(problems) > 1:
+                raise AttributeError("a name that is not there")
+            return [interpolate(problem) for problem in problems]
+
+    monkeypatch.setattr(METHOD_OF, lambda _: Mistaken())
+    first, other, last = make_grids([arch(21, 11), hole(21, 11), arch(21, 11)], GridRequest())
+    assert isinstance(first, AttributeError)
+    assert isinstance(last, AttributeError)
+    assert not isinstance(other, Exception)
 
 
 @pytest.mark.parametrize("shape", [np.eye(3, 2), "naca:0012"])

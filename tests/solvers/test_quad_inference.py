@@ -13,13 +13,15 @@ from solver_shapes import arch, hexagon, ring, segment, wrench
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.threads import limited_to, thread_count
 from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.inference import infer
 from meshonet.solvers.neural.operator import in_batches
-from meshonet.solvers.neural.quad import coarse_grids
+from meshonet.solvers.neural.quad import coarse_grids, operator
 from meshonet.solvers.neural.quad.coarse_grids import Edges
 from meshonet.solvers.neural.quad.encoding import WINSLOW
+from meshonet.solvers.neural.quad.polish import polished
 from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER
 from meshonet.solvers.neural.registry import load
 
@@ -178,3 +180,13 @@ def test_threads_change_nothing(model: str, polish: int) -> None:
     for one, other in zip(alone, together, strict=True):
         np.testing.assert_array_equal(one.grid.nodes, other.grid.nodes)
         assert one.grid.name == other.grid.name
+
+
+def test_batches_at_work_at_a_time_share_the_threads_of_kernels(
+    model: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = []
+    monkeypatch.setattr(operator, "polished", lambda *words: seen.append(thread_count()) or polished(*words))
+    with limited_to(9):
+        load(model).solve(4 * [arch(9, 9)], 0, threads=3)
+    assert seen == [3, 3, 3]

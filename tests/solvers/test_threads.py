@@ -1,6 +1,8 @@
 """Threads on single grids of the plane: the same bits for any number, and none where grids are small."""
 
+import threading
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -94,6 +96,38 @@ def test_small_grids_start_no_threads() -> None:
         assert [threads_for(n) for n in (250 * 100, 2 * threads.NODES_EACH - 1)] == [1, 1]
         assert threads_for(3 * threads.NODES_EACH) == 3
         assert threads_for(3200 * 3200) == 8
+
+
+def test_limits_of_python_threads_that_overlap_do_not_touch_each_other() -> None:
+    before = threads.thread_count()
+    first_in, second_in, first_out = (threading.Event() for _ in range(3))
+
+    def first() -> int:
+        with limited_to(1):
+            first_in.set()
+            second_in.wait(10)
+            count = threads.thread_count()
+        first_out.set()
+        return count
+
+    def second() -> int:
+        first_in.wait(10)
+        with limited_to(3):
+            second_in.set()
+            first_out.wait(10)
+            return threads.thread_count()
+
+    with ThreadPoolExecutor(2) as pool:
+        counts = [future.result() for future in (pool.submit(first), pool.submit(second))]
+    assert counts == [1, 3]
+    assert threads.thread_count() == before
+
+
+def test_an_inner_limit_ends_with_its_block() -> None:
+    with limited_to(5):
+        with limited_to(2), limited_to(None):
+            assert threads.thread_count() == 2
+        assert threads.thread_count() == 5
 
 
 def test_quality_works_with_the_threads_that_are_wanted(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -81,6 +81,8 @@ def _leave(*_: object) -> None:
     """End: from within a task by an exception, so that unfinished files go."""
     if not _Here.working:
         os._exit(_TERMINATED)
+    if _Here.ending:  # the pool ends the others when one has ended: they are at their clean-up
+        return
     _Here.ending = True
     threading.Thread(target=_force, daemon=True).start()
     raise SystemExit(_TERMINATED)

@@ -12,6 +12,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.threads import limited_to, thread_count
 from meshonet.solvers.conformal.solve import Polish
 from meshonet.solvers.neural.operator import Operator, in_batches
 from meshonet.solvers.neural.quad.canonical import canonical
@@ -64,7 +65,8 @@ class QuadOperator(Operator):
         steps = AUTO[self.head] if polish == "auto" else 0 if polish == "off" else polish
         groups = list(in_batches(boundaries, threads))
         batches = [[boundaries[k] for k in group] for group in groups]
-        solved = partial(self._solved, network=network, steps=steps)
+        share = max(thread_count() // threads, 1)  # of the kernels' threads, for each batch
+        solved = partial(self._solved, network=network, steps=steps, threads=share)
         if threads == 1:
             answers = [solved(batch) for batch in batches]
         else:
@@ -73,14 +75,17 @@ class QuadOperator(Operator):
         solutions = dict(zip(chain(*groups), chain(*answers), strict=True))
         return [solutions[k] for k in range(len(boundaries))]
 
-    def _solved(self, boundaries: Sequence[Boundary], network: Network, steps: int) -> list[Solution]:
+    def _solved(
+        self, boundaries: Sequence[Boundary], network: Network, steps: int, threads: int
+    ) -> list[Solution]:
         """Return the solutions of boundaries with equal counts, made together."""
         begun = time.perf_counter()
         # descents amplify rounding: taken in canonical frames they are the same wherever a domain lies
         framed = steps and (self.topology == "o" or self.head != WINSLOW)
         frames = [canonical(boundary) for boundary in boundaries] if framed else []
         inner = [frame.boundary for frame in frames] or boundaries
-        planes, taken = polished(inner, network, self.topology, self.head, steps)
+        with limited_to(threads):
+            planes, taken = polished(inner, network, self.topology, self.head, steps)
         if frames:
             planes = np.stack([frame.back(grid) for frame, grid in zip(frames, planes, strict=True)])
         spent = (time.perf_counter() - begun) / len(boundaries)
