@@ -96,6 +96,11 @@ def tanh(x: Any) -> Any:
     return _function(b"tanh", x)
 
 
+def arcsinh(x: Any) -> Any:
+    """Return the number whose hyperbolic sine is `x`."""
+    return _function(b"arcsinh", x)
+
+
 def arccosh(x: Any) -> Any:
     """Return the number whose hyperbolic cosine is `x`."""
     return _function(b"arccosh", x)
@@ -154,6 +159,10 @@ def product(a: Any, b: Any) -> Any:
         _native.matrix_product(rows, columns, out)
     answer = out.reshape(left.shape[:-1] + right.shape[1:])
     return answer if answer.ndim else answer[()]
+
+
+matmul = product
+"""`product` by the name that torch has for it."""
 
 
 def _stacked_product(left: Floats, right: Floats) -> Floats:
