@@ -38,6 +38,22 @@ def norms(vectors: Floats) -> Floats:
     return np.sqrt((vectors**2).sum(axis=-1))
 
 
+def complex_of(points: Floats) -> Complexes:
+    """Return points (..., 2) as complex numbers (...)."""
+    return np.asarray(points[..., 0] + 1j * points[..., 1])
+
+
+def pairs_of(values: NDArray[Any]) -> Floats:
+    """Return complex numbers (...) as points (..., 2)."""
+    return np.stack([values.real, values.imag], axis=-1)
+
+
+def running_sums(values: Floats, count: int) -> Floats:
+    """Return the sums (n - count + 1,) of every `count` of values (n,) in a row."""
+    last = len(values) - count + 1
+    return np.asarray(sum(values[k : last + k] for k in range(count)))
+
+
 def middle(values: Floats) -> float:
     """Return the median of a one-dimensional array without NaN. np.median loads numpy.ma: 25 ms."""
     ordered, half = np.sort(values), len(values) // 2

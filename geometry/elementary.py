@@ -1,15 +1,18 @@
 """Elementary functions of arrays and products of matrices, the same to the bit on every processor.
 
-NumPy takes these from libraries that round by the processor: a BLAS for products, vector forms of the functions where
-there is AVX-512. What nodes or decisions come from uses those here. Sums, square roots, `np.hypot`, differences and
-quotients are NumPy's own, which are the same everywhere; `docs/reference/reproducibility.md` has the list.
+NumPy takes these from libraries that round by the processor: a BLAS for products, vector forms of the
+functions where there is AVX-512. What nodes or decisions come from uses those here. Sums, square roots,
+`np.hypot`, differences and quotients are NumPy's own, which are the same everywhere;
+`docs/reference/reproducibility.md` has the list.
 
-Functions take what those of NumPy of the same name take, and give float64 (float32 for float32). Complex numbers are
-left to the C library, which NumPy calls one by one for them.
+Functions take what those of NumPy of the same name take, and give float64 (float32 for float32). Complex
+numbers are left to the C library, which NumPy calls one by one for them.
 """
 
 from __future__ import annotations
 
+import math
+import sys
 from typing import Any
 
 import numpy as np
@@ -20,12 +23,12 @@ from meshonet.kernels import _native
 
 def exp(x: Any) -> Any:
     """Return e to the power `x`, to 2 units in the last place."""
-    return _function(b"exp", x) if not np.iscomplexobj(x) else np.exp(x)
+    return _function(b"exp", x)
 
 
 def log(x: Any) -> Any:
     """Return the natural logarithm of `x`, to 2 units in the last place."""
-    return _function(b"log", x) if not np.iscomplexobj(x) else np.log(x)
+    return _function(b"log", x)
 
 
 def sin(x: Any) -> Any:
@@ -93,6 +96,11 @@ def tanh(x: Any) -> Any:
     return _function(b"tanh", x)
 
 
+def arcsinh(x: Any) -> Any:
+    """Return the number whose hyperbolic sine is `x`."""
+    return _function(b"arcsinh", x)
+
+
 def arccosh(x: Any) -> Any:
     """Return the number whose hyperbolic cosine is `x`."""
     return _function(b"arccosh", x)
@@ -119,18 +127,52 @@ def power(x: Any, exponent: Any) -> Any:
     return _function_of_two(_native.powers_of, x, exponent)
 
 
+def geomspace(start: float, stop: float, count: int) -> Floats:
+    """Return `count` numbers from `start` to `stop`, both positive, each the same multiple of the last."""
+    numbers = start * exp(np.linspace(0.0, math.log(stop / start), count))
+    numbers[-1:] = stop
+    return np.asarray(numbers)
+
+
+def functions_of(xp: Any) -> Any:
+    """Return the module whose functions take arrays of `xp`, numpy or torch: this one for numpy."""
+    return sys.modules[__name__] if xp is np else xp
+
+
 def product(a: Any, b: Any) -> Any:
-    """Return the matrix product of `a` and `b`, of one or two directions each; as ``a @ b``, its sums in a fixed order."""
+    """Return the matrix product of `a` and `b` in double precision; as ``a @ b``, its sums in a fixed order.
+
+    Stacks of matrices `b` (..., inner, columns) are for short sums, which are made term by term.
+    """
     if np.iscomplexobj(a) or np.iscomplexobj(b):
         return _complex_product(np.asarray(a), np.asarray(b))
     left, right = np.asarray(a, np.float64), np.asarray(b, np.float64)
-    rows = np.ascontiguousarray(left.reshape(-1, left.shape[-1]))
-    columns = np.ascontiguousarray(right.reshape(len(right), -1))
+    inner = left.shape[-1]
+    if inner != right.shape[-2:][0]:
+        raise ValueError(f"a product of arrays of shapes {left.shape} and {right.shape}")
+    if right.ndim > 2:
+        return _stacked_product(left, right)
+    rows = np.ascontiguousarray(left).reshape(math.prod(left.shape[:-1]), inner)
+    columns = np.ascontiguousarray(right).reshape(inner, math.prod(right.shape[1:]))
     out = np.zeros((len(rows), columns.shape[1]))
-    if out.size and len(columns):
+    if out.size and inner:
         _native.matrix_product(rows, columns, out)
     answer = out.reshape(left.shape[:-1] + right.shape[1:])
     return answer if answer.ndim else answer[()]
+
+
+matmul = product
+"""`product` by the name that torch has for it."""
+
+
+def _stacked_product(left: Floats, right: Floats) -> Floats:
+    """Return the products of matrices (..., rows, inner) or one row (inner,) and (..., inner, columns)."""
+    rows = left if left.ndim > 1 else left[None]
+    stack = np.broadcast_shapes(rows.shape[:-2], right.shape[:-2])
+    out = np.zeros((*stack, rows.shape[-2], right.shape[-1]))
+    for k in range(right.shape[-2]):
+        out += rows[..., :, k, None] * right[..., None, k, :]
+    return out if left.ndim > 1 else out[..., 0, :]
 
 
 def _complex_product(a: Complexes, b: Complexes) -> Any:
@@ -140,11 +182,13 @@ def _complex_product(a: Complexes, b: Complexes) -> Any:
 
 def _function(name: bytes, x: Any) -> Any:
     values = np.asarray(x)
+    if np.iscomplexobj(values):
+        return getattr(np, name.decode())(values)
     flat = np.ascontiguousarray(values, np.float64).reshape(-1)
     out = np.empty(flat.shape)
     if out.size:
         _native.elementary(name, flat, out)
-    return _shaped(out, values)
+    return _shaped(out, values.shape, values.dtype)
 
 
 def _function_of_two(kernel: Any, x: Any, y: Any) -> Any:
@@ -153,11 +197,11 @@ def _function_of_two(kernel: Any, x: Any, y: Any) -> Any:
     out = np.empty(a.shape)
     if out.size:
         kernel(a, b, out)
-    return _shaped(out, one if one.dtype == two.dtype else two)
+    return _shaped(out, one.shape, np.result_type(x, y))
 
 
-def _shaped(out: Floats, like: Any) -> Any:
-    """Return results in the shape and, for single precision, the type of what they are of."""
-    answer = out.reshape(like.shape)
-    answer = answer.astype(np.float32) if like.dtype == np.float32 else answer
+def _shaped(out: Floats, shape: tuple[int, ...], of: np.dtype[Any]) -> Any:
+    """Return results in the shape and, for single precision, the type `of` what they are of."""
+    answer = out.reshape(shape)
+    answer = answer.astype(np.float32) if of == np.float32 else answer
     return answer if answer.ndim else answer[()]

@@ -22,6 +22,22 @@ static void exp_of(const double *restrict x, ptrdiff_t n, double *restrict out)
 }
 
 MESHONET_CLONES
+static void expm1_of(const double *restrict x, ptrdiff_t n, double *restrict out)
+{
+    for (ptrdiff_t k = 0; k < n; k++)
+        out[k] = expm1_double(fabs(x[k]) < 700.0 ? x[k] : 0.0);
+    REST(fabs(x[k]) < 700.0 && x[k] != 0.0, expm1(x[k]))
+}
+
+MESHONET_CLONES
+static void tanh_of(const double *restrict x, ptrdiff_t n, double *restrict out)
+{
+    for (ptrdiff_t k = 0; k < n; k++)
+        out[k] = tanh_double(fabs(x[k]) < 300.0 ? x[k] : 0.0);
+    REST(fabs(x[k]) < 300.0 && x[k] != 0.0, tanh(x[k]))
+}
+
+MESHONET_CLONES
 static void log_of(const double *restrict x, ptrdiff_t n, double *restrict out)
 {
     for (ptrdiff_t k = 0; k < n; k++)
@@ -36,7 +52,7 @@ static void sin_of(const double *restrict x, ptrdiff_t n, double *restrict out)
         double cosine;
         sincos_double(fabs(x[k]) < 1e5 ? x[k] : 0.0, out + k, &cosine);
     }
-    REST(fabs(x[k]) < 1e5, sin(x[k]))
+    REST(fabs(x[k]) < 1e5 && x[k] != 0.0, sin(x[k])) /* which has the sign of 0 */
 }
 
 MESHONET_CLONES
@@ -65,7 +81,6 @@ void function_angle(const double *restrict y, const double *restrict x, ptrdiff_
             out[k] = name(x[k]);                                       \
     }
 
-ONE_BY_ONE(expm1)
 ONE_BY_ONE(log1p)
 ONE_BY_ONE(log2)
 ONE_BY_ONE(log10)
@@ -75,7 +90,7 @@ ONE_BY_ONE(acos)
 ONE_BY_ONE(atan)
 ONE_BY_ONE(sinh)
 ONE_BY_ONE(cosh)
-ONE_BY_ONE(tanh)
+ONE_BY_ONE(asinh)
 ONE_BY_ONE(acosh)
 ONE_BY_ONE(cbrt)
 
@@ -93,7 +108,7 @@ Function function_named(const char *name)
     } all[] = {{"exp", exp_of},       {"log", log_of},   {"sin", sin_of},   {"cos", cos_of},   {"expm1", expm1_of},
                {"log1p", log1p_of},   {"log2", log2_of}, {"log10", log10_of}, {"tan", tan_of}, {"arcsin", asin_of},
                {"arccos", acos_of},   {"arctan", atan_of}, {"sinh", sinh_of}, {"cosh", cosh_of}, {"tanh", tanh_of},
-               {"arccosh", acosh_of}, {"cbrt", cbrt_of}};
+               {"arcsinh", asinh_of}, {"arccosh", acosh_of}, {"cbrt", cbrt_of}};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++)
         if (!strcmp(all[k].name, name))
             return all[k].function;

@@ -14,6 +14,7 @@ import numpy as np
 
 from meshonet.geometry import ties
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import product
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.t_mesh import TMesh
@@ -78,7 +79,7 @@ def nearest_whole(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices
         return np.zeros(0, dtype=np.intp)
     steps = _steps(wanted, least)
     solution = _solved(_model(steps, rows), steps[2])
-    moved = steps[1] @ solution
+    moved = product(steps[1], solution)
     whole = np.round(steps[0] + moved).astype(np.intp)
     for row, low, high in rows:
         total = sum(value * whole[k] for k, value in row.items())

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -113,7 +114,7 @@ def skewness(mesh: QuadMesh) -> float:
     edge = np.roll(z, -1, axis=1) - z
     before = np.roll(edge, 1, axis=1)
     cosine = (before * edge).sum(axis=2) / np.sqrt((before**2).sum(axis=2) * (edge**2).sum(axis=2))
-    return float(np.degrees(np.arcsin(percentiles_of(np.abs(cosine), (99,))[0])))
+    return math.degrees(math.asin(percentiles_of(np.abs(cosine), (99,))[0]))
 
 
 def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:

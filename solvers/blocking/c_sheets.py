@@ -21,6 +21,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import gaps_in_front, wall_points
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.column_weights import column_weights, line_lengths, started, whole_columns
 from meshonet.solvers.blocking.even_line import FINER, SLACK, Measures
@@ -114,14 +115,14 @@ class Sheet:
         They begin at the columns `start` (k,) of wake and wall.
         """
         weights, rows = self._cubics(index)
-        nodes = np.einsum("kj,kjmd->kmd", weights, self.levels[rows])
-        opening = np.exp((weights * np.log(self.opening[rows])).sum(axis=1))
+        nodes = (weights[:, :, None, None] * self.levels[rows]).sum(axis=1)
+        opening = exp((weights * log(self.opening[rows])).sum(axis=1))
         return started(nodes, self.begin(start)), opening
 
     def begin(self, index: Floats) -> Floats:
         """Return the points (k, 2) of wake and wall at column numbers (k,)."""
         weights, rows = self._cubics(index)
-        points = np.einsum("kj,kjd->kd", weights, self.levels[rows, 0])
+        points = (weights[:, :, None] * self.levels[rows, 0]).sum(axis=1)
         on = self.on_wall(index)
         points[on] = self.wall.at(self.wall_arcs(index[on]))
         return points

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, complex_of, pairs_of
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
@@ -17,7 +17,6 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.assembly import far_loop
 from meshonet.solvers.blocking.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.passage import Passage
-from meshonet.solvers.blocking.passage_map import complex_of, pairs_of
 from meshonet.solvers.blocking.rings import Ring, march_ring
 from meshonet.solvers.blocking.size_metric import SizeMetric
 

@@ -9,11 +9,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import log
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
@@ -114,9 +116,7 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
     for number, length, way in _straight(cascade):
         if length > 0.0:
             start = mesh.nodes[loop_nodes(mesh, number)]
-            steps = _steps(
-                float(np.exp(np.log(heights_inside(layout, number)).mean())), length, metric.largest
-            )
+            steps = _steps(math.exp(log(heights_inside(layout, number)).mean()), length, metric.largest)
             nodes = start[:, None] + steps[:, None] * (way * axis)
             rows.append(Rows(number, nodes, np.zeros(len(start)), False))
     return rows
@@ -152,10 +152,10 @@ def _counts(
         metric = replace(cascade.metric, across=sizes, along=sizes, largest=cell_size)
         counts = wanted.counts(metric)
     else:
-        low, high = np.log(0.05), np.log(20.0)
+        low, high = math.log(0.05), math.log(20.0)
         for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)
-            metric = cascade.scaled(float(np.exp(middle)))
+            metric = cascade.scaled(math.exp(middle))
             counts = wanted.counts(metric)
             total = chords.cells(counts) + _attached_cells(cascade, chords, counts, metric)
             low, high = (middle, high) if total > (cells or 0) else (low, middle)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.ties import nearest_whole
@@ -133,9 +134,9 @@ class Chords:
 
         They are at least `least` (chords,), by default the property of that name.
         """
-        wanted = np.log(np.maximum(self.lengths / size, 1e-9))
+        wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
-        return np.maximum(self.least if least is None else least, nearest_whole(np.exp(mean)).astype(np.intp))
+        return np.maximum(self.least if least is None else least, nearest_whole(exp(mean)).astype(np.intp))
 
     def counts_for_cells(self, cells: int, least: Indices | None = None) -> Indices:
         """Return counts (chords,) for about so many cells in all; more where the fewest possible are more."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.elementary import angle, exp
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.laplacian import Laplacian, solve_complex
@@ -61,7 +62,7 @@ def cross_field(surface: Surface, fewer: bool = True) -> CrossField:
     """
     walls = wall_directions(surface)
     crosses, shears = _smooth(surface, walls, fewer)
-    angles = np.angle(crosses[surface.vertices].sum(axis=1)) / 4.0
+    angles = angle(crosses[surface.vertices].sum(axis=1)) / 4.0
     inner = surface.neighbours >= 0
     lag = (angles[:, None] - angles[surface.neighbours]) / QUARTER
     quarters = np.where(inner, np.round(lag), 0.0).astype(np.intp)
@@ -75,7 +76,7 @@ def cross_field(surface: Surface, fewer: bool = True) -> CrossField:
 
 def _smooth(surface: Surface, walls: WallDirections, fewer: bool) -> tuple[Complexes, Complexes]:
     """Return the crosses (n,), unit numbers, and the harmonic shears."""
-    crosses = np.where(surface.on_wall, np.exp(4j * walls.vertices), 0.0)
+    crosses = np.where(surface.on_wall, exp(4j * walls.vertices), 0.0)
     free = surface.used & ~surface.on_wall
     if not free.any():
         return crosses, walls.shears

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from meshonet.geometry.arrays import complex_of
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 
@@ -15,7 +16,7 @@ def most_folded(mesh: QuadMesh) -> str:
 
     A corner whose Jacobian is not a number counts as the most folded one.
     """
-    z = mesh.nodes[mesh.quads] @ np.array([1.0, 1.0j])
+    z = complex_of(mesh.nodes[mesh.quads])
     jacobian = (np.conj(np.roll(z, -1, axis=1) - z) * (np.roll(z, 1, axis=1) - z)).imag
     at = z.ravel()[int(np.argmin(np.nan_to_num(jacobian, nan=-np.inf)))]
     return f"at ({at.real:.6g}, {at.imag:.6g})"

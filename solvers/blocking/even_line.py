@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import log
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
 from meshonet.solvers.least_squares import NormalEquations
@@ -135,8 +136,7 @@ class _Line:
     def growth(self, places: Floats) -> Floats:
         """Return the logarithms (k, r) of the ratios of neighbouring steps."""
         steps = self._steps(places)[0]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            logs = np.log(steps)
+        logs = log(steps)
         return np.diff(logs, axis=1, append=logs[:, :1]) if self.closed else np.diff(logs, axis=1)
 
     def _limits(self, limit: float) -> Floats:

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.elementary import angle, arctan2, log
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import line_neighbours
@@ -104,7 +105,7 @@ def _around_irregular(mesh: QuadMesh) -> Indices:
         ends = mesh.edges[(mesh.edges == vertex).any(axis=1)]
         ends = ends.sum(axis=1) - vertex
         away = mesh.nodes[ends] - mesh.nodes[vertex]
-        ends = ends[np.argsort(np.arctan2(away[:, 1], away[:, 0]))]
+        ends = ends[np.argsort(arctan2(away[:, 1], away[:, 0]), kind="stable")]
         parts.append(np.stack([ends, np.full(len(ends), vertex), np.roll(ends, -2)], axis=1))
     return np.concatenate(parts)
 
@@ -112,7 +113,7 @@ def _around_irregular(mesh: QuadMesh) -> Indices:
 def growth_along(z: Complexes, lines: Indices) -> Floats:
     """Return the logarithms (k,) of the ratios of the edges between the nodes of `lines` (k, 3)."""
     before, after = z[lines[:, 1]] - z[lines[:, 0]], z[lines[:, 2]] - z[lines[:, 1]]
-    return np.asarray(np.log(np.abs(after) / np.abs(before)))
+    return np.asarray(log(np.abs(after) / np.abs(before)))
 
 
 def _near(mesh: QuadMesh, lines: Indices, growth: Floats, limit: float) -> Bools:
@@ -235,7 +236,7 @@ class _Patch:
 def _angles(z: Complexes, corners: Indices) -> Floats:
     """Return the angles (c,) of corners, negative where they are folded."""
     corner = z[corners[:, 0]]
-    return np.angle((z[corners[:, 2]] - corner) / (z[corners[:, 1]] - corner))
+    return angle((z[corners[:, 2]] - corner) / (z[corners[:, 1]] - corner))
 
 
 def _parts(free: Bools, groups: Sequence[Indices]) -> Indices:

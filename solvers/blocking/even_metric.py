@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import product
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.blocking.chords import Chords
@@ -47,7 +48,7 @@ def metric_places(chords: Chords, counts: Indices, metric: SizeMetric) -> list[F
 
 def _dense(points: Floats) -> Floats:
     """Return a line (n, 2) at `SAMPLES` equal steps of the number of its nodes."""
-    return np.asarray(spline_matrix(len(points), SAMPLES + 1, False) @ points)
+    return np.asarray(product(spline_matrix(len(points), SAMPLES + 1, False), points))
 
 
 def _averaged(chords: Chords, shares: list[Floats]) -> list[Floats]:

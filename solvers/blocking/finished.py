@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, percentiles_of
+from meshonet.geometry.elementary import log
 from meshonet.geometry.errors import NoValidGridError, SolverError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -55,10 +57,10 @@ def uneven_percent(layout: Layout) -> float:
 
     Those below its square count in part: as many times `MOST_GROWTH` as they are beyond it, in logarithms.
     """
-    count, beyond, limit = 0, 0.0, np.log(MOST_GROWTH)
+    count, beyond, limit = 0, 0.0, math.log(MOST_GROWTH)
     for row in rows_of(Chords.of(layout)):
         step = np.diff(layout.mesh.nodes[row.nodes], axis=1)
-        change = np.abs(np.diff(np.log(np.hypot(step[..., 0], step[..., 1])), axis=1))
+        change = np.abs(np.diff(log(np.hypot(step[..., 0], step[..., 1])), axis=1))
         count, beyond = count + change.size, beyond + float(np.clip(change / limit - 1.0, 0.0, 1.0).sum())
     return 100.0 * beyond / max(count, 1)
 
@@ -105,9 +107,9 @@ def evened(layout: Layout, settings: LayerSettings, corners: Collection[int] = (
         held[layout.blocks[number][:, : settings.constant + 1]] = True
     for number in corners:
         held[layout.blocks[number]] = True
-    limit = max(MARGIN * np.log(settings.growth), np.log(MOST_GROWTH))
+    limit = max(MARGIN * math.log(settings.growth), math.log(MOST_GROWTH))
     try:
-        return replace(layout, mesh=evened_mesh(layout.mesh, held, float(limit)))
+        return replace(layout, mesh=evened_mesh(layout.mesh, held, limit))
     except SolverError:  # nodes that coincide
         return layout
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, middle
+from meshonet.geometry.elementary import angle, exp
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_comb, surface_prune
 from meshonet.solvers.blocking.cross_field import CrossField
@@ -83,7 +84,7 @@ def frame_sizes(field: CrossField) -> Floats:
     in the sense of least squares.
     """
     surface = field.surface
-    corner = np.angle(field.crosses)[surface.vertices] / 4.0
+    corner = angle(field.crosses)[surface.vertices] / 4.0
     steps = corner[:, NEXT] - corner
     steps -= QUARTER * np.round(steps / QUARTER)
     steps[np.abs(steps.sum(axis=1)) > 1e-6] = 0.0  # a singularity is inside
@@ -95,4 +96,4 @@ def frame_sizes(field: CrossField) -> Floats:
     size = np.zeros(surface.size)
     size[free] = Laplacian(surface, free).factor().solve(right[free])
     size = np.clip(size - middle(size[surface.used]), -_LARGEST, _LARGEST)
-    return np.asarray(np.exp(size[surface.vertices].mean(axis=1)))
+    return np.asarray(exp(size[surface.vertices].mean(axis=1)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_points
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import exp, expm1
 
 SHARP_DEG = 300.0
 """Angle of the domain from which on an edge is sharp: one of the body of 60 degrees."""
@@ -43,14 +45,14 @@ def free_wake(domain: Domain, number: int, outer: Loop) -> Wake | None:
     begin = loop.at(edge)[0]
     chord = float(np.hypot(*(loop.curve.points - begin).T).max())
     sides = loop.tangent(np.array([edge[0] - 1e-4 * loop.length, edge[0] + 1e-4 * loop.length]))
-    leaving = float(np.angle(complex(*(sides[0] - sides[1]))))
+    leaving = cmath.phase(complex(*(sides[0] - sides[1])))
     landing, turn = None, 0.0
     for _ in range(4):
         landing = _reach(begin, leaving, turn, chord, outer)
         if landing is None:
             return None
         along = outer.tangent(np.array([landing.arc]))[0]
-        turn = float(np.angle(complex(along[1], -along[0]) * np.exp(-1j * leaving)))
+        turn = cmath.phase(complex(along[1], -along[0]) * cmath.exp(-1j * leaving))
         if abs(turn) > MOST_BENT:
             return None
     others = [each for k, each in enumerate(domain.loops) if k not in (0, number)]
@@ -68,8 +70,8 @@ def _reach(begin: Floats, leaving: float, turn: float, chord: float, outer: Loop
     near = min(_NEAR * chord, reach)  # it is straight beyond
     s = distinct(np.append(np.linspace(0.0, near, 240), np.linspace(near, 1.01 * reach, 80)))
     middle = 0.5 * (s[1:] + s[:-1])
-    angle = leaving + turn * -np.expm1(-middle / (RELAXATION * chord))
-    step = np.diff(s) * np.exp(1j * angle)
+    angle = leaving + turn * -expm1(-middle / (RELAXATION * chord))
+    step = np.diff(s) * exp(1j * angle)
     z = complex(*begin) + np.concatenate([[0.0], np.cumsum(step)])
     places = distinct(np.append(np.linspace(0.0, outer.length, 600, endpoint=False), outer.corner_arcs))
     at = outer.at(places)

@@ -1,10 +1,12 @@
 """Heights of layers from a wall, of which the first and about the last are given."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import exp, log
 
 _STEPS = 60
 _MOST = 60.0  # of the logarithm of the last cell over the first
@@ -26,10 +28,10 @@ def layer_arcs(
     rest = length - (constant - 1) * first
     k = np.arange(rows) / max(rows - 1, 1)
     plain = _plain(rest, first, rows)
-    slope = np.minimum(np.log(np.maximum(last, first) / first), _MOST)
+    slope = np.minimum(log(np.maximum(last, first) / first), _MOST)
     slope = np.where(np.isfinite(last), slope, plain)
     bend = _solved(lambda b: _total(slope, b, k), rest / first, -4.0 * _MOST, 4.0 * _MOST)
-    most = np.maximum((1.0 + STEEPER) * plain, (rows - 1) * np.log(growth))
+    most = np.maximum((1.0 + STEEPER) * plain, (rows - 1) * math.log(growth))
     room = np.minimum(most - plain, plain)
     steep = (slope + np.abs(bend) > most) | (slope < np.abs(bend))  # the last cell gives way
     bound = np.where(steep, np.clip(bend, -room, room), bend)
@@ -52,7 +54,7 @@ def _plain(rest: Floats, first: float, rows: int) -> Floats:
 
 def _growths(slope: Floats, bend: Floats, k: Floats) -> Floats:
     """Return cells (n, m) over the first, of which the logarithm is slope k + bend k (1 - k)."""
-    return np.exp(slope[:, None] * k + bend[:, None] * k * (1 - k))
+    return exp(slope[:, None] * k + bend[:, None] * k * (1 - k))
 
 
 def _total(slope: Floats, bend: Floats, k: Floats) -> Floats:

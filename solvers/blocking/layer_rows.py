@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, running_sums
+from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.spacing.growth import cells_for_growth
@@ -59,9 +60,8 @@ def open_metric(points: Floats, across: Floats) -> SizeMetric:
     """Return the sizes that an open front (n, 2) asks for: its columns, and `across` (n,)."""
     length = np.hypot(*np.diff(points, axis=0).T)
     length = np.concatenate([length[:1], np.sqrt(length[1:] * length[:-1]), length[-1:]])
-    around = np.pad(np.log(length), _WINDOW, mode="reflect")
-    kernel = np.full(2 * _WINDOW + 1, 1.0 / (2 * _WINDOW + 1))
-    along = np.exp(np.convolve(around, kernel, "valid"))
+    around = np.pad(log(length), _WINDOW, mode="reflect")
+    along = exp(running_sums(around, 2 * _WINDOW + 1) / (2 * _WINDOW + 1))
     return SizeMetric(points, _normals(np.gradient(points, axis=0)), across, along, np.inf)
 
 
@@ -122,8 +122,7 @@ def heights_inside(layout: Layout, loop: int) -> Floats:
 def _smooth(values: Floats, window: int = _WINDOW) -> Floats:
     """Return the geometric running mean (n,) of values around a closed curve."""
     around = np.arange(-window, len(values) + window) % len(values)
-    kernel = np.full(2 * window + 1, 1.0 / (2 * window + 1))
-    return np.exp(np.convolve(np.log(values)[around], kernel, "valid"))
+    return exp(running_sums(log(values)[around], 2 * window + 1) / (2 * window + 1))
 
 
 def arc_shares(lines: Floats) -> Floats:

@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -41,7 +42,7 @@ COUNTINGS = 3
 """How often cells are counted, nodes optimised after each, before nodes on fronts are evened and held."""
 COMPARED = 2
 """By how much cells may be multiplied after they are optimised for the first counts to be tried as well."""
-EVEN = float(np.log(1.2))
+EVEN = math.log(1.2)
 """Logarithm of the ratio by which neighbouring cells along fronts may differ."""
 
 

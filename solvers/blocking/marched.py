@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.grading import graded
+from meshonet.geometry.elementary import power
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
 from meshonet.kernels._native import hyperbolic_march
@@ -101,7 +102,7 @@ def _march(
         settings.dissipation, settings.even, settings.tolerated, settings.bend, 1.0 + settings.theta,
         AREA_SMOOTHING, settings.sweeps, round(RISING * cells),
     )  # fmt: skip
-    steps = np.asarray(first * most ** np.arange(cells), dtype=np.float64)
+    steps = np.asarray(first * power(most, np.arange(cells)), dtype=np.float64)
     hyperbolic_march(levels[0], levels[1], steps, *knobs, ends=ends, ratios=ratios / most)
     return np.ascontiguousarray(levels.transpose(2, 1, 0))
 

@@ -11,6 +11,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import arctan2, cos, exp, log, sin
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.solvers.blocking.attach import Rows, loop_nodes
@@ -56,11 +57,11 @@ class NearField:
         radii = np.hypot(*away.T)
         if radii.min() < FAR * reach:
             return None
-        angles = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
+        angles = np.unwrap(arctan2(away[:, 1], away[:, 0]))
         if (np.diff(angles) <= 0).any():
             return None
         turn = 2.0 * math.pi * np.arange(_POINTS) / _POINTS
-        points = centre + NEAR * reach * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        points = centre + NEAR * reach * np.stack([cos(turn), sin(turn)], axis=1)
         curve = Curve(points, closed=True, corners=())
         circle = Loop(curve, (), outer.names[:1])
         return cls(circle, centre, NEAR * reach, outer, angles, radii, arcs)
@@ -80,20 +81,20 @@ class NearField:
         order = loop_nodes(mesh, 0)
         start = mesh.nodes[order]
         away = start - self.centre
-        angle = np.arctan2(away[:, 1], away[:, 0])
+        angle = arctan2(away[:, 1], away[:, 0])
         angle = self.angles[0] + np.mod(angle - self.angles[0], 2.0 * math.pi)
         closed = np.append(self.angles, self.angles[0] + 2.0 * math.pi)
         arcs = np.interp(angle, closed, np.append(self.arcs, self.arcs[0] + self.outer.length))
         end = self.outer.at(arcs)
         length = np.hypot(*(end - start).T)
-        wanted = evened_steps(heights, np.log(_EVEN)) * growth**0.5
-        mean = float(np.exp(np.log(wanted).mean()))
+        wanted = evened_steps(heights, math.log(_EVEN)) * growth**0.5
+        mean = math.exp(log(wanted).mean())
         wanted = np.clip(wanted, mean / _UNLIKE, _UNLIKE * mean)
         cells = self.cells(mean, growth, multiple)
         whole = np.stack([_shares(first, cells) for first in (mean / length).tolist()])
         # each row begins with its own cell and becomes like the others: their angles stay right
         own = np.clip(1.0 - np.arange(cells) / (_OWN * cells), 0.0, 1.0) ** 2
-        step = np.diff(whole, axis=1) * np.exp(np.log(wanted / mean)[:, None] * own)
+        step = np.diff(whole, axis=1) * exp(log(wanted / mean)[:, None] * own)
         step[:, own == 0.0] *= ((1.0 - step[:, own > 0.0].sum(axis=1)) / step[:, own == 0.0].sum(axis=1))[
             :, None
         ]

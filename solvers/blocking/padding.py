@@ -119,7 +119,7 @@ def _wall_edges(mesh: QuadMesh, loops: list[int]) -> tuple[Indices, Indices]:
     """Return where the edges on these loops begin and end, the domain on their left, by node."""
     on = mesh.on_wall[mesh.edge_of] & np.isin(mesh.places.loop[mesh.quads], loops)
     first, second = mesh.quads[on], np.roll(mesh.quads, -1, axis=1)[on]
-    order = np.argsort(first)
+    order = np.argsort(first, kind="stable")
     return first[order], second[order]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.elementary import exp
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.frames import Frames
 from meshonet.solvers.blocking.surface import NEXT
@@ -51,7 +52,7 @@ class Parametrisation:
             np.concatenate([self._places[1], self._columns, below]),
         )
         direction, shear = (
-            sizes * np.exp(1j * frames.angles),
+            sizes * exp(1j * frames.angles),
             frames.field.shears[surface.vertices].mean(axis=1),
         )
         self._wanted = sizes**2 * (1.0 - np.abs(shear) ** 2)

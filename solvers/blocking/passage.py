@@ -17,6 +17,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain, Periodic
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import product
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -159,10 +160,15 @@ def _closed(layout: Layout, passage: Passage, lower: Indices, upper: Indices) ->
     mesh, places, pitch = layout.mesh, layout.mesh.places, passage.pitch
     nodes = mesh.nodes.copy()
     nodes[upper] = nodes[lower] + pitch
-    along = nodes @ pitch
+    along = product(nodes, pitch)
     ends = np.concatenate([lower, upper])
     outlet, inlet = (np.setdiff1d(np.flatnonzero(places.loop == loop), ends) for loop in (OUTLET, INLET))
-    ring = [lower, outlet[np.argsort(along[outlet])], upper[::-1], inlet[np.argsort(-along[inlet])]]
+    ring = [
+        lower,
+        outlet[np.argsort(along[outlet], kind="stable")],
+        upper[::-1],
+        inlet[np.argsort(-along[inlet], kind="stable")],
+    ]
     order = np.concatenate(ring)
     sizes = np.cumsum([0, *(len(part) for part in ring)])
     corners = [0, len(lower) - 1, int(sizes[2]), int(sizes[3]) - 1]

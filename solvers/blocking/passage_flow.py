@@ -19,9 +19,11 @@ from functools import cached_property
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.elementary import arccos, arctan2, cosh, log, sinh
+from meshonet.geometry.linear import solve
 from meshonet.geometry.polygon.corners import Indices
 
-_GAUSS = np.polynomial.legendre.leggauss(2)
+_GAUSS = (-(3.0**-0.5), 3.0**-0.5)  # places in a side from -1 to 1, of weight 1
 _TINY = 1e-12
 _LEAST = 1e-9  # of the slit: by how much the potential rises from point to point
 
@@ -58,17 +60,17 @@ class PassageFlow:
             rising = np.maximum.accumulate(way * phi[side]) + _LEAST * half * np.arange(len(side))
             rising = np.interp(rising, rising[[0, -1]], [-half, half])
             phi[side] = way * rising
-            angle[side] = way * np.arccos(np.clip(way * rising / half, -1.0, 1.0))
+            angle[side] = way * arccos(np.clip(way * rising / half, -1.0, 1.0))
         with np.errstate(divide="ignore"):
-            along = 0.5 * np.log(np.sinh(half + phi) / np.sinh(half - phi))
+            along = 0.5 * log(sinh(half + phi) / sinh(half - phi))
         angle[[first, last]] = np.pi, 0.0
         edge = np.where(angle > 0.0, -0.5j, 0.5j) * np.pi
         return cls(half, np.unwrap(angle), along + edge, points - phi)
 
     def to_strip(self, places: Complexes) -> Complexes:
         """Return the places σ of places G, those between the slits."""
-        ratio = np.sinh(places + self.half) / np.sinh(places - self.half)
-        return np.asarray(0.5 * np.log(ratio))
+        ratio = sinh(places + self.half) / sinh(places - self.half)
+        return np.asarray(0.5 * log(ratio))
 
     def to_places(self, places: Complexes) -> Complexes:
         """Return the places ζ (...) of places G, those between the slits."""
@@ -90,9 +92,9 @@ class PassageFlow:
         finite = np.isfinite(self.strip)
         strip, away = self.strip[finite], self.away[finite]
         before, after = np.roll(strip, 1), np.roll(strip, -1)
-        weight = np.sinh(0.5 * (after - before)) / np.cosh(0.5 * after) / np.cosh(0.5 * before)
-        weight *= np.cosh(0.5 * strip)
-        kernel = weight / np.sinh(0.5 * (strip - places[:, None]))
+        weight = sinh(0.5 * (after - before)) / cosh(0.5 * after) / cosh(0.5 * before)
+        weight *= cosh(0.5 * strip)
+        kernel = weight / sinh(0.5 * (strip - places[:, None]))
         return np.asarray((kernel * away).sum(axis=1) / kernel.sum(axis=1))
 
 
@@ -108,13 +110,13 @@ def _sheet(points: Complexes) -> Floats:
     middle = points + 0.5 * step
     kernel = np.zeros((n + 1, n + 1))
     kernel[:n, :n] = _log_integrals(points, step, middle)
-    for place, weight in zip(*_GAUSS, strict=True):
+    for place in _GAUSS:
         away = middle[:, None] - (middle + 0.5 * place * step)
         away[away == 0.0] = _TINY
-        kernel[:n, :n] += 0.5 * weight * length * np.log(np.abs(np.sinh(away) / away))
+        kernel[:n, :n] += 0.5 * length * log(np.abs(sinh(away) / away))
     kernel[:n, n] = -1.0
     kernel[n, :n] = length
-    return np.linalg.solve(kernel, np.append(-middle.imag, 0.0))[:n]
+    return solve(kernel, np.append(-middle.imag, 0.0))[:n]
 
 
 def _log_integrals(points: Complexes, step: Complexes, middle: Complexes) -> Floats:
@@ -124,6 +126,6 @@ def _log_integrals(points: Complexes, step: Complexes, middle: Complexes) -> Flo
 
     def primitive(x: Floats) -> Floats:
         distance = np.maximum(np.hypot(x, high), 1e-300)
-        return np.asarray(x * np.log(distance) - x + high * np.arctan2(x, high))
+        return np.asarray(x * log(distance) - x + high * arctan2(x, high))
 
     return primitive(local.real) - primitive(local.real - np.abs(step))

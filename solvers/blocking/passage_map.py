@@ -11,12 +11,11 @@ the flow, Re ζ = ±a, the circle around ±coth 2a of radius 1/sinh 2a: inlet an
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of
+from meshonet.geometry.elementary import log, tanh
 
 _SMALL = 1e-12
 
@@ -52,7 +51,7 @@ class PassageMap:
     def back(self, places: Floats) -> Floats:
         """Return the points z (n, 2) of places w (n, 2), within half a pitch of the axis of the centre."""
         w = complex_of(places)
-        zeta = 0.5 * np.log((w + 1.0) / (w - 1.0))
+        zeta = 0.5 * log((w + 1.0) / (w - 1.0))
         return pairs_of(self.centre + zeta * self.pitch / (1j * np.pi))
 
     def derivative(self, places: Floats) -> Complexes:
@@ -82,7 +81,7 @@ class PassageMap:
 
 def of_zeta(zeta: Complexes) -> Floats:
     """Return the places w (n, 2) of places ζ (n,)."""
-    return pairs_of(1.0 / np.tanh(zeta))
+    return pairs_of(1.0 / tanh(zeta))
 
 
 def inner_point(polygon: Floats) -> complex:
@@ -111,13 +110,3 @@ def _crossings(polygon: Floats, x: float) -> Floats:
     across = (a[:, 0] > x) != (b[:, 0] > x)
     a, b = a[across], b[across]
     return np.sort(a[:, 1] + (x - a[:, 0]) / (b[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1]))
-
-
-def complex_of(points: Floats) -> Complexes:
-    """Return points (n, 2) as complex numbers (n,)."""
-    return np.asarray(points[..., 0] + 1j * points[..., 1])
-
-
-def pairs_of(values: NDArray[Any]) -> Floats:
-    """Return complex numbers (n,) as points (n, 2)."""
-    return np.stack([values.real, values.imag], axis=-1)

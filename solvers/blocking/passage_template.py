@@ -18,6 +18,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import arccosh, cosh, exp
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
@@ -72,10 +73,10 @@ def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], lis
     along, up = np.linspace(-x, x, cells + 1), np.linspace(-ASIDE, ASIDE, CELLS + 1)
     blocks, angles = [], []
     for side in (along + 1j * ASIDE, x - 1j * up, -along - 1j * ASIDE, -x + 1j * up):
-        outer = np.arccosh(side / flow.half)
+        outer = arccosh(side / flow.half)
         lines = np.linspace(0.0, 1.0, CELLS + 1) * outer.real[:, None] + 1j * outer.imag[:, None]
-        blocks.append(flow.half * np.cosh(lines))
-        blocks[-1][:, 0] = _FEET * np.exp(1j * outer.imag)  # away from all others: nodes are told apart
+        blocks.append(flow.half * cosh(lines))
+        blocks[-1][:, 0] = _FEET * exp(1j * outer.imag)  # away from all others: nodes are told apart
         angles.append(outer.imag)
     return blocks, angles
 

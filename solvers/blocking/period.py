@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, complex_of
 from meshonet.geometry.domain.domain import Domain, Periodic
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -37,7 +37,7 @@ def cut_open(mesh: QuadMesh, ends: tuple[int, int]) -> QuadMesh:
     if domain.periodic is None:
         raise ValueError("a domain without periodic stretches")
     shift = complex(*domain.periodic.shift)
-    z = mesh.nodes @ np.array([1, 1j])
+    z = complex_of(mesh.nodes)
     quads = mesh.quads
     # how many shifts each corner lies from where its node is, to be beside the first corner
     off = np.round(((z[quads[:, :1]] - z[quads]) / shift).real).astype(np.intp)
@@ -120,9 +120,7 @@ def _distance(domain: Domain, z: Complexes, shift: complex) -> Floats:
     if domain.periodic is None:
         raise ValueError("a domain without periodic stretches")
     a, b = domain.periodic.first
-    line = domain.loops[0].at(np.linspace(a, b if b > a else b + domain.loops[0].length, 200)) @ np.array(
-        [1, 1j]
-    )
+    line = complex_of(domain.loops[0].at(np.linspace(a, b if b > a else b + domain.loops[0].length, 200)))
     copies = np.concatenate([line - shift, line, line + shift])
     return np.asarray(np.abs(z[:, None] - copies).min(axis=1))
 

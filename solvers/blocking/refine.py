@@ -15,6 +15,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import product
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
@@ -82,7 +83,7 @@ class _Refined:
             ring = old[0] == old[-1] and len(old) > 3
             finer = 1 if self.at is None else _FINER
             spline = spline_matrix(len(old), finer * (len(new) - 1) + 1, bool(ring))
-            line = spline @ self.old.nodes[old]
+            line = product(spline, self.old.nodes[old])
             if self.at is not None:
                 dense = np.linspace(0.0, len(old) - 1.0, len(line))
                 line = np.stack([np.interp(at, dense, line[:, axis]) for axis in (0, 1)], axis=1)

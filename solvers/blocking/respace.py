@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.attach import spaced
@@ -108,7 +109,7 @@ def _beyond(layout: Layout, strips: list[Indices]) -> Floats:
     for here, there in ((0, 1), (1, 0)):
         a, b = mesh.edges[:, here], mesh.edges[:, there]
         leaving = outer[a] & ~inside[b]
-        np.add.at(total, a[leaving], np.log(length[leaving]))
+        np.add.at(total, a[leaving], log(length[leaving]))
         np.add.at(count, a[leaving], 1.0)
     mean, known = total / np.maximum(count, 1.0), count > 0
     sides = np.concatenate([np.stack([strip[:-1, -1], strip[1:, -1]], axis=1) for strip in strips])
@@ -121,7 +122,7 @@ def _beyond(layout: Layout, strips: list[Indices]) -> Floats:
         new = pair.sum(axis=1) - source
         mean[new], known[new] = mean[source], True
     values = _smoothed(mean, sides[known[sides].all(axis=1)])
-    return np.where(known, np.exp(values), np.inf)  # a constant ratio where nothing leaves at all
+    return np.where(known, exp(values), np.inf)  # a constant ratio where nothing leaves at all
 
 
 def _smoothed(values: Floats, pairs: Indices) -> Floats:

@@ -16,9 +16,11 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.linear import least_squares
 
 OFFSETS = 128
 """Places around a loop without corners at which it is compared with another."""
@@ -140,8 +142,7 @@ def _in_box(points: Floats, loop: Loop) -> Floats:
 def _moved_along(mesh: QuadMesh, nodes: Floats, fixed: NDArray[np.bool_]) -> Floats:
     """Return where the nodes go that are not `fixed` (n,), when those are moved to `nodes` (n, 2)."""
     old = np.column_stack([mesh.nodes, np.ones(len(mesh.nodes))])
-    affine = np.linalg.lstsq(old[fixed], nodes[fixed], rcond=None)[0]
-    base = old @ affine
+    base = product(old, least_squares(old[fixed], nodes[fixed]))
     moved = _harmonic(mesh, np.where(fixed[:, None], nodes - base, 0.0), fixed)
     return np.asarray((base + moved)[~fixed])
 
@@ -163,16 +164,16 @@ def _harmonic(mesh: QuadMesh, values: Floats, fixed: NDArray[np.bool_]) -> Float
     x = values.copy()
     residual = -laplacian(x)
     scaled = residual / count[:, None]
-    way, product = scaled.copy(), (residual * scaled).sum(axis=0)
-    least = TOLERANCE**2 * product
+    way, power = scaled.copy(), (residual * scaled).sum(axis=0)
+    least = TOLERANCE**2 * power
     for _ in range(MOST_STEPS):
-        if (product <= least).all():
+        if (power <= least).all():
             break
         ahead = laplacian(way)
-        step = product / np.maximum((way * ahead).sum(axis=0), 1e-300)
+        step = power / np.maximum((way * ahead).sum(axis=0), 1e-300)
         x += step * way
         residual -= step * ahead
         scaled = residual / count[:, None]
-        product, before = (residual * scaled).sum(axis=0), product
-        way = scaled + product / np.maximum(before, 1e-300) * way
+        power, before = (residual * scaled).sum(axis=0), power
+        way = scaled + power / np.maximum(before, 1e-300) * way
     return x

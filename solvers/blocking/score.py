@@ -14,6 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, percentiles_of
+from meshonet.geometry.elementary import arctan2, exp, log
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.base_complex import BaseComplex
 from meshonet.solvers.blocking.padding import wrong_count
@@ -49,9 +50,9 @@ def size_spread(blocks: BaseComplex, wanted: Floats | None = None) -> float:
     A chord has as many cells everywhere, so the spread of these lengths is that of its cells. Means are by
     the area of blocks. With lengths `wanted` (e,) of edges, lengths and areas are in units of these.
     """
-    lengths = np.log(blocks.side_lengths(wanted))
+    lengths = log(blocks.side_lengths(wanted))
     chord = blocks.sides[2]
-    across = np.exp(lengths).reshape(-1, 2, 2).mean(axis=2)
+    across = exp(lengths).reshape(-1, 2, 2).mean(axis=2)
     area = np.repeat(across[:, 0] * across[:, 1], 4)
     weight = np.bincount(chord, area, blocks.chords)
     mean = np.bincount(chord, area * lengths.ravel(), blocks.chords) / weight
@@ -64,7 +65,7 @@ def deviations(mesh: QuadMesh) -> Floats:
     sides = np.roll(mesh.quads, -1, axis=1)
     ux, uy = x[sides] - x[mesh.quads], y[sides] - y[mesh.quads]
     vx, vy = -np.roll(ux, 1, axis=1), -np.roll(uy, 1, axis=1)
-    angle = np.degrees(np.arctan2(ux * vy - uy * vx, ux * vx + uy * vy)) % 360.0
+    angle = np.degrees(arctan2(ux * vy - uy * vx, ux * vx + uy * vy)) % 360.0
     return np.abs(angle - 90.0)
 
 

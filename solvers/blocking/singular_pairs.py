@@ -12,11 +12,13 @@ length of the domain and r the radius of its core. The smaller cores are, the fe
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, complex_of
+from meshonet.geometry.elementary import angle, exp, product
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.laplacian import Laplacian
 from meshonet.solvers.blocking.surface import NEXT, Surface
@@ -49,7 +51,7 @@ def without_pairs(surface: Surface, laplacian: Laplacian, factor: Factor, crosse
     `laplacian` is of the vertices inside, `factor` its factors. Crosses of walls stay; it is the same array
     where no pair goes.
     """
-    phase = np.angle(crosses)
+    phase = angle(crosses)
     steps = phase[surface.vertices[:, NEXT]] - phase[surface.vertices]
     steps -= _TURN * np.round(steps / _TURN)
     turns = np.round(steps.sum(axis=1) / _TURN).astype(np.intp)
@@ -71,12 +73,14 @@ def without_pairs(surface: Surface, laplacian: Laplacian, factor: Factor, crosse
     change = moved[there] - moved[here]
     # gradients are orthogonal to steps that are as small as can be, so products are sums over crossed edges
     taken = _taken(
-        lines.ends, (steps[triangle, edge] + change[:, -1]) @ jumped, jumped.T @ (jumps + change[:, :-1])
+        lines.ends,
+        product(steps[triangle, edge] + change[:, -1], jumped),
+        product(jumped.T, jumps + change[:, :-1]),
     )
     if not taken:
         return crosses
     phase = phase + moved[:, -1] + moved[:, taken].sum(axis=1)
-    return np.where(laplacian.free, np.exp(1j * phase), crosses)
+    return np.where(laplacian.free, exp(1j * phase), crosses)
 
 
 def _divergence(surface: Surface, steps: Floats) -> Floats:
@@ -103,7 +107,7 @@ def _taken(ends: Indices, gain: Floats, products: Floats) -> list[int]:
 
     Taking out pairs x changes it by `gain` (k,) x + x `products` (k, k) x / 2.
     """
-    change = gain + 0.5 * np.diagonal(products) + _TURN * np.log(CORE)
+    change = gain + 0.5 * np.diagonal(products) + _TURN * math.log(CORE)
     taken: list[int] = []
     while True:
         best = int(np.argmin(change))
@@ -116,7 +120,7 @@ def _taken(ends: Indices, gain: Floats, products: Floats) -> list[int]:
 
 def _lines(surface: Surface, first: Indices, second: Indices) -> _Lines:
     """Return the lines from the middles of `first` triangles to those of `second`, the shortest."""
-    points = surface.triangulation.points[surface.triangulation.triangles] @ np.array([1.0, 1j])
+    points = complex_of(surface.triangulation.points[surface.triangulation.triangles])
     middle = points.mean(axis=1)
     ends = np.stack([np.repeat(first, len(second)), np.tile(second, len(first))], axis=1)
     apart = np.abs(middle[ends[:, 1]] - middle[ends[:, 0]])

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
@@ -125,7 +126,7 @@ class SizeMetric:
 
 def _evened(lengths: Floats, mesh: QuadMesh) -> Floats:
     """Return the lengths (e,) with each that is not at a wall the geometric mean of it and those beside."""
-    logs, count = np.log(lengths), len(mesh.edges)
+    logs, count = log(lengths), len(mesh.edges)
     rungs = np.concatenate([mesh.edge_of[:, [0, 2]], mesh.edge_of[:, [1, 3]]])
     rungs = np.concatenate([rungs, rungs[:, ::-1]])
     beside = np.bincount(rungs[:, 0], minlength=count)
@@ -133,4 +134,4 @@ def _evened(lengths: Floats, mesh: QuadMesh) -> Floats:
     for _ in range(SWEEPS):
         mean = np.bincount(rungs[:, 0], logs[rungs[:, 1]], minlength=count) / np.maximum(beside, 1)
         logs[free] = 0.5 * (logs + mean)[free]
-    return np.exp(logs)
+    return exp(logs)

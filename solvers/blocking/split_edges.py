@@ -65,7 +65,7 @@ def join_triangles(triangles: Indices) -> tuple[Indices, Indices]:
     start, stop = triangles.ravel(), triangles[:, _NEXT].ravel()
     size = int(triangles.max()) + 1
     key, mate = start * size + stop, stop * size + start
-    order = np.argsort(key)
+    order = np.argsort(key, kind="stable")
     place = np.minimum(np.searchsorted(key, mate, sorter=order), len(key) - 1)
     half = np.where(key[order[place]] == mate, order[place], -1).reshape(-1, 3)
     return np.where(half < 0, -1, half // 3), np.where(half < 0, -1, half % 3)

@@ -12,13 +12,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, complex_of
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import gaps_in_front, wall_points
@@ -111,7 +112,7 @@ class Strip:
         piece = np.clip(np.searchsorted(bounds, index, side="right") - 1, 0, len(bounds) - 2)
         weights, first = column_weights(index, bounds[piece], bounds[piece + 1])
         rows = np.minimum(first[:, None] + np.arange(4), len(self.levels) - 1)
-        nodes = np.einsum("kj,kjmd->kmd", weights, self.levels[rows])
+        nodes = (weights[:, :, None, None] * self.levels[rows]).sum(axis=1)
         starts = self.starts(index)
         return started(nodes, self.wall.at(starts)), starts
 
@@ -207,7 +208,7 @@ def _room_beyond(loop: Loop, stretch: Stretch) -> Floats:
             k = (k + way) % count
         length = way * (loop.corner_arcs[k] - loop.corner_arcs[corner]) % loop.length or loop.length
         angle = float(np.radians(loop.corner_angles[corner]))
-        room.append(GAP_PART * length * (np.tan(0.5 * angle) if joined else 1.0))
+        room.append(GAP_PART * length * (math.tan(0.5 * angle) if joined else 1.0))
     return np.array(room)
 
 
@@ -272,7 +273,7 @@ def _crossing(first: Floats, second: Floats, same: bool) -> tuple[float, float, 
 
     That is a place on each, by number of its nodes, and the point. `same` says that both are one front.
     """
-    p, q = (line @ np.array([1.0, 1.0j]) for line in (first, second))
+    p, q = (complex_of(line) for line in (first, second))
     i, j = np.arange(len(p) - 1)[:, None], np.arange(len(q) - 1)
     along, across, apart = np.diff(p)[:, None], np.diff(q), q[:-1] - p[:-1, None]
     with np.errstate(divide="ignore", invalid="ignore"):

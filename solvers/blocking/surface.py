@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.elementary import angle
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_fans
@@ -92,7 +93,7 @@ class Surface:
     @cached_property
     def angles(self) -> Floats:
         """(t, 3) angles at the corners."""
-        return np.asarray(np.angle(-self.edges[:, PREVIOUS] / self.edges))
+        return np.asarray(angle(-self.edges[:, PREVIOUS] / self.edges))
 
     @cached_property
     def gradients(self) -> Complexes:
@@ -166,8 +167,8 @@ def periodic_pairs(triangulation: Triangulation) -> tuple[Indices, Indices]:
     along = np.mod(triangulation.arc[outer] - start + near, length) - near
     back = np.mod(end - triangulation.arc[outer] + near, length) - near
     first, second = outer[along <= span + near], outer[back <= span + near]
-    first = first[np.argsort(along[along <= span + near])]
-    second = second[np.argsort(back[back <= span + near])]
+    first = first[np.argsort(along[along <= span + near], kind="stable")]
+    second = second[np.argsort(back[back <= span + near], kind="stable")]
     points = triangulation.points
     if len(first) == len(second):
         apart = np.abs(points[first] + periodic.shift - points[second]).max()

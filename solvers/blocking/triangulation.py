@@ -133,7 +133,7 @@ class _Walls:
 def _spread(n: int) -> Indices:
     """Return an order (n,) in which to insert n nodes in a row: every second comes last, and so on."""
     number = np.arange(n)
-    level = np.where(number == 0, 64, np.log2(np.maximum(number & -number, 1)).astype(np.intp))
+    level = np.where(number == 0, 64, np.frexp(np.maximum(number & -number, 1))[1] - 1)
     return np.argsort(-level, kind="stable")
 
 

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.domain.loop import CORNER_DEG, Loop
+from meshonet.geometry.elementary import angle as angle_of
+from meshonet.geometry.elementary import exp, tan
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.surface import NEXT, Surface
 
@@ -48,7 +50,7 @@ def wall_directions(surface: Surface) -> WallDirections:
     """
     triangle, edge = surface.walls
     start = surface.vertices[triangle, edge]
-    own = np.angle(surface.edges[triangle, edge])
+    own = angle_of(surface.edges[triangle, edge])
     inside = surface.gather(surface.angles)
     cells, after, before, acute = _corner_offsets(surface, np.where(surface.on_wall, inside, 0.0))
     places = surface.triangulation.triangles
@@ -59,8 +61,8 @@ def wall_directions(surface: Surface) -> WallDirections:
     angle[start[here]] = own[here]
     angle[start] += leaving
     shears = np.zeros(surface.size, dtype=np.complex128)
-    sheared = np.where(acute[places[triangle, edge]], np.tan(leaving), 0.0)
-    shears[start] = -1j * sheared * np.exp(2j * angle[start])
+    sheared = np.where(acute[places[triangle, edge]], tan(leaving), 0.0)
+    shears[start] = -1j * sheared * exp(2j * angle[start])
     offsets = 0.5 * (leaving + arriving)
     inside = np.where(surface.on_wall, inside, 0.0)
     return WallDirections(cells, angle, shears, own + offsets, offsets, inside)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -178,11 +179,11 @@ def wanted_counts(
     Between these by how much counts are multiplied before cells are optimised, and after.
     """
     multiple = walls.settings.multiple
-    low, high = np.log(0.1), np.log(8.0)
+    low, high = math.log(0.1), math.log(8.0)
     wanted = WantedCounts(chords, walls.metric(1.0))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
-        metric = walls.metric(float(np.exp(middle)), 0.0 if cells else size)
+        metric = walls.metric(math.exp(middle), 0.0 if cells else size)
         counts = wanted.counts(metric, multiple)
         total = chords.cells(counts) + walls.attached_cells(chords, counts)
         low, high = (middle, high) if total > cells else (low, middle)

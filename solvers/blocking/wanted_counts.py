@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.ties import nearest_whole
 from meshonet.solvers.blocking.chords import Chords
@@ -30,5 +31,5 @@ class WantedCounts:
         chords = self.chords
         wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
         weight = np.bincount(chords.chord, wanted, chords.count)
-        mean = np.bincount(chords.chord, wanted * np.log(np.maximum(wanted, 1e-9)), chords.count) / weight
-        return multiple * np.maximum(chords.least, nearest_whole(np.exp(mean) / multiple).astype(np.intp))
+        mean = np.bincount(chords.chord, wanted * log(np.maximum(wanted, 1e-9)), chords.count) / weight
+        return multiple * np.maximum(chords.least, nearest_whole(exp(mean) / multiple).astype(np.intp))

@@ -9,6 +9,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.conformal.lift import Lift
+from meshonet.geometry.elementary import exp, product, sin
 from meshonet.kernels._native import lift_bisect
 from meshonet.solvers.conformal.evaluate import StripGrid
 
@@ -25,7 +26,7 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
     if not corners or len(grid.eta) < 4:
         return
     reach, shift = shifts(grid, lift, wall, corners)
-    grid.nudge(reach @ shift, lambda eta: fading(eta, float(grid.eta[1])))
+    grid.nudge(product(reach, shift), lambda eta: fading(eta, float(grid.eta[1])))
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
@@ -39,11 +40,11 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
     cells = np.abs(np.remainder((beside - first[:, None]).imag + np.pi, 2.0 * np.pi) - np.pi).min(axis=1)
     limit = LARGEST * np.maximum(cells, step)  # evenly spaced walls have wide cells at an edge
     offset = np.subtract.outer(np.arange(n), corners)
-    reach = np.exp(-((np.sin(np.pi * offset / n) / (np.pi * width / n)) ** 2))
+    reach = exp(-((sin(np.pi * offset / n) / (np.pi * width / n)) ** 2))
     pull = reach[list(corners)]
     shift = np.zeros(len(corners))
     for _ in range(SWEEPS):
-        moved = first + 1j * (pull @ shift - shift)  # by the other corner alone
+        moved = first + 1j * (product(pull, shift) - shift)  # by the other corner alone
         ends = zip(corners, moved, shift, limit, strict=True)
         halved = (lift_bisect(lift, wall[c], wall[(c + 1) % n], wall[c - 1], *rest) for c, *rest in ends)
         shift = np.array(list(halved))
@@ -53,4 +54,4 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
 def fading(eta: Floats, first: float) -> Floats:
     """Return the share of a shift at `eta`: 1 at the first level, 0 at the walls."""
     cells = eta / first
-    return np.asarray(cells * np.exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))
+    return np.asarray(cells * exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import cos, sin
 
 NODES = 16
 NEAREST = 0.25  # psi from the wall's outermost point to the first panel
@@ -21,12 +22,12 @@ WORTH = 3  # times as many grid nodes as Chebyshev points: fewer are evaluated t
 
 def points(n: int) -> Floats:
     """Return n Chebyshev points of the second kind in [0, 1], rising, the ends among them."""
-    return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.arange(n) / (n - 1)))
+    return np.asarray(0.5 - 0.5 * cos(np.pi * np.arange(n) / (n - 1)))
 
 
 def weights(n: int) -> Floats:
     """Return the barycentric weights of `points(n)`."""
-    signs = (-1.0) ** np.arange(n)
+    signs = 1.0 - 2.0 * (np.arange(n) % 2)
     signs[[0, -1]] *= 0.5
     return np.asarray(signs, dtype=np.float64)
 
@@ -84,6 +85,6 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
 def _panel(eta: Floats, start: int, stop: int) -> Panel:
     a, b = eta[start], eta[stop - 1]
     angle = np.pi * (np.arange(NODES) + 0.5) / NODES
-    points = 0.5 * (a + b) - 0.5 * (b - a) * np.cos(angle)
-    weights = np.sin(angle) * (-1.0) ** np.arange(NODES)
+    points = 0.5 * (a + b) - 0.5 * (b - a) * cos(angle)
+    weights = sin(angle) * (1.0 - 2.0 * (np.arange(NODES) % 2))
     return Panel(start, stop, points, barycentric(points, weights, eta[start:stop]))

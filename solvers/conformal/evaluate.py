@@ -10,6 +10,7 @@ Chebyshev points of each panel. The points of a row::
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -18,6 +19,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, read_only
 from meshonet.geometry.conformal.lift import Lift
+from meshonet.geometry.elementary import exp, product
 from meshonet.geometry.polygon.mirror import Axis
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import strip_rows
@@ -52,9 +54,11 @@ class StripGrid:
     def at(self, rows: Sequence[int], j: int) -> Complexes:
         """Return w at nodes (rows, j) near the wall, nudges left out."""
         theta = self.theta[list(rows)]
-        low = self._c @ _interpolation(self.eta[j : j + 1].tobytes())[:, 0]
+        low = product(self._c, _interpolation(self.eta[j : j + 1].tobytes())[:, 0])
         k, high = self._near.at(float(self.eta[j]))
-        F = np.exp(1j * np.outer(theta, wavenumbers())) @ low + np.exp(1j * np.outer(theta, k)) @ high
+        F = product(exp(1j * np.outer(theta, wavenumbers())), low) + product(
+            exp(1j * np.outer(theta, k)), high
+        )
         return np.asarray(F + 1j * theta)
 
     def nudge(self, along: Floats, across: Callable[[Floats], Floats]) -> None:
@@ -91,7 +95,7 @@ class StripGrid:
     def _columns(self, eta: Floats, last: int) -> Iterator[tuple[int, int, Floats]]:
         """Yield the points at `eta` in slices: their first, their number and the columns of their modes."""
         base = np.ascontiguousarray(self._c.T)
-        low = (_interpolation(eta.tobytes()).T @ base.view(np.float64)).view(np.complex128)
+        low = product(_interpolation(eta.tobytes()).T, base.view(np.float64)).view(np.complex128)
         first = 0
         for where, ahead, behind in self._near.bands(eta[:last]):
             yield where.start, len(ahead), columns(_widened(low[where], ahead, behind))
@@ -137,7 +141,7 @@ class _HighModes:
     def at(self, depth: float) -> tuple[Floats, Complexes]:
         """Return wave numbers (2 m,) and how strong their modes are at one depth."""
         k = np.arange(MODES + 1.0, MODES + 1.0 + len(self.ahead))
-        fade = np.exp(-self.height * depth * k)
+        fade = exp(-self.height * depth * k)
         modes = np.concatenate([self.ahead * fade, self.behind[::-1] * fade])
         return np.concatenate([k, -k]), modes
 
@@ -152,7 +156,7 @@ class _HighModes:
             if count > start:
                 levels = slice(start, count)
                 k = np.arange(MODES + 1, MODES + 1 + some)
-                fade = np.exp(np.outer(depth[levels], -self.height * k))
+                fade = exp(np.outer(depth[levels], -self.height * k))
                 yield levels, self.ahead[:some] * fade, self.behind[-some:] * fade[:, ::-1]
                 start = count
 
@@ -165,7 +169,7 @@ class _HighModes:
             low = MODES + 1 + begin
             end = min(begin + low, len(strength))
             total = float(strength[begin:end].sum())
-            felt = np.log(max(total / FAINT, 1.0)) / (low * self.height)
+            felt = math.log(max(total / FAINT, 1.0)) / (low * self.height)
             octaves.append((int(np.searchsorted(depth, felt)), end))
             begin = end
         return octaves[::-1]

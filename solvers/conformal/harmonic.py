@@ -10,10 +10,13 @@ as the sides' lengths say; T = log(outer length / inner length), so that a ring 
 as Winslow's equations have it. Kinks of the boundary do not reach inside.
 """
 
+import math
+
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import cos, exp, expm1, product, sin
 
 FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so far are left out
 
@@ -47,21 +50,21 @@ def _rectangle(b: Boundary) -> Floats:
     ):
         n, rows = len(side), into.shape[1]
         k = np.arange(1, n - 1)
-        sines = np.sin(np.pi * np.outer(np.arange(n), k) / (n - 1))
-        b_k = 2.0 / (n - 1) * (sines.T @ (side - start))
+        sines = sin(np.pi * np.outer(np.arange(n), k) / (n - 1))
+        b_k = 2.0 / (n - 1) * product(sines.T, side - start)
         _add(into, sines, b_k, np.asarray(np.pi * ratio * k, float), rows)
     return nodes
 
 
 def _ring(b: Boundary) -> Floats:
-    height = float(np.log(_length(b.north) / _length(b.south)))
+    height = math.log(_length(b.north) / _length(b.south))
     n = b.ni - 1
     k = np.arange(1, n // 2 + 1)
     eta = np.linspace(0.0, 1.0, b.nj)[:, None]
     mean, far = b.south[:-1].mean(axis=0), b.north[:-1].mean(axis=0)
     nodes = np.broadcast_to((1.0 - eta) * mean + eta * far, (b.ni, b.nj, 2)).copy()
     angle = 2.0 * np.pi * np.outer(np.arange(b.ni) % n, k) / n
-    waves = np.concatenate([np.cos(angle), -np.sin(angle)], axis=1)
+    waves = np.concatenate([cos(angle), -sin(angle)], axis=1)
     for into, side in ((nodes, b.south), (nodes[:, ::-1], b.north)):
         c: Complexes = np.fft.rfft(side[:-1], axis=0)[1:] * (2.0 / n)
         if n % 2 == 0:
@@ -78,10 +81,10 @@ def _add(into: Floats, waves: Floats, b: Floats, rate: Floats, rows: int) -> Non
         eta = np.arange(first, last) / (rows - 1)
         reach = np.flatnonzero(rate * eta[0] < FAR)
         r = rate[reach, None]
-        fade = (np.exp(-r * eta) - np.exp(-r * (2.0 - eta))) / -np.expm1(-2.0 * r)
+        fade = (exp(-r * eta) - exp(-r * (2.0 - eta))) / -expm1(-2.0 * r)
         some = waves[:, reach] if len(reach) < waves.shape[1] else waves
         for d in (0, 1):
-            into[:, first:last, d] += some @ (b[reach, d : d + 1] * fade)
+            into[:, first:last, d] += product(some, b[reach, d : d + 1] * fade)
         first = last
 
 

@@ -17,6 +17,7 @@ from functools import lru_cache
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, read_only
+from meshonet.geometry.elementary import cos, exp, product
 from meshonet.kernels._native import fourier_columns
 
 TAPS = 14  # as in kernels/conformal/strip_rows.h
@@ -51,8 +52,8 @@ def _transform(count: int) -> tuple[Floats, Complexes]:
     """Return 1 / v_k for k = 0 .. count / 4, by the trapezoidal rule, which is exact to exp(-b)."""
     steps = 8 * TAPS
     x = np.arange(-steps, steps + 1) / steps
-    window = np.exp(SHARPNESS * (np.sqrt(np.maximum(1.0 - x * x, 0.0)) - 1.0))
+    window = exp(SHARPNESS * (np.sqrt(np.maximum(1.0 - x * x, 0.0)) - 1.0))
     angle = np.pi * TAPS / count * np.outer(np.arange(count // 4 + 1), x)
-    unit = np.exp(2j * np.pi * np.arange(count // 2) / count)
-    gain: Floats = steps / (0.5 * TAPS) / (np.cos(angle) @ window)
+    unit = exp(2j * np.pi * np.arange(count // 2) / count)
+    gain: Floats = steps / (0.5 * TAPS) / product(cos(angle), window)
     return read_only(gain), read_only(unit)

@@ -13,13 +13,17 @@ preconditioner does the rest. Points cluster at the wall, where high modes live.
 Trefethen, Spectral Methods in MATLAB (2000), chapters 6 and 7.
 """
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from meshonet.geometry import elementary
 from meshonet.geometry.arrays import Complexes, Floats, array_like, read_only
+from meshonet.geometry.elementary import functions_of
+from meshonet.geometry.linear import real_eigen
 from meshonet.kernels._native import picard_step
 from meshonet.solvers.conformal.chebyshev import barycentric, weights
 
@@ -46,24 +50,23 @@ class Across:
 def across() -> Across:
     """Return the discretisation across the strip (built once, about a millisecond)."""
     n = LEVELS - 1
-    x = np.cos(np.pi * np.arange(n + 1) / n)
-    c = np.r_[2.0, np.ones(n - 1), 2.0] * (-1.0) ** np.arange(n + 1)
+    x = elementary.cos(np.pi * np.arange(n + 1) / n)
+    c = np.r_[2.0, np.ones(n - 1), 2.0] * (1.0 - 2.0 * (np.arange(n + 1) % 2))
     dx = x[:, None] - x[None, :] + np.eye(n + 1)
     d = np.outer(c, 1.0 / c) / dx
     d -= np.diag(d.sum(axis=1))
     s = 0.5 * (1.0 - x)  # rises from the wall to the far field
-    eta = np.expm1(CLUSTERING * s) / np.expm1(CLUSTERING)
-    rate = CLUSTERING * np.exp(CLUSTERING * s) / np.expm1(CLUSTERING)
+    eta = elementary.expm1(CLUSTERING * s) / math.expm1(CLUSTERING)
+    rate = CLUSTERING * elementary.exp(CLUSTERING * s) / math.expm1(CLUSTERING)
     d1 = -2.0 * d / rate[:, None]
-    d2 = d1 @ d1
-    values, vectors = np.linalg.eig(d2[1:-1, 1:-1])
-    arrays = (s, eta, d1, d2, values.real, vectors.real, np.linalg.inv(vectors.real))
+    d2 = elementary.product(d1, d1)
+    arrays = (s, eta, d1, d2, *real_eigen(d2[1:-1, 1:-1]))
     return Across(*(read_only(array) for array in arrays))
 
 
 def interpolation(eta: Floats) -> Floats:
     """Return the (LEVELS, len(eta)) matrix from values at the Chebyshev points to values at `eta`."""
-    s = np.log1p(eta * np.expm1(CLUSTERING)) / CLUSTERING
+    s = elementary.log1p(eta * math.expm1(CLUSTERING)) / CLUSTERING
     return barycentric(across().s, weights(LEVELS), s)
 
 
@@ -91,18 +94,18 @@ def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
     sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), written without overflow. T, the height of the strip,
     is a number or (..., 1, 1).
     """
-    k = abs(k)[:, None]
+    k, exp = abs(k)[:, None], functions_of(xp).exp
     flat = k == 0
     kT = xp.where(flat, 1.0, k * T)
-    whole = 1.0 - xp.exp(-2.0 * kT)
-    wall = (xp.exp(-kT * eta) - xp.exp(-kT * (2.0 - eta))) / whole
-    far = (xp.exp(-kT * (1.0 - eta)) - xp.exp(-kT * (1.0 + eta))) / whole
+    whole = 1.0 - exp(-2.0 * kT)
+    wall = (exp(-kT * eta) - exp(-kT * (2.0 - eta))) / whole
+    far = (exp(-kT * (1.0 - eta)) - exp(-kT * (1.0 + eta))) / whole
     return xp.where(flat, 1.0 - eta, wall), xp.where(flat, eta, far)
 
 
 def smoothing() -> Floats:
     """Return the filter of a change of each mode: those near `MODES` are aliases of others."""
-    return np.asarray(np.exp(-36.0 * (np.abs(wavenumbers()) / (MODES + 1)) ** 12))
+    return np.asarray(elementary.exp(-36.0 * elementary.power(np.abs(wavenumbers()) / (MODES + 1), 12.0)))
 
 
 def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:

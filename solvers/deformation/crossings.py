@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, complex_of
+from meshonet.geometry.elementary import angle
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.polygon.self_intersection import find_crossings
@@ -53,5 +54,5 @@ def _name(pieces: Sequence[Piece], edge: Indices) -> str:
 
 def _around(line: Floats, point: Floats) -> int:
     """Return how often a closed line (n, 2) goes round a point (2,)."""
-    way = (line - point) @ np.array([1.0, 1j])
-    return round(float(np.angle(way[1:] / way[:-1]).sum()) / (2.0 * np.pi))
+    way = complex_of(line - point)
+    return round(float(angle(way[1:] / way[:-1]).sum()) / (2.0 * np.pi))

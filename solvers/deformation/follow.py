@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, middle
+from meshonet.geometry.elementary import product
+from meshonet.geometry.linear import singular_values
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.deformation.field import Field
 from meshonet.solvers.deformation.motions import Turning, affine, turns_in_plane, turns_in_space
@@ -86,7 +88,7 @@ class Follow:
             normal = normal_of(self.table, piece, there)
             if normal is not None:
                 at = piece.numbers.ravel()
-                move[at] -= (move[at] @ normal)[:, None] * normal
+                move[at] -= product(move[at], normal)[:, None] * normal
         return move
 
 
@@ -104,9 +106,9 @@ def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
     """Return the unit normal (d,) of a straight or flat side, None where it is bent, or its ends leave it."""
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)
-    _, size, ways = np.linalg.svd(nodes - centre, full_matrices=False)
+    _, size, ways = singular_values(nodes - centre)
     normal = np.asarray(ways[-1])
-    off = np.abs((np.concatenate([nodes, after]) - centre) @ normal).max()
+    off = np.abs(product(np.concatenate([nodes, after]) - centre, normal)).max()
     return normal if off <= FLAT * size[0] else None
 
 

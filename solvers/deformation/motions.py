@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.elementary import arctan2, product, sin
+from meshonet.geometry.linear import inverse, nearest_rotation
 from meshonet.geometry.polygon.corners import Indices
 
 
@@ -38,7 +40,7 @@ class Turning:
         """Return the angles (n,) in radians by which the wall turns at nodes, from `old` to `new` (n, 2)."""
         before, after = (nodes[self.edges[:, 1]] - nodes[self.edges[:, 0]] for nodes in (old, new))
         cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-        turn = np.arctan2(cross, (before * after).sum(axis=1))
+        turn = arctan2(cross, (before * after).sum(axis=1))
         return self._at_nodes(turn, len(old))
 
     def _at_nodes(self, turn: Floats, n: int) -> Floats:
@@ -66,19 +68,19 @@ class Turning:
 
 def turns_in_plane(angles: Floats) -> Floats:
     """Return R - 1 (n, 2, 2) of angles (n,), exact for small ones."""
-    sine, less = np.sin(angles), -2.0 * np.sin(0.5 * angles) ** 2
+    sine, less = sin(angles), -2.0 * sin(0.5 * angles) ** 2
     return np.stack([np.stack([less, -sine], axis=-1), np.stack([sine, less], axis=-1)], axis=-2)
 
 
 def turns_in_space(quads: Indices, old: Floats, new: Floats) -> Floats:
     """Return R - 1 (n, 3, 3) at nodes: of the `quads` (m, 4) of a wall from `old` to `new` (n, 3)."""
     before, after = _frames(old[quads]), _frames(new[quads])
-    whole = after @ np.linalg.inv(before)
+    whole = product(after, inverse(before))
     total = np.zeros((len(old), 3, 3))
-    np.add.at(total, quads.ravel(), np.repeat(_rotation(whole), 4, axis=0))
+    np.add.at(total, quads.ravel(), np.repeat(nearest_rotation(whole), 4, axis=0))
     on = np.flatnonzero(np.bincount(quads.ravel(), minlength=len(old)))
     turns = np.zeros_like(total)
-    turns[on] = _rotation(total[on]) - np.eye(3)
+    turns[on] = nearest_rotation(total[on]) - np.eye(3)
     return turns
 
 
@@ -91,14 +93,7 @@ def _frames(corners: Floats) -> Floats:
     return np.stack(frame, axis=-1) + 1e-12 * np.eye(3)
 
 
-def _rotation(maps: Floats) -> Floats:
-    """Return the rotation nearest to each map (m, 3, 3)."""
-    u, _, v = np.linalg.svd(maps)
-    u[np.linalg.det(u @ v) < 0, :, -1] *= -1.0
-    return np.asarray(u @ v)
-
-
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
     """Return a and B (d + d², n) of d(x) = a + B x, the motions of places (n, d), as kernels take them."""
-    shift = moved - places - (turns @ places[:, :, None])[:, :, 0]
+    shift = moved - places - product(turns, places[:, :, None])[:, :, 0]
     return np.ascontiguousarray(np.concatenate([shift.T, turns.reshape(len(places), -1).T]))

@@ -13,6 +13,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.measure import count_folded
@@ -108,7 +109,7 @@ class DeformationDerivative:
         old = self._table.nodes[at]
         angles = turning.angles(self._table.nodes, there)[at]
         change = turning.angles_along(there, move)[at][:, None, None] * _slope(angles)
-        shift = move[at] - (change @ old[:, :, None])[:, :, 0]
+        shift = move[at] - product(change, old[:, :, None])[:, :, 0]
         return field.blended(np.ascontiguousarray(np.concatenate([shift.T, change.reshape(-1, 4).T])))
 
     def _field_transposed(self, field: Field, there: Floats, pull: Floats) -> Floats:

@@ -16,6 +16,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import variational_energy
@@ -72,7 +73,7 @@ class OptimumDerivative:
         rim = np.array(np.moveaxis(moves, -1, 0), dtype=np.float64, order="C")
         rim[:, 1:-1, 1:-1] = 0.0
         right = self._jacobian.times(rim.ravel())
-        right += self._by_aspect * float(self._aspect_slope @ rim.ravel())
+        right += self._by_aspect * float(product(self._aspect_slope, rim.ravel()))
         rim.ravel()[self._inner] = -self._solve(right[self._inner])
         return np.ascontiguousarray(np.moveaxis(rim, 0, -1))
 
@@ -85,7 +86,7 @@ class OptimumDerivative:
         adjoint = np.zeros(flat.size)
         adjoint[self._inner] = self._solve(flat.ravel()[self._inner], transposed=True)
         back = self._jacobian.transposed_times(adjoint)
-        back += self._aspect_slope * float(self._by_aspect @ adjoint)
+        back += self._aspect_slope * float(product(self._by_aspect, adjoint))
         result = flat - back.reshape(flat.shape)
         result[:, 1:-1, 1:-1] = 0.0
         return np.ascontiguousarray(np.moveaxis(result, 0, -1))

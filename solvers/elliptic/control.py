@@ -18,6 +18,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import log, product
 
 STEEPEST = 2.0  # largest logarithm of a ratio of neighbouring steps that is taken from a boundary: 7.4
 
@@ -36,7 +37,7 @@ class Factors:
 
     def values(self) -> Floats:
         """Return the sum at every node, (ni, nj)."""
-        return np.asarray(self.along.T @ self.across)
+        return np.asarray(product(self.along.T, self.across))
 
     def kept(
         self, i: np.ndarray[tuple[int], np.dtype[np.intp]], j: np.ndarray[tuple[int], np.dtype[np.intp]]
@@ -97,7 +98,7 @@ def step_ratios(edge: Floats, *, periodic: bool) -> Floats:
     >>> np.exp(step_ratios(edge, periodic=False)).tolist()
     [2.0, 2.0, 2.0, 2.0]
     """
-    steps = np.log(np.hypot(*np.diff(edge, axis=0).T))
+    steps = log(np.hypot(*np.diff(edge, axis=0).T))
     ratios = np.zeros(len(edge))
     if len(edge) > 2:
         ratios[1:-1] = np.diff(steps)

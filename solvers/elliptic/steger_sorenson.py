@@ -11,6 +11,7 @@ even rows. Thinner ones are made by `meshonet.solvers.layers.redistribute`, alon
 wall at the angle.
 """
 
+import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -20,6 +21,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.elementary import arcsin
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
@@ -80,7 +82,7 @@ def largest_lean(nodes: Floats, boundary: Boundary) -> float:
     sides = ("south", "north")
     edges = _edges(boundary, dict.fromkeys(sides, 0.0), 90.0, nodes)
     sine = max(float(np.abs(edge.errors(nodes)[0]).max()) for edge in edges)
-    return float(np.degrees(np.arcsin(min(sine, 1.0))))
+    return math.degrees(math.asin(min(sine, 1.0)))
 
 
 def _checked(boundary: Boundary, heights: Mapping[str, float] | None, angle: float) -> Mapping[str, float]:
@@ -189,7 +191,7 @@ def _settled(
 
 def _angle_note(nodes: Floats, edges: Sequence[ControlledEdge], part: float) -> str:
     """Return how near the lines came to their angles."""
-    off = [np.degrees(np.arcsin(np.clip(np.abs(edge.errors(nodes)[0]), 0.0, 1.0))) for edge in edges]
+    off = [np.degrees(arcsin(np.clip(np.abs(edge.errors(nodes)[0]), 0.0, 1.0))) for edge in edges]
     sides, most = ", ".join(edge.side for edge in edges), max(map(np.max, off))
     note = f"lines leave {sides} at {edges[0].angle:g} degrees, off by {most:.1f} at most"
     note += f" and {np.mean(np.concatenate(off)):.2f} on average"

@@ -11,10 +11,13 @@ Numerical Grid Generation in Computational Fluid Mechanics (1988) 137-146.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.elementary import exp, log
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.wall_lines import first_heights, leaning, lines_off
 
@@ -47,8 +50,8 @@ class ControlledEdge:
         (n,) each, less and less towards corners and ends of the edge, where the angle cannot be had.
         """
         lines = lines_off(nodes, self.side)
-        lean = leaning(lines, self._tangent) - np.cos(np.radians(self.angle))
-        high = np.log(first_heights(lines) / self.height) if self.height else np.zeros(len(lines))
+        lean = leaning(lines, self._tangent) - math.cos(math.radians(self.angle))
+        high = log(first_heights(lines) / self.height) if self.height else np.zeros(len(lines))
         return self._weight * lean, self._weight * high
 
     def correct(self, nodes: Floats, relaxation: float) -> None:
@@ -66,7 +69,7 @@ class ControlledEdge:
     def controls(self) -> Controls:
         """Return the sources as control functions."""
         distance = np.arange(float(self._count))
-        fade = np.exp(-DECAY / (self._count - 1) * distance)
+        fade = exp(-DECAY / (self._count - 1) * distance)
         inwards = 1.0
         if self.side in ("north", "east"):
             fade, inwards = fade[::-1].copy(), -1.0

@@ -144,4 +144,4 @@ def skewness(nodes: Floats) -> Floats:
             area = (np.conj(along[:, south]) * across[west]).imag
             np.minimum(least, area / np.maximum(g[:, south] * h[west], 1e-300), out=least)
     with np.errstate(divide="ignore"):
-        return np.asarray(np.where(least > 0.0, least, 0.0) ** -4.0)
+        return np.asarray((1.0 / np.where(least > 0.0, least, 0.0) ** 2) ** 2)

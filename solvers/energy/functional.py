@@ -22,6 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import sin
 from meshonet.geometry.polygon.corners import turning
 from meshonet.kernels._native import variational_energy
 
@@ -56,7 +57,7 @@ def relief_of(wall: Floats) -> Floats:
     there cannot both be good; they keep sin⁴ of half that angle: like a right one at best.
     """
     half = 0.5 * (np.pi - turning(wall[:-1], closed=True))
-    share = np.where(half > 8.0 / 9.0 * np.pi, np.maximum(np.sin(half), 1e-3) ** 4, 1.0)
+    share = np.where(half > 8.0 / 9.0 * np.pi, (np.maximum(sin(half), 1e-3) ** 2) ** 2, 1.0)
     return np.append(share, share[0])
 
 

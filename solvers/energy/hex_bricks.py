@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.elementary import exp
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner
 from meshonet.kernels._native import BRICK
@@ -101,7 +102,7 @@ def cell_lengths(edges: Sequence[Floats]) -> Floats:
         inner = np.moveaxis(values, d, 0)[1:-1]
         mean = 0.25 * (inner[:, 1:, 1:] + inner[:, 1:, :-1] + inner[:, :-1, 1:] + inner[:, :-1, :-1])
         means.append(np.moveaxis(mean, 0, d))
-    return np.exp(np.stack(means))
+    return exp(np.stack(means))
 
 
 def _cuts(mesh: HexMesh, number: int) -> list[list[int]]:

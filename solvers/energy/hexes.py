@@ -90,7 +90,7 @@ class HexProblem:
     def result(self) -> Floats:
         """Return the nodes (n, 3) where the descent is; those that slide exactly where they may be."""
         nodes, before, at = self.nodes.copy(), self.mesh.nodes, self.slides.nodes
-        moved = np.einsum("kij,kj->ki", self.slides.projections, nodes[at] - before[at])
+        moved = (self.slides.projections * (nodes[at] - before[at])[:, None]).sum(axis=2)
         nodes[at] = before[at] + moved
         nodes[~self.moves] = before[~self.moves]
         return nodes

@@ -12,6 +12,7 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import Modes, VariationalDescent
 from meshonet.solvers.energy.functional import Weights, aspect_of
@@ -78,8 +79,8 @@ Halves: TypeAlias = tuple[Modes, Modes]
 def _sines(n: int) -> tuple[Halves, Floats]:
     """Return sines that vanish at the ends of n cells; minus their second differences; even ones first."""
     waves, k = np.arange(1, n)[:MODES], np.arange(1, n)
-    even, odd = (np.sin(np.pi / n * (np.outer(k, half) % (2 * n))) for half in (waves[::2], waves[1::2]))
-    values = 4.0 * np.sin(np.pi * np.concatenate([waves[::2], waves[1::2]]) / (2 * n)) ** 2
+    even, odd = (sin(np.pi / n * (np.outer(k, half) % (2 * n))) for half in (waves[::2], waves[1::2]))
+    values = 4.0 * sin(np.pi * np.concatenate([waves[::2], waves[1::2]]) / (2 * n)) ** 2
     return (_folded(even, True), _folded(odd, False)), values
 
 
@@ -88,8 +89,8 @@ def _fourier(n: int) -> tuple[Halves, Floats]:
     """Return `_sines` for n periodic nodes: a constant and cosines, and sines, about the middle of a cell."""
     cosines, sines = np.arange((n + 1) // 2)[: MODES // 2], np.arange(1, n // 2 + 1)[: MODES // 2]
     phase = 2.0 * np.pi / n * (np.arange(n) + 0.5)
-    even, odd = np.cos(np.outer(phase, cosines)), np.sin(np.outer(phase, sines))
-    values = 4.0 * np.sin(np.pi * np.concatenate([cosines, sines]) / n) ** 2
+    even, odd = cos(np.outer(phase, cosines)), sin(np.outer(phase, sines))
+    values = 4.0 * sin(np.pi * np.concatenate([cosines, sines]) / n) ** 2
     return (_folded(even, True), _folded(odd, False)), values
 
 

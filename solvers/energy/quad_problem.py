@@ -5,11 +5,13 @@ Everything is in units near the size of a cell, around the middle of the mesh, a
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import log, sin
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import QuadDescent, line_neighbours
@@ -74,7 +76,7 @@ class Problem:
         self.mesh, self.walls, self.unknowns = mesh, walls, unknowns
         self.centre = 0.5 * (mesh.nodes.min(axis=0) + mesh.nodes.max(axis=0))
         area = mesh.domain.area / len(mesh.quads)
-        self.unit = float(2.0 ** np.round(0.5 * np.log2(area)))
+        self.unit = 2.0 ** round(0.5 * math.log2(area))
         self.cell = area / self.unit**2
         self.slides = ~unknowns.fixed[walls.nodes]
         self.nodes = (self._on_walls(mesh.nodes, walls.arc) - self.centre) / self.unit
@@ -103,7 +105,7 @@ class Problem:
         ratio = np.ones(len(self.quads)) if aspects is None else aspects[movable]
         self.areas = self._areas()
         line, pairs = self._lines()
-        target = np.zeros(len(line)) if targets is None else np.log(targets)
+        target = np.zeros(len(line)) if targets is None else log(targets)
         periodic = self.mesh.domain.periodic
         shift = (0.0, 0.0) if periodic is None else periodic.shift
         return QuadDescent(
@@ -184,8 +186,8 @@ class Problem:
         share = angle / np.maximum(np.bincount(self.mesh.quads.ravel(), minlength=len(angle)), 1)
         cell, side = np.nonzero(((angle > SHARP) & (share > WIDE))[self.quads])
         corners = np.stack([self.quads[cell, (side + k) % 4] for k in (0, 1, 3)], axis=1)
-        keeps = np.maximum(np.sin(np.radians(np.minimum(share[corners[:, 0]], 180.0))), 1e-3) ** 4
-        return np.ascontiguousarray(corners), 1.0 - keeps
+        keeps = np.maximum(sin(np.radians(np.minimum(share[corners[:, 0]], 180.0))), 1e-3) ** 2
+        return np.ascontiguousarray(corners), 1.0 - keeps**2
 
     def _on_walls(self, nodes: Floats, arc: Floats) -> Floats:
         """Return `nodes` with those that slide at arc lengths (w,) of their loops."""

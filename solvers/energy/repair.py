@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, as_planar, planar_nodes
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.elementary import product
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.quality.measure import count_folded, folded_cells, per_cell
 from meshonet.solvers.energy.clusters import windows
@@ -186,5 +187,5 @@ def _between(values: Floats, i: NDArray[np.intp], j: NDArray[np.intp], ni: int, 
         for knots, n in ((i, ni), (j, nj))
     )
     for k in (0, 1):
-        result[..., k] = along @ values[..., k] @ across.T
+        result[..., k] = product(product(along, values[..., k]), across.T)
     return result

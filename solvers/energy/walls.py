@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 
@@ -131,7 +132,7 @@ def turned(loop: Loop) -> Floats:
     _, first, second, third = (part[:, None] for part in curve.tables[0])
     t = _SAMPLES[:, None]
     inside = first + t * (2.0 * second + 3.0 * t * third)
-    angle = np.arctan2(inside[..., 1], inside[..., 0])
+    angle = arctan2(inside[..., 1], inside[..., 0])
     bend = np.abs(_wrapped(np.diff(angle, axis=1))).sum(axis=1)
     jump = np.abs(_wrapped(angle[:, 0] - np.roll(angle[:, -1], 1)))
     jump[list(loop.corners)] = 0.0

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import exp, power, product
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.spacing.growth import growing_steps
 
@@ -57,16 +58,16 @@ def level_steps(first: float, distance: float, cells: int, constant: int, edge: 
     if edge is None or cells < 3 or plain[-1] == plain[-2]:
         return plain
     height = np.cumsum(plain[:-1]) / edge.size
-    begun = 1.0 / (1.0 + (_BEGIN / height) ** 5)
-    less = _LESS * begun * np.maximum(height / _FULL, 1.0) ** -_FADE + _BEFORE * (1.0 - begun)
+    begun = 1.0 / (1.0 + power(_BEGIN / height, 5.0))
+    less = _LESS * begun * power(np.maximum(height / _FULL, 1.0), -_FADE) + _BEFORE * (1.0 - begun)
     share = 1.0 - edge.sharpness * less
     share[: constant - 1] = 0.0
-    power = np.concatenate([[0.0], np.cumsum(share)])
+    place = np.concatenate([[0.0], np.cumsum(share)])
     rate = math.log(plain[-1] / plain[-2])
     for _ in range(50):  # Newton's method: the sum is convex in the rate
-        steps = first * np.exp(rate * power)
-        change = (float(steps.sum()) - distance) / float(power @ steps)
+        steps = first * exp(rate * place)
+        change = (float(steps.sum()) - distance) / float(product(place, steps))
         rate -= change
         if abs(change) < 1e-14:
             break
-    return np.asarray(first * np.exp(rate * power))
+    return np.asarray(first * exp(rate * place))

@@ -19,6 +19,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
@@ -163,7 +164,7 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
     """Make first cells as high as `heights` (ni,), moving nodes along lines, less away from the wall."""
     rows = nodes.shape[1]
     rate = math.log(steps[-1] / steps[-2]) if rows > 2 else 1.0
-    fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(FADE_ROWS, 1.5 / max(rate, 1e-3)))
+    fade = exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(FADE_ROWS, 1.5 / max(rate, 1e-3)))
     if rows > 2:
         redistribute(nodes[..., 0], nodes[..., 1], heights, fade, threads_for(nodes[..., 0].size))
 
@@ -171,9 +172,9 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
 def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:
     """Make the first `constant` cells of every line as high as its first one, in place; less along a wake."""
     away = np.arange(nodes.shape[1])
-    fade = np.exp(-np.maximum(away - constant, 0.0) / FADE_ROWS)
+    fade = exp(-np.maximum(away - constant, 0.0) / FADE_ROWS)
     fade[-1] = 0.0
-    share = widening[:, None] ** -2
+    share = 1.0 / widening[:, None] ** 2
     for _ in range(
         4 if constant > 1 else 0
     ):  # straight pieces: what is left falls by the part of a cell moved

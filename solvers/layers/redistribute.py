@@ -19,6 +19,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import default_patches
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.growth import LARGEST
@@ -178,7 +179,7 @@ def _correct(nodes: Floats, side: str, height: float) -> None:
     if first_cell_error(nodes, side, height) < SLIGHT:
         fade = (away == 0.0).astype(np.float64)
     else:  # nothing from the middle on: the other wall's cells are thin against the arc length there
-        fade = np.exp(-np.maximum(away, 0.0) / FADE_NODES) * np.clip(1.0 - 2.0 * away / count, 0.0, 1.0)
+        fade = exp(-np.maximum(away, 0.0) / FADE_NODES) * np.clip(1.0 - 2.0 * away / count, 0.0, 1.0)
     redistribute(*planes, np.full(len(view), height), fade, threads_for(planes[0].size))
     view[..., 0], view[..., 1] = planes
 

@@ -7,6 +7,7 @@ the leans are divided by that, wave by wave. It is done on few nodes; the map fr
 wall is smooth and serves any number.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from meshonet.geometry.arrays import Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.elementary import log, product, sin, tanh
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.solvers.elliptic.control import Controls, Factors
@@ -24,7 +26,7 @@ from meshonet.solvers.elliptic.wall_lines import leaning, lines_off
 COUNTS = 129, 49  # nodes along and between the walls, at the most, on which places are sought
 ROUNDS = 60  # rounds at the most
 
-UPRIGHT = np.sin(np.radians(0.05))
+UPRIGHT = math.sin(math.radians(0.05))
 """Lean of a line at the wall that is left, as the sine of the angle to the normal."""
 
 RELAXATION = 0.7  # part of the linearised displacement that a round moves by
@@ -66,7 +68,7 @@ def _inner_corners(curve: Curve) -> Floats:
 
 def _controls(south: Floats, north: Floats, nj: int) -> Controls | None:
     """Return φ(ξ) of the mean spacing of two walls with arc lengths (n,), None when it is even."""
-    steps = np.log(np.diff(0.5 * (south / south[-1] + north / north[-1])))
+    steps = log(np.diff(0.5 * (south / south[-1] + north / north[-1])))
     ratios = np.zeros(len(south))
     ratios[1:-1] = np.diff(steps)
     if np.abs(ratios).max() < 1e-6:
@@ -137,7 +139,7 @@ def _leans(nodes: Floats, curves: tuple[Curve, Curve], arcs: list[Floats]) -> li
 def _waves(m: int) -> Floats:
     """Return sines (m - 2, m - 2) that take inner values to amplitudes, and back, but for 2/(m - 1)."""
     k = np.arange(1, m - 1)
-    return np.sin(np.pi * np.outer(k, k) / (m - 1))
+    return sin(np.pi * np.outer(k, k) / (m - 1))
 
 
 def _displacements(
@@ -147,10 +149,10 @@ def _displacements(
     m = len(arcs[0])
     k = 2.0 * np.pi * np.arange(1, m - 1) / (arcs[0][-1] + arcs[1][-1])
     both, contrary = (
-        waves @ (waves @ lean[1:-1] * (2.0 / (m - 1)) / (k * response))
+        product(waves, product(waves, lean[1:-1]) * (2.0 / (m - 1)) / (k * response))
         for lean, response in (
-            (0.5 * (leans[0] + leans[1]), np.tanh(0.5 * k * apart)),
-            (0.5 * (leans[0] - leans[1]), 1.0 / np.tanh(0.5 * k * apart)),
+            (0.5 * (leans[0] + leans[1]), tanh(0.5 * k * apart)),
+            (0.5 * (leans[0] - leans[1]), 1.0 / tanh(0.5 * k * apart)),
         )
     )
     return np.pad(both + contrary, 1), np.pad(both - contrary, 1)

@@ -13,9 +13,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.extrude import End, thickened
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.section import Section
 from meshonet.geometry.sections.stack import Stack
@@ -54,8 +55,8 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
         planes.append(make_grid(edges, march).grid)
         notes.append(note)
     nodes_of = np.stack([plane.nodes for plane in planes])
-    away = np.linalg.norm(nodes_of - nodes_of[:, :, :1], axis=-1).mean(axis=0)
-    weight = np.exp(-((away / min(_FADE, request.far_field / 3.0)) ** 2))
+    away = norms(nodes_of - nodes_of[:, :, :1]).mean(axis=0)
+    weight = exp(-((away / min(_FADE, request.far_field / 3.0)) ** 2))
     grid = _lofted(stack, planes, request.span, (("hub", "wall"), ("shroud", "wall")), weight.ravel())
     named = [replace(p, name="blade", kind="wall") if p.name == "wall" else p for p in grid.patches]
     return replace(grid, patches=tuple(named)), tuple(dict.fromkeys(note for note in notes if note))
@@ -104,7 +105,7 @@ def _five_blocks(stack: Stack, request: StackRequest, first: float | None) -> li
         loop = (edges.east, edges.north[::-1], edges.west[::-1], edges.south)
         arcs_of.append([(arc - origin) / length for arc in loop])
         points = np.concatenate(arcs_of[-1])
-        widths.append((1.0 - CORE) * float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean()))
+        widths.append((1.0 - CORE) * float(norms(points - points.mean(axis=0)).mean()))
     k = int(np.argmax([width * section.chord for width, section in zip(widths, stack.sections, strict=True)]))
     width = widths[k] * stack.sections[k].chord
     edge = width / (1.0 - CORE) * 0.25 * np.pi * (1.0 + CORE) / side

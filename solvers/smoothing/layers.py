@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import line_neighbours
@@ -113,6 +114,6 @@ def _at_new_places(heights: Floats, lines: _Lines, mesh: QuadMesh, given: QuadMe
         for row in range(heights.shape[1] if (old != now).any() else 0):
             known = lines.thin[on, row]
             if known.any():
-                values = np.interp(now, old[known], np.log(heights[on[known], row]), period=loop.length)
-                new[on[known], row] = np.exp(values[known])
+                values = np.interp(now, old[known], log(heights[on[known], row]), period=loop.length)
+                new[on[known], row] = exp(values[known])
     return new

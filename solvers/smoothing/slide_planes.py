@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.elementary import product
+from meshonet.geometry.linear import symmetric_eigen
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
 from meshonet.solvers.energy.hexes import Slides
@@ -49,9 +51,9 @@ def _normal(points: Floats) -> Floats | None:
     """Return the unit normal (3,) of the plane of points (n, 3), None where they are in none."""
     size = float(np.ptp(points, axis=0).max())
     centred = points - points.mean(axis=0)
-    values, vectors = np.linalg.eigh(centred.T @ centred)
+    values, vectors = symmetric_eigen(product(centred.T, centred))
     normal = vectors[:, 0]
-    if values[1] <= (FLAT * size) ** 2 or np.abs(centred @ normal).max() > FLAT * size:
+    if values[1] <= (FLAT * size) ** 2 or np.abs(product(centred, normal)).max() > FLAT * size:
         return None
     axis = int(np.argmax(np.abs(normal)))
     if abs(normal[axis]) > 1 - 1e-12:  # exactly a plane of coordinates: those stay bitwise
@@ -67,7 +69,7 @@ def _add_plane(
         count[nodes] = 9
         return
     for node in nodes[count[nodes] < 3]:
-        same = [k for k in range(count[node]) if abs(normals[node, k] @ normal) > 1 - _SAME]
+        same = [k for k in range(count[node]) if abs(product(normals[node, k], normal)) > 1 - _SAME]
         if not same:
             if count[node] < 2:
                 normals[node, count[node]] = normal
@@ -80,7 +82,7 @@ def _add_plane(
 def _projections(normals: Floats, count: Indices) -> Floats:
     """Return the projections (k, 3, 3) on the planes of normals (k, 2, 3), or on lines where two meet."""
     first, second = normals[:, 0], normals[:, 1]
-    second = second - np.einsum("kc,kc->k", first, second)[:, None] * first
-    size = np.linalg.norm(second, axis=1)
+    second = second - (first * second).sum(axis=1)[:, None] * first
+    size = norms(second)
     second = np.where((count > 1)[:, None], second / np.where(size > 0, size, 1.0)[:, None], 0.0)
     return np.asarray(np.eye(3) - sum(each[:, :, None] * each[:, None, :] for each in (first, second)))

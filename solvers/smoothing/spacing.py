@@ -11,10 +11,13 @@ cells at the boundary, and those of a boundary whose nodes are fixed.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.kernels._native import line_neighbours
 
@@ -36,8 +39,8 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
 
     Nodes of the boundary are fixed unless they `slide`.
     """
-    own = np.log(lengths(mesh))
-    cap, stays = np.log(most), thin_heights(mesh)
+    own = log(lengths(mesh))
+    cap, stays = math.log(most), thin_heights(mesh)
     if not slide:
         stays |= mesh.on_wall
     numbers = np.arange(len(mesh.nodes)), np.arange(len(mesh.edges))
@@ -52,7 +55,7 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
         if not excess.any():
             break
         own[moving] += _SHARE * excess.sum(axis=1)
-    return np.exp(own)
+    return exp(own)
 
 
 def thin_heights(mesh: QuadMesh) -> NDArray[np.bool_]:

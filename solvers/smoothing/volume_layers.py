@@ -7,12 +7,14 @@ more.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
 from meshonet.solvers.energy.hex_bricks import Targets
@@ -21,7 +23,7 @@ THIN = 3.0
 """Ratio of the shorter of the other sides to the height from which on a cell is one of layers."""
 _LOW = 3.0
 """Ratio of the mean height along a line to that of its first cell, from which on this one is of layers."""
-_UNLIKE = np.log(1.5)
+_UNLIKE = math.log(1.5)
 """By how much a height may differ from what is wanted around it; else it is not one that was meant."""
 _ROOM = 0.9
 """Part of a line up to its last node inside that layers may take."""
@@ -77,10 +79,10 @@ def _rows(logs: list[Floats], free: Bools) -> Indices:
     """Return how many rows from a side on are thin at each of its nodes (n, m)."""
     height, first, second = logs
     mean = 0.25 * (height[:, 1:, 1:] + height[:, 1:, :-1] + height[:, :-1, 1:] + height[:, :-1, :-1])
-    low = np.exp(mean).mean(axis=0) > _LOW * np.exp(mean[0])
+    low = exp(mean).mean(axis=0) > _LOW * exp(mean[0])
     wide = [0.25 * (each[1:, ...] + each[:-1, ...]) for each in (first, second)]
     along = wide[0][:, :, 1:] + wide[0][:, :, :-1], wide[1][:, 1:] + wide[1][:, :-1]
-    thin = (np.minimum(*along) - mean > np.log(THIN)) & free
+    thin = (np.minimum(*along) - mean > math.log(THIN)) & free
     count = np.maximum(np.logical_and.accumulate(thin, axis=0).sum(axis=0), low & free)
     rows = np.full([n + 1 for n in count.shape], np.iinfo(np.intp).max)
     for i, j in np.ndindex(2, 2):
@@ -93,9 +95,9 @@ def _rows(logs: list[Floats], free: Bools) -> Indices:
 def _heights(points: Floats, logs: Floats) -> Floats:
     """Return the lengths (m, n-1) along lines (m, n, 3), or what is wanted where one is quite another."""
     steps = np.diff(points, axis=1)
-    squares = np.einsum("...c,...c", steps, steps)
-    own = 0.5 * np.log(np.maximum(squares, 1e-300))
-    return np.where(np.abs(own - logs) < _UNLIKE, np.sqrt(squares), np.exp(logs))
+    squares = (steps**2).sum(axis=-1)
+    own = 0.5 * log(np.maximum(squares, 1e-300))
+    return np.where(np.abs(own - logs) < _UNLIKE, np.sqrt(squares), exp(logs))
 
 
 def _of_one_foot(layers: list[Layers], count: int) -> list[Layers]:
@@ -117,7 +119,7 @@ def with_layers(nodes: Floats, layers: list[Layers]) -> tuple[Floats, Bools]:
     for each in layers:
         points = nodes[each.lines]
         steps = np.diff(points, axis=1)
-        place = np.cumsum(np.sqrt(np.einsum("...c,...c", steps, steps)), axis=1)
+        place = np.cumsum(norms(steps), axis=1)
         wanted = np.cumsum(each.heights, axis=1)
         rows = np.where(wanted[np.arange(len(wanted)), each.rows - 1] < _ROOM * place[:, -2], each.rows, 0)
         for row in range(int(rows.max(initial=0))):
@@ -143,5 +145,5 @@ def with_first_heights(nodes: Floats, first: Indices, heights: Floats) -> Floats
     foot = nodes[first[:, 0]]
     way = nodes[first[:, 1]] - foot
     moved = nodes.copy()
-    moved[first[:, 1]] = foot + way * (heights / np.maximum(np.linalg.norm(way, axis=1), 1e-300))[:, None]
+    moved[first[:, 1]] = foot + way * (heights / np.maximum(norms(way), 1e-300))[:, None]
     return moved

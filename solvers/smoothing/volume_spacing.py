@@ -6,12 +6,14 @@ sides, so that geometric growth stays what it is. Edges between nodes that do no
 
 from __future__ import annotations
 
+import math
 from functools import partial
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import PLACES, face_of
+from meshonet.geometry.elementary import log
 from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, exchange, second_layer
 from meshonet.solvers.energy.hex_bricks import Targets
 
@@ -19,7 +21,7 @@ ROUNDS = 12
 """Of diffusion: over about so many cells as their root."""
 _SHARE = 0.1
 """Of the second differences along three directions, that an edge gives way by in a round."""
-_OUTLIER = np.log(2.0)
+_OUTLIER = math.log(2.0)
 """By which an edge may differ from the mean of its neighbours."""
 _CLIPPED = 4
 """Rounds in which it is held to that."""
@@ -44,10 +46,10 @@ def _logs(nodes: Floats, axis: int) -> Floats:
     Edges without a length have that of the middle one.
     """
     steps = np.diff(nodes, axis=axis)
-    squares = np.einsum("...c,...c", steps, steps)
+    squares = (steps**2).sum(axis=-1)
     known = squares > 0.0
     least = float(np.median(squares[known])) if known.any() else 1.0
-    logs = 0.5 * np.log(np.where(known, squares, least))
+    logs = 0.5 * log(np.where(known, squares, least))
     return np.pad(logs, [(int(k == axis),) * 2 for k in range(3)], constant_values=np.nan)
 
 

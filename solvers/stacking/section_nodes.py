@@ -13,11 +13,13 @@ proportion to the distance from the nose.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import log, product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.self_intersection import find_crossing
@@ -75,7 +77,7 @@ def around(sections: tuple[Section, ...], nodes: int, *, gap: float = GAP, base:
         raise InputError(f"a base of {gap:g} chords", "use more than 0 and less than 0.2", parameter="base")
     cells = (nodes - 1 - base) // 2
     heights = [max(_base_height(section), gap) for section in sections]
-    step = _EDGE_CELL * float(np.exp(np.mean(np.log(heights)))) / base
+    step = _EDGE_CELL * math.exp(np.mean(log(heights))) / base
     edge, nose = min(step, 1.0 / cells), _NOSE_CELL / cells
     return Around(cells, base, TanhLaw.fitted(cells, edge, nose), gap)
 
@@ -147,9 +149,9 @@ def _opened(upper: Floats, lower: Floats, gap: float) -> tuple[Floats, Floats]:
     across = upper[0] - lower[0]
     chord = 0.5 * (upper[0] + lower[0]) - upper[-1]
     normal = np.array([-chord[1], chord[0]]) / np.hypot(*chord)
-    missing = 0.5 * (gap - float(across @ normal))
+    missing = 0.5 * (gap - float(product(across, normal)))
     sides = []
     for side, sign in ((upper, 1.0), (lower, -1.0)):
-        along = np.clip((side - upper[-1]) @ chord / (chord @ chord), 0.0, None)
+        along = np.clip(product(side - upper[-1], chord) / product(chord, chord), 0.0, None)
         sides.append(side + sign * missing * along[:, None] * normal)
     return sides[0], sides[1]

@@ -15,12 +15,14 @@ r"""The cap on the end of a wing: a ring along the edge of the last section, and
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.elementary import cos, product, sin
 
 CORE = 0.5
 """Part of the thickness that the core reaches across."""
@@ -45,8 +47,8 @@ class Cap:
 
     def first_row(self, loop: Floats) -> float:
         """Return the width of the outermost cells where the section `loop` (n, 2) is thickest."""
-        half = 0.5 * float(np.linalg.norm(_sides(loop)[1], axis=1).max()) * 2.0
-        return half * (np.arccos(CORE) * max(self.bulge, 0.3) if self.bulge else 1.0 - CORE) / self.rows
+        half = 0.5 * float(norms(_sides(loop)[1]).max()) * 2.0
+        return half * (math.acos(CORE) * max(self.bulge, 0.3) if self.bulge else 1.0 - CORE) / self.rows
 
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:
         """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
@@ -61,9 +63,9 @@ class Cap:
         height = self.bulge * half[:, None] * np.sqrt(1.0 - (CORE * (1.0 - 2.0 * b)) ** 2)
         core = np.concatenate([across, loop[0, 2] + height[..., None]], axis=-1)
         inner = _edge(core)
-        phi = np.linspace(0.0, np.arccos(CORE), self.rows + 1)
+        phi = np.linspace(0.0, math.acos(CORE), self.rows + 1)
         if self.bulge:
-            inwards, rise = (1.0 - np.cos(phi)) / (1.0 - CORE), np.sin(phi) / np.sin(phi[-1])
+            inwards, rise = (1.0 - cos(phi)) / (1.0 - CORE), sin(phi) / sin(phi[-1])
         else:
             inwards, rise = np.linspace(0.0, 1.0, self.rows + 1), np.zeros(self.rows + 1)
         ring = np.empty((len(loop), self.rows + 1, 3))
@@ -79,7 +81,7 @@ class Cap:
         nose, edge = camber[-1], camber[0]
         axis = edge - nose
         length = float(np.hypot(*axis))
-        along = np.maximum.accumulate(((camber - nose) @ axis / length**2)[::-1])[::-1]
+        along = np.maximum.accumulate((product(camber - nose, axis) / length**2)[::-1])[::-1]
         front, back = along[-1 - m], along[m]
         thick = 2.0 * np.hypot(*half.T) / length
         first = _CLEAR * max(front, _NOSE * thick[-1 - m])

@@ -23,6 +23,7 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.elementary import cos, product, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth, growing_steps
 
@@ -87,8 +88,8 @@ def butterfly(disc: Disc) -> Grid:
     side = disc.side()
     rows = disc.rows(side)
     u = np.linspace(-1.0, 1.0, side + 1)
-    arc = disc.radius * np.stack([np.cos(0.25 * np.pi * u), np.sin(0.25 * np.pi * u)], axis=1)
-    arcs = [arc @ np.array(turn).T for turn in _TURNS]
+    arc = disc.radius * np.stack([cos(0.25 * np.pi * u), sin(0.25 * np.pi * u)], axis=1)
+    arcs = [product(arc, np.array(turn).T) for turn in _TURNS]
     first = None if disc.first_cell is None else disc.first_cell / ((1.0 - CORE) * disc.radius)
     return replace(filled(arcs, rows, first), name="circle")
 

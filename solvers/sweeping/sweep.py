@@ -17,12 +17,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import SIDES, Floats
+from meshonet.geometry.arrays import SIDES, Floats, norms
 from meshonet.geometry.blocks.extrude import thickened
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.curves.frames import STEPS, frames_along, turned
 from meshonet.geometry.curves.path import Path
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 
 TURN_DEG = 4.0
@@ -130,7 +131,7 @@ def _check_closed(path: Path, settings: Sweep) -> None:
 def _planes(section: Grid, path: Path) -> int:
     """Return the planes of nodes that a path needs (see `Sweep`)."""
     places = path.at(np.linspace(0.0, path.length, _LOOKED_AT))
-    bend = float(np.linalg.norm(places.curvature, axis=1).max())
+    bend = float(norms(places.curvature).max())
     area = cells = 0.0
     for block in section.blocks:
         x, y = block.nodes[..., 0], block.nodes[..., 1]
@@ -149,11 +150,11 @@ def _check_bends(
     points, _, curvature = path.at(s)
     size = _sizes(path, s, settings)
     inwards = np.stack([(curvature * axis).sum(axis=1) for axis in axes], axis=1) * size[:, None]
-    worst = np.array([float((outline @ way).max()) for way in inwards])
+    worst = np.array([float(product(outline, way).max()) for way in inwards])
     k = int(np.argmax(worst))
     if worst[k] < 1.0:
         return
-    radius = 1.0 / float(np.linalg.norm(curvature[k]))
+    radius = 1.0 / float(norms(curvature[k]))
     x, y, z = points[k]
     raise InputError(
         f"the path bends with a radius of {radius:.4g} at ({x:.4g}, {y:.4g}, {z:.4g}), "
@@ -187,7 +188,7 @@ def self_crossing(path: Path, reach: float) -> tuple[float, float, float] | None
     apart = np.abs(s[:, None] - s[None, :])
     if path.closed:
         apart = np.minimum(apart, path.length - apart)
-    near = np.linalg.norm(points[:, None] - points[None, :], axis=-1) < 2.0 * reach
+    near = norms(points[:, None] - points[None, :]) < 2.0 * reach
     both = np.argwhere(near & (apart > math.pi * reach + 2.0 * path.length / count))
     if len(both) == 0:
         return None

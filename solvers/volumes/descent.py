@@ -46,7 +46,7 @@ class Descent:
     def run(self, weights: Weights, most: int, epsilon: float = 0.0) -> float:
         """Take `most` iterations, fewer where nothing moves any more; return the smallest Jacobian."""
         terms = weights.shape, weights.smoothness, weights.power
-        over = (float(np.prod(self._over) ** (1 / 3)),) * 3 if weights.of_cubes else self._over
+        over = (float(np.prod(self._over)) ** (1 / 3),) * 3 if weights.of_cubes else self._over
         limits = STILL, REACH, weights.gain
         _, smallest, done = self._run.run(self.planes, over, terms, epsilon, most, RENEWED, *limits)
         self.iterations += done

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import Floats, Side, norms
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.six_faces import SixFaces, edges, place_of
 from meshonet.geometry.errors import InputError
@@ -51,7 +51,7 @@ def check_hand(faces: SixFaces) -> None:
     for axis, step in enumerate(steps):
         first, second = (place for each, place in enumerate(places) if each != axis)
         edges.append(step[first + 2 * second, places[axis]])
-    if (np.linalg.det(np.stack(edges, axis=-1)) < 0).all():
+    if ((np.cross(edges[0], edges[1]) * edges[2]).sum(axis=1) < 0).all():
         raise InputError("the volume is left-handed", "reverse one of its directions")
 
 
@@ -75,7 +75,7 @@ def _jacobians(faces: SixFaces, side: Side, second: Side) -> Floats:
     values = []
     for part in (slice(None, -1), slice(1, None)):
         three = [step if each == along else vectors[each][part] for each in range(3)]
-        sizes = np.prod([np.linalg.norm(vector, axis=1) for vector in three], axis=0)
+        sizes = np.prod([norms(vector) for vector in three], axis=0)
         jacobian = (np.cross(three[0], three[1]) * three[2]).sum(axis=1)
         values.append(np.divide(jacobian, sizes, out=np.zeros_like(sizes), where=sizes > 0))
     return np.stack(values, axis=1)

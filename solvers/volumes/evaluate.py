@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
+from meshonet.geometry.elementary import product
+from meshonet.geometry.linear import solve
 from meshonet.solvers.volumes.interpolate import Spline, interpolate
 from meshonet.solvers.volumes.laws import Laws, uniform_laws
 
@@ -32,7 +34,8 @@ def spline_of(values: Floats, places: tuple[Floats, ...]) -> Spline:
     coefficients = values
     for axis in range(3):
         matrix = coefficient_matrix(values.shape[axis + 1])
-        coefficients = np.moveaxis(np.tensordot(matrix, coefficients, axes=(1, axis + 1)), 0, axis + 1)
+        lines = product(np.moveaxis(coefficients, axis + 1, -1), matrix.T)
+        coefficients = np.moveaxis(lines, -1, axis + 1)
     reached = [_reached(m, place) for m, place in zip(values.shape[1:], places, strict=True)]
     weights = tuple(weight for _, weight in reached[:2]), np.ascontiguousarray(reached[2][1].T)
     return Spline(np.ascontiguousarray(coefficients), tuple(f for f, _ in reached), (*weights[0], weights[1]))
@@ -54,7 +57,7 @@ def coefficient_matrix(m: int) -> Floats:
         system[m, :4] = system[m + 1, 1:] = -1.0, 3.0, -3.0, 1.0
     else:  # a straight line
         system[m, :3] = system[m + 1, 1:] = 1.0, -2.0, 1.0
-    return np.asarray(np.linalg.solve(system, np.eye(m + 2, m)))
+    return solve(system, np.eye(m + 2, m))
 
 
 def _reached(m: int, places: Floats) -> tuple[NDArray[np.intp], Floats]:
@@ -63,5 +66,6 @@ def _reached(m: int, places: Floats) -> tuple[NDArray[np.intp], Floats]:
     first = np.clip(at.astype(np.intp), 0, m - 2)
     t = at - first
     s = 1.0 - t
-    middle = 4.0 - 6.0 * t**2 + 3.0 * t**3, 4.0 - 6.0 * s**2 + 3.0 * s**3
-    return first, np.stack([s**3, *middle, t**3], axis=1) / 6.0
+    cubes = s * s * s, t * t * t
+    middle = 4.0 - 6.0 * t**2 + 3.0 * cubes[1], 4.0 - 6.0 * s**2 + 3.0 * cubes[0]
+    return first, np.stack([cubes[0], *middle, cubes[1]], axis=1) / 6.0

@@ -7,9 +7,10 @@ and each line is respaced, less and less away from the face.
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import Floats, Side, norms
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.six_faces import FACES, SixFaces
+from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import volume_lines
 from meshonet.solvers.volumes.laws import Laws
@@ -47,7 +48,7 @@ def _heights(faces: SixFaces, axis: int, end: int) -> Floats:
     v = np.linspace(0.0, 1.0, faces.counts[second])[None, :]
     across = (1 - u) * west + u * east + (1 - v) * south[:, None] + v * north[:, None]
     corners = (1 - u) * ((1 - v) * west[0] + v * west[-1]) + u * ((1 - v) * east[0] + v * east[-1])
-    heights = np.exp(across - corners)
+    heights = exp(across - corners)
     heights[[0, -1]] = heights[:, [0, -1]] = 0.0
     return np.ascontiguousarray(heights)
 
@@ -57,4 +58,4 @@ def _steps(faces: SixFaces, side: Side, axis: int, end: int) -> Floats:
     own = PLACES[side][0]
     rows = np.moveaxis(getattr(faces, side), axis if axis < own else axis - 1, 0)
     step = rows[1] - rows[0] if end == 0 else rows[-1] - rows[-2]
-    return np.asarray(np.log(np.linalg.norm(step, axis=-1)))
+    return np.asarray(log(norms(step)))

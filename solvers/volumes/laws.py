@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.six_faces import SixFaces, place_of
 from meshonet.geometry.errors import InputError
 
@@ -41,7 +41,7 @@ def mean_laws(laws: Laws) -> Laws:
 
 
 def _arcs(edges: list[Floats]) -> Floats:
-    steps = np.stack([np.linalg.norm(np.diff(edge, axis=0), axis=1) for edge in edges])
+    steps = np.stack([norms(np.diff(edge, axis=0)) for edge in edges])
     arcs = np.concatenate([np.zeros((4, 1)), np.cumsum(steps, axis=1)], axis=1)
     short = np.flatnonzero(~(steps > 0).all(axis=1))
     if len(short):

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import combine_along, winslow_residual, winslow_room, winslow_smooth
@@ -197,7 +197,7 @@ def _coarser(faces: SixFaces) -> tuple[int, int, int] | None:
     counts = faces.counts
     steps = []
     for axis in range(3):
-        lengths = [np.linalg.norm(np.diff(edge, axis=0), axis=1).sum() for edge in faces.edges_along(axis)]
+        lengths = [norms(np.diff(edge, axis=0)).sum() for edge in faces.edges_along(axis)]
         steps.append(float(np.mean(lengths)) / (counts[axis] - 1))
     open_ = [axis for axis in range(3) if counts[axis] > COARSEST]
     if not open_:

@@ -8,6 +8,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import product
 from meshonet.solvers.algebraic.resample import corner_damping, quad
 from meshonet.solvers.algebraic.resample.o_grid import evaluate_around
 from meshonet.solvers.algebraic.resample.spline import between
@@ -46,7 +47,7 @@ def divided(coarse: Floats, boundary: Boundary) -> Floats:
         corner_damping.linear(coarse.shape[1], boundary.nj),
     )
     for c in (0, 1):
-        nodes[..., c] = along @ coarse[..., c] @ across.T
+        nodes[..., c] = product(product(along, coarse[..., c]), across.T)
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
     nodes[0], nodes[-1] = boundary.west, boundary.east
     return nodes

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, array_like, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import functions_of, product
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import add_spline_rows
 from meshonet.solvers.algebraic.resample.spline import bending, places, spline_matrix
@@ -43,9 +44,9 @@ def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
     for c, values in enumerate((lines.real.copy(), lines.imag.copy())):
         plane = nodes[..., c]
         plane[:] = 0.0
-        add_spline_rows(plane, first, weights, values, bending(m, True) @ values, True, threads)
-        plane += (boundary.south[:, c] - around @ values[:, 0])[:, None] * near_south
-        plane += (boundary.north[:, c] - around @ values[:, -1])[:, None] * near_north
+        add_spline_rows(plane, first, weights, values, product(bending(m, True), values), True, threads)
+        plane += (boundary.south[:, c] - product(around, values[:, 0]))[:, None] * near_south
+        plane += (boundary.north[:, c] - product(around, values[:, -1]))[:, None] * near_north
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
     nodes[-1] = nodes[0]
     return nodes
@@ -79,7 +80,7 @@ def _hermite(values: Any, slopes: Any, first: NDArray[np.intp], t: Any, span: An
 
 def _slopes(length: Any, steps: Any, xp: Any) -> Any:
     """Return the slopes by index of rising `length` (..., n), a spline's where steps vary little."""
-    bends = length @ array_like(bending(length.shape[-1], False), length, xp).T
+    bends = functions_of(xp).matmul(length, array_like(bending(length.shape[-1], False), length, xp).T)
     before, after = steps[..., :-1], steps[..., 1:]
     inner = steps - (2.0 * bends[..., :-1] + bends[..., 1:]) / 6.0
     last = steps[..., -1:] + (bends[..., -2:-1] + 2.0 * bends[..., -1:]) / 6.0

@@ -10,12 +10,14 @@ with the third derivative continuous at the second and the last but one knot ("n
 de Boor, A Practical Guide to Splines (1978), chapter IV.
 """
 
+import math
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import power, product
 
 
 @lru_cache(maxsize=16)
@@ -26,20 +28,37 @@ def bending(m: int, periodic: bool) -> Floats:
     """
     if m == 2 or (periodic and m == 3):
         return np.zeros((m, m))
-    difference = np.zeros((m, m))
-    system = np.zeros((m, m))
+    bends = np.zeros((m, m))  # at first the right sides
     inner = np.arange(1, m - 1)
-    for matrix, (before, at, after) in ((difference, (6.0, -12.0, 6.0)), (system, (1.0, 4.0, 1.0))):
-        matrix[inner, inner - 1], matrix[inner, inner], matrix[inner, inner + 1] = before, at, after
+    bends[inner, inner - 1], bends[inner, inner], bends[inner, inner + 1] = 6.0, -12.0, 6.0
     if periodic:
-        difference[0, [m - 2, 0, 1]] = 6.0, -12.0, 6.0
-        system[0, [m - 2, 0, 1]] = 1.0, 4.0, 1.0
-        system[-1, [0, m - 1]] = 1.0, -1.0
-    elif m == 3:
-        system[0, :2] = system[-1, 1:] = 1.0, -1.0
-    else:
-        system[0, :3] = system[-1, -3:] = 1.0, -2.0, 1.0
-    return np.asarray(np.linalg.solve(system, difference))
+        bends[0, [m - 2, 0, 1]] = 6.0, -12.0, 6.0
+        bends[:-1] = product(_around(m - 1), bends[:-1])
+        bends[-1] = bends[0]
+        return bends
+    bends[[1, -2]] = bends[[1, -2]] / 6.0  # not a knot: M_0 + M_2 = 2 M_1
+    _solve_between(bends[1:-1])
+    bends[0], bends[-1] = (bends[1], bends[1]) if m == 3 else (2.0 * bends[[1, -2]] - bends[[2, -3]])
+    return bends
+
+
+def _around(n: int) -> Floats:
+    """Return the inverse (n, n) of the matrix of rows 1, 4, 1 that go round."""
+    z, k = math.sqrt(3.0) - 2.0, np.arange(n)
+    row = (power(z, k) + power(z, n - k)) / (2.0 * math.sqrt(3.0) * (1.0 - z**n))
+    return np.asarray(row[(k[:, None] - k) % n])
+
+
+def _solve_between(rows: Floats) -> None:
+    """Solve x_k-1 + 4 x_k + x_k+1 = `rows` in place; the first and the last are x. Thomas' elimination."""
+    last, part = len(rows) - 1, 0.0
+    parts = []
+    for k in range(1, last):
+        part = 1.0 / (4.0 - part)
+        parts.append(part)
+        rows[k] = part * (rows[k] - rows[k - 1])
+    for k in range(last - 1, 0, -1):
+        rows[k] -= parts[k - 1] * rows[k + 1]
 
 
 def between(values: Floats, n: int) -> Floats:

@@ -20,6 +20,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import BadCell, NoValidGridError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, worst_solids
@@ -126,7 +127,7 @@ def _respaced(levels: Floats, graph: MarchGraph, steps: Floats) -> Floats:
     if made < 2:
         lines[:, graph.order] = np.moveaxis(levels, 0, -1)
         return lines
-    fade = np.exp(-np.arange(made) / FADE)
+    fade = exp(-np.arange(made) / FADE)
     respace_lines(levels, steps[:made], fade, graph.order, SWEEPS, lines, threads_for(lines[0].size))
     return lines
 

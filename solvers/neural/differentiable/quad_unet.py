@@ -90,7 +90,7 @@ class QuadUNet(nn.Module):
         m is n, or around a body a multiple of 2 for each level but the coarsest.
         """
         x = features.movedim(-1, 1)  # channels last in memory, where convolutions are fastest
-        lift = symmetry.lift(self.lift, self.seen, torch)
+        lift = symmetry.lift(self.lift, self.seen)
         x = functional.conv2d(x, lift[:, :, None, None], self.lift_bias.repeat_interleave(ORDER))
         skipped = []
         for before, down in zip(self.before, self.down, strict=False):

@@ -11,12 +11,13 @@ quad      origin and unit from the corners                    the least of the r
 ========  ==================================================  ============================================
 """
 
+import math
 from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, complex_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
@@ -52,8 +53,8 @@ class Canonical:
         z = z[:: -1 if along else 1, :: -1 if across else 1]
         z = self.origin + self.unit * (z.conj() if _mirrors(self.element) else z)
         own = self.original
-        z[:, 0], z[:, -1] = _complex(own.south), _complex(own.north)
-        z[0], z[-1] = (z[0], z[0]) if own.topology == "o" else (_complex(own.west), _complex(own.east))
+        z[:, 0], z[:, -1] = complex_of(own.south), complex_of(own.north)
+        z[0], z[-1] = (z[0], z[0]) if own.topology == "o" else (complex_of(own.west), complex_of(own.east))
         return np.stack([z.real, z.imag])
 
 
@@ -63,7 +64,7 @@ def canonical(boundary: Boundary) -> Canonical:
 
 
 def _of_body(boundary: Boundary) -> Canonical:
-    south, north = _complex(boundary.south), _complex(boundary.north)
+    south, north = complex_of(boundary.south), complex_of(boundary.north)
     origin, unit = south[0], north[0] - south[0]
     walls = (np.stack([south, north]) - origin) / unit
     step = _step(walls)
@@ -78,7 +79,7 @@ def _of_body(boundary: Boundary) -> Canonical:
 
 
 def _of_quad(boundary: Boundary) -> Canonical:
-    sides = tuple(_complex(side) for side in (boundary.south, boundary.north, boundary.west, boundary.east))
+    sides = tuple(complex_of(side) for side in (boundary.south, boundary.north, boundary.west, boundary.east))
     transposed = (False, True) if boundary.ni == boundary.nj else (False,)
     images = [(*_framed(sides, e), e) for e in product((False, True), (False, True), transposed)]
     rounded, origin, unit, element = min(images, key=lambda image: b"".join(s.tobytes() for s in image[0]))
@@ -111,7 +112,7 @@ def _framed(sides: tuple[Complexes, ...], element: Element) -> tuple[tuple[Compl
 
 
 def _step(edges: Complexes) -> float:
-    return float(STEP * 2.0 ** np.ceil(np.log2(np.abs(edges).max())))
+    return STEP * 2.0 ** math.ceil(math.log2(np.abs(edges).max()))
 
 
 def _rounded(edge: Complexes, step: float) -> Complexes:
@@ -120,7 +121,3 @@ def _rounded(edge: Complexes, step: float) -> Complexes:
 
 def _mirrors(element: Element) -> bool:
     return sum(element) % 2 == 1
-
-
-def _complex(edge: Floats) -> Complexes:
-    return np.asarray(edge[:, 0] + 1j * edge[:, 1])

@@ -6,6 +6,8 @@ is the module, numpy or torch, that arrays are of.
 
 from typing import Any
 
+from meshonet.geometry.elementary import functions_of
+
 LATENT = 33  # nodes along xi and eta of the grid the network sees
 SCALE = 0.1  # what an answer of 1 means, in the normalised domain's unit
 HEADS = ("winslow", "variational")  # the grids a network answers with, in order
@@ -57,19 +59,19 @@ def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
     else:
         u, a, where = _slope(z, xp), _bend(z, xp), z
     v, b = _slope(z.swapaxes(1, 2), xp).swapaxes(1, 2), _bend(z.swapaxes(1, 2), xp).swapaxes(1, 2)
-    product, lengths = u.conj() * v, (abs(u), abs(v))
+    call, product, lengths = functions_of(xp), u.conj() * v, (abs(u), abs(v))
     angle = product / (lengths[0] * lengths[1] + TINY)
     place = xp.linspace(-1.0, 1.0, n, dtype=z.real.dtype, device=z.device) + 0.0 * z.real
     along = 0.0 * place if around else place.swapaxes(1, 2)
     squares = step.real**2 + step.imag**2
     size = xp.sqrt(squares.mean((1, 2)) + TINY**2)[:, None, None] + STILL
     length = xp.sqrt(squares + TINY**2) / size
-    step = step * (xp.arcsinh(STRETCH * length) / (2.0 * size * length))
+    step = step * (call.arcsinh(STRETCH * length) / (2.0 * size * length))
     channels = (
         u.real, v.real, u.imag, v.imag, a.real, b.real, a.imag, b.imag,
-        xp.log(lengths[0] + FLOOR), xp.log(lengths[1] + FLOOR), where.real, where.imag,
-        angle.real, angle.imag, xp.arcsinh(product.imag), along, place,
-        step.real, step.imag, xp.log10(size) + 2.0 + 0.0 * place,
+        call.log(lengths[0] + FLOOR), call.log(lengths[1] + FLOOR), where.real, where.imag,
+        angle.real, angle.imag, call.arcsinh(product.imag), along, place,
+        step.real, step.imag, call.log10(size) + 2.0 + 0.0 * place,
     )  # fmt: skip
     return xp.stack(channels, -1)
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.elementary import angle
 
 PIECES = 8  # pieces of each of the wall's edges whose middles stand for it
 EQUAL = 1e-9  # relative difference of two values of the potential that count as equal
@@ -44,7 +45,8 @@ def slope(p: Any, wall: Any, xp: Any) -> tuple[Any, Any, Any]:
     """
     x, lengths = _pieces(wall, xp)
     o = p - x
-    weights = lengths * abs(o) ** -6.0
+    square = abs(o) ** 2
+    weights = lengths / (square * square * square)
     return -4.0 * (weights * o).sum(), 8.0 * weights.sum(), 12.0 * (weights * (o / abs(o)) ** 2).sum()
 
 
@@ -59,7 +61,7 @@ def _first(wall: Complexes) -> complex:
     """Return the middle of the inscribed circle in which the potential is least."""
     x, lengths = _pieces(wall, np)
     middles = _inscribed(wall, x)
-    values = np.array([(lengths * np.abs(p - x) ** -4.0).sum() for p in middles])
+    values = np.array([(lengths / (np.abs(p - x) ** 2) ** 2).sum() for p in middles])
     values[~_within(middles, wall)] = np.inf
     lowest = np.flatnonzero(values <= values.min() * (1.0 + EQUAL))
     return complex(middles[lowest[np.argmin(np.abs(middles[lowest] - wall[0]))]])
@@ -81,5 +83,5 @@ def _inscribed(wall: Complexes, x: Complexes) -> Complexes:
 def _within(points: Complexes, wall: Complexes) -> NDArray[np.bool_]:
     """Return which points a closed curve goes round once."""
     off = wall - points[:, None]
-    turns = np.angle(np.roll(off, -1, axis=1) / off).sum(axis=1)
+    turns = angle(np.roll(off, -1, axis=1) / off).sum(axis=1)
     return np.asarray(np.abs(np.abs(turns) - 2.0 * np.pi) < 1e-6)

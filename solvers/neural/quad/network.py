@@ -102,7 +102,7 @@ class Network:
         self.dtype, self.blocks, self.around = np.dtype(dtype), tuple(blocks), around
         exact = {name: np.asarray(value, np.float64) for name, value in weights.items()}
         self._layers = {
-            "lift": _packed(symmetry.lift(exact["lift"], SEEN, np), exact["lift_bias"], self.dtype),
+            "lift": _packed(symmetry.lift(exact["lift"], SEEN), exact["lift_bias"], self.dtype),
             "project": _packed(symmetry.projection(exact["project"], ELEMENTS, np), None, self.dtype),
         }
         for name in exact:

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, array_like, read_only
+from meshonet.geometry.elementary import cos, sin
 from meshonet.kernels._native import LINE, winslow_steps
 from meshonet.solvers.neural.quad.encoding import LATENT
 
@@ -175,9 +176,9 @@ def _transform(n: int, around: bool) -> tuple[Floats, Floats]:
     if around:
         k = np.arange(n)
         angle = 2.0 * np.pi * (np.outer(k, k) % n) / n
-        table = (np.cos(angle) + np.sin(angle)) / np.sqrt(n)
-        return read_only(table), read_only(4.0 * np.sin(np.pi * k / n) ** 2)
+        table = (cos(angle) + sin(angle)) / np.sqrt(n)
+        return read_only(table), read_only(4.0 * sin(np.pi * k / n) ** 2)
     k = np.arange(1, n - 1)
     angle = np.pi * (np.outer(k, k) % (2 * (n - 1))) / (n - 1)
-    table = np.sqrt(2.0 / (n - 1)) * np.sin(angle)
-    return read_only(table), read_only(4.0 * np.sin(0.5 * np.pi * k / (n - 1)) ** 2)
+    table = np.sqrt(2.0 / (n - 1)) * sin(angle)
+    return read_only(table), read_only(4.0 * sin(0.5 * np.pi * k / (n - 1)) ** 2)

@@ -26,9 +26,9 @@ ORDER = 8  # elements of the group
 
 def _elements() -> Integers:
     """Return the group (8, 2, 2): turns by quarters, then the same after a mirror."""
-    quarter, mirror = np.array([[0, -1], [1, 0]]), np.array([[1, 0], [0, -1]])
-    turns = [np.linalg.matrix_power(quarter, k) for k in range(4)]
-    return np.stack([*turns, *(turn @ mirror for turn in turns)])
+    unit, quarter = np.eye(2, dtype=np.int64), np.array([[0, -1], [1, 0]])
+    turns = np.stack([unit, quarter, -unit, -quarter])
+    return np.concatenate([turns, turns * (1, -1)])
 
 
 ELEMENTS: Integers = _elements()  # (8, 2, 2) on index steps and on vectors of the plane
@@ -40,7 +40,7 @@ def _number(element: Integers) -> int:
 
 INVERSE: Integers = np.array([_number(g.T) for g in ELEMENTS])  # (8,) number of the inverse of each element
 
-PRODUCT: Integers = np.array([[_number(a @ b) for b in ELEMENTS] for a in ELEMENTS])
+PRODUCT: Integers = np.array([[_number((a[:, :, None] * b).sum(axis=1)) for b in ELEMENTS] for a in ELEMENTS])
 """(8, 8) number of the product of two."""
 
 
@@ -48,7 +48,7 @@ def _taps(size: int) -> Integers:
     """Return (8, size, size): for each element g, the flat index of g^-1 p for every place p of a kernel."""
     half = size // 2
     places = np.stack(np.meshgrid(*2 * [np.arange(size) - half], indexing="ij")).reshape(2, -1)
-    moved = np.einsum("gba,bp->gap", ELEMENTS, places) + half
+    moved = (ELEMENTS[..., None] * places[:, None]).sum(axis=1) + half
     return (moved[:, 0] * size + moved[:, 1]).reshape(ORDER, size, size)
 
 
@@ -93,12 +93,12 @@ def convolution(weight: Any, places: Any, xp: Any) -> Any:
     return xp.moveaxis(spread, 2, 1).reshape(ORDER * out, ORDER * into, size, size)
 
 
-def lift(weight: Any, seen: Any, xp: Any) -> Any:
+def lift(weight: Any, seen: Any) -> Any:
     """Return (8 out, FEATURES) from `weight` (out, FEATURES): the features as seen from each element."""
-    return xp.einsum("cf,gfk->cgk", weight, seen).reshape(ORDER * len(weight), -1)
+    return (weight[:, None, :, None] * seen).sum(2).reshape(ORDER * len(weight), -1)
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
     """Return `weight` (heads, 2, in) as a matrix (2 heads, 8 in): the mean over the elements."""
-    back = xp.einsum("gda,hac->hdcg", elements, weight) / ORDER
-    return back.reshape(2 * len(weight), -1)
+    back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
+    return back.sum(2).reshape(2 * len(weight), -1) / ORDER

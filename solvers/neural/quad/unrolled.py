@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from meshonet.geometry.elementary import functions_of
+
 AROUND = 65  # nodes along xi, the last a turn after the first, that the network sees around a body
 
 TURN = 2.0 * np.pi
@@ -33,11 +35,12 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
     """Return the strips of closed O grids `z` (batch, m + 1, n), and which of them go round once."""
     off = z - centres[:, None, None]
     with np.errstate(divide="ignore", invalid="ignore"):
-        cut = xp.angle(off[:, :1, 1:] / off[:, :1, :-1])
-        first = xp.cumsum(xp.concatenate([xp.angle(off[:, :1, :1]), cut], 2), 2)
-        steps = xp.angle(off[:, 1:] / off[:, :-1])
+        angle_of = functions_of(xp).angle
+        cut = angle_of(off[:, :1, 1:] / off[:, :1, :-1])
+        first = xp.cumsum(xp.concatenate([angle_of(off[:, :1, :1]), cut], 2), 2)
+        steps = angle_of(off[:, 1:] / off[:, :-1])
         angle = xp.cumsum(xp.concatenate([first, steps], 1), 1)
-        strip = -angle + 1j * xp.log(abs(off))
+        strip = -angle + 1j * functions_of(xp).log(abs(off))
     closed = abs(angle[:, -1] - angle[:, 0] + TURN) < 1e-6
     once = closed.all(1) & xp.isfinite(strip).all(2).all(1)
     return xp.concatenate([strip[:, :-1], strip[:, :1] + TURN], 1), once
@@ -72,4 +75,4 @@ def factors(strips: Any, xp: Any = np) -> Any:
 
 def rolled(strips: Any, centres: Any = 0.0, xp: Any = np) -> Any:
     """Return the O grids of `strips` (batch, m + 1, n) around `centres` (batch, 1, 1)."""
-    return xp.exp(-1j * strips) + centres
+    return functions_of(xp).exp(-1j * strips) + centres

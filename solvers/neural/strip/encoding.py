@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import array_like
+from meshonet.geometry.elementary import functions_of
 from meshonet.solvers.conformal.strip import decay, from_columns, to_columns, wavenumbers
 
 DEPTHS = np.array([0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0])  # eta at which the network sees the harmonic base
@@ -37,7 +38,7 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
     h = (a[:, :, None] * near + b[:, :, None] * away).swapaxes(1, 2) / size[:, None, None]
     value, slope = to_columns(h, xp), SLOPE * to_columns(1j * k * h, xp)
     channels = xp.stack([value.real, value.imag, slope.real, slope.imag], 2)
-    scalars = xp.stack([xp.log(size) + 2.5, mean.real - 4.0, mean.imag], 1)
+    scalars = xp.stack([functions_of(xp).log(size) + 2.5, mean.real - 4.0, mean.imag], 1)
     return channels.reshape(len(wall), CHANNELS, -1), scalars, size
 
 
@@ -49,6 +50,6 @@ def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np)
     """
     q = len(basis)
     c = from_columns(coefficients[:, :q] + 1j * coefficients[:, q:], xp)
-    inner = (c.swapaxes(1, 2) @ (basis + 0j)) * (scale * size**2)[:, None, None]
+    inner = functions_of(xp).matmul(c.swapaxes(1, 2), basis + 0j) * (scale * size**2)[:, None, None]
     edge = xp.zeros_like(inner[..., :1])
     return xp.concatenate([edge, inner, edge], -1)

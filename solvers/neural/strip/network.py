@@ -14,7 +14,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import product, tanh
 
 TAPS = 5
 GATE = 0.3
@@ -43,7 +44,7 @@ class StripNetwork:
         for convolution, mixing, expand in self._layers:
             both = convolution(h)
             a, b = both[:width], both[width:]
-            gate = np.tanh(a)
+            gate = tanh(a)
             gate *= b
             gate *= GATE
             gate += expand(gelu(a + spectral(mixing, h)))
@@ -80,18 +81,19 @@ def gelu(x: Floats) -> Floats:
     y *= 0.044715 * 0.7978845608028654
     y += 0.7978845608028654
     y *= x
-    np.tanh(y, out=y)
+    y = tanh(y)
     y += 1.0
     y *= 0.5 * x
     return y
 
 
-def spectral(mixing: Complexes, h: Floats) -> Floats:
-    """Return h (c, batch, n) with its first modes mixed by a complex matrix each: `mixing` (modes, c, d)."""
+def spectral(mixing: Floats, h: Floats) -> Floats:
+    """Return (d, batch, n): the first modes of h (c, batch, n), mixed by a matrix of `_mixing` each."""
     count, n = len(mixing), h.shape[2]
-    spectrum = np.ascontiguousarray(np.fft.rfft(h)[..., :count].T)
-    out = np.zeros((mixing.shape[2], h.shape[1], n // 2 + 1), complex)
-    out[..., :count] = (spectrum @ mixing).T
+    spectrum = np.ascontiguousarray(np.fft.rfft(h)[..., :count].T).view(np.float64)
+    mixed = np.stack([product(mode, matrix) for mode, matrix in zip(spectrum, mixing, strict=True)])
+    out = np.zeros((mixing.shape[2] // 2, h.shape[1], n // 2 + 1), complex)
+    out[..., :count] = mixed.view(np.complex128).T
     return np.fft.irfft(out, n)
 
 
@@ -111,11 +113,14 @@ class _Convolution:
             h = np.empty((self._taps, width, batch, n))
             for t in range(self._taps):
                 h[t] = around[..., t : t + n]
-        out = self._matrix @ h.reshape(self._taps * width, -1)
+        out = product(self._matrix, h.reshape(self._taps * width, -1))
         out += self._bias
         return out.reshape(-1, batch, n)
 
 
-def _mixing(weights: Mapping[str, Floats], name: str) -> Complexes:
+def _mixing(weights: Mapping[str, Floats], name: str) -> Floats:
+    """Return complex matrices (modes, c, d) as real ones (modes, 2 c, 2 d), parts of numbers in turn."""
     weight = weights[f"{name}.weight"]
-    return np.asarray(weight[..., 0] + 1j * weight[..., 1])
+    turned = np.stack([-weight[..., 1], weight[..., 0]], axis=-1)  # i times it
+    modes, c, d, _ = weight.shape
+    return np.stack([weight, turned], axis=2).reshape(modes, 2 * c, 2 * d)

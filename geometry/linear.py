@@ -1,0 +1,220 @@
+"""Linear algebra of small matrices, the same to the bit on every processor.
+
+LAPACK and the BLAS below it round by the processor. These are made of sums, products, quotients and square
+roots in a fixed order, in NumPy: for matrices of a few rows, or stacks of them, and systems of a few hundred.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import product
+from meshonet.kernels import _native
+
+_SWEEPS = 60
+"""Most sweeps of Jacobi rotations; they converge quadratically, in 4 to 10."""
+_SMALL = 2.0**-58
+"""What is left of the sizes of matrices where sweeps end: it changes no digit."""
+_RIGHT_ANGLE = 2.0**-50
+"""Cosine of columns that count as orthogonal: what rounding leaves."""
+
+
+def solve(matrix: Any, right: Any) -> Floats:
+    """Return the solutions x of ``matrix @ x = right`` by Gaussian elimination with partial pivoting.
+
+    Parameters
+    ----------
+    matrix
+        Shape (..., m, m).
+    right
+        Shape (..., m), a vector each, or (..., m, n); as many directions before these as `matrix` has.
+
+    Returns
+    -------
+    Floats
+        Of the shape of `right`.
+
+    Raises
+    ------
+    ValueError
+        A matrix is singular.
+    """
+    left = np.array(matrix, np.float64)
+    given = np.asarray(right, np.float64)
+    size, stack = left.shape[-1], left.shape[:-2]
+    left = left.reshape(math.prod(stack), size, size)
+    out = given.reshape(len(left), size, math.prod(given.shape[len(stack) + 1 :])).copy()
+    every = np.arange(len(left))
+    for k in range(size):
+        pivot = k + np.abs(left[:, k:, k]).argmax(axis=1)
+        for rows in (left, out):
+            rows[every, pivot], rows[:, k] = rows[:, k].copy(), rows[every, pivot]
+        if (left[:, k, k] == 0.0).any():
+            raise ValueError("the matrix is singular")
+        share = (left[:, k + 1 :, k] / left[:, k, k, None])[..., None]
+        left[:, k + 1 :, k + 1 :] -= share * left[:, k, None, k + 1 :]
+        out[:, k + 1 :] -= share * out[:, k, None]
+    for k in reversed(range(size)):
+        out[:, k] /= left[:, k, k, None]
+        out[:, :k] -= left[:, :k, k, None] * out[:, k, None]
+    return out.reshape(given.shape)
+
+
+def inverse(matrix: Any) -> Floats:
+    """Return the inverse of each matrix (..., m, m); a singular one raises ValueError."""
+    square = np.asarray(matrix, np.float64)
+    return solve(square, np.broadcast_to(np.eye(square.shape[-1]), square.shape))
+
+
+def symmetric_eigen(matrix: Any) -> tuple[Floats, Floats]:
+    """Return the eigenvalues (..., m), rising, and unit eigenvectors of symmetric matrices (..., m, m).
+
+    The vectors are columns (..., m, m). By cyclic Jacobi rotations (Golub & Van Loan, Matrix Computations,
+    2013, section 8.5).
+    """
+    a = np.array(matrix, np.float64)
+    size = a.shape[-1]
+    vectors = np.broadcast_to(np.eye(size), a.shape).copy()
+    least = _SMALL * np.abs(a).max(axis=(-2, -1), initial=0.0)
+    for _ in range(_SWEEPS):
+        turned = False
+        for p, q in combinations(range(size), 2):
+            off = a[..., p, q]
+            on = np.abs(off) > least
+            if not on.any():
+                continue
+            turned = True
+            cosine, sine = _rotation(a[..., p, p], a[..., q, q], np.where(on, off, 0.0))
+            _turn_columns(a, p, q, cosine, sine)
+            _turn_columns(a.swapaxes(-2, -1), p, q, cosine, sine)
+            a[..., p, q] = a[..., q, p] = np.where(on, 0.0, off)
+            _turn_columns(vectors, p, q, cosine, sine)
+        if not turned:
+            break
+    values = np.diagonal(a, axis1=-2, axis2=-1)
+    order = np.argsort(values, axis=-1, kind="stable")
+    return np.take_along_axis(values, order, -1), np.take_along_axis(vectors, order[..., None, :], -1)
+
+
+def real_eigen(matrix: Any) -> tuple[Floats, Floats, Floats]:
+    """Return w (m,), v and u (m, m) of ``matrix = v @ diag(w) @ u``, a matrix (m, m) with m real eigenvalues.
+
+    They must be distinct. Columns of v have unit size, and u is its inverse. By QR iteration (Golub & Van
+    Loan, Matrix Computations, 2013, chapter 7). Raises ValueError: eigenvalues are not real.
+    """
+    square = np.array(matrix, np.float64, order="C")
+    values, vectors, inverses = np.empty(len(square)), np.empty_like(square), np.empty_like(square)
+    _native.real_eigen(square, values, vectors, inverses)
+    return values, vectors, inverses
+
+
+def singular_values(matrix: Any) -> tuple[Floats, Floats, Floats]:
+    """Return u (n, m), s (m,) and v (m, m) of ``matrix = u @ diag(s) @ v``, a matrix (n, m); s falls.
+
+    Rows of v are orthonormal, and so are columns of u where s is not 0; elsewhere these are 0. By one-sided
+    Jacobi rotations (Hestenes, J. SIAM 6, 1958).
+    """
+    columns = np.array(matrix, np.float64)
+    size = columns.shape[1]
+    ways = np.eye(size)
+    for _ in range(_SWEEPS):
+        turned = False
+        for p, q in combinations(range(size), 2):
+            pair = columns[:, [p, q]]
+            (first, off), (_, second) = product(pair.T, pair)
+            if not abs(off) > _RIGHT_ANGLE * math.sqrt(first) * math.sqrt(second):
+                continue
+            turned = True
+            cosine, sine = _rotation(first, second, off)
+            _turn_columns(columns, p, q, cosine, sine)
+            _turn_columns(ways, p, q, cosine, sine)
+        if not turned:
+            break
+    sizes = np.sqrt((columns**2).sum(axis=0))
+    order = np.argsort(-sizes, kind="stable")
+    s = sizes[order]
+    return columns[:, order] / np.where(s > 0.0, s, 1.0), s, ways[:, order].T
+
+
+def least_squares(matrix: Any, right: Any) -> Floats:
+    """Return x (m,) or (m, k) with the least ``matrix @ x - right``, of a matrix (n, m); the least such x."""
+    u, s, v = singular_values(matrix)
+    seen = s > np.finfo(float).eps * len(u) * s[:1]
+    share = np.where(seen, 1.0 / np.where(seen, s, 1.0), 0.0)
+    return np.asarray(product(v.T * share, product(u.T, right)))
+
+
+def nearest_rotation(maps: Any) -> Floats:
+    """Return the rotation nearest to each map (..., d, d) of a plane or of space, in the sum of squares.
+
+    In space it is the unit quaternion that is an eigenvector to the largest eigenvalue of a matrix of the map
+    (Horn, J. Opt. Soc. Am. A 4, 1987): mirrored and flattened maps have one too.
+    """
+    m = np.asarray(maps, np.float64)
+    if m.shape[-1] == 2:
+        cosine, sine = m[..., 0, 0] + m[..., 1, 1], m[..., 1, 0] - m[..., 0, 1]
+        size = np.hypot(cosine, sine)
+        cosine, size = np.where(size == 0.0, 1.0, [cosine, size])
+        return _matrices([[cosine / size, -sine / size], [sine / size, cosine / size]])
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = np.moveaxis(m, (-2, -1), (0, 1))
+    rows = [
+        [xx + yy + zz, zy - yz, xz - zx, yx - xy],
+        [zy - yz, xx - yy - zz, yx + xy, zx + xz],
+        [xz - zx, yx + xy, yy - xx - zz, zy + yz],
+        [yx - xy, zx + xz, zy + yz, zz - xx - yy],
+    ]
+    w, x, y, z = np.moveaxis(symmetric_eigen(_matrices(rows))[1][..., -1], -1, 0)
+    size = w * w + x * x + y * y + z * z
+    a, b, c = 2.0 * x / size, 2.0 * y / size, 2.0 * z / size
+    return _matrices(
+        [
+            [1.0 - b * y - c * z, a * y - c * w, a * z + b * w],
+            [a * y + c * w, 1.0 - a * x - c * z, b * z - a * w],
+            [a * z - b * w, b * z + a * w, 1.0 - a * x - b * y],
+        ]
+    )
+
+
+def gauss_legendre(count: int) -> tuple[Floats, Floats]:
+    """Return the nodes, rising, and the weights of Gauss quadrature from -1 to 1.
+
+    Nodes are zeros of Legendre's polynomial, by Newton's iteration.
+    """
+    nodes, weights = np.zeros(count), np.zeros(count)
+    for k in range((count + 1) // 2):
+        x, slope = math.cos(math.pi * (k + 0.75) / (count + 0.5)), 1.0
+        for _ in range(8):  # from these starts four are enough
+            before, value = 1.0, x
+            for n in range(2, count + 1):
+                before, value = value, ((2 * n - 1) * x * value - (n - 1) * before) / n
+            slope = count * (before - x * value) / ((1.0 - x) * (1.0 + x))
+            x -= value / slope
+        x = 0.0 if 2 * k + 1 == count else x
+        nodes[k], nodes[-1 - k] = -x, x
+        weights[k] = weights[-1 - k] = 2.0 / ((1.0 - x) * (1.0 + x) * slope * slope)
+    return nodes, weights
+
+
+def _rotation(first: Any, second: Any, off: Any) -> tuple[Any, Any]:
+    """Return the cosine and sine of the turns that make matrices [[first, off], [off, second]] diagonal."""
+    half = 0.5 * (second - first)
+    to = np.abs(half) + np.hypot(half, off)
+    tangent = np.where(half < 0.0, -off, off) / np.where(to > 0.0, to, 1.0)
+    cosine = 1.0 / np.sqrt(1.0 + tangent * tangent)
+    return cosine, tangent * cosine
+
+
+def _turn_columns(a: Floats, p: int, q: int, cosine: Any, sine: Any) -> None:
+    """Turn columns `p` and `q` of each matrix (..., n, m)."""
+    c, s = np.asarray(cosine)[..., None], np.asarray(sine)[..., None]
+    one, two = a[..., p], a[..., q]
+    a[..., p], a[..., q] = c * one - s * two, s * one + c * two
+
+
+def _matrices(rows: list[list[Any]]) -> Floats:
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
