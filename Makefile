@@ -5,12 +5,13 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find kernels -name '*.py*' -o -name '*.pxi' -o -name '*.h' -o -name '*.c' ! -name _native.c)
 
-.PHONY: help demo test test-fast test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs tutorials gallery site wheel dist man clean
+.PHONY: help demo test test-fast test-clients same fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs tutorials gallery site wheel dist man clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
 	@echo 'make test    the test suite; make test-fast: its core, in less than a minute'
 	@echo 'make test-clients  files written here, read by cgnscheck and OpenFOAM'
+	@echo 'make same    forty commands as other processors would run them: the same bits everywhere'
 	@echo 'make fuzz    every reader against hostile files, MINUTES=10 each; make kills: commands stopped at random'
 	@echo 'make lint    style, types and import contracts'
 	@echo 'make train   the shipped models again, from random shapes (resumable; about three hours on one core)'
@@ -65,6 +66,13 @@ test-clients: $(VENV)/.developing
 	{ command -v cgnscheck && command -v checkMesh && command -v simpleFoam; } >/dev/null || \
 	  { apt-get update -qq && apt-get install -y -qq --no-install-recommends cgns-convert openfoam; }
 	MESHONET_CLIENTS=1 $(BIN)/python -m pytest -m client tests/formats tests/test_tutorials.py
+
+# the same nodes, counts and reports with other kernels of BLAS, functions of NumPy, numbers of cores, and on emulated
+# processors where qemu-user is installed or can be from Debian
+same: $(VENV)/.developing
+	command -v qemu-x86_64 >/dev/null || \
+	  { test "$$(id -u)" = 0 && apt-get update -qq && apt-get install -y -qq --no-install-recommends qemu-user; } || true
+	$(BIN)/python benchmarks/same.py --emulated
 
 # hostile files for MINUTES a reader, JOBS readers at a time; commands killed COUNT times
 MINUTES ?= 10

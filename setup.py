@@ -24,13 +24,10 @@ KERNELS = sorted(str(path) for path in ROOM.glob("*/*.c"))
 HEADERS = sorted(str(path) for end in ("h", "pxi", "pyx") for path in ROOM.rglob(f"*.{end}"))
 WINDOWS = sys.platform == "win32"
 
-# The same bits on every processor: the operations as they are written, sums in the order they are written in
-# (include/sums.h), no products and sums contracted. No -march: include/clones.h picks the instruction set when the
-# module is loaded.
+# The same bits on every processor: operations and sums in the order in which they are written, products and
+# sums not contracted. No -march: include/clones.h picks the instruction set when the module is loaded.
 NUMERICS = (
-    ["/O2"]
-    if WINDOWS
-    else ["-O3", "-g0", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off"]
+    ["/O2"] if WINDOWS else ["-O3", "-g0", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off"]
 )
 GLUE = [] if WINDOWS else ["-O0", "-g0"]  # checks and calls: nothing to gain
 LINK = ["-Wl,-s"] if sys.platform == "linux" else []  # no symbols but those that are looked up

@@ -87,7 +87,7 @@ def needed(lines: Sequence[str], chosen: Sequence[str]) -> list[str]:
 
 @dataclass(frozen=True)
 class Machine:
-    """What commands are run on: words before Python's, as an emulator's, settings of the environment, and cores."""
+    """What commands are run on: words in front of Python, of an emulator, and settings of the environment."""
 
     before: tuple[str, ...] = ()
     settings: Mapping[str, str] = field(default_factory=dict)
@@ -133,7 +133,7 @@ def _run_worker(
     try:
         return subprocess.run(
             command, cwd=folder, env=environment, timeout=TIMEOUT_S, check=False,
-            preexec_fn=lambda: os.sched_setaffinity(0, cores),  # noqa: PLW1509  no threads are running here
+            preexec_fn=lambda: os.sched_setaffinity(0, cores),
         ).returncode  # fmt: skip
     except subprocess.TimeoutExpired:
         return "timeout"

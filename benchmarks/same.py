@@ -1,13 +1,14 @@
-"""The same grids on every machine: some forty commands on several processors, their results beside digests kept here.
+"""The same grids on every machine: some forty commands on several, their results beside kept digests.
 
     python benchmarks/same.py                    what differs from benchmarks/same.json, and where
     python benchmarks/same.py --emulated         on emulated processors too, where qemu-x86_64 is installed
     python benchmarks/same.py --record           write benchmarks/same.json, after a change that moves nodes
     python benchmarks/same.py --only 'infer' --machine emulated
 
-Kept of each command is one digest: exit code, nodes, counts, figures and messages of its report, times and versions
-left out. A machine here is this processor with the kernels of BLAS and the functions of NumPy that another one
-would be given, with one core, or another processor that is emulated. The exit code is 1 when a digest differs.
+Kept of each command is one digest: exit code, nodes, counts, figures and messages of its report, times and
+versions left out. A machine here is this processor with the kernels of BLAS and the functions of NumPy that
+another one would be given, with one core, or another processor that is emulated. The exit code is 1 when a
+digest differs.
 """
 
 from __future__ import annotations

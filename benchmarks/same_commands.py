@@ -1,4 +1,4 @@
-"""The commands of `same.py`, one of each kind, in the form of `golden_commands`, and the inputs they need beside those."""
+"""The commands of `same.py`, one of each kind, in the form of `golden_commands`, and inputs of their own."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ infer blade.dat --pitch 0,0.8 --y-plus 1 --reynolds 1e6 --te round --cells 16000
 solve-pde channel.geojson --cells 1250 --refine 2 --json -> .vtm
 solve-pde channel.geojson --cells 5000 --json -> .vtm
 infer naca:0012 --normalise --y-plus 1 --reynolds 6e6 --res 250x110 --far-field 500 --json -> .vts
-infer naca:0012-sharp --y-plus 1 --reynolds 6e6 --res 300x100 --far-field 500 --constant-layers 2 --json -> .vts
+infer naca:0012-sharp --y-plus 1 --reynolds 6e6 --res 300x100 --constant-layers 2 --json -> .vts
 infer main.dat flap.dat --assemble --y-plus 1 --reynolds 5e6 --far-field 50 --cells 30000 --json
 sweep circle:0.5 bend.toml --cells 160 --planes 41 --json -> .cgns
 stack wing.toml --y-plus 30 --reynolds 1e6 --around 65 --span 25 --far-field 10 --json -> .cgns

@@ -1,7 +1,7 @@
-"""Choices that do not hang on a last bit: what is equal to `EQUAL` counts as equal, and the first is taken.
+"""Choices that do not hang on a last bit: of ways that are equally good to `EQUAL` the first is taken.
 
-Symmetric shapes have many ways that are equally good. Which of two is better by rounding alone depends on how a
-shape is turned or moved, or on a library; the order in which they stand does not.
+Symmetric shapes have many ways that are equally good. Which of two is better by rounding alone
+depends on how a shape is turned or moved, or on a library; the order in which they stand does not.
 """
 
 from __future__ import annotations
@@ -80,8 +80,8 @@ def nearest_whole(values: Floats) -> Floats:
 def made_unlike(costs: Floats) -> Floats:
     """Return costs (..., n) of which hardly any sums are equal, so that a linear programme has one answer.
 
-    Each is changed by less than `_NOISE` of itself, by its place alone: digits of square roots, of which sums are
-    not equal.
+    Each is changed by less than `_NOISE` of itself, by its place alone: digits of square roots, of which sums
+    are not equal.
     """
     digits = np.mod(1e3 * np.sqrt(np.arange(costs.size) + 0.618), 1.0)
     return costs + _NOISE * np.abs(costs) * digits.reshape(costs.shape)

@@ -1,4 +1,4 @@
-"""The room in front of walls is what is ahead of them, never the place itself or what rounding makes of it."""
+"""The room in front of walls is what is ahead of them, never the place itself."""
 
 import numpy as np
 import pytest
