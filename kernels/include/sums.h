@@ -4,20 +4,20 @@
 #include "clones.h"
 #include <stddef.h>
 
-#define SUMS 16 /* they hide how long an addition takes */
+#define SUM_LANES 16 /* they hide how long an addition takes */
 
 /* NAME(..., n): the sum of TERM over k from 0 to before n, in numbers of type T. */
 #define MESHONET_SUM(NAME, T, TERM, ...)                                   \
     MESHONET_INLINE T NAME(__VA_ARGS__, ptrdiff_t n)                       \
     {                                                                      \
-        T sum[SUMS] = {0};                                                 \
+        T sum[SUM_LANES] = {0};                                                 \
         ptrdiff_t start = 0;                                               \
-        for (; start + SUMS <= n; start += SUMS)                           \
-            for (ptrdiff_t l = 0, k = start; l < SUMS; l++, k = start + l) \
+        for (; start + SUM_LANES <= n; start += SUM_LANES)                           \
+            for (ptrdiff_t l = 0, k = start; l < SUM_LANES; l++, k = start + l) \
                 sum[l] += TERM;                                            \
         for (ptrdiff_t l = 0, k = start; k < n; l++, k++)                  \
             sum[l] += TERM;                                                \
-        for (int half = SUMS / 2; half > 0; half /= 2)                     \
+        for (int half = SUM_LANES / 2; half > 0; half /= 2)                     \
             for (int l = 0; l < half; l++)                                 \
                 sum[l] += sum[l + half];                                   \
         return sum[0];                                                     \

@@ -2,6 +2,7 @@
    leave a system of the others, half as many, whose matrix is applied in two sweeps over neighbours. It is solved by
    BiCGStab: van der Vorst, SIAM J. Sci. Stat. Comput. 13 (1992) 631. No order of nodes is lost to threads. */
 #include "solve.h"
+#include "sums.h"
 #include <math.h>
 
 MESHONET_INLINE Vector flux_of(const float *flux, ptrdiff_t n, Vector a, Vector b)
@@ -86,17 +87,15 @@ typedef struct {
     ptrdiff_t first, last;
 } Range;
 
-MESHONET_INLINE double product(const double *a, const double *b, ptrdiff_t n, Range range)
+/* The product of some nodes of a, its coordinates n apart, and of b, `rows` apart. */
+MESHONET_CLONES
+static double dot_chunk(const double *a, ptrdiff_t n, const double *b, ptrdiff_t rows, Range range)
 {
     double sum = 0.0;
     for (int d = 0; d < 3; d++)
-        for (ptrdiff_t i = range.first + d * n; i < range.last + d * n; i++)
-            sum += a[i] * b[i];
+        sum += product_of(a + d * n + range.first, b + d * rows + range.first, range.last - range.first);
     return sum;
 }
-
-MESHONET_CLONES
-static double dot_chunk(const double *a, const double *b, ptrdiff_t n, Range range) { return product(a, b, n, range); }
 
 /* p = r + beta (p - omega v) */
 MESHONET_CLONES
@@ -116,14 +115,13 @@ MESHONET_CLONES
 static double halve_chunk(const Solver *solver, double alpha, Range range)
 {
     const ptrdiff_t n = solver->step.graph->nodes, rows = n + solver->step.graph->ghosts;
-    double sum = 0.0;
     for (int d = 0; d < 3; d++) {
         double *restrict s = solver->s + d * rows;
         const double *restrict r = solver->r + d * n, *restrict v = solver->v + d * n;
         for (ptrdiff_t i = range.first; i < range.last; i++)
-            s[i] = r[i] - alpha * v[i], sum += s[i] * s[i];
+            s[i] = r[i] - alpha * v[i];
     }
-    return sum;
+    return dot_chunk(solver->s, rows, solver->s, rows, range);
 }
 
 /* change += alpha p + omega s, r = s - omega t; returns r . r, and r0 . r in `turned`. */
@@ -131,32 +129,26 @@ MESHONET_CLONES
 static double advance_chunk(const Solver *solver, double alpha, double omega, Range range, double *turned)
 {
     const ptrdiff_t n = solver->step.graph->nodes, rows = n + solver->step.graph->ghosts;
-    double sum = 0.0, other = 0.0;
     for (int d = 0; d < 3; d++) {
         const double *restrict s = solver->s + d * rows, *restrict p = solver->p + d * rows;
-        const double *restrict t = solver->t + d * n, *restrict r0 = solver->r0 + d * n;
+        const double *restrict t = solver->t + d * n;
         double *restrict r = solver->r + d * n, *restrict y = solver->step.change + d * rows;
         for (ptrdiff_t i = range.first; i < range.last; i++) {
             y[i] += alpha * p[i] + omega * s[i];
             r[i] = s[i] - omega * t[i];
-            sum += r[i] * r[i], other += r0[i] * r[i];
         }
     }
-    *turned = other;
-    return sum;
+    *turned = dot_chunk(solver->r0, n, solver->r, n, range);
+    return dot_chunk(solver->r, n, solver->r, n, range);
 }
 
 typedef struct {
     ptrdiff_t red_first, red_last, first, last; /* chunks of this thread */
 } Share;
 
-static double sum_of(const Solver *solver, int which)
+static double whole_sum(const Solver *solver, int which)
 {
-    const double *sums = solver->sums + which * solver->chunks;
-    double sum = 0.0;
-    for (ptrdiff_t c = 0; c < solver->chunks; c++)
-        sum += sums[c];
-    return sum;
+    return sum_of(solver->sums + which * solver->chunks, solver->chunks);
 }
 
 #define EACH(chunk, from, to, range)                                                                                   \
@@ -192,7 +184,7 @@ static double begin(const Solver *solver, Share share, double *residual, Member 
     const ptrdiff_t n = step->graph->nodes, rows = n + step->graph->ghosts;
     EACH(chunk, share.red_first, share.red_last, range) {
         solve_red(step, step->change, 1.0, range.first, range.last);
-        put_sum(solver, 0, chunk, dot_chunk(step->right, step->right, n, range));
+        put_sum(solver, 0, chunk, dot_chunk(step->right, n, step->right, n, range));
         put_sum(solver, 1, chunk, 0.0);
         for (int which = 2; which < SUMS; which++)
             put_sum(solver, which, chunk, 0.0);
@@ -205,12 +197,12 @@ static double begin(const Solver *solver, Share share, double *residual, Member 
                 solver->p[d * rows + i] = solver->v[d * n + i] = 0.0;
                 solver->r0[d * n + i] = solver->r[d * n + i];
             }
-        put_sum(solver, 0, chunk, dot_chunk(step->right, step->right, n, range));
-        put_sum(solver, 1, chunk, dot_chunk(solver->r, solver->r, n, range));
+        put_sum(solver, 0, chunk, dot_chunk(step->right, n, step->right, n, range));
+        put_sum(solver, 1, chunk, dot_chunk(solver->r, n, solver->r, n, range));
     }
     team_wait(member);
-    *residual = sum_of(solver, 1);
-    return sum_of(solver, 0);
+    *residual = whole_sum(solver, 1);
+    return whole_sum(solver, 0);
 }
 
 int solve_step(Solver *solver, Member member)
@@ -232,24 +224,21 @@ int solve_step(Solver *solver, Member member)
         team_wait(member);
         apply(solver, share, solver->p, solver->v, member);
         EACH(chunk, share.first, share.last, range)
-            put_sum(solver, 2, chunk, dot_chunk(solver->r0, solver->v, n, range));
+            put_sum(solver, 2, chunk, dot_chunk(solver->r0, n, solver->v, n, range));
         team_wait(member);
-        alpha = rho / sum_of(solver, 2);
+        alpha = rho / whole_sum(solver, 2);
         EACH(chunk, share.first, share.last, range)
             put_sum(solver, 3, chunk, halve_chunk(solver, alpha, range));
         team_wait(member);
         apply(solver, share, solver->s, solver->t, member);
         EACH(chunk, share.first, share.last, range) {
             const ptrdiff_t rows = n + solver->step.graph->ghosts;
-            double ts = 0.0, tt = dot_chunk(solver->t, solver->t, n, range);
-            for (int d = 0; d < 3; d++)
-                for (ptrdiff_t i = range.first; i < range.last; i++)
-                    ts += solver->t[d * n + i] * solver->s[d * rows + i];
-            put_sum(solver, 4, chunk, ts), put_sum(solver, 5, chunk, tt);
+            put_sum(solver, 4, chunk, dot_chunk(solver->t, n, solver->s, rows, range));
+            put_sum(solver, 5, chunk, dot_chunk(solver->t, n, solver->t, n, range));
         }
         team_wait(member);
-        const double square = sum_of(solver, 5);
-        omega = square > 0.0 ? sum_of(solver, 4) / square : 0.0;
+        const double square = whole_sum(solver, 5);
+        omega = square > 0.0 ? whole_sum(solver, 4) / square : 0.0;
         EACH(chunk, share.first, share.last, range) {
             double other;
             put_sum(solver, 0, chunk, advance_chunk(solver, alpha, omega, range, &other));
@@ -258,7 +247,7 @@ int solve_step(Solver *solver, Member member)
         EACH(chunk, share.red_first, share.red_last, range)
             put_sum(solver, 0, chunk, 0.0);
         team_wait(member);
-        residual = sum_of(solver, 0), turned = sum_of(solver, 1);
+        residual = whole_sum(solver, 0), turned = whole_sum(solver, 1);
         if (!(residual < INFINITY) || omega == 0.0)
             break;
     }

@@ -11,6 +11,7 @@
    than `sharp` moves with the mean of its neighbours. */
 #include "step.h"
 #include "elementary.h"
+#include "sums.h"
 #include <math.h>
 
 static const double LEAST_SPREAD = 0.1, MOST_SPREAD = 1e3; /* of the factor d */
@@ -211,8 +212,5 @@ double step_smooth(const Step *step, const double *values, double *out, double w
             around += values[g->odd_near[m]];
         out[i] = (1.0 - weight) * values[i] + weight * around / (double)count;
     }
-    double sum = 0.0;
-    for (ptrdiff_t i = first; i < last; i++)
-        sum += out[i];
-    return sum;
+    return sum_of(out + first, last - first);
 }
