@@ -54,6 +54,12 @@ def running_sums(values: Floats, count: int) -> Floats:
     return np.asarray(sum(values[k : last + k] for k in range(count)))
 
 
+def along_and_across(vectors: Floats, axis: Floats) -> tuple[Floats, Floats]:
+    """Return the coordinates (...) of vectors (..., 2) along `axis` (2,) and left of it, times its size."""
+    x, y = vectors[..., 0], vectors[..., 1]
+    return x * axis[0] + y * axis[1], y * axis[0] - x * axis[1]
+
+
 def middle(values: Floats) -> float:
     """Return the median of a one-dimensional array without NaN. np.median loads numpy.ma: 25 ms."""
     ordered, half = np.sort(values), len(values) // 2

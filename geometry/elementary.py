@@ -124,6 +124,8 @@ def angle(z: Any) -> Any:
 
 def power(x: Any, exponent: Any) -> Any:
     """Return `x` to the power `exponent`."""
+    if np.iscomplexobj(x):
+        return np.power(x, exponent)
     return _function_of_two(_native.powers_of, x, exponent)
 
 
@@ -144,21 +146,20 @@ def product(a: Any, b: Any) -> Any:
 
     Stacks of matrices `b` (..., inner, columns) are for short sums, which are made term by term.
     """
-    if np.iscomplexobj(a) or np.iscomplexobj(b):
-        return _complex_product(np.asarray(a), np.asarray(b))
-    left, right = np.asarray(a, np.float64), np.asarray(b, np.float64)
+    left, right = np.asarray(a), np.asarray(b)
+    if left.dtype.kind == "c" or right.dtype.kind == "c":
+        return _complex_product(left, right)
+    left, right = _doubles(left), _doubles(right)
     inner = left.shape[-1]
     if inner != right.shape[-2:][0]:
         raise ValueError(f"a product of arrays of shapes {left.shape} and {right.shape}")
     if right.ndim > 2:
         return _stacked_product(left, right)
-    rows = np.ascontiguousarray(left).reshape(math.prod(left.shape[:-1]), inner)
-    columns = np.ascontiguousarray(right).reshape(inner, math.prod(right.shape[1:]))
-    out = np.zeros((len(rows), columns.shape[1]))
+    rows, columns = left.shape[:-1], right.shape[1:]
+    out = np.zeros((math.prod(rows), math.prod(columns)))
     if out.size and inner:
-        _native.matrix_product(rows, columns, out)
-    answer = out.reshape(left.shape[:-1] + right.shape[1:])
-    return answer if answer.ndim else answer[()]
+        _native.matrix_product(left.reshape(-1, inner), right.reshape(inner, -1), out)
+    return out.reshape(rows + columns) if rows or columns else out[0, 0]
 
 
 matmul = product
@@ -184,7 +185,7 @@ def _function(name: bytes, x: Any) -> Any:
     values = np.asarray(x)
     if np.iscomplexobj(values):
         return getattr(np, name.decode())(values)
-    flat = np.ascontiguousarray(values, np.float64).reshape(-1)
+    flat = _doubles(values).reshape(-1)
     out = np.empty(flat.shape)
     if out.size:
         _native.elementary(name, flat, out)
@@ -193,11 +194,21 @@ def _function(name: bytes, x: Any) -> Any:
 
 def _function_of_two(kernel: Any, x: Any, y: Any) -> Any:
     one, two = np.broadcast_arrays(np.asarray(x), np.asarray(y))
-    a, b = (np.ascontiguousarray(v, np.float64).reshape(-1) for v in (one, two))
+    a, b = _doubles(one).reshape(-1), _doubles(two).reshape(-1)
     out = np.empty(a.shape)
     if out.size:
         kernel(a, b, out)
     return _shaped(out, one.shape, np.result_type(x, y))
+
+
+def _doubles(values: Any) -> Floats:
+    """Return an array as kernels read it, contiguous doubles; those of files may be odd in memory."""
+    answer = np.ascontiguousarray(values, np.float64)
+    if answer.dtype.byteorder == "=" and answer.flags.aligned:
+        return answer
+    copy = np.empty(answer.shape)
+    copy[...] = answer
+    return copy
 
 
 def _shaped(out: Floats, shape: tuple[int, ...], of: np.dtype[Any]) -> Any:

@@ -18,9 +18,9 @@ from meshonet.kernels import _native
 
 _SWEEPS = 60
 """Most sweeps of Jacobi rotations; they converge quadratically, in 4 to 10."""
-_SMALL = 2.0**-58
+_SMALL = 2**-58
 """What is left of the sizes of matrices where sweeps end: it changes no digit."""
-_RIGHT_ANGLE = 2.0**-50
+_RIGHT_ANGLE = 2**-50
 """Cosine of columns that count as orthogonal: what rounding leaves."""
 
 

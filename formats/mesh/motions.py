@@ -5,16 +5,19 @@ It is found from the nodes, since conventions of files differ in its sign.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.find_connections import TOLERANCE
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.linear import nearest_rotation
 
 LOOSE = 1e-3
 """Joined nodes may differ by this part of the shortest edge along their side."""
@@ -30,7 +33,7 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
     if own.shape != donor.shape:
         counts = (" x ".join(str(n - 1) for n in nodes.shape[:-1]) for nodes in (own, donor))
         raise InputError(f"{connection} joins {' cells to '.join(counts)}", "join equal counts, one to one")
-    edges = [np.linalg.norm(np.diff(own, axis=k), axis=-1) for k in range(own.ndim - 1)]
+    edges = [norms(np.diff(own, axis=k)) for k in range(own.ndim - 1)]
     edge = min(float(lengths.min()) for lengths in edges)
     own, donor = (nodes.reshape(-1, nodes.shape[-1]) for nodes in (own, donor))
     reach = max(LOOSE * edge, TOLERANCE * float(np.ptp(own, axis=0).max()))
@@ -66,14 +69,14 @@ def _motions(own: Floats, donor: Floats) -> Iterator[Motion]:
     rows = _turn(own, donor)
     if rows:
         shift = (donor - Motion((), rows)(own)).mean(axis=0).tolist()
-        about_origin = np.linalg.norm(shift) <= TOLERANCE * np.linalg.norm(own.mean(axis=0))
+        about_origin = math.hypot(*shift) <= TOLERANCE * math.hypot(*own.mean(axis=0))
         yield Motion((0.0,) * len(shift) if about_origin else tuple(shift), rows)
 
 
 def _turn(own: Floats, donor: Floats) -> tuple[tuple[float, ...], ...]:
     """Return the rows of the rotation matrix between two sides of nodes (n, d), none of sides of no size.
 
-    In space the rotation of least squares: Kabsch, Acta Crystallographica A32 (1976) 922.
+    In space the rotation of least squares.
     """
     if own.shape[1] == 2:
         here, there = (nodes[-1] - nodes[0] for nodes in (own, donor))
@@ -82,6 +85,5 @@ def _turn(own: Floats, donor: Floats) -> tuple[tuple[float, ...], ...]:
         turn = complex(*there) / complex(*here)
         turn /= abs(turn) or 1.0
         return (turn.real, -turn.imag), (turn.imag, turn.real)
-    u, _, v = np.linalg.svd((own - own.mean(axis=0)).T @ (donor - donor.mean(axis=0)))
-    sign = np.diag([1.0, 1.0, np.sign(np.linalg.det(v.T @ u.T)) or 1.0])
-    return tuple(map(tuple, (v.T @ sign @ u.T).tolist()))
+    rotation = nearest_rotation(product((donor - donor.mean(axis=0)).T, own - own.mean(axis=0)))
+    return tuple(map(tuple, rotation.tolist()))

@@ -14,6 +14,7 @@ As in the 1-to-1 interfaces of CGNS (Standard Interface Data Structures, 8.2).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
@@ -24,6 +25,7 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats, Side, Topology
 from meshonet.geometry.blocks.block import Range, face_counts, sides_of
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.linear import solve
 
 Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
 """Gives the nodes of a side of a block."""
@@ -61,8 +63,8 @@ class Motion:
         if not self.turn:
             return 0.0, np.zeros(2)
         turn = np.array(self.turn)
-        angle = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
-        return angle, np.linalg.solve(np.eye(2) - turn, self.translation) if angle else np.zeros(2)
+        angle = math.atan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
+        return angle, solve(np.eye(2) - turn, self.translation) if angle else np.zeros(2)
 
     def alike(self, other: Motion, tolerance: float) -> bool:
         """Return whether two motions carry nodes to the same place, to a part of the shifts."""

@@ -14,6 +14,7 @@ Blocks in space: `meshonet.geometry.blocks.meeting_sides`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -25,6 +26,7 @@ from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import PLACES, Block, Range
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.rounding import rounding
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 
@@ -32,7 +34,7 @@ TOLERANCE = 1e-6
 """Nodes are the same when they are no farther apart than this, in lengths of the shorter of two edges."""
 AROUND: tuple[tuple[Side, int], ...] = (("south", 1), ("east", 1), ("north", -1), ("west", -1))
 """Sides in counter-clockwise order, and whether that follows their nodes."""
-_DIRECTION = np.array([np.cos(0.7), np.sin(0.7)])
+_DIRECTION = np.array([math.cos(0.7), math.sin(0.7)])
 """Nodes are sorted along this direction, along which few grids have many of equal place."""
 
 _MOST = 0.25
@@ -128,7 +130,7 @@ def _edges(blocks: Sequence[Block], without: Iterable[Stretch]) -> _Edges:
 def _pairs(edges: _Edges, among: Indices, tolerance: float) -> tuple[Indices, Indices]:
     """Return pairs of edges, the first one of the lower number, that join the same nodes in opposite ways."""
     reach = edges.reach(tolerance)
-    place = 0.5 * (edges.start[among] + edges.end[among]) @ _DIRECTION
+    place = product(0.5 * (edges.start[among] + edges.end[among]), _DIRECTION)
     row = among[np.argsort(place, kind="stable")]
     ordered = np.sort(place, kind="stable")
     stop = np.searchsorted(ordered, ordered + reach[row], side="right")

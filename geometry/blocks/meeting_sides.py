@@ -22,6 +22,7 @@ from itertools import permutations, product
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.geometry import elementary
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import PLACES, Block, Range, form_of, sides_of
 from meshonet.geometry.blocks.connection import Connection
@@ -163,7 +164,7 @@ def _extended(corners: Floats) -> NDArray[np.bool_]:
 def _near(cells: _Cells, tolerance: float) -> tuple[Indices, Indices]:
     """Return pairs of cells, the first of the lower number, whose centres are in one place."""
     reach, centre = cells.reach(tolerance), cells.flat.mean(axis=1)
-    place = centre @ _DIRECTION
+    place = elementary.product(centre, _DIRECTION)
     row = np.argsort(place, kind="stable")
     ordered = place[row]
     stop = np.searchsorted(ordered, ordered + reach[row], side="right")

@@ -27,9 +27,9 @@ def rounding(values: Floats) -> Callable[[Floats], Floats]:
     with np.errstate(over="ignore"):
         odd = values[values != values.astype(np.float32)]
     if not len(odd):
-        return lambda size: np.asarray(size * 2.0**-23)
+        return lambda size: np.asarray(size * 2**-23)
     numbers = odd[:: max(1, len(odd) // _MOST)].tolist()
-    fixed = (10.0**-k for k in _DECIMALS if (values == np.round(values, k)).all())
-    relative = (10.0 ** (1 - k) for k in _DIGITS if all(v == float(f"{v:.{k - 1}e}") for v in numbers))
-    unit, part = next(fixed, 0.0), next(relative, 2.0**-50)
+    fixed = (10**-k for k in _DECIMALS if (values == np.round(values, k)).all())
+    relative = (10 ** (1 - k) for k in _DIGITS if all(v == float(f"{v:.{k - 1}e}") for v in numbers))
+    unit, part = next(fixed, 0.0), next(relative, 2**-50)
     return lambda size: np.maximum(unit, size * part)

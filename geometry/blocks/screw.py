@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.elementary import product
+from meshonet.geometry.linear import solve
 
 _NEARLY_HALF = 3.1
 """Angles beyond which the part that is not symmetric is too small to have a direction."""
@@ -41,24 +44,24 @@ def screw_of(motion: Motion) -> Screw:
     if motion.turn:
         turn[: len(motion.turn), : len(motion.turn)] = motion.turn
     angles = np.array(
-        [np.arctan2(turn[2, 1], turn[2, 2]), -np.arcsin(np.clip(turn[2, 0], -1.0, 1.0)),
-         np.arctan2(turn[1, 0], turn[0, 0])]
+        [math.atan2(turn[2, 1], turn[2, 2]), -math.asin(min(max(turn[2, 0], -1.0), 1.0)),
+         math.atan2(turn[1, 0], turn[0, 0])]
     )  # fmt: skip
     if len(motion.turn) < 3:
         angle, centre = motion.rotation
         rest = np.zeros(3) if angle else shift
         return Screw(angle, np.array([0.0, 0.0, 1.0]), np.append(centre, 0.0), rest, angles)
     twice = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
-    angle = float(np.arctan2(np.sqrt(twice @ twice), np.trace(turn) - 1.0))
+    angle = math.atan2(math.hypot(*twice), np.trace(turn) - 1.0)
     if not angle:
         return Screw(0.0, np.array([0.0, 0.0, 1.0]), np.zeros(3), shift, angles)
     axis = twice
     if angle > _NEARLY_HALF:
         columns = turn + np.eye(3)
         axis = columns[:, np.argmax((columns**2).sum(axis=0))]
-        axis = -axis if axis @ twice < 0 else axis
+        axis = -axis if product(axis, twice) < 0 else axis
     largest = axis[np.argmax(np.abs(axis))]
-    axis, angle = axis / np.copysign(np.sqrt(axis @ axis), largest), float(np.copysign(angle, largest))
-    along = (shift @ axis) * axis
-    centre = np.linalg.solve(np.eye(3) - turn + np.outer(axis, axis), shift - along)
+    axis, angle = axis / math.copysign(math.hypot(*axis), largest), math.copysign(angle, largest)
+    along = product(shift, axis) * axis
+    centre = solve(np.eye(3) - turn + np.outer(axis, axis), shift - along)
     return Screw(angle, axis, centre, along, angles)

@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,7 +17,7 @@ from itertools import combinations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import Floats, Side, norms
 from meshonet.geometry.blocks.block import PLACES, Block, face_counts, face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
@@ -63,7 +64,7 @@ class SixFaces:
                 raise InputError(problem, "give both as many")
             if not np.array_equal(own, donor):
                 at = int(np.argmax((own != donor).any(axis=-1)))
-                gap = np.linalg.norm(own - donor, axis=-1).max()
+                gap = norms(own - donor).max()
                 problem = f"{side} and {second} are {gap:.3g} apart along their common edge"
                 raise InputError(problem, "give both the same nodes", place=place_of(own[at]))
 
@@ -97,7 +98,7 @@ class SixFaces:
         """The diagonal of the box around all nodes."""
         low = np.min([face.min(axis=(0, 1)) for face in self.faces], axis=0)
         high = np.max([face.max(axis=(0, 1)) for face in self.faces], axis=0)
-        return float(np.linalg.norm(high - low))
+        return math.hypot(*(high - low))
 
     def edges_along(self, axis: int) -> list[Floats]:
         """Return the four edges (n, 3) along a direction.

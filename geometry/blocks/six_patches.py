@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import Floats, Side, norms
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.six_faces import FACES, SixFaces, edges, place_of, share_edges
@@ -68,7 +69,7 @@ def _vertices(patches: list[Floats]) -> Indices:
     corners = np.array([patch[:: len(patch) - 1, :: patch.shape[1] - 1] for patch in patches])
     shortest = min(_shortest(four.reshape(4, 3)) for four in corners)
     points = corners.reshape(24, 3)
-    apart = np.linalg.norm(points[:, None] - points[None], axis=-1)
+    apart = norms(points[:, None] - points[None])
     label = (apart <= _NEAR * shortest).argmax(axis=1)
     meeting = np.bincount(label, minlength=24)
     wrong = np.flatnonzero(meeting[label] != 3)
@@ -83,7 +84,7 @@ def _vertices(patches: list[Floats]) -> Indices:
 def _shortest(points: Floats) -> float:
     """Return the least distance of different points of (4, 3)."""
     first, second = np.triu_indices(4, 1)
-    return float(np.linalg.norm(points[first] - points[second], axis=1).min())
+    return float(norms(points[first] - points[second]).min())
 
 
 def _opposite(vertices: Indices, patch: int) -> int:
@@ -156,7 +157,7 @@ def _closed(faces: dict[Side, Floats], order: dict[Side, int]) -> tuple[str, ...
 
     Raises InputError: other counts, or a gap.
     """
-    size = np.linalg.norm(np.ptp(np.concatenate([face.reshape(-1, 3) for face in faces.values()]), axis=0))
+    size = math.hypot(*np.ptp(np.concatenate([face.reshape(-1, 3) for face in faces.values()]), axis=0))
     widest, where = 0.0, ""
     for side, second in edges():
         own, donor = (_edge(faces, *pair) for pair in ((side, second), (second, side)))
@@ -164,7 +165,7 @@ def _closed(faces: dict[Side, Floats], order: dict[Side, int]) -> tuple[str, ...
         if len(own) != len(donor):
             problem = f"{pair} have {len(own)} and {len(donor)} nodes along their common edge"
             raise InputError(problem, "give both as many", place=place_of(own[0]))
-        gaps = np.linalg.norm(own - donor, axis=1)
+        gaps = norms(own - donor)
         at = int(gaps.argmax())
         if gaps[at] > TOLERANCE * size:
             problem = f"{pair} are {gaps[at]:.3g} apart along their common edge, at node {at}"

@@ -17,6 +17,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.connection import wake_nodes
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import Crossing, find_crossings
 
@@ -75,7 +76,7 @@ def _shares_end(path: Floats, crossing: Crossing, ends: Floats) -> bool:
     if len(shared) != 1:
         return False
     ((at, u, v),) = shared
-    return bool((at == ends).all(axis=1).any() and (u[0] * v[1] != u[1] * v[0] or u @ v < 0))
+    return bool((at == ends).all(axis=1).any() and (u[0] * v[1] != u[1] * v[0] or product(u, v) < 0))
 
 
 def _where(boundary: Boundary, path: Floats, crossing: Crossing) -> str:

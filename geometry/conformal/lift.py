@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.elementary import functions_of
 from meshonet.geometry.errors import InputError
 from meshonet.kernels import _native
 
@@ -64,7 +65,7 @@ class Lift:
 
     def to_plane(self, w: Any, xp: Any = np) -> Any:
         """Return z for strip points w, any shape, of the module `xp`: numpy or torch."""
-        zeta = self.pole + xp.exp(w + 1j * self.phase)
+        zeta = self.pole + functions_of(xp).exp(w + 1j * self.phase)
         for corner in reversed(self.corners):
             zeta = corner.restore(zeta)
         return self.centre + self.quarter * (zeta + 1.0 / zeta)

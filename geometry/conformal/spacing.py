@@ -20,6 +20,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.conformal.lift import lift_body, mirrored
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import inner_slopes
+from meshonet.geometry.elementary import cos, exp, power
 from meshonet.geometry.errors import InputError
 
 ANGLES = 1024
@@ -67,7 +68,7 @@ def _dense(curve: Curve, marks: Floats) -> tuple[Floats, Floats]:
     for k, (a, b) in enumerate(pairwise(ends)):
         n = max(24, round(DENSE * np.sqrt((b - a) / curve.length)))
         v = np.arange(n) / n
-        s.append(a + (b - a) * 0.5 * (1.0 - np.cos(np.pi * v)))
+        s.append(a + (b - a) * 0.5 * (1.0 - cos(np.pi * v)))
         u.append(k + v)
     return np.concatenate([*s, [curve.length]]), np.concatenate([*u, [len(ends) - 1.0]])
 
@@ -76,7 +77,7 @@ def _circle_angle(phi: Floats, psi: Floats) -> Floats:
     """Return the circle's angle t at every wall point, 0 at the first and 2 pi at the last."""
     t = 2.0 * np.pi * np.arange(ANGLES) / ANGLES
     k = np.fft.rfftfreq(ANGLES, 1.0 / ANGLES)
-    conjugate = -1j * np.exp(-((k / (ANGLES / 3.0)) ** 8))
+    conjugate = -1j * exp(-power(k / (ANGLES / 3.0), 8))
     conjugate[0] = 0.0
     at = t.copy()
     for _ in range(ITERATIONS):
@@ -108,7 +109,7 @@ def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
     where = _monotone(t, u, at, periodic=False)
     k = np.minimum(where.astype(np.intp), round(u[-1]) - 1)
     ends = s[np.searchsorted(u, np.arange(round(u[-1]) + 1.0))]
-    knots = ends[k] + (ends[k + 1] - ends[k]) * 0.5 * (1.0 - np.cos(np.pi * (where - k)))
+    knots = ends[k] + (ends[k + 1] - ends[k]) * 0.5 * (1.0 - cos(np.pi * (where - k)))
     knots[0], knots[-1] = s[0], s[-1]
     on_mark = np.abs(where - np.round(where)) < 1e-9
     knots[on_mark] = ends[np.round(where[on_mark]).astype(np.intp)]

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, distinct, read_only
 from meshonet.geometry.curves.spline import spline_slopes
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices, find_corners
 from meshonet.kernels._native import curve_locate, curve_points, curve_slopes, curve_speeds
@@ -81,7 +82,7 @@ class Curve:
         inner, speed = np.empty((intervals, len(_INNER))), np.empty((intervals, len(_EDGES)))
         curve_speeds(self._cubic, _INNER, inner)
         curve_speeds(self._cubic, _EDGES, speed)
-        pieces = (inner.reshape(-1, _STEPS, 3) @ _WEIGHTS).ravel()
+        pieces = product(inner.reshape(-1, 3), _WEIGHTS)
         self._table: Floats = np.concatenate([[0.0], np.cumsum(pieces)])
         # dt/ds in units of the piece; at most 3 keeps the inverse monotone
         rate = pieces.reshape(-1, _STEPS) * _STEPS

@@ -6,12 +6,14 @@ Transactions on Graphics 27 (2008) 2; fourth order in the step.
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.path import Path
+from meshonet.geometry.elementary import cos, product, sin
 from meshonet.geometry.errors import InputError
 
 STEPS = 4
@@ -35,14 +37,14 @@ def frames_along(
     first = tangents[0]
     if up is None:
         up = np.array([0.0, 1.0, 0.0]) if abs(first[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
-    y = up - (up @ first) * first
-    size = float(np.linalg.norm(y))
-    if not size > 1e-6 * float(np.linalg.norm(up)):
+    y = up - product(up, first) * first
+    size = math.hypot(*y)
+    if not size > 1e-6 * math.hypot(*up):
         raise InputError("points along the path where it starts", "give another direction", parameter="up")
     y_axes = _reflected(points, tangents, y / size)
     if path.closed:
         x = np.cross(y_axes[-1], tangents[-1])
-        angle = np.arctan2(y_axes[0] @ x, y_axes[0] @ y_axes[-1])
+        angle = math.atan2(product(y_axes[0], x), product(y_axes[0], y_axes[-1]))
         y_axes = turned(y_axes, tangents, -angle * fine / path.length)
     y_axes, tangents = y_axes[::steps], tangents[::steps]
     return np.cross(y_axes, tangents), y_axes
@@ -51,7 +53,7 @@ def frames_along(
 def turned(y_axes: Floats, tangents: Floats, angle: Floats) -> Floats:
     """Return y axes (n, 3) turned about tangents (n, 3) by angles (n,) in radians, from x to y."""
     x_axes = np.cross(y_axes, tangents)
-    return np.cos(angle)[:, None] * y_axes - np.sin(angle)[:, None] * x_axes
+    return cos(angle)[:, None] * y_axes - sin(angle)[:, None] * x_axes
 
 
 def _reflected(points: Floats, tangents: Floats, y: Floats) -> Floats:
@@ -64,10 +66,10 @@ def _reflected(points: Floats, tangents: Floats, y: Floats) -> Floats:
     second = tangents[1:] - mirrored
     weight = (second * second).sum(axis=1)
     for k in range(len(step)):
-        y = y - (2.0 * (step[k] @ y) / size[k]) * step[k]
+        y = y - (2.0 * product(step[k], y) / size[k]) * step[k]
         if weight[k] > 0:
-            y = y - (2.0 * (second[k] @ y) / weight[k]) * second[k]
-        y = y - (y @ tangents[k + 1]) * tangents[k + 1]  # rounding
-        y = y / np.linalg.norm(y)
+            y = y - (2.0 * product(second[k], y) / weight[k]) * second[k]
+        y = y - product(y, tangents[k + 1]) * tangents[k + 1]  # rounding
+        y = y / math.hypot(*y)
         axes[k + 1] = y
     return axes

@@ -6,14 +6,17 @@ the centre of the circle that fits it there, 1/radius long.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.spline import open_slopes, periodic_slopes
+from meshonet.geometry.elementary import cos, product, sin
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.linear import gauss_legendre
 
 
 class Places(NamedTuple):
@@ -35,7 +38,7 @@ class Path(Protocol):
         ...
 
 
-_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+_GAUSS, _WEIGHTS = gauss_legendre(5)
 _PARTS = 16  # of an interval in the table of arc length
 
 
@@ -57,7 +60,7 @@ class SplinePath:
         self._points = nodes = _checked(points)
         self.closed = bool(len(nodes) > 3 and np.array_equal(nodes[0], nodes[-1]))
         chord = np.diff(nodes, axis=0)
-        h = np.linalg.norm(chord, axis=1)
+        h = norms(chord)
         if self.closed:
             start = periodic_slopes(chord, h)
             stop = np.roll(start, -1, axis=0)
@@ -67,8 +70,8 @@ class SplinePath:
         self._cubic = np.stack([nodes[:-1], a, 3 * chord - 2 * a - b, a + b - 2 * chord])
         edges = np.arange(_PARTS) / _PARTS
         t = (edges[:, None] + (0.5 + 0.5 * _GAUSS) / _PARTS).ravel()
-        speed = np.linalg.norm(self._derivative(np.arange(len(h))[:, None], t[None, :]), axis=-1)
-        pieces = speed.reshape(len(h), _PARTS, -1) @ (0.5 * _WEIGHTS / _PARTS)
+        speed = norms(self._derivative(np.arange(len(h))[:, None], t[None, :]))
+        pieces = product(speed.reshape(len(h), _PARTS, -1), 0.5 * _WEIGHTS / _PARTS)
         self._table = np.concatenate([[0.0], np.cumsum(pieces)])
         self.length = float(self._table[-1])
 
@@ -80,7 +83,7 @@ class SplinePath:
         points = a + u * (b + u * (c + u * d))
         points = np.where(u == 1.0, self._points[i + 1], points)
         first, second = b + u * (2 * c + 3 * u * d), 2 * c + 6 * u * d
-        speed = np.linalg.norm(first, axis=1, keepdims=True)
+        speed = norms(first)[:, None]
         tangents = first / speed
         bend = second - (second * tangents).sum(axis=1, keepdims=True) * tangents
         return Places(points, tangents, bend / speed**2)
@@ -94,9 +97,9 @@ class SplinePath:
         t = low + (s - self._table[k]) / piece / _PARTS
         for _ in range(4):
             inner = low[:, None] + (t - low)[:, None] * (0.5 + 0.5 * _GAUSS)
-            speed = np.linalg.norm(self._derivative(i[:, None], inner), axis=-1)
-            arc = self._table[k] + (t - low) * (speed @ (0.5 * _WEIGHTS))
-            here = np.linalg.norm(self._derivative(i, t), axis=-1)
+            speed = norms(self._derivative(i[:, None], inner))
+            arc = self._table[k] + (t - low) * product(speed, 0.5 * _WEIGHTS)
+            here = norms(self._derivative(i, t))
             t = np.clip(t + (s - arc) / here, 0.0, 1.0)
         t = np.where(s >= self.length, 1.0, t)
         return i, np.asarray(np.where(s <= 0.0, 0.0, t))
@@ -143,7 +146,7 @@ class PiecedPath:
             normal = np.zeros(3)
             if piece.radius:
                 towards = np.array(piece.towards, dtype=np.float64)
-                normal = _unit(towards - (towards @ tangent) * tangent, f"the bend of pieces[{k}]")
+                normal = _unit(towards - product(towards, tangent) * tangent, f"the bend of pieces[{k}]")
             tangents.append(tangent)
             normals.append(normal)
             end = _on_piece(starts[-1], tangent, normal, piece.radius, np.array([piece.length]))
@@ -179,7 +182,7 @@ def _on_piece(start: Floats, tangent: Floats, normal: Floats, radius: float, s: 
     if radius == 0:
         straight = np.broadcast_to(tangent, (len(s), 3))
         return Places(start + s[:, None] * tangent, straight, np.zeros((len(s), 3)))
-    c, d = np.cos(s / radius)[:, None], np.sin(s / radius)[:, None]
+    c, d = cos(s / radius)[:, None], sin(s / radius)[:, None]
     inwards = c * normal - d * tangent
     return Places(
         start + radius * (d * tangent + (1 - c) * normal), c * tangent + d * normal, inwards / radius
@@ -187,7 +190,7 @@ def _on_piece(start: Floats, tangent: Floats, normal: Floats, radius: float, s: 
 
 
 def _unit(vector: Floats, what: str) -> Floats:
-    length = float(np.linalg.norm(vector))
+    length = math.hypot(*vector)
     if not 1e-9 < length < 1e150:
         raise InputError(f"{what} has no direction", "give three numbers, not along the path, not all 0")
     return vector / length

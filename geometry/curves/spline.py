@@ -12,6 +12,7 @@ and one at its end, which differ from the neighbours' at corners only.
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.polygon.corners import Indices, angle_between, turning
 from meshonet.kernels._native import solve_tridiagonal
 
@@ -181,6 +182,6 @@ def _turned(slope: Floats, chord: Floats, least: Floats, most: Floats) -> Floats
     unit = chord[wrong] / np.hypot(chord[wrong, 0], chord[wrong, 1])[:, None]
     a = np.clip(angle[wrong], least[wrong], most[wrong])
     length = np.minimum(size[wrong], LONGEST)
-    out[wrong, 0] = length * (unit[:, 0] * np.cos(a) - unit[:, 1] * np.sin(a))
-    out[wrong, 1] = length * (unit[:, 0] * np.sin(a) + unit[:, 1] * np.cos(a))
+    out[wrong, 0] = length * (unit[:, 0] * cos(a) - unit[:, 1] * sin(a))
+    out[wrong, 1] = length * (unit[:, 0] * sin(a) + unit[:, 1] * cos(a))
     return out

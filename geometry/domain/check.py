@@ -7,6 +7,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import Indices
@@ -96,7 +97,7 @@ def _first_crossing(domain: Domain) -> Crossing | None:
 
 def _turns_back(a: Floats, b: Floats, c: Floats) -> bool:
     u, v = b - a, c - b
-    return bool(u[0] * v[1] == u[1] * v[0] and u @ v < 0)
+    return bool(u[0] * v[1] == u[1] * v[0] and product(u, v) < 0)
 
 
 def _raise_crossing(domain: Domain, crossing: Crossing) -> None:

@@ -4,6 +4,7 @@ Ellipses, polygons, rounded ones, stars, rounded rectangles and bullets, anywher
 rectangles, polygons and rounded rectangles 1.6 to 25 times their size, turned by any angle.
 """
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import angle, cos, exp, power, product, sin
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.along_curve import on_corners
@@ -40,15 +42,15 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
         if placed is None:
             continue
         far = Ring(far.points - placed, far.corners)
-        if not np.all(np.diff(np.unwrap(np.angle(far.points))) > 0.0):
+        if not np.all(np.diff(np.unwrap(angle(far.points))) > 0.0):
             continue  # the far field is seen whole from the body
         laws = _law(rng), _law(rng) if rng.random() < 0.3 else _even
         start, twist = rng.random() * 2 * np.pi, rng.normal(0.0, 0.12) if rng.random() < 0.4 else 0.0
-        turn = np.exp(2j * np.pi * rng.random())
+        turn = exp(2j * np.pi * rng.random())
         break
     first = _facing(body.points, start)
     south = _nodes(body, first, laws[0], ni) * turn
-    north = _nodes(far, _facing(far.points, float(np.angle(body.points[first])) + twist), laws[1], ni) * turn
+    north = _nodes(far, _facing(far.points, float(angle(body.points[first])) + twist), laws[1], ni) * turn
     walls = as_nodes(south), as_nodes(north)
     cut = straight(walls[0][0], walls[1][0], nj)
     return Boundary(walls[0], walls[1], cut, cut, topology="o")
@@ -69,7 +71,7 @@ def _placed_within(body: Ring, far: Ring, rng: np.random.Generator) -> complex |
 
 def _around(ring: Complexes, point: complex) -> bool:
     off = ring - point
-    return bool(abs(np.angle(np.roll(off, -1) / off).sum()) > np.pi)
+    return bool(abs(angle(np.roll(off, -1) / off).sum()) > np.pi)
 
 
 def _even(q: Floats) -> Floats:
@@ -83,12 +85,12 @@ def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
     k = np.arange(1, 4)
     heights = rng.uniform(0.0, 0.6) * rng.dirichlet(np.ones(3)) / (2 * np.pi * k)
     phases = rng.uniform(0.0, 2 * np.pi, 3)
-    return lambda q: q + (np.sin(2 * np.pi * np.outer(q, k) + phases) - np.sin(phases)) @ heights
+    return lambda q: q + product(sin(2 * np.pi * np.outer(q, k) + phases) - sin(phases), heights)
 
 
-def _facing(ring: Complexes, angle: float) -> int:
-    """Return the index of the outermost point of a ring at about `angle` (radians) as seen from 0."""
-    off = np.abs(np.angle(ring * np.exp(-1j * angle)))
+def _facing(ring: Complexes, direction: float) -> int:
+    """Return the index of the outermost point of a ring in a `direction` (radians) as seen from 0."""
+    off = np.abs(angle(ring * exp(-1j * direction)))
     near = np.flatnonzero(off < off.min() + 2 * np.pi / len(ring))
     return int(near[np.argmax(np.abs(ring[near]))])
 
@@ -120,14 +122,14 @@ def _body(rng: np.random.Generator) -> Ring:
 def _far(rng: np.random.Generator) -> Ring:
     kinds = _ellipse, _rectangle, _polygon, _superellipse
     ring = kinds[rng.choice(len(kinds), p=(0.45, 0.35, 0.08, 0.12))](rng)
-    size = np.exp(rng.uniform(np.log(1.6), np.log(25.0)))
+    size = math.exp(rng.uniform(math.log(1.6), math.log(25.0)))
     return Ring(size * ring.points / np.abs(ring.points).mean(), ring.corners)
 
 
 def _stretched(z: Complexes, most: float, rng: np.random.Generator) -> Complexes:
     """Return a curve lengthened along an axis, up to `most` times, a third of the time not at all."""
-    ratio = np.exp(rng.uniform(0.0, 0.5 * np.log(most))) if rng.random() < 2 / 3 else 1.0
-    return (z.real * ratio + 1j * z.imag / ratio) * np.exp(2j * np.pi * rng.random())
+    ratio = math.exp(rng.uniform(0.0, 0.5 * math.log(most))) if rng.random() < 2 / 3 else 1.0
+    return (z.real * ratio + 1j * z.imag / ratio) * exp(2j * np.pi * rng.random())
 
 
 def _angles() -> Floats:
@@ -135,34 +137,34 @@ def _angles() -> Floats:
 
 
 def _ellipse(rng: np.random.Generator) -> Ring:
-    return Ring(_stretched(np.exp(1j * _angles()), 4.0, rng))
+    return Ring(_stretched(exp(1j * _angles()), 4.0, rng))
 
 
 def _superellipse(rng: np.random.Generator) -> Ring:
-    t, power = _angles(), 2.0 / np.exp(rng.uniform(np.log(2.5), np.log(8.0)))
-    x, y = np.cos(t), np.sin(t)
-    z = np.sign(x) * np.abs(x) ** power + 1j * np.sign(y) * np.abs(y) ** power
+    t, exponent = _angles(), 2.0 / math.exp(rng.uniform(math.log(2.5), math.log(8.0)))
+    x, y = cos(t), sin(t)
+    z = np.sign(x) * power(np.abs(x), exponent) + 1j * np.sign(y) * power(np.abs(y), exponent)
     return Ring(_stretched(_even_steps(z), 3.0, rng))
 
 
 def _star(rng: np.random.Generator) -> Ring:
     t, k = _angles(), np.arange(2, 8)
-    heights = rng.normal(size=6) / k ** rng.uniform(1.0, 2.0) * rng.uniform(0.1, 0.9)
-    radius = np.exp(np.cos(np.outer(t, k) + rng.uniform(0, 2 * np.pi, 6)) @ heights * 0.7)
-    return Ring(_stretched(_even_steps(radius * np.exp(1j * t)), 1.5, rng))
+    heights = rng.normal(size=6) / power(k, rng.uniform(1.0, 2.0)) * rng.uniform(0.1, 0.9)
+    radius = exp(product(cos(np.outer(t, k) + rng.uniform(0, 2 * np.pi, 6)), heights) * 0.7)
+    return Ring(_stretched(_even_steps(radius * exp(1j * t)), 1.5, rng))
 
 
 def _bullet(rng: np.random.Generator) -> Ring:
     """Return an arc of a circle closed by straight pieces: a D, or a bullet with a flat base."""
     reach = rng.uniform(0.35, 0.6) * np.pi
-    arc = np.exp(1j * np.linspace(-reach, reach, 60))
+    arc = exp(1j * np.linspace(-reach, reach, 60))
     length = rng.uniform(0.0, 1.6) if rng.random() < 0.6 else 0.0
     tail = [arc[-1] - length, arc[0] - length] if length > 0.05 else []
     return _through(_stretched(np.append(arc, tail), 1.5, rng))
 
 
 def _rectangle(rng: np.random.Generator) -> Ring:
-    ratio = np.exp(0.5 * rng.uniform(0.0, np.log(4.0))) if rng.random() < 0.6 else 1.0
+    ratio = math.exp(0.5 * rng.uniform(0.0, math.log(4.0))) if rng.random() < 0.6 else 1.0
     corners = np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j])
     return _through(corners.real * ratio + 1j * corners.imag / ratio)
 
@@ -174,9 +176,9 @@ def _polygon(rng: np.random.Generator) -> Ring:
     count = int(rng.integers(3, 9))
     t = 2 * np.pi * np.arange(count) / count
     if draw < 0.5:
-        return _through(_stretched(np.exp(1j * t), 2.5, rng))
+        return _through(_stretched(exp(1j * t), 2.5, rng))
     t = t + rng.uniform(-0.3, 0.3, count) * 2 * np.pi / count
-    return _through(_stretched(rng.uniform(0.6, 1.2, count) * np.exp(1j * t), 2.0, rng))
+    return _through(_stretched(rng.uniform(0.6, 1.2, count) * exp(1j * t), 2.0, rng))
 
 
 def _rounded(rng: np.random.Generator) -> Ring:
@@ -196,7 +198,7 @@ def _through(corners: Complexes) -> Ring:
     edges = np.roll(corners, -1) - corners
     share = np.maximum(np.round(FINE * np.abs(edges) / np.abs(edges).sum()).astype(int), 1)
     z = np.concatenate([a + e * np.arange(n) / n for a, e, n in zip(corners, edges, share, strict=True)])
-    turn = np.abs(np.angle(edges / np.roll(edges, 1)))
+    turn = np.abs(angle(edges / np.roll(edges, 1)))
     first = np.concatenate([[0], np.cumsum(share)[:-1]])
     return Ring(z, tuple(int(k) for k in first[turn > BEND]))
 

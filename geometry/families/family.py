@@ -11,6 +11,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.far_field import far_circle, straight
 from meshonet.geometry.spacing.along_curve import on_corners
@@ -81,7 +82,7 @@ def arch(height: float, ni: int, nj: int) -> Boundary:
     Nodes at equal steps of x on top and bottom.
     """
     x = np.linspace(0.0, 1.0, ni)
-    top = np.stack([x, 1.0 + height * np.sin(np.pi * x)], axis=1)
+    top = np.stack([x, 1.0 + height * sin(np.pi * x)], axis=1)
     top[-1] = 1.0, 1.0
     return _upright(polyline([(0.0, 0.0), (1.0, 0.0)], ni), top, nj, f"arch-{height:.6g}")
 
@@ -137,8 +138,8 @@ def semicircle(centre: float, ni: int, nj: int) -> Boundary:
     s = on_corners(np.linspace(0.0, whole, ni), np.array([first, first + arc]))
     angle = np.clip((s - first) / radius, 0.0, np.pi)
     behind = s >= first + arc
-    x = np.where(s <= first, s, np.where(behind, s - whole + length, centre - radius * np.cos(angle)))
-    y = np.where((s > first) & (s < first + arc), radius * np.sin(angle), 0.0)
+    x = np.where(s <= first, s, np.where(behind, s - whole + length, centre - radius * cos(angle)))
+    y = np.where((s > first) & (s < first + arc), radius * sin(angle), 0.0)
     south = np.stack([x, y], axis=1)
     south[0], south[-1] = (0.0, 0.0), (length, 0.0)
     return _upright(south, polyline([(0.0, 1.0), (length, 1.0)], ni), nj, f"semicircle-{centre:.6g}")
@@ -151,7 +152,7 @@ def airfoil(ratio: float, ni: int, nj: int) -> Boundary:
     from meshonet.geometry.shapes.airfoil.naca import POINTS, thickness
     from meshonet.geometry.spacing.sampling import Sampling
 
-    x = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, POINTS))
+    x = 0.5 - 0.5 * cos(np.linspace(0.0, np.pi, POINTS))
     half = thickness(x, ratio, sharp=True)
     upper, lower = np.stack([x, half], axis=1), np.stack([x, -half], axis=1)
     section = Airfoil(np.concatenate([upper[::-1], lower[1:]]), f"airfoil-{ratio:.6g}")

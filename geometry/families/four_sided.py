@@ -5,12 +5,14 @@ circle; some domains are drawn out to a tail, bent around a centre or warped as 
 evenly or clustered.
 """
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import angle, exp, expm1, power, product, sin, tanh
 from meshonet.geometry.families.bodies import arc_lengths, as_nodes, at_lengths
 from meshonet.geometry.polygon.self_intersection import find_crossing
 
@@ -51,7 +53,7 @@ def _sides(rng: np.random.Generator) -> list[Complexes]:
     if rng.random() < 0.35:  # to a tail
         pulled = rng.integers(4)
         corners[pulled] += rng.uniform(0.3, 1.2) * (CORNERS[pulled] - CORNERS.mean())
-    stretch = np.exp(0.5 * rng.uniform(-0.9, 0.9))
+    stretch = math.exp(0.5 * rng.uniform(-0.9, 0.9))
     corners = corners.real * stretch + 1j * corners.imag / stretch
     swing = rng.choice([0.35, 0.7, 1.0], p=[0.4, 0.35, 0.25])
     sides = [_side(corners[a], corners[b], swing, rng) for a, b in ENDS]
@@ -59,7 +61,7 @@ def _sides(rng: np.random.Generator) -> list[Complexes]:
         sides = _bent(sides, rng)
     if rng.random() < 0.25:
         middle = np.concatenate(sides).mean()
-        by = rng.normal(0, 0.12) * np.exp(2j * np.pi * rng.random())
+        by = rng.normal(0, 0.12) * exp(2j * np.pi * rng.random())
         sides = [(side - middle) + by * (side - middle) ** 2 for side in sides]
     return sides
 
@@ -78,8 +80,8 @@ def _straight(t: Floats, rng: np.random.Generator) -> Floats:  # noqa: ARG001 - 
 
 def _wave(t: Floats, rng: np.random.Generator) -> Floats:
     k = np.arange(1, 9)
-    heights = rng.normal(size=8) / k ** rng.uniform(1.2, 2.2) * rng.uniform(0.05, 0.5)
-    return np.asarray(heights @ np.sin(np.pi * np.outer(k, t)))
+    heights = rng.normal(size=8) / power(k, rng.uniform(1.2, 2.2)) * rng.uniform(0.05, 0.5)
+    return np.asarray(product(heights, sin(np.pi * np.outer(k, t))))
 
 
 def _bow(t: Floats, rng: np.random.Generator) -> Floats:
@@ -94,7 +96,7 @@ def _kinks(t: Floats, rng: np.random.Generator) -> Floats:
 
 def _bump(t: Floats, rng: np.random.Generator) -> Floats:
     at, width = rng.uniform(0.2, 0.8), rng.uniform(0.05, 0.25)
-    bell = np.exp(-(((t - at) / width) ** 2))
+    bell = exp(-(((t - at) / width) ** 2))
     return np.asarray(rng.uniform(-0.35, 0.4) * (bell - bell[0] * (1 - t) - bell[-1] * t))
 
 
@@ -120,7 +122,7 @@ def _bent(sides: list[Complexes], rng: np.random.Generator) -> list[Complexes]:
     middle = 0.5 * (every.real.min() + every.real.max())
     inner = every.imag.min() if up > 0 else every.imag.max()
     return [
-        (radius + up * (side.imag - inner)) * np.exp(1j * up * (np.pi / 2 - (side.real - middle) / radius))
+        (radius + up * (side.imag - inner)) * exp(1j * up * (np.pi / 2 - (side.real - middle) / radius))
         for side in sides
     ]
 
@@ -130,13 +132,13 @@ def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
     draw = rng.random()
     if draw < 0.25:
         shift = rng.uniform(-0.12, 0.12)
-        return lambda q: np.asarray(q + shift * np.sin(2 * np.pi * q))
+        return lambda q: np.asarray(q + shift * sin(2 * np.pi * q))
     if draw < 0.4:
         pull = rng.uniform(0.3, 1.6) * rng.choice([-1.0, 1.0])
-        return lambda q: np.asarray(np.expm1(pull * q) / np.expm1(pull))
+        return lambda q: np.asarray(expm1(pull * q) / math.expm1(pull))
     if draw < 0.5:
         both = rng.uniform(0.3, 1.4)
-        return lambda q: np.asarray(0.5 * (1 + np.tanh(both * (2 * q - 1)) / np.tanh(both)))
+        return lambda q: np.asarray(0.5 * (1 + tanh(both * (2 * q - 1)) / math.tanh(both)))
     return lambda q: q
 
 
@@ -158,6 +160,6 @@ def _usable(sides: list[Complexes]) -> bool:
         (north[-2] - north[-1], east[-2] - east[-1]),
         (west[-2] - west[-1], north[1] - north[0]),
     )
-    if not all(LEAST < np.angle(v / u) < MOST for u, v in corners):
+    if not all(LEAST < angle(v / u) < MOST for u, v in corners):
         return False
     return find_crossing(as_nodes(outline)) is None

@@ -7,16 +7,19 @@ maps of a circle. Nothing here is taken from a collection of real airfoils.
 Kulfan, J. Aircraft 45 (2008) 142 (CST); Milne-Thomson, Theoretical Aerodynamics (1966) 7.32 (Karman-Trefftz).
 """
 
+import cmath
+import math
 from dataclasses import replace
-from math import comb
 from typing import Any
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import angle, arctan, cos, exp, power, product, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.naca import thickness
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.laws import Spacing
 from meshonet.geometry.spacing.sampling import Sampling
@@ -32,7 +35,7 @@ def boundary(rng: np.random.Generator, ni: int, nj: int, spacing: Spacing | None
     """
     while True:
         settings: dict[str, Any] = {"spacing": spacing} if spacing else {}
-        far_field = float(np.exp(rng.uniform(np.log(4.0), np.log(60.0))))
+        far_field = math.exp(rng.uniform(math.log(4.0), math.log(60.0)))
         try:
             airfoil = Airfoil(_section(rng), "procedural")
             settings = settings or _spacing(rng)
@@ -42,11 +45,11 @@ def boundary(rng: np.random.Generator, ni: int, nj: int, spacing: Spacing | None
         return _turned(edges, float(rng.normal(0.0, 0.08))) if rng.random() < 0.5 else edges
 
 
-def _turned(edges: Boundary, angle: float) -> Boundary:
-    """Return the boundary with its far field turned by `angle` (radians) about its middle: a sheared grid."""
+def _turned(edges: Boundary, around: float) -> Boundary:
+    """Return the boundary with its far field turned by `around` (radians): a sheared grid."""
     middle = 0.5 * (edges.north.min(axis=0) + edges.north.max(axis=0))
-    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    north = middle + (edges.north - middle) @ turn
+    c, s = math.cos(around), math.sin(around)
+    north = middle + product(edges.north - middle, [[c, s], [-s, c]])
     north[-1] = north[0]
     cut = straight(edges.south[0], north[0], edges.nj)
     return replace(edges, north=north, west=cut, east=cut)
@@ -61,7 +64,7 @@ def _spacing(rng: np.random.Generator) -> dict[str, Any]:
     steps: dict[str, Any] = {"spacing": "tanh"}
     for name in ("le_spacing", "te_spacing"):
         if rng.random() < 0.8:
-            steps[name] = float(np.exp(rng.uniform(np.log(5e-4), np.log(1.5e-2))))
+            steps[name] = math.exp(rng.uniform(math.log(5e-4), math.log(1.5e-2)))
     return steps
 
 
@@ -82,16 +85,15 @@ def _naca(rng: np.random.Generator) -> Floats:
     t, p = rng.uniform(0.04, 0.26), rng.uniform(0.2, 0.6)
     m = 0.0 if rng.random() < 0.3 else rng.uniform(0.0, 0.08)
     x = _cosine()
-    last = rng.choice([-0.1015, -0.1036])
-    half = 5 * t * (0.2969 * np.sqrt(x) - 0.1260 * x - 0.3516 * x**2 + 0.2843 * x**3 + last * x**4)
+    half = thickness(x, t, sharp=bool(rng.choice([False, True])))
     front = x < p
     camber = m * np.where(front, (2 * p * x - x * x) / p**2, (1 - 2 * p + 2 * p * x - x * x) / (1 - p) ** 2)
-    slope = np.arctan(2 * m * (p - x) / np.where(front, p**2, (1 - p) ** 2))
+    slope = arctan(2 * m * (p - x) / np.where(front, p**2, (1 - p) ** 2))
     return _joined(
-        x - half * np.sin(slope),
-        camber + half * np.cos(slope),
-        x + half * np.sin(slope),
-        camber - half * np.cos(slope),
+        x - half * sin(slope),
+        camber + half * cos(slope),
+        x + half * sin(slope),
+        camber - half * cos(slope),
     )
 
 
@@ -106,22 +108,24 @@ def _cst(rng: np.random.Generator) -> Floats:
     )
     camber[0] *= 0.3
     gap = 0.5 * rng.choice([0.0, 0.0, rng.uniform(0, 0.004), rng.uniform(0, 0.02), rng.uniform(0.0, 0.08)])
-    bernstein = np.array([comb(ORDER, i) * x**i * (1 - x) ** (ORDER - i) for i in range(ORDER + 1)])
+    bernstein = np.array(
+        [math.comb(ORDER, i) * power(x, i) * power(1 - x, ORDER - i) for i in range(ORDER + 1)]
+    )
     shape = np.sqrt(x) * (1 - x)
-    half, middle = shape * (thick @ bernstein) + x * gap, shape * (camber @ bernstein)
+    half, middle = shape * product(thick, bernstein) + x * gap, shape * product(camber, bernstein)
     return _joined(x, middle + half, x, middle - half)
 
 
 def _karman_trefftz(rng: np.random.Generator) -> Floats:
     k = 2.0 - np.radians(rng.uniform(0, 20)) / np.pi
     centre = -rng.uniform(0.03, 0.22) + 1j * rng.uniform(-0.02, 0.2)
-    start = np.angle(1 - centre)
-    z = centre + abs(1 - centre) * np.exp(1j * (start + np.linspace(0, 2 * np.pi, 2 * POINTS)))[1:-1]
+    start = cmath.phase(1 - centre)
+    z = centre + abs(1 - centre) * exp(1j * (start + np.linspace(0, 2 * np.pi, 2 * POINTS)))[1:-1]
     ratio = (z - 1) / (z + 1)
-    angle = np.unwrap(np.angle(ratio))
-    angle -= 2 * np.pi * np.round((angle[len(angle) // 2] - np.pi) / (2 * np.pi))
-    power = np.abs(ratio) ** k * np.exp(1j * k * angle)
-    w = np.concatenate([[k], k * (1 + power) / (1 - power), [k]])
+    around = np.unwrap(angle(ratio))
+    around -= 2 * np.pi * np.round((around[len(around) // 2] - np.pi) / (2 * np.pi))
+    raised = power(np.abs(ratio), k) * exp(1j * k * around)
+    w = np.concatenate([[k], k * (1 + raised) / (1 - raised), [k]])
     return np.stack([w.real, w.imag], axis=1)
 
 
@@ -129,17 +133,17 @@ def _as_found(rng: np.random.Generator, points: Floats) -> Floats:
     """Return fewer points, with noise of the size that digitised sections have."""
     n, keep = len(points), int(rng.integers(25, 90))
     q = np.linspace(0, 1, keep)
-    even, ends = q * (n - 1), np.sin(np.pi * q) ** 2 * 0.5 * (n - 1)
+    even, ends = q * (n - 1), sin(np.pi * q) ** 2 * 0.5 * (n - 1)
     k = np.round(0.6 * even + 0.4 * np.where(q < 0.5, ends, n - 1 - ends)).astype(int)
     k = np.unique(np.r_[0, k, np.argmin(points[:, 0]), n - 1])
     sampled = points[k].copy()
     inner = np.clip(4 * sampled[:, 0] * (1 - sampled[:, 0]), 0, 1)
-    sampled[:, 1] += 10 ** rng.uniform(-5.5, -4.2) * rng.normal(size=len(sampled)) * inner
+    sampled[:, 1] += math.pow(10.0, rng.uniform(-5.5, -4.2)) * rng.normal(size=len(sampled)) * inner
     return sampled
 
 
 def _cosine() -> Floats:
-    return np.asarray(0.5 * (1 - np.cos(np.linspace(0, np.pi, POINTS))))
+    return np.asarray(0.5 * (1 - cos(np.linspace(0, np.pi, POINTS))))
 
 
 def _joined(xu: Floats, yu: Floats, xl: Floats, yl: Floats) -> Floats:

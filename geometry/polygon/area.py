@@ -1,6 +1,7 @@
 """The area of a polygon, and the sizes whose areas can be computed."""
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 
 
@@ -11,8 +12,8 @@ def polygon_area(points: Floats) -> float:
     >>> polygon_area(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]]))
     2.0
     """
-    x, y = (points - points[0]).T
-    return float(0.5 * (x[:-1] @ y[1:] - x[1:] @ y[:-1]))  # the first point, now 0, closes it with nothing
+    x, y = (points - points[0]).T  # the first point, now 0, closes it with nothing
+    return float(0.5 * (product(x[:-1], y[1:]) - product(x[1:], y[:-1])))
 
 
 def check_extent(extent: float) -> None:

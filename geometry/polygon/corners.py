@@ -6,7 +6,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, along_and_across
+from meshonet.geometry.elementary import arctan2
 
 Indices: TypeAlias = NDArray[np.intp]
 
@@ -28,7 +29,7 @@ FEW = 12
 def angle_between(a: Floats, b: Floats) -> Floats:
     """Return the angles (n,) in radians from vectors `a` to `b`, both (n, 2), left positive."""
     (ax, ay), (bx, by) = a.T, b.T
-    return np.asarray(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
+    return np.asarray(arctan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
 def turning(points: Floats, *, closed: bool = False) -> Floats:
@@ -107,8 +108,8 @@ def _widens_on(points: Floats, k: int) -> bool:
     a, b = points[np.arange(k, k - 3, -1) % n], points[np.arange(k + 1, k + 4) % n]
     middle = 0.5 * (a + b) - 0.5 * (a[0] + b[0])
     axis = middle[2] / max(math.hypot(*middle[2]), 1e-300)
-    width = np.abs((a - b) @ np.array([-axis[1], axis[0]]))
-    along = middle @ axis
+    width = np.abs(along_and_across(a - b, axis)[1])
+    along = along_and_across(middle, axis)[0]
     rates = np.diff(width) * np.diff(along)[::-1]  # both times the product of the two distances
     return bool(rates[1] >= WIDENS * rates[0])
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.kernels._native import crossing_segments
 
@@ -68,7 +69,7 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
 
 def sweep_spans(p: Floats, end: Floats) -> tuple[Floats, Floats]:
     """Return where (m,) the segments from `p` to `end` start and stop along the sweep, rounded outwards."""
-    along, along_end = p[: len(end)] @ _SWEEP, end @ _SWEEP
+    along, along_end = product(p[: len(end)], _SWEEP), product(end, _SWEEP)
     low, top = np.minimum(along, along_end), np.maximum(along, along_end)
     top += _ROUNDING * max(
         np.abs(along).max(initial=0.0), np.abs(along_end).max(initial=0.0)
@@ -102,9 +103,10 @@ def shared_point(p: Floats, end: Floats, i: int, j: int) -> tuple[float, float]:
         t = min(max((w[0] * s[1] - w[1] * s[0]) / across, 0.0), 1.0)
         x, y = a + t * r
     else:
-        along = r / (r @ r)
+        along = r / product(r, r)
         inside = sorted(
-            [(0.0, a), (1.0, b), (float(w @ along), c), (float((d - a) @ along), d)], key=lambda q: q[0]
+            [(0.0, a), (1.0, b), (float(product(w, along)), c), (float(product(d - a, along)), d)],
+            key=lambda q: q[0],
         )
         x, y = inside[1][1]
     return float(x), float(y)

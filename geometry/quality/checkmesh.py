@@ -37,6 +37,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.across import across, rows_beside
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.elementary import arctan2, cos
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.checkmesh_solid import cells_of, solid_faces
 from meshonet.geometry.quality.growth import Extreme, Tally, beyond_seam, strips
@@ -94,7 +95,7 @@ def _of_volume(grid: Grid) -> Faces:
         skews.add_from(place, np.expand_dims(skew, axis))
         if angle is not None:
             angles.add_from(place, np.expand_dims(angle, axis))
-            cosines.add_from(place, np.expand_dims(np.cos(np.radians(angle)), axis))
+            cosines.add_from(place, np.expand_dims(cos(np.radians(angle)), axis))
             severe += int((angle > SEVERE).sum())
     for number, own in enumerate(cells):
         boxes.add_from((number, 0, 0, 0), own.aspect)
@@ -124,7 +125,7 @@ def _summed(inside: Iterable[Inside], outside: Iterable[Values], box_ratios: Ite
     for i, j, angle, skew, block in inside:
         severe += int((angle > SEVERE).sum())
         angles.add(i, j, angle, block)
-        cosines.add(i, j, np.cos(np.radians(angle)))
+        cosines.add(i, j, cos(np.radians(angle)))
         skews.add(i, j, skew, block)
     for i, j, skew, block in outside:
         skews.add(i, j, skew, block)
@@ -214,7 +215,7 @@ def _between(own: Floats, neighbour: Floats, a: Floats, b: Floats) -> tuple[Floa
     edge, way = b - a, neighbour - own
     square = edge[..., 0] * way[..., 1] - edge[..., 1] * way[..., 0]
     square = -square  # abs(S) abs(d) cos: the normal is the edge turned right
-    angle = np.degrees(np.arctan2(np.abs(_dot(edge, way)), square))
+    angle = np.degrees(arctan2(np.abs(_dot(edge, way)), square))
     middle = 0.5 * (a + b) - own
     crossing = _cross(middle, edge) / np.where(square == 0, np.finfo(float).tiny, square)
     off = middle - crossing[..., None] * way

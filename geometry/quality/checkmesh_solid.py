@@ -27,6 +27,7 @@ from meshonet.geometry.blocks.across import rows_beside
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.connection import cells_at
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.elementary import arctan2, cbrt
 
 _TINY = 1e-300
 
@@ -123,7 +124,7 @@ def _cells(pairs: Sequence[Sequence[Sequence[Floats]]]) -> tuple[Floats, Floats]
     solid = np.abs(volume) > _TINY
     middle = np.where(solid, moment / np.where(solid, volume, 1.0), estimate)
     box = extent.max(axis=0) / np.maximum(extent.min(axis=0), _TINY)
-    bulk = extent.sum(axis=0) / (6.0 * np.cbrt(np.maximum(volume / 3.0, _TINY)) ** 2)
+    bulk = extent.sum(axis=0) / (6.0 * cbrt(np.maximum(volume / 3.0, _TINY)) ** 2)
     return middle, np.maximum(box, bulk)
 
 
@@ -158,7 +159,7 @@ def _between(nodes: Floats, own: Floats, neighbour: Floats, turn: int) -> tuple[
     way = neighbour - own
     along = _dot(area, way)
     across = _cross(area, way)
-    angle = np.degrees(np.arctan2(np.sqrt(_dot(across, across)), along))
+    angle = np.degrees(arctan2(np.sqrt(_dot(across, across)), along))
     middle = centre - own
     part = _dot(area, middle) / np.where(along == 0, _TINY, along)
     return angle, _skewness(middle - part * way, nodes, centre, 0.2 * np.sqrt(_dot(way, way)))

@@ -6,6 +6,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms, percentiles_of
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.quality.summary import Quality
 
@@ -52,7 +53,7 @@ def corner_deviations(nodes: Floats) -> Floats:
     ahead = np.roll(ring, -1, axis=0) - ring
     if nodes.shape[-1] == 3:
         back = -np.roll(ahead, 1, axis=0)
-        angle = np.arctan2(norms(np.cross(ahead, back)), (ahead * back).sum(axis=-1))
+        angle = arctan2(norms(np.cross(ahead, back)), (ahead * back).sum(axis=-1))
         return np.asarray(np.abs(np.degrees(angle) - 90.0))
     angle = angle_between(ahead.reshape(-1, 2), -np.roll(ahead, 1, axis=0).reshape(-1, 2))
     return np.asarray(np.abs(np.degrees(angle) % 360.0 - 90.0).reshape(ring.shape[:-1]))

@@ -16,6 +16,7 @@ from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.blocks.families import families
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.vertices import Vertices
+from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.quality.growth import DIRECTIONS, Extreme, Growth, Tally, ratios
 
@@ -118,5 +119,5 @@ def bends(nodes: Floats) -> Floats:
     if nodes.shape[-1] == 2:
         angle = np.abs(angle_between(before.reshape(-1, 2), after.reshape(-1, 2))).reshape(before.shape[:-1])
     else:
-        angle = np.arctan2(norms(np.cross(before, after)), (before * after).sum(axis=-1))
+        angle = arctan2(norms(np.cross(before, after)), (before * after).sum(axis=-1))
     return np.degrees(angle)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import arccos
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.metrics import NAMES
 
@@ -34,14 +35,14 @@ def quad_metrics(nodes: Floats) -> Floats:
     product = lengths * np.roll(lengths, 1, axis=0)
     scaled = _scaled_jacobians(ring)
     cosine = np.divide(-_dot(before, edges), product, out=np.zeros_like(product), where=product > 0)
-    angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    angle = np.degrees(arccos(np.clip(cosine, -1.0, 1.0)))
     widest = np.where(scaled.min(axis=0) < 0, 360.0 - angle.max(axis=0), angle.max(axis=0))
     narrowest = angle.min(axis=0)
     along, across = edges[0] - edges[2], edges[1] - edges[3]
     normal = np.cross(along, across)
     area = 0.25 * _length(normal)  # as Verdict's for a flat cell
     size = np.maximum(_length(along) * _length(across), _TINY)
-    crossing = np.degrees(np.arccos(np.clip(np.abs(_dot(along, across)) / size, 0.0, 1.0)))
+    crossing = np.degrees(arccos(np.clip(np.abs(_dot(along, across)) / size, 0.0, 1.0)))
     aspect = lengths.max(axis=0) * lengths.sum(axis=0) / np.maximum(4.0 * area, _TINY)
     values = {
         "max_angle": widest,

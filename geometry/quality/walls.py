@@ -11,6 +11,7 @@ from meshonet.geometry.blocks.across import rows_beside
 from meshonet.geometry.blocks.block import face_counts
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.quality.growth import Extreme
 
 DEPTH = 33
@@ -115,7 +116,7 @@ def _at_solid(grid: Grid, patch: Patch) -> _At:
             u, v = (along[:, 1:], along[:, :-1])[1 - b], (across[1:], across[:-1])[1 - a]
             w = steps[0, a : len(across) - 1 + a, b : along.shape[1] - 1 + b]
             normal = np.cross(u, v)
-            off.append(np.degrees(np.arctan2(norms(np.cross(normal, w)), np.abs((normal * w).sum(axis=-1)))))
+            off.append(np.degrees(arctan2(norms(np.cross(normal, w)), np.abs((normal * w).sum(axis=-1)))))
     return _At(heights[0].ravel(), np.stack(off), int(alike.min()))
 
 
@@ -139,7 +140,7 @@ def _off_square(along: Floats, away: Floats) -> Floats:
         sine = norms(np.cross(along, away))
     else:
         sine = np.abs(along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0])
-    return np.degrees(np.arctan2(np.abs((along * away).sum(axis=1)), sine))
+    return np.degrees(arctan2(np.abs((along * away).sum(axis=1)), sine))
 
 
 def _spread(parts: Sequence[Floats], *, percentile: bool) -> Spread:

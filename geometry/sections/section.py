@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.outline import Outline
@@ -103,7 +104,7 @@ def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
     if fade is not None:
         chord, twist = fade.chord + (chord - fade.chord) * fade.weight, twist * fade.weight
     away_x, away_y = unit[..., 0] - about_x, unit[..., 1] - about_y
-    c, s = np.cos(twist), np.sin(twist)
+    c, s = cos(twist), sin(twist)
     return np.stack(
         [
             chord * (about_x + c * away_x + s * away_y) + x,

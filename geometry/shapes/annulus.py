@@ -7,6 +7,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.shapes.shape import Shape
@@ -40,7 +41,7 @@ class Annulus:
         wanted = (circle[0] - middle) / np.hypot(*(circle[0] - middle))
         arcs = np.linspace(0.0, self.outer.length, 2049)[:-1]
         off = self.outer.at(arcs) - middle
-        first = float(arcs[int(np.argmax(off @ wanted / np.hypot(*off.T)))])
+        first = float(arcs[int(np.argmax(product(off, wanted) / np.hypot(*off.T)))])
         steps = stretch_arcs(self.outer, first, first, len(circle) - 1, "uniform")
         nodes = self.outer.at(steps % self.outer.length)
         nodes[-1] = nodes[0]

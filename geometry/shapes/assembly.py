@@ -16,6 +16,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import CORNER_DEG, Loop
 from meshonet.geometry.domain.nesting import nested
 from meshonet.geometry.domain.ring import ring_loop
+from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import turning
@@ -85,7 +86,7 @@ def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:
 def far_loop(middle: Floats, radius: float) -> Loop:
     """Return the circle around a point (2,), the domain inside."""
     angle = np.linspace(0.0, 2.0 * np.pi, CIRCLE, endpoint=False)
-    points = middle + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    points = middle + radius * np.stack([cos(angle), sin(angle)], axis=1)
     return Loop(Curve(points, closed=True, corners=()), names=(FARFIELD,))
 
 

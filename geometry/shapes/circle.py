@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.outline import Outline
 
@@ -21,7 +22,7 @@ class Circle(Outline):
         if not 1e-9 <= radius <= 1e9:
             raise InputError(f"a circle of radius {radius:g}", "use 1e-9 to 1e9")
         angle = np.linspace(0.0, 2.0 * math.pi, POINTS, endpoint=False)
-        super().__init__(radius * np.stack([np.cos(angle), np.sin(angle)], axis=1), f"circle {radius:g}")
+        super().__init__(radius * np.stack([cos(angle), sin(angle)], axis=1), f"circle {radius:g}")
         self.radius = radius
 
 

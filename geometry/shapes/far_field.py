@@ -1,5 +1,6 @@
 """Boundaries around a closed wall."""
 
+import cmath
 import math
 
 import numpy as np
@@ -7,13 +8,14 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError
 
 
 def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:
     """Return n nodes (n, 2) clockwise on a circle from `start` (radians), the first repeated bitwise."""
     angle = start - np.linspace(0.0, 2 * np.pi, n)
-    nodes = centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    nodes = centre + radius * np.stack([cos(angle), sin(angle)], axis=1)
     nodes[-1] = nodes[0]
     return np.asarray(nodes)
 
@@ -39,7 +41,7 @@ def _start(wall: Floats, behind: float) -> tuple[float, str]:
     except InputError:
         return behind, "the far field begins straight behind the first wall node: there is no conformal map"
     lead = float(np.mean(w.imag - 2.0 * np.pi * np.arange(len(w)) / len(w)))
-    start = -(float(np.angle(lift.quarter)) + lift.phase + lead)
+    start = -(cmath.phase(lift.quarter) + lift.phase + lead)
     turn = math.degrees(math.remainder(start - behind, 2.0 * math.pi))
     note = f"the far field begins {turn:.1f} degrees from where the first wall node lies"
     return start, note if abs(turn) > TURNED else ""
@@ -65,7 +67,7 @@ def o_boundary(
     of more than `TURNED` is noted.
     """
     middle = np.asarray(centre, dtype=np.float64)
-    start, note = float(np.arctan2(wall[0, 1] - middle[1], wall[0, 0] - middle[0])), ""
+    start, note = math.atan2(wall[0, 1] - middle[1], wall[0, 0] - middle[0]), ""
     if turned:
         start, note = _start(wall, start)
     north = far_circle(middle, radius, len(wall), start)

@@ -16,6 +16,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import Indices, turning
@@ -158,7 +159,7 @@ class Outline:
             inward = np.hypot(1.0 - np.abs(unit[sharp, 0]), 1.0 - np.abs(unit[sharp, 1]))
             best = np.sort(sharp[np.lexsort((inward, -turn))[:4]])
         else:
-            reach = [int(np.argmax(unit @ np.array(d))) for d in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+            reach = [int(np.argmax(product(unit, d))) for d in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
             if len(set(reach)) < 4:
                 raise InputError("no four corners stand out", "name them with {corners}", source=self.name)
             best = np.sort(np.array(reach))

@@ -18,9 +18,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, along_and_across
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.elementary import cos, exp, expm1, product, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth, growth_ratio
@@ -89,7 +90,7 @@ class Wake:
         """Return the wake behind a closed wall (n, 2) which begins and ends at its sharp trailing edge."""
         upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
         along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
-        angle = math.atan2(axis[0] * along[1] - axis[1] * along[0], float(axis @ along))
+        angle = math.atan2(axis[0] * along[1] - axis[1] * along[0], product(axis, along))
         slope = math.tan(min(max(angle, -_STEEPEST), _STEEPEST))
         return cls(wall[0], axis, slope, chord, length)
 
@@ -97,7 +98,7 @@ class Wake:
         """Return nodes (cells + 1, 2) from the trailing edge on, growing from `first` (`_growing`)."""
         x = _growing(first / math.hypot(1.0, self.slope), self.length, cells)
         x *= self.length / x[-1]
-        y = -self.slope * self.relaxation * np.expm1(-x / self.relaxation)
+        y = -self.slope * self.relaxation * expm1(-x / self.relaxation)
         nodes = self.begin + x[:, None] * self.axis + y[:, None] * np.array([-self.axis[1], self.axis[0]])
         nodes[0] = self.begin
         return np.asarray(nodes)
@@ -120,15 +121,15 @@ def _growing(first: float, length: float, cells: int) -> Floats:
             "use more nodes, {wake_nodes} or a larger {te_spacing}",
         ) from None
     k = np.arange(1.0, cells)
-    shape = np.append(0.0, np.cumsum(-np.expm1(-k / _RAMP) * (1.0 + _LATE * (2.0 * k / cells - 1.0))))
+    shape = np.append(0.0, np.cumsum(-expm1(-k / _RAMP) * (1.0 + _LATE * (2.0 * k / cells - 1.0))))
     g = math.log(length / first) / shape[-1]
     for _ in range(100):
-        sizes = np.exp(g * shape)
-        change = (float(sizes.sum()) - length / first) / float(shape @ sizes)
+        sizes = exp(g * shape)
+        change = (float(sizes.sum()) - length / first) / float(product(shape, sizes))
         g -= change
         if change < 1e-14:
             break
-    return np.concatenate([[0.0], np.cumsum(np.exp(g * shape))])
+    return np.concatenate([[0.0], np.cumsum(exp(g * shape))])
 
 
 def c_boundary(
@@ -153,11 +154,10 @@ def c_boundary(
     Raises InputError: the wake leaves the far field, or crosses the wall.
     """
     south = np.concatenate([wake[:0:-1], wall[:-1], wake])
-    normal = np.array([-axis[1], axis[0]])
-    behind = float((wake[-1] - centre) @ axis)
-    if behind <= 0 or abs(float((wake[-1] - centre) @ normal)) >= radius:
+    behind, beside = along_and_across(wake[-1] - centre, axis)
+    if behind <= 0 or abs(beside) >= radius:
         raise InputError("the wake does not reach the outlet inside the far field", "use a larger far field")
-    north = _far_field(len(wall) - 1, len(wake) - 1, centre, radius, axis, behind)
+    north = _far_field(len(wall) - 1, len(wake) - 1, centre, radius, axis, float(behind))
     west, east = straight(south[0], north[0], nj), straight(south[-1], north[-1], nj)
     return Boundary(south, north, west, east, "c", name=name, wall=curve, chord=chord, notes=notes)
 
@@ -166,7 +166,7 @@ def _far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats
     """Return the far field (body + 2 wake + 1, 2), in equal steps in front, evenly changing ones behind."""
     normal = np.array([-axis[1], axis[0]])
     angle = np.linspace(-0.5 * np.pi, -1.5 * np.pi, body + 1)
-    front = centre + radius * (np.cos(angle)[:, None] * axis + np.sin(angle)[:, None] * normal)
+    front = centre + radius * (cos(angle)[:, None] * axis + sin(angle)[:, None] * normal)
     front[[0, -1]] = centre - radius * normal, centre + radius * normal
     step = min(np.pi * radius / body, 0.9 * behind)
     mean = behind / wake

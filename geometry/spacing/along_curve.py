@@ -64,7 +64,7 @@ def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = ()) -
         back = np.minimum(node[mine], high - 1)[::-1] + rank
         node[mine] = (np.minimum.accumulate(back) - rank)[::-1]
     kept = np.concatenate([np.array(stays, dtype=np.float64), node])
-    order = np.argsort(kept)
+    order = np.argsort(kept, kind="stable")
     source = np.concatenate([np.array(stays, dtype=np.float64), place])
     out = monotone_cubic(index, distance, np.interp(index, kept[order], source[order]))
     out[node] = corners

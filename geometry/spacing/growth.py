@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import power
 from meshonet.geometry.errors import InputError
 
 LARGEST = 10.0
@@ -64,7 +65,7 @@ def growing_steps(first: float, length: float, cells: int, constant: int = 1) ->
     """
     equal = min(constant, cells) - 1
     ratio = growth_ratio(first, length - equal * first, cells - equal)
-    return np.asarray(first * ratio ** np.maximum(np.arange(cells) - equal, 0))
+    return np.asarray(first * power(ratio, np.maximum(np.arange(cells) - equal, 0)))
 
 
 def _sum(log_ratio: float, cells: int) -> float:

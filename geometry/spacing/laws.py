@@ -13,6 +13,7 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import sin, tan, tanh
 from meshonet.geometry.errors import InputError
 
 Spacing: TypeAlias = str
@@ -54,9 +55,9 @@ class TanhLaw:
         a, d = math.sqrt(self.end / self.start), self.stretch
         u = np.asarray(q, dtype=np.float64)
         if d > 0:
-            u = 0.5 + 0.5 * np.tanh(d * (u - 0.5)) / math.tanh(0.5 * d)
+            u = 0.5 + 0.5 * tanh(d * (u - 0.5)) / math.tanh(0.5 * d)
         elif d < 0:
-            u = 0.5 + 0.5 * np.tan(d * (u - 0.5)) / math.tan(0.5 * d)
+            u = 0.5 + 0.5 * tan(d * (u - 0.5)) / math.tan(0.5 * d)
         s = u / (a + (1.0 - a) * u)
         return np.asarray(np.where(np.asarray(q) >= 1.0, 1.0, np.where(np.asarray(q) <= 0.0, 0.0, s)))
 
@@ -130,7 +131,7 @@ LAWS: dict[str, Law] = {
     "auto": Law(sets_ends=True),  # conformal where there is such a map, else tanh or uniform
     "conformal": Law(),  # equal angles of the circle that the body is an image of
     "uniform": Law(lambda q: q),
-    "cosine": Law(lambda q: np.asarray(np.sin(0.5 * np.pi * q) ** 2), sets_ends=True),
+    "cosine": Law(lambda q: np.asarray(sin(0.5 * np.pi * q) ** 2), sets_ends=True),
     "tanh": Law(sets_ends=True),
     "curvature": Law(sets_ends=True),  # `meshonet.geometry.spacing.size_field`
 }

@@ -8,6 +8,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.elementary import arctan2, exp, expm1, geomspace, log, product
 
 GROWTH = math.log(1.10)
 """Largest growth of cells along the wall: 10 % from one to the next."""
@@ -55,14 +56,12 @@ def arcs_by_curvature(
     mend = np.zeros(2)
     away = np.minimum(s - lower, upper - s), np.abs(s - nose)
     for _ in range(12):
-        relief = np.exp(
-            sum(m * np.exp(-d / (_REACH * step)) for m, d, step in zip(mend, away, steps, strict=True))
-        )
+        relief = exp(sum(m * exp(-d / (_REACH * step)) for m, d, step in zip(mend, away, steps, strict=True)))
         density = _density(s, known, relief, cells)
         arcs = _placed(s, density, cells)
         width = np.diff(arcs)
         got = 0.5 * (width[0] + width[-1]), width[np.searchsorted(arcs, nose) - 1]
-        error = np.where(exact, np.log(np.array(steps) / np.array(got)), 0.0)
+        error = np.where(exact, log(np.array(steps) / np.array(got)), 0.0)
         if np.abs(error).max() < 5e-3:
             break
         mend += error
@@ -92,7 +91,7 @@ def _samples(stations: tuple[float, float, float], steps: tuple[float, float]) -
     """Return arc lengths from the lower to the upper end, close together where the steps are small."""
     lower, nose, upper = stations
     half = 0.5 * (upper - lower)
-    te, le = (np.geomspace(0.1 * step, half, _SAMPLES // 8) for step in steps)
+    te, le = (geomspace(0.1 * step, half, _SAMPLES // 8) for step in steps)
     even = np.linspace(lower, upper, _SAMPLES // 2)
     every = np.concatenate([even, lower + te, upper - te, nose + le, nose - le, [nose]])
     s = np.unique(every[(every >= lower) & (every <= upper)])
@@ -106,7 +105,7 @@ def _bend(curve: Curve, s: Floats, chord: float) -> Floats:
     low, high = min(s[0], s[-1]), max(s[0], s[-1])
     t = np.linspace(low, high, 2 * _SAMPLES)
     d = curve.tangent(np.clip(t, low + 1e-9 * (high - low), high - 1e-9 * (high - low)))
-    angle = np.unwrap(np.arctan2(d[:, 1], d[:, 0]))
+    angle = np.unwrap(arctan2(d[:, 1], d[:, 0]))
     before, after = np.maximum(s - _WINDOW * chord, low), np.minimum(s + _WINDOW * chord, high)
     turned = np.abs(np.interp(after, t, angle) - np.interp(before, t, angle))
     return np.asarray(np.maximum(turned / (after - before), 1e-2 / chord))
@@ -119,7 +118,7 @@ def _affordable(cells: int, s: Floats, known: Callable[[float], Floats]) -> Floa
     def excess(log_factor: float) -> tuple[float, Floats]:
         terms = known(math.exp(log_factor))
         density = np.sqrt(np.sqrt(terms))
-        return math.log(float(width @ (density[1:] + density[:-1]))) - goal, terms
+        return math.log(product(width, density[1:] + density[:-1])) - goal, terms
 
     low, (above, terms) = 0.0, excess(0.0)
     high, (below, at_most) = _SCARCEST, (0.0, terms) if above <= 0 else excess(_SCARCEST)
@@ -161,7 +160,7 @@ def _known(
     size[[0, -1]] = size[[0, -1]].min()  # the two surfaces meet here
     size = limited_size(s, size, growth)
     reach = _RAMP * steps[0]
-    late = reach * -np.expm1(-away / reach) if ramp else 0.0
+    late = reach * -expm1(-away / reach) if ramp else 0.0
     trailing = steps[0] + growth * (away - late)
     leading = fewer * steps[1] + growth * np.abs(s - nose)
     return np.asarray(_quartic(trailing) + _quartic(leading) + _quartic(size))
@@ -181,14 +180,14 @@ def limited_size(s: Floats, size: Floats, growth: float) -> Floats:
 
 def _density(s: Floats, known: Floats, relief: Floats, cells: int) -> Floats:
     """Return 1/h with the largest cell that makes its integral the number of cells."""
-    width, weight = 0.5 * np.diff(s), relief**-4
+    width, weight = 0.5 * np.diff(s), _quartic(relief)
     share = np.concatenate([width, [0.0]]) + np.concatenate([[0.0], width])
     more = 0.0  # of the largest cell, 1/h⁴
     for _ in range(60):
         total = (known + more) * weight
         density = np.sqrt(np.sqrt(total))
-        lack = cells - float(share @ density)
+        lack = cells - product(share, density)
         if lack < 1e-9 * cells:
             break
-        more += lack / float(share @ (0.25 * weight * density / total))  # Newton's, which never overshoots
+        more += lack / product(share, 0.25 * weight * density / total)  # Newton's, which never overshoots
     return np.asarray(density)

@@ -33,7 +33,7 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
     if local < 1e3:
         remedy = "use a larger part, so that it is 1e3 or more"
         raise InputError(f"a Reynolds number of {local:g} at {part}", remedy, parameter="chord_fraction")
-    friction = (2.0 * math.log10(local) - 0.65) ** -2.3
+    friction = math.pow(2.0 * math.log10(local) - 0.65, -2.3)
     return y_plus / (reynolds * math.sqrt(0.5 * friction))
 
 

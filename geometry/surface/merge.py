@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import product
 from meshonet.geometry.polygon.corners import Indices
 
 TOLERANCE = 1e-8
@@ -23,7 +24,7 @@ def near_pairs(points: Floats, distance: float) -> Indices:
 
     Points are sorted along a slanted line, on which those far apart seldom meet.
     """
-    along = points @ _SLANT
+    along = product(points, _SLANT)
     order = np.argsort(along, kind="stable")
     along, window = along[order], distance * float(_SLANT.sum()) * (1.0 + 1e-12)
     pairs = [np.empty((0, 2), dtype=np.intp)]

@@ -159,7 +159,7 @@ def _left_handed(nodes: Floats) -> bool:
         if not signed_volume([nodes[..., axis] for axis in range(3)]) < 0:
             return False
         u, v, w = nodes[1:, :-1, :-1] - corner, nodes[:-1, 1:, :-1] - corner, nodes[:-1, :-1, 1:] - corner
-        return bool(np.mean(np.einsum("...c,...c", u, np.cross(v, w)) < 0) > _MOST)
+        return bool(np.mean((u * np.cross(v, w)).sum(axis=-1) < 0) > _MOST)
 
 
 def _with_poles(nodes: Floats, numbers: tuple[Indices, ...]) -> tuple[Floats, tuple[Indices, ...]]:

@@ -57,8 +57,17 @@ static void panel(const double *a, ptrdiff_t rows, ptrdiff_t inner, const double
 MESHONET_CLONES
 static void with_vector(const double *a, const double *b, ptrdiff_t rows, ptrdiff_t inner, double *out)
 {
-    for (ptrdiff_t i = 0; i < rows; i++)
-        out[i] = product_of(a + i * inner, b, inner);
+    if (inner >= SUMS) {
+        for (ptrdiff_t i = 0; i < rows; i++)
+            out[i] = product_of(a + i * inner, b, inner);
+        return;
+    }
+    for (ptrdiff_t i = 0; i < rows; i++) {
+        double sum = a[i * inner] * b[0];
+        for (ptrdiff_t k = 1; k < inner; k++)
+            sum += a[i * inner + k] * b[k];
+        out[i] = sum;
+    }
 }
 
 void matrix_product(const double *a, const double *b, ptrdiff_t rows, ptrdiff_t inner, ptrdiff_t columns, double *out)

@@ -1,5 +1,6 @@
 """`meshonet.deform`."""
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TypeAlias
@@ -96,7 +97,7 @@ def rotation(degrees: float, about: Sequence[float] = (0.0, 0.0)) -> Motion:
     """
     if not np.isfinite([degrees, *about]).all() or len(about) != 2:
         raise InputError(f"a turn of {degrees} about {tuple(about)}", "give an angle and a point (x, y)")
-    sine, cosine = float(np.sin(np.radians(degrees))), float(np.cos(np.radians(degrees)))
+    sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
     x, y = about
     shift = x - cosine * x + sine * y, y - sine * x - cosine * y
     return Motion(shift, ((cosine, -sine), (sine, cosine)))

@@ -97,6 +97,7 @@ def test_single_precision_stays_so(name):
 def test_complex_numbers_are_numpy_s(name):
     z = np.array([1 + 2j, -0.5 + 0.25j])
     assert np.array_equal(getattr(elementary, name)(z), getattr(np, name)(z))
+    assert np.array_equal(elementary.power(z, 0.3), np.power(z, 0.3))
 
 
 def test_sines_near_multiples_of_pi_have_all_digits():
@@ -198,6 +199,18 @@ def test_a_product_takes_views_lists_and_integers():
     np.testing.assert_allclose(elementary.product(a.T[:8].T, b), a[:, :8] @ b, rtol=1e-13)
     assert elementary.product([1, 2], [3, 4]) == 11.0
     assert isinstance(elementary.product([1, 2], [3, 4]), np.float64)
+
+
+@pytest.mark.parametrize("order", ["<", ">", "="])
+@pytest.mark.parametrize("offset", [0, 1])
+def test_arrays_are_taken_as_files_give_them(order, offset):
+    x = np.array([1.0, 2.0, 3.0])
+    kind = np.dtype(float).newbyteorder(order)
+    given = np.frombuffer(offset * b"." + x.astype(kind).tobytes(), kind, offset=offset)
+    assert given.flags.aligned == (offset == 0)
+    assert elementary.product(given, given) == 14.0
+    assert np.array_equal(elementary.cos(given), elementary.cos(x))
+    assert np.array_equal(elementary.power(given, given), [1.0, 4.0, 27.0])
 
 
 @pytest.mark.parametrize(("left", "right"), [((3,), (2,)), ((4, 3), (2, 3)), ((4, 3), (5, 2, 3))])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, along_and_across
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
@@ -108,7 +109,7 @@ class Airfoil:
         step = 0.01 * self.chord
         lower, a, b, upper = self.curve.at(np.array([first + step, first, last, last - step]))
         u, v = upper - b, lower - a
-        return float(np.degrees(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v)))
+        return math.degrees(math.atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]))
 
     @cached_property
     def nose_radius(self) -> float:
@@ -118,9 +119,8 @@ class Airfoil:
         step = np.linspace(0.0, 0.2 * self.chord, 81)
         sides = []
         for sign in (-1.0, 1.0):
-            off = self.curve.at(middle + sign * step) - self.leading_edge
-            along = np.maximum.accumulate(off @ axis)
-            sides.append(float(np.interp(0.02 * self.chord, along, off @ np.array([-axis[1], axis[0]]))))
+            along, across = along_and_across(self.curve.at(middle + sign * step) - self.leading_edge, axis)
+            sides.append(float(np.interp(0.02 * self.chord, np.maximum.accumulate(along), across)))
         return (0.5 * (sides[1] - sides[0])) ** 2 / (0.04 * self.chord)
 
     @property
@@ -134,7 +134,7 @@ class Airfoil:
         """Return the same airfoil turned, scaled and moved to have its edges at (0, 0) and (1, 0)."""
         axis = (self.trailing_edge - self.leading_edge) / self.chord**2
         off = self.curve.points[1 if self.blunt else 0 :] - self.leading_edge
-        points = np.stack([off @ axis, off @ np.array([-axis[1], axis[0]])], axis=1)
+        points = np.stack(along_and_across(off, axis), axis=1)
         return Airfoil(points, self.name, notes=self.notes)
 
     def rounded(self) -> Airfoil:

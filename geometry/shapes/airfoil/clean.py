@@ -5,11 +5,12 @@ No point is moved, except that the two ends of a negligible trailing-edge gap be
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.arrays import Floats, along_and_across, distinct
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import Indices, find_corners, turning
@@ -181,8 +182,7 @@ def _sharpness(ring: Floats, end: int, far_end: int) -> tuple[float, float]:
     n = len(ring)
     axis = ring[far_end] - ring[end]
     chord = np.hypot(*axis)
-    off = ring - ring[end]
-    along, across = off @ axis / chord, off @ np.array([-axis[1], axis[0]]) / chord
+    along, across = along_and_across(ring - ring[end], axis / chord)
     thick = []
     for part in (0.05, 0.2):
         sides = []
@@ -190,7 +190,7 @@ def _sharpness(ring: Floats, end: int, far_end: int) -> tuple[float, float]:
             order = np.argsort(along[arc], kind="stable")
             sides.append(float(np.interp(part * chord, along[arc][order], across[arc][order])))
         thick.append(max(abs(sides[1] - sides[0]), 1e-9 * chord))
-    return float(np.log(thick[1] / thick[0]) / np.log(4.0)), thick[0]
+    return math.log(thick[1] / thick[0]) / math.log(4.0), thick[0]
 
 
 def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> Section:

@@ -15,10 +15,12 @@ X-3284 (1975).
 """
 
 import re
+from typing import Any
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import arctan, cos, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
@@ -58,12 +60,12 @@ def naca_points(designation: str, n: int = POINTS) -> Floats:
     There are `n` a surface, by the cosine law in x.
     """
     digits, sharp = _split(designation)
-    x = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, n))
+    x = 0.5 - 0.5 * cos(np.linspace(0.0, np.pi, n))
     half = thickness(x, int(digits[-2:]) / 100, sharp=sharp)
     camber, slope = _mean_line(digits, x)
-    angle = np.arctan(slope)
-    upper = np.stack([x - half * np.sin(angle), camber + half * np.cos(angle)], axis=1)
-    lower = np.stack([x + half * np.sin(angle), camber - half * np.cos(angle)], axis=1)
+    angle = arctan(slope)
+    upper = np.stack([x - half * sin(angle), camber + half * cos(angle)], axis=1)
+    lower = np.stack([x + half * sin(angle), camber - half * cos(angle)], axis=1)
     return np.concatenate([upper[::-1], lower[1:]])
 
 
@@ -111,10 +113,14 @@ def _mean_line(digits: str, x: Floats) -> tuple[Floats, Floats]:
         r, k = _SIMPLE[place]
         k *= lift / 6
         front = x < r
-        camber = k * np.where(front, x**3 - 3 * r * x**2 + r**2 * (3 - r) * x, r**3 * (1 - x))
-        return camber, k * np.where(front, 3 * x**2 - 6 * r * x + r**2 * (3 - r), -(r**3))
+        camber = k * np.where(front, _cube(x) - 3 * r * x**2 + r**2 * (3 - r) * x, _cube(r) * (1 - x))
+        return camber, k * np.where(front, 3 * x**2 - 6 * r * x + r**2 * (3 - r), -_cube(r))
     r, k, ratio = _REFLEX[place]
     k *= lift / 6
     scale = np.where(x < r, 1.0, ratio)
-    constant = -ratio * (1 - r) ** 3 - r**3
-    return k * (scale * (x - r) ** 3 + constant * x + r**3), k * (3 * scale * (x - r) ** 2 + constant)
+    constant = -ratio * _cube(1 - r) - _cube(r)
+    return k * (scale * _cube(x - r) + constant * x + _cube(r)), k * (3 * scale * (x - r) ** 2 + constant)
+
+
+def _cube(x: Any) -> Any:
+    return x * x * x

@@ -1,11 +1,13 @@
 """The smooth curve through the points of an airfoil, and the place on it farthest from the trailing edge."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing, find_crossings
@@ -93,7 +95,7 @@ def _oblique_base(section: Section, chord: float) -> tuple[str, ...]:
             continue
         edge = 0.5 * (points[0] + points[other])
         axis = edge - points[np.argmax(np.hypot(*(points - edge).T))]
-        slant = float(np.degrees(np.arcsin(min(abs(base @ axis) / (width * np.hypot(*axis)), 1.0))))
+        slant = math.degrees(math.asin(min(abs(product(base, axis)) / (width * np.hypot(*axis)), 1.0)))
         kept = f", as the last piece of the {side} surface, and the edge counts as sharp" if side else ""
         if side or slant > OBLIQUE:
             return (

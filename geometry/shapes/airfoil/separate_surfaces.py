@@ -7,7 +7,7 @@ coincide or cross. Points there are moved across the chord, by half the missing 
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, along_and_across
 
 MOST = 4.5e-5
 """Chords by which a point may move."""
@@ -26,7 +26,8 @@ def moved_apart(ring: Floats, nose: int) -> Floats:
     chord = float(np.hypot(*axis))
     axis = axis / chord
     across = np.array([axis[1], -axis[0]])  # to the upper side
-    along, height = (ring - edge) @ axis, (ring - edge) @ across
+    along, below = along_and_across(ring - edge, axis)
+    height = -below
     lower = np.arange(nose + 1)
     upper = np.append(np.arange(nose, len(ring)), 0)
     places = np.sort(along)

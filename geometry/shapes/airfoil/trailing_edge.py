@@ -13,11 +13,14 @@
     lower surface ---+--``         stay; those on the base are dropped.
 """
 
+import math
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.elementary import arctan2, power, product
 from meshonet.geometry.spacing.size_field import GROWTH, limited_size
 
 _ACROSS = 0.9
@@ -46,7 +49,8 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
     length, half = curve.length, float(curve.knots[1])
     across = min(_ACROSS * half, _CAP * chord)
     along = _ALONG * across
-    near = along * 1.25 ** np.arange(1 + int(np.log(max(_NEAR * chord / along, 1.25)) / np.log(1.25)))
+    last = int(math.log(max(_NEAR * chord / along, 1.25)) / math.log(1.25))
+    near = along * power(1.25, np.arange(last + 1))
     inner = (curve.knots > half + 1.2 * near[-1]) & (curve.knots < length - half - 1.2 * near[-1])
     corner_arcs = curve.corners[(curve.corners > half + along) & (curve.corners < length - half - along)]
     surface = half + near, curve.knots[inner], length - half - near[::-1], corner_arcs
@@ -71,7 +75,7 @@ def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
     n = per_cell * cells  # on either half; place n is the middle
     s = np.linspace(-end, end, 2 * n + 1)
     way = curve.tangent(s)
-    turn = np.abs(np.diff(np.unwrap(np.arctan2(way[:, 1], way[:, 0]))))
+    turn = np.abs(np.diff(np.unwrap(arctan2(way[:, 1], way[:, 0]))))
     reach = 2 * per_cell
     ends = [np.full(reach, part.mean()) for part in (turn[:per_cell], turn[-per_cell:])]
     total = np.concatenate([[0.0], np.cumsum(np.concatenate([ends[0], turn, ends[1]]))])
@@ -97,7 +101,7 @@ def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:
     p, q = a + _PULL * (c - a), b + _PULL * (c - b)
     u = np.linspace(0.0, 1.0, _POINTS)[:, None]
     v = 1.0 - u
-    return np.asarray(v**3 * a + 3 * v * v * u * p + 3 * v * u * u * q + u**3 * b)
+    return np.asarray(v * v * v * a + 3 * v * v * u * p + 3 * v * u * u * q + u * u * u * b)
 
 
 def wedged_base(points: Floats, tangents: tuple[Floats, Floats]) -> Floats:
@@ -110,7 +114,8 @@ def wedged_base(points: Floats, tangents: tuple[Floats, Floats]) -> Floats:
     gap = float(np.hypot(*(points[0] - points[-1])))
     along = (lower + upper) / np.hypot(*(lower + upper))
     cross = float(lower[1] * upper[0] - lower[0] * upper[1])
-    closing = cross / (1.0 + float(lower @ upper))  # tan of half the angle at which the surfaces converge
+    # tan of half the angle at which the surfaces converge
+    closing = cross / (1.0 + float(product(lower, upper)))
     reach = min(REACH, 0.5 / max(closing, 0.5 / REACH))
     reach = max(reach, LEAST)
     tip = 0.5 * (points[0] + points[-1]) + reach * gap * along

@@ -177,7 +177,7 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
     the base are `fixed`, those on it are not much smaller: cells fold at a corner between very unlike steps.
     """
     enough = cells >= 48
-    least = max(2, round(2 * (half_base / 1.2e-4) ** (1 / 3))) if enough else 1
+    least = max(2, round(2 * math.cbrt(half_base / 1.2e-4))) if enough else 1
     least = min(least, max(cells // 24, 1), 12)
     if fixed:
         least = min(least, math.ceil(_BASE_JUMP * half_base / step))
