@@ -20,7 +20,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.conformal.lift import lift_body, mirrored
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import inner_slopes
-from meshonet.geometry.elementary import cos, exp, power
+from meshonet.geometry.elementary import cos, exp, power, times
 from meshonet.geometry.errors import InputError
 
 ANGLES = 1024
@@ -81,7 +81,7 @@ def _circle_angle(phi: Floats, psi: Floats) -> Floats:
     conjugate[0] = 0.0
     at = t.copy()
     for _ in range(ITERATIONS):
-        h = np.fft.irfft(conjugate * np.fft.rfft(np.interp(np.mod(at, 2.0 * np.pi), phi, psi)), ANGLES)
+        h = np.fft.irfft(times(conjugate, np.fft.rfft(np.interp(np.mod(at, 2.0 * np.pi), phi, psi))), ANGLES)
         new = t - h
         change = float(np.abs(new - at).max())
         at += RELAXATION * (new - at)

@@ -12,7 +12,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.elementary import angle, cos, exp, power, product, sin
+from meshonet.geometry.elementary import angle, cos, exp, modulus, power, product, sin, times
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.along_curve import on_corners
@@ -49,8 +49,10 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
         turn = exp(2j * np.pi * rng.random())
         break
     first = _facing(body.points, start)
-    south = _nodes(body, first, laws[0], ni) * turn
-    north = _nodes(far, _facing(far.points, float(angle(body.points[first])) + twist), laws[1], ni) * turn
+    south = times(_nodes(body, first, laws[0], ni), turn)
+    north = times(
+        _nodes(far, _facing(far.points, float(angle(body.points[first])) + twist), laws[1], ni), turn
+    )
     walls = as_nodes(south), as_nodes(north)
     cut = straight(walls[0][0], walls[1][0], nj)
     return Boundary(walls[0], walls[1], cut, cut, topology="o")
@@ -64,7 +66,7 @@ def _placed_within(body: Ring, far: Ring, rng: np.random.Generator) -> complex |
     if rng.random() < 0.2:
         where = 0.0
     moved = body.points + where
-    gap = np.abs(moved[::4, None] - far.points[None, ::2]).min()
+    gap = modulus(moved[::4, None] - far.points[None, ::2]).min()
     inside = all(_around(far.points, point) for point in moved[:: FINE // 24])
     return where if inside and gap > CLEARANCE else None
 
@@ -90,9 +92,9 @@ def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
 
 def _facing(ring: Complexes, direction: float) -> int:
     """Return the index of the outermost point of a ring in a `direction` (radians) as seen from 0."""
-    off = np.abs(angle(ring * exp(-1j * direction)))
+    off = np.abs(angle(times(ring, exp(-1j * direction))))
     near = np.flatnonzero(off < off.min() + 2 * np.pi / len(ring))
-    return int(near[np.argmax(np.abs(ring[near]))])
+    return int(near[np.argmax(modulus(ring[near]))])
 
 
 def _nodes(ring: Ring, first: int, law: Callable[[Floats], Floats], n: int) -> Complexes:
@@ -114,22 +116,22 @@ def _body(rng: np.random.Generator) -> Ring:
     ring = kinds[rng.choice(len(kinds), p=(0.22, 0.24, 0.14, 0.16, 0.14, 0.1))](rng)
     z = ring.points
     ahead = np.roll(z, -1)
-    cross = (np.conj(z) * ahead).imag
+    cross = times(np.conj(z), ahead).imag
     z = z - (cross * (z + ahead)).sum() / (3.0 * cross.sum())
-    return Ring(z / np.abs(z).mean(), ring.corners)
+    return Ring(z / modulus(z).mean(), ring.corners)
 
 
 def _far(rng: np.random.Generator) -> Ring:
     kinds = _ellipse, _rectangle, _polygon, _superellipse
     ring = kinds[rng.choice(len(kinds), p=(0.45, 0.35, 0.08, 0.12))](rng)
     size = math.exp(rng.uniform(math.log(1.6), math.log(25.0)))
-    return Ring(size * ring.points / np.abs(ring.points).mean(), ring.corners)
+    return Ring(size * ring.points / modulus(ring.points).mean(), ring.corners)
 
 
 def _stretched(z: Complexes, most: float, rng: np.random.Generator) -> Complexes:
     """Return a curve lengthened along an axis, up to `most` times, a third of the time not at all."""
     ratio = math.exp(rng.uniform(0.0, 0.5 * math.log(most))) if rng.random() < 2 / 3 else 1.0
-    return (z.real * ratio + 1j * z.imag / ratio) * exp(2j * np.pi * rng.random())
+    return times(z.real * ratio + 1j * z.imag / ratio, exp(2j * np.pi * rng.random()))
 
 
 def _angles() -> Floats:
@@ -196,7 +198,7 @@ def _rounded(rng: np.random.Generator) -> Ring:
 def _through(corners: Complexes) -> Ring:
     """Return a ring through `corners` (k,), its own corners those that turn by more than `BEND`."""
     edges = np.roll(corners, -1) - corners
-    share = np.maximum(np.round(FINE * np.abs(edges) / np.abs(edges).sum()).astype(int), 1)
+    share = np.maximum(np.round(FINE * modulus(edges) / modulus(edges).sum()).astype(int), 1)
     z = np.concatenate([a + e * np.arange(n) / n for a, e, n in zip(corners, edges, share, strict=True)])
     turn = np.abs(angle(edges / np.roll(edges, 1)))
     first = np.concatenate([[0], np.cumsum(share)[:-1]])
@@ -211,7 +213,7 @@ def _even_steps(z: Complexes) -> Complexes:
 
 def arc_lengths(z: Complexes) -> Floats:
     """Return the arc length (n,) at each point of a polygon (n,), from 0."""
-    return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(z)))])
+    return np.concatenate([[0.0], np.cumsum(modulus(np.diff(z)))])
 
 
 def at_lengths(z: Complexes, length: Floats, at: Floats) -> Complexes:

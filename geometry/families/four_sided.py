@@ -12,7 +12,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.elementary import angle, exp, expm1, power, product, sin, tanh
+from meshonet.geometry.elementary import angle, exp, expm1, power, product, sin, tanh, times
 from meshonet.geometry.families.bodies import arc_lengths, as_nodes, at_lengths
 from meshonet.geometry.polygon.self_intersection import find_crossing
 
@@ -62,7 +62,7 @@ def _sides(rng: np.random.Generator) -> list[Complexes]:
     if rng.random() < 0.25:
         middle = np.concatenate(sides).mean()
         by = rng.normal(0, 0.12) * exp(2j * np.pi * rng.random())
-        sides = [(side - middle) + by * (side - middle) ** 2 for side in sides]
+        sides = [side - middle + times(by, times(side - middle, side - middle)) for side in sides]
     return sides
 
 
@@ -71,7 +71,7 @@ def _side(a: complex, b: complex, swing: float, rng: np.random.Generator) -> Com
     t = np.linspace(0.0, 1.0, FINE)
     kinds = rng.choice(len(DEFLECTIONS), size=rng.choice([1, 2], p=[2 / 3, 1 / 3]), replace=False, p=SHARES)
     height = sum(DEFLECTIONS[kind](t, rng) for kind in kinds)
-    return np.asarray(a + (b - a) * (t + 1j * swing * height))
+    return np.asarray(a + times(b - a, t + 1j * swing * height))
 
 
 def _straight(t: Floats, rng: np.random.Generator) -> Floats:  # noqa: ARG001 - as the others
@@ -151,7 +151,7 @@ def _placed(side: Complexes, law: Callable[[Floats], Floats], n: int) -> Complex
 def _usable(sides: list[Complexes]) -> bool:
     south, north, west, east = sides
     outline = np.concatenate([south[:-1], east[:-1], north[:0:-1], west[:0:-1]])
-    area = 0.5 * (np.conj(outline) * np.roll(outline, -1)).imag.sum()
+    area = 0.5 * times(np.conj(outline), np.roll(outline, -1)).imag.sum()
     if area <= LEAST_AREA:
         return False
     corners = (

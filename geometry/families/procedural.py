@@ -16,7 +16,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.elementary import angle, arctan, cos, exp, power, product, sin
+from meshonet.geometry.elementary import angle, arctan, cos, exp, modulus, power, product, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import thickness
@@ -124,7 +124,7 @@ def _karman_trefftz(rng: np.random.Generator) -> Floats:
     ratio = (z - 1) / (z + 1)
     around = np.unwrap(angle(ratio))
     around -= 2 * np.pi * np.round((around[len(around) // 2] - np.pi) / (2 * np.pi))
-    raised = power(np.abs(ratio), k) * exp(1j * k * around)
+    raised = power(modulus(ratio), k) * exp(1j * k * around)
     w = np.concatenate([[k], k * (1 + raised) / (1 - raised), [k]])
     return np.stack([w.real, w.imag], axis=1)
 
@@ -153,7 +153,7 @@ def _joined(xu: Floats, yu: Floats, xl: Floats, yl: Floats) -> Floats:
 def _normalised(points: Floats) -> Floats:
     z = points[:, 0] + 1j * points[:, 1]
     tail = 0.5 * (z[0] + z[-1])
-    nose = z[np.argmax(np.abs(z - tail))]
+    nose = z[np.argmax(modulus(z - tail))]
     z = (z - nose) / (tail - nose)
     return np.stack([z.real, z.imag], axis=1)
 

@@ -5,6 +5,7 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes
+from meshonet.geometry.elementary import modulus
 
 Axis: TypeAlias = tuple[complex, complex]
 """A straight line: a point of it, and its direction squared (a unit complex number)."""
@@ -14,7 +15,7 @@ EQUAL = 1e-10  # of the wall's reach: nodes closer than this are mirror images
 
 def farthest(wall: Complexes) -> tuple[int, int]:
     """Return the first and the last of the nodes that are farthest from node 0, rounding aside."""
-    reach = np.abs(wall - wall[0])
+    reach = modulus(wall - wall[0])
     ends = np.flatnonzero(reach > (1.0 - 1e-12) * reach.max())
     return int(ends[0]), int(ends[-1])
 
@@ -34,6 +35,6 @@ def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
         nodes_at, partners = local[half], local[-half % len(nodes)]
         amiss = np.concatenate([nodes_at.imag + partners.imag, nodes_at.real - partners.real])
         worst = float(amiss[np.argmax(np.abs(amiss))])
-        if abs(worst) > EQUAL * float(np.abs(local).max()):
+        if abs(worst) > EQUAL * float(modulus(local).max()):
             return (1 if worst > 0.0 else -1), (complex(wall[0]), complex(unit**2))
     return 0, (complex(wall[0]), complex(unit**2))

@@ -57,7 +57,7 @@ static void panel(const double *a, ptrdiff_t rows, ptrdiff_t inner, const double
 MESHONET_CLONES
 static void with_vector(const double *a, const double *b, ptrdiff_t rows, ptrdiff_t inner, double *out)
 {
-    if (inner >= SUMS) {
+    if (inner >= SUM_LANES) {
         for (ptrdiff_t i = 0; i < rows; i++)
             out[i] = product_of(a + i * inner, b, inner);
         return;

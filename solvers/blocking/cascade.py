@@ -13,6 +13,7 @@ from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import modulus, times
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.assembly import far_loop
 from meshonet.solvers.blocking.layer_rows import LayerSettings, ring_metric
@@ -80,7 +81,7 @@ class Cascade:
         return max((1.0 + self.inlet + self.outlet) * self.chord, abs(self.left))
 
     def _axial(self, loop: Loop) -> Floats:
-        return np.asarray((complex_of(loop.curve.points) * np.conj(self.axis)).real)
+        return np.asarray(times(complex_of(loop.curve.points), np.conj(self.axis)).real)
 
     @cached_property
     def blades(self) -> Domain:
@@ -150,7 +151,7 @@ class Cascade:
         to = self.passage.map
         points = to.forward(sizes.points)
         turn = to.derivative(points)
-        normals = pairs_of(complex_of(sizes.normals) * turn / np.abs(turn))
+        normals = pairs_of(times(complex_of(sizes.normals), turn) / modulus(turn))
         largest = abs(self.left) / ACROSS
         return replace(sizes, points=points, normals=normals, largest=largest, scale=to.stretching)
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.elementary import exp, log
+from meshonet.geometry.elementary import exp, log, times
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.ties import nearest_whole
@@ -120,7 +120,7 @@ class Chords:
             points = loop.at((arcs[:-1, None] + part * np.diff(arcs)[:, None]).ravel())
             z = (points[:, 0] + 1j * points[:, 1]).reshape(-1, len(part))
             z -= z[:, :1]
-            lost[edge] = 0.5 * np.abs((np.conj(z[:, :-1]) * z[:, 1:]).imag.sum(axis=1)).sum()
+            lost[edge] = 0.5 * np.abs(times(np.conj(z[:, :-1]), z[:, 1:]).imag.sum(axis=1)).sum()
         return lost
 
     def bend(self, edge: int) -> float:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.elementary import angle, exp
+from meshonet.geometry.elementary import angle, exp, modulus
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.laplacian import Laplacian, solve_complex
@@ -100,7 +100,7 @@ def _smooth(surface: Surface, walls: WallDirections, fewer: bool) -> tuple[Compl
 
 
 def _unit(z: Complexes) -> Complexes:
-    return np.asarray(z / np.maximum(np.abs(z), 1e-12))
+    return np.asarray(z / np.maximum(modulus(z), 1e-12))
 
 
 def _around_vertices(

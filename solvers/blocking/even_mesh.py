@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.elementary import angle, arctan2, log
+from meshonet.geometry.elementary import angle, arctan2, log, modulus, times
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import line_neighbours
@@ -113,7 +113,7 @@ def _around_irregular(mesh: QuadMesh) -> Indices:
 def growth_along(z: Complexes, lines: Indices) -> Floats:
     """Return the logarithms (k,) of the ratios of the edges between the nodes of `lines` (k, 3)."""
     before, after = z[lines[:, 1]] - z[lines[:, 0]], z[lines[:, 2]] - z[lines[:, 1]]
-    return np.asarray(log(np.abs(after) / np.abs(before)))
+    return np.asarray(log(modulus(after) / modulus(before)))
 
 
 def _near(mesh: QuadMesh, lines: Indices, growth: Floats, limit: float) -> Bools:
@@ -168,7 +168,7 @@ class _Patch:
         )
         corners = corners[free[corners].any(axis=1)]
         shortest = np.full(len(z), np.inf)
-        length = np.abs(z[mesh.edges[:, 1]] - z[mesh.edges[:, 0]])
+        length = modulus(z[mesh.edges[:, 1]] - z[mesh.edges[:, 0]])
         for end in mesh.edges.T:
             np.minimum.at(shortest, end, length)
         unknown = np.full((len(z), 2), -1, dtype=np.intp)
@@ -202,7 +202,7 @@ class _Patch:
         angles = _angles(z, self.corners)
         turned = np.where(angles > 0.0, ANGLE * (angles - self.angles) ** 2, np.inf)
         grown = self.growth.values(growth_along(z, self.lines), weight)
-        moved = self.stiffness * np.abs(at - self.start) ** 2
+        moved = self.stiffness * modulus(at - self.start) ** 2
         count = int(self.part.max()) + 1
         value = np.bincount(self.part[self.nodes], moved, count)
         value += np.bincount(self.part[self.lines].max(axis=1), grown, count)
@@ -217,12 +217,12 @@ class _Patch:
         by_corner = np.stack([1.0 / along - 1.0 / back, -1.0 / along, 1.0 / back], axis=1)
         growth, turned = growth_along(z, self.lines), _angles(z, self.corners) - self.angles
         axes = self.axes[self.nodes]
-        pull = np.conj(axes) * self.stiffness * (z[self.nodes] - self.start)
+        pull = times(np.conj(axes) * self.stiffness, (z[self.nodes] - self.start))
         step = self.equations.step(
             [
-                self.growth.residuals(growth, _by_coordinates(self.axes[self.lines] * by_line), weight),
+                self.growth.residuals(growth, _by_coordinates(times(self.axes[self.lines], by_line)), weight),
                 Residuals(
-                    _by_coordinates(-1j * self.axes[self.corners] * by_corner),
+                    _by_coordinates(times(times(-1j, self.axes[self.corners]), by_corner)),
                     np.full(len(turned), ANGLE),
                     ANGLE * turned,
                 ),
@@ -230,7 +230,7 @@ class _Patch:
             np.stack([self.stiffness, self.across * self.stiffness], axis=1).ravel(),
             np.stack([pull.real, pull.imag], axis=1).ravel(),
         )
-        return np.asarray(axes * (step[::2] + 1j * step[1::2]))
+        return np.asarray(times(axes, (step[::2] + 1j * step[1::2])))
 
 
 def _angles(z: Complexes, corners: Indices) -> Floats:

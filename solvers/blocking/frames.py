@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, middle
-from meshonet.geometry.elementary import angle, exp
+from meshonet.geometry.elementary import angle, exp, times
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_comb, surface_prune
 from meshonet.solvers.blocking.cross_field import CrossField
@@ -89,8 +89,8 @@ def frame_sizes(field: CrossField) -> Floats:
     steps -= QUARTER * np.round(steps / QUARTER)
     steps[np.abs(steps.sum(axis=1)) > 1e-6] = 0.0  # a singularity is inside
     gradient = surface.gradients[:, 1] * steps[:, 0] - surface.gradients[:, 2] * steps[:, 2]
-    turned = surface.areas * 1j * gradient
-    right = surface.gather((surface.gradients * np.conj(turned)[:, None]).real)
+    turned = times(surface.areas * 1j, gradient)
+    right = surface.gather(times(surface.gradients, np.conj(turned)[:, None]).real)
     free = surface.used.copy()
     free[np.argmax(free)] = False
     size = np.zeros(surface.size)

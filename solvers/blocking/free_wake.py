@@ -11,7 +11,7 @@ from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_points
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.elementary import exp, expm1
+from meshonet.geometry.elementary import exp, expm1, times
 
 SHARP_DEG = 300.0
 """Angle of the domain from which on an edge is sharp: one of the body of 60 degrees."""
@@ -77,9 +77,9 @@ def _reach(begin: Floats, leaving: float, turn: float, chord: float, outer: Loop
     at = outer.at(places)
     w = at[:, 0] + 1j * at[:, 1]
     v = np.roll(w, -1) - w
-    area = (np.conj(v)[:, None] * step[None]).imag  # rows are of the loop
-    t = (np.conj(v)[:, None] * (w[:, None] - z[None, :-1])).imag / np.where(area == 0, np.inf, area)
-    u = (np.conj(step)[None] * (z[None, :-1] - w[:, None])).imag / np.where(area == 0, np.inf, -area)
+    area = times(np.conj(v)[:, None], step[None]).imag  # rows are of the loop
+    t = times(np.conj(v)[:, None], (w[:, None] - z[None, :-1])).imag / np.where(area == 0, np.inf, area)
+    u = times(np.conj(step)[None], (z[None, :-1] - w[:, None])).imag / np.where(area == 0, np.inf, -area)
     hit = (t >= 0) & (t < 1) & (u >= 0) & (u < 1)
     if not hit.any():
         return None

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.grading import graded
-from meshonet.geometry.elementary import power
+from meshonet.geometry.elementary import power, times
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
 from meshonet.kernels._native import hyperbolic_march
@@ -114,7 +114,7 @@ def folded_columns(levels: Floats, closed: bool) -> Bools:
         z = np.concatenate([z, z[:1]])
     along, across = np.diff(z, axis=0), np.diff(z, axis=1)
     least = [
-        (np.conj(edge) * side).imag.min(axis=1)
+        times(np.conj(edge), side).imag.min(axis=1)
         for edge in (along[:, :-1], along[:, 1:])
         for side in (across[:-1], across[1:])
     ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.elementary import exp
+from meshonet.geometry.elementary import exp, modulus, times
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.frames import Frames
 from meshonet.solvers.blocking.surface import NEXT
@@ -55,9 +55,12 @@ class Parametrisation:
             sizes * exp(1j * frames.angles),
             frames.field.shears[surface.vertices].mean(axis=1),
         )
-        self._wanted = sizes**2 * (1.0 - np.abs(shear) ** 2)
-        wanted = direction - shear * np.conj(direction), 1j * (direction + shear * np.conj(direction))
-        inner = [surface.areas[:, None] * np.conj(surface.gradients) * g[:, None] for g in wanted]
+        self._wanted = sizes**2 * (1.0 - modulus(shear) ** 2)
+        wanted = (
+            direction - times(shear, np.conj(direction)),
+            times(1j, (direction + times(shear, np.conj(direction)))),
+        )
+        inner = [times(surface.areas[:, None] * np.conj(surface.gradients), g[:, None]) for g in wanted]
         self._right = np.stack([slopes.real for slopes in inner])
 
     def _unknowns(self, frames: Frames) -> tuple[Indices, int]:
@@ -76,7 +79,7 @@ class Parametrisation:
     def _stiffness(self) -> tuple[tuple[Indices, Indices], Floats]:
         """Return rows and columns (m,) of the entries, and their values (2, t, 6) by a triangle's weight."""
         surface, number = self.surface, self._number
-        squares = surface.areas[:, None] * np.abs(surface.gradients) ** 2
+        squares = surface.areas[:, None] * modulus(surface.gradients) ** 2
         row = np.concatenate([number, number], axis=2)
         column = np.concatenate([number, number[:, :, NEXT]], axis=2)
         values = np.concatenate([squares, surface.edge_weights], axis=1)
@@ -128,7 +131,7 @@ class Parametrisation:
     def jacobians(self, coords: Complexes) -> Floats:
         """Return the determinants (t,) of the map's derivative, by those that are wanted."""
         first, second = coords[:, 1] - coords[:, 0], coords[:, 2] - coords[:, 0]
-        return np.asarray((np.conj(first) * second).imag / (2.0 * self.surface.areas * self._wanted))
+        return np.asarray(times(np.conj(first), second).imag / (2.0 * self.surface.areas * self._wanted))
 
 
 def _joined(count: int, pairs: list[list[int]]) -> Indices:

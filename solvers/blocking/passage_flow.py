@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.elementary import arccos, arctan2, cosh, log, sinh
+from meshonet.geometry.elementary import arccos, arctan2, cosh, log, modulus, sinh, times
 from meshonet.geometry.linear import solve
 from meshonet.geometry.polygon.corners import Indices
 
@@ -49,7 +49,7 @@ class PassageFlow:
     def of(cls, points: Complexes) -> PassageFlow:
         """Return the flow around a clockwise polygon (n,) in the plane of ζ, which repeats every iπ."""
         sheet = _sheet(points)
-        gain = 2.0 * np.pi * sheet * np.abs(np.roll(points, -1) - points)
+        gain = 2.0 * np.pi * sheet * modulus(np.roll(points, -1) - points)
         potential = np.concatenate([[0.0], np.cumsum(gain)[:-1]])
         first, last = int(np.argmin(potential)), int(np.argmax(potential))
         half = 0.5 * float(potential[last] - potential[first])
@@ -93,9 +93,9 @@ class PassageFlow:
         strip, away = self.strip[finite], self.away[finite]
         before, after = np.roll(strip, 1), np.roll(strip, -1)
         weight = sinh(0.5 * (after - before)) / cosh(0.5 * after) / cosh(0.5 * before)
-        weight *= cosh(0.5 * strip)
+        weight = times(weight, cosh(0.5 * strip))
         kernel = weight / sinh(0.5 * (strip - places[:, None]))
-        return np.asarray((kernel * away).sum(axis=1) / kernel.sum(axis=1))
+        return np.asarray(times(kernel, away).sum(axis=1) / kernel.sum(axis=1))
 
 
 def _range(start: int, stop: int, count: int) -> Indices:
@@ -106,14 +106,14 @@ def _sheet(points: Complexes) -> Floats:
     """Return the strength (n,) of the vortex sheet along each side of a polygon (n,)."""
     n = len(points)
     step = np.roll(points, -1) - points
-    length = np.abs(step)
+    length = modulus(step)
     middle = points + 0.5 * step
     kernel = np.zeros((n + 1, n + 1))
     kernel[:n, :n] = _log_integrals(points, step, middle)
     for place in _GAUSS:
         away = middle[:, None] - (middle + 0.5 * place * step)
         away[away == 0.0] = _TINY
-        kernel[:n, :n] += 0.5 * length * log(np.abs(sinh(away) / away))
+        kernel[:n, :n] += 0.5 * length * log(modulus(sinh(away) / away))
     kernel[:n, n] = -1.0
     kernel[n, :n] = length
     return solve(kernel, np.append(-middle.imag, 0.0))[:n]
@@ -121,11 +121,11 @@ def _sheet(points: Complexes) -> Floats:
 
 def _log_integrals(points: Complexes, step: Complexes, middle: Complexes) -> Floats:
     """Return the integrals (n, n) of log |middle - s| along the sides of a polygon."""
-    local = (middle[:, None] - points) * np.conj(step / np.abs(step))
+    local = times(middle[:, None] - points, np.conj(step / modulus(step)))
     high = np.abs(local.imag)
 
     def primitive(x: Floats) -> Floats:
         distance = np.maximum(np.hypot(x, high), 1e-300)
         return np.asarray(x * log(distance) - x + high * arctan2(x, high))
 
-    return primitive(local.real) - primitive(local.real - np.abs(step))
+    return primitive(local.real) - primitive(local.real - modulus(step))

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of
-from meshonet.geometry.elementary import log, tanh
+from meshonet.geometry.elementary import log, modulus, tanh, times
 
 _SMALL = 1e-12
 
@@ -34,7 +34,7 @@ class PassageMap:
 
     def axial(self, points: Floats) -> Floats:
         """Return how far (n,) points (n, 2) are from the centre along the axis."""
-        return np.asarray(((complex_of(points) - self.centre) * np.conj(self.axis)).real)
+        return np.asarray(times(complex_of(points) - self.centre, np.conj(self.axis)).real)
 
     def along(self, points: Floats) -> Floats:
         """Return how many pitches (n,) points (n, 2) are from the centre in the direction of the pitch."""
@@ -42,7 +42,7 @@ class PassageMap:
 
     def zeta(self, points: Floats) -> Complexes:
         """Return ζ (n,) of points z (n, 2)."""
-        return np.asarray(1j * np.pi * (complex_of(points) - self.centre) / self.pitch)
+        return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.pitch)
 
     def forward(self, points: Floats) -> Floats:
         """Return the places w (n, 2) of points z (n, 2)."""
@@ -52,16 +52,16 @@ class PassageMap:
         """Return the points z (n, 2) of places w (n, 2), within half a pitch of the axis of the centre."""
         w = complex_of(places)
         zeta = 0.5 * log((w + 1.0) / (w - 1.0))
-        return pairs_of(self.centre + zeta * self.pitch / (1j * np.pi))
+        return pairs_of(self.centre + times(zeta, self.pitch) / (1j * np.pi))
 
     def derivative(self, places: Floats) -> Complexes:
         """Return dw/dz (n,) at places w (n, 2)."""
         w = complex_of(places)
-        return np.asarray(1j * np.pi / self.pitch * (1.0 - w * w))
+        return np.asarray(times(1j * np.pi / self.pitch, (1.0 - times(w, w))))
 
     def stretching(self, places: Floats) -> Floats:
         """Return |dw/dz| (n,) at places w (n, 2)."""
-        return np.abs(self.derivative(places))
+        return modulus(self.derivative(places))
 
     def line(self, distance: float, count: int) -> Floats:
         """Return `count` places w (count, 2) of the line across the flow at an axial distance of the centre.

@@ -18,7 +18,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.elementary import arccosh, cosh, exp
+from meshonet.geometry.elementary import arccosh, cosh, exp, modulus
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
@@ -94,8 +94,8 @@ def _joined(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
     side = np.flatnonzero(~inner)
     own = np.arange(len(places))
     away = places[side, None] - places[side]
-    away -= 1j * np.pi * np.round(away.imag / np.pi) * (np.abs(places[side]) < 0.5 * _FEET)
-    own[side] = side[(np.abs(away) < _SAME).argmax(axis=1)]
+    away -= 1j * np.pi * np.round(away.imag / np.pi) * (modulus(places[side]) < 0.5 * _FEET)
+    own[side] = side[(modulus(away) < _SAME).argmax(axis=1)]
     kept, number = np.unique(own, return_inverse=True)
     parts = np.split(number.astype(np.intp), ends[1:-1])
     return places[kept], tuple(part.reshape(piece.shape) for part, piece in zip(parts, pieces, strict=True))
@@ -110,7 +110,7 @@ def _placed(
     """
     domain = passage.domain
     front = domain.loops[BLADE]
-    mapped = of_zeta(flow.to_places(np.where(np.abs(nodes) < 0.5 * _FEET, nodes, 0.5j * np.pi)))
+    mapped = of_zeta(flow.to_places(np.where(modulus(nodes) < 0.5 * _FEET, nodes, 0.5j * np.pi)))
     places = Places.inside(len(nodes))
     feet, angle = np.concatenate([block[:, 0] for block in blocks[-4:]]), np.concatenate(angles)
     places.loop[feet], places.arc[feet] = BLADE, _arcs(flow, angle, front)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.elementary import angle
+from meshonet.geometry.elementary import angle, times
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.seamless_map import SeamlessMap
 
@@ -96,7 +96,7 @@ def _directions(
     w = seamless.corner_coords
     here = w[face, corner]
     right, left = w[face, (corner + 1) % 3] - here, w[face, (corner + 2) % 3] - here
-    width = angle(left * right.conj())
+    width = angle(times(left, right.conj()))
     new = np.append(True, owner[1:] != owner[:-1])[: len(owner)]
     total = np.cumsum(width) - width
     before = total - total[np.flatnonzero(new)][owner] if len(owner) else total
@@ -104,7 +104,7 @@ def _directions(
     off = (np.ceil(own + 1e-12) - own)[np.flatnonzero(new)] if len(owner) else own
     off = np.where(on_wall, 0.0, off)[owner]
     axes = np.array([1, 1j, -1, -1j])
-    inside = angle(axes[None] * right.conj()[:, None])
+    inside = angle(times(axes[None], right.conj()[:, None]))
     # an axis right behind the first edge may be turned by nearly pi either way
     inside = np.where(inside < -SLACK, inside + 2 * np.pi, inside)
     port = np.round((before[:, None] + inside) / QUARTER - off[:, None]).astype(np.intp)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.elementary import modulus, times
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import walk_map
@@ -50,7 +51,7 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None 
 def _plane_lengths(mesh: TMesh, sizes: SizeMetric | None = None) -> Floats:
     """Return the lengths (a,) of arcs in the plane, in edges of `sizes` if given."""
     trails = mesh.graph.trails
-    steps = np.abs(trails.end - trails.begin)
+    steps = modulus(trails.end - trails.begin)
     if sizes is not None:
         middle, step = 0.5 * (trails.end + trails.begin), trails.end - trails.begin
         steps = steps / sizes.length(_pairs(middle), _pairs(step))
@@ -230,7 +231,7 @@ class _Walks:
             [block.shape[1] for block in self._targets], [len(block) for block in self._targets]
         )
         flat = np.concatenate([block.ravel() for block in self._targets])
-        targets = np.repeat(origin, sizes) + flat * np.repeat(east, sizes)
+        targets = np.repeat(origin, sizes) + times(flat, np.repeat(east, sizes))
         reached = walk_map(
             map_tables(seamless),
             np.ascontiguousarray(seamless.triangulation.triangles, dtype=np.intp),

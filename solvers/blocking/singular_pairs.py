@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, complex_of
-from meshonet.geometry.elementary import angle, exp, product
+from meshonet.geometry.elementary import angle, exp, modulus, product, times
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.laplacian import Laplacian
 from meshonet.solvers.blocking.surface import NEXT, Surface
@@ -123,7 +123,7 @@ def _lines(surface: Surface, first: Indices, second: Indices) -> _Lines:
     points = complex_of(surface.triangulation.points[surface.triangulation.triangles])
     middle = points.mean(axis=1)
     ends = np.stack([np.repeat(first, len(second)), np.tile(second, len(first))], axis=1)
-    apart = np.abs(middle[ends[:, 1]] - middle[ends[:, 0]])
+    apart = modulus(middle[ends[:, 1]] - middle[ends[:, 0]])
     ends = ends[np.argsort(apart, kind="stable")[:MOST_PAIRS]]
     begin, way = middle[ends[:, 0]], middle[ends[:, 1]] - middle[ends[:, 0]]
     inside = np.where(surface.periods == 0, surface.neighbours, -1)
@@ -131,7 +131,7 @@ def _lines(surface: Surface, first: Indices, second: Indices) -> _Lines:
     seen = np.zeros(len(ends), dtype=bool)
     crossed: list[tuple[Indices, Indices, Indices]] = []
     for _ in range(len(points)):
-        side = (np.conj(way[going])[:, None] * (points[at] - begin[going][:, None])).imag
+        side = times(np.conj(way[going])[:, None], (points[at] - begin[going][:, None])).imag
         edge = np.argmax((side < 0.0) & (side[:, NEXT] >= 0.0), axis=1)  # from right to left: where it leaves
         crossed.append((going, at, edge))
         at = inside[at, edge]

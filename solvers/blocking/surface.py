@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.elementary import angle
+from meshonet.geometry.elementary import angle, modulus, times
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_fans
@@ -88,7 +88,7 @@ class Surface:
     @cached_property
     def areas(self) -> Floats:
         """(t,) areas of the triangles."""
-        return np.asarray(0.5 * (np.conj(self.edges[:, 0]) * -self.edges[:, 2]).imag)
+        return np.asarray(0.5 * times(np.conj(self.edges[:, 0]), -self.edges[:, 2]).imag)
 
     @cached_property
     def angles(self) -> Floats:
@@ -98,7 +98,7 @@ class Surface:
     @cached_property
     def gradients(self) -> Complexes:
         """(t, 3) gradient of the function that is linear in a triangle, 1 at a corner, 0 at the others."""
-        return np.asarray(1j * self.edges[:, NEXT] / (2.0 * self.areas[:, None]))
+        return np.asarray(times(1j, self.edges[:, NEXT]) / (2.0 * self.areas[:, None]))
 
     @cached_property
     def walls(self) -> tuple[Indices, Indices]:
@@ -129,7 +129,7 @@ class Surface:
     def edge_weights(self) -> Floats:
         """(t, 3) integral of the product of the gradients at an edge's ends: minus half a cotangent."""
         g = self.gradients
-        return np.asarray(self.areas[:, None] * (g * np.conj(g[:, NEXT])).real)
+        return np.asarray(self.areas[:, None] * times(g, np.conj(g[:, NEXT])).real)
 
     @cached_property
     def masses(self) -> Floats:
@@ -148,7 +148,7 @@ class Surface:
 
     def edge_size(self, vertices: Indices) -> Floats:
         """Return the mean length of the edges around each of some vertices."""
-        lengths = self.gather(np.abs(self.edges))
+        lengths = self.gather(modulus(self.edges))
         return np.asarray(lengths[vertices] / np.diff(self.fans[0])[vertices])
 
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.elementary import modulus, times
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.seamless_map import SeamlessMap
@@ -116,7 +117,7 @@ def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int)
     length = np.insert(lines[:, 4], first[1:], 0.0) if rays else np.zeros(0)
     last = first[1:] - 1
     ran = np.flatnonzero(count)
-    length[(first[1:] + np.arange(rays))[ran]] = (lines[:, 4] + np.abs(stop - origin))[last[ran]]
+    length[(first[1:] + np.arange(rays))[ran]] = (lines[:, 4] + modulus(stop - origin))[last[ran]]
     return Trails(
         first=first,
         face=face,
@@ -154,7 +155,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
     here = triangulation.triangles[face, edge]
     there = triangulation.triangles[face, (edge + 1) % 3]
     origin = seamless.corner_coords[face, edge]
-    step = np.abs(seamless.corner_coords[face, (edge + 1) % 3] - origin)
+    step = modulus(seamless.corner_coords[face, (edge + 1) % 3] - origin)
     runs = [np.append(0.0, np.cumsum(step[a:b])) for a, b in pairwise(first)]
     loops = triangulation.loop[here[first[:-1]]]
     whole = np.array([loop.length for loop in triangulation.domain.loops])[triangulation.loop[here]]
@@ -179,8 +180,8 @@ def to_plane(seamless: SeamlessMap, face: Indices, w: Complexes) -> Complexes:
     """Return the points (q,) of the plane at coordinates w (q,) of triangles (q,)."""
     corners = seamless.corner_coords[face]
     a, b, q = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], w - corners[:, 0]
-    size = (a.conj() * b).imag
-    s, r = (q.conj() * b).imag / size, (a.conj() * q).imag / size
+    size = times(a.conj(), b).imag
+    s, r = times(q.conj(), b).imag / size, times(a.conj(), q).imag / size
     xy = seamless.triangulation.points[seamless.triangulation.triangles[face]]
     z = xy[..., 0] + 1j * xy[..., 1]
     return np.asarray(z[:, 0] * (1 - s - r) + z[:, 1] * s + z[:, 2] * r)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.domain.loop import CORNER_DEG, Loop
 from meshonet.geometry.elementary import angle as angle_of
-from meshonet.geometry.elementary import exp, tan
+from meshonet.geometry.elementary import exp, tan, times
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.surface import NEXT, Surface
 
@@ -62,7 +62,7 @@ def wall_directions(surface: Surface) -> WallDirections:
     angle[start] += leaving
     shears = np.zeros(surface.size, dtype=np.complex128)
     sheared = np.where(acute[places[triangle, edge]], tan(leaving), 0.0)
-    shears[start] = -1j * sheared * exp(2j * angle[start])
+    shears[start] = times(-1j * sheared, exp(2j * angle[start]))
     offsets = 0.5 * (leaving + arriving)
     inside = np.where(surface.on_wall, inside, 0.0)
     return WallDirections(cells, angle, shears, own + offsets, offsets, inside)

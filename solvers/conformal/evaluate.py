@@ -19,7 +19,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, read_only
 from meshonet.geometry.conformal.lift import Lift
-from meshonet.geometry.elementary import exp, product
+from meshonet.geometry.elementary import exp, modulus, product
 from meshonet.geometry.polygon.mirror import Axis
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import strip_rows
@@ -163,7 +163,7 @@ class _HighModes:
     def _felt(self, depth: Floats) -> list[tuple[int, int]]:
         """Return for each octave of modes, the highest first, the levels it reaches and its last mode."""
         octaves: list[tuple[int, int]] = []
-        strength = np.abs(self.ahead) + np.abs(self.behind[::-1])
+        strength = modulus(self.ahead) + modulus(self.behind[::-1])
         begin = 0
         while begin < len(strength):
             low = MODES + 1 + begin

@@ -8,6 +8,7 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.conformal.lift import Lift, lift_body, mirrored
+from meshonet.geometry.elementary import modulus
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.polygon.mirror import Axis, handedness
@@ -60,7 +61,7 @@ def is_rough(body: Walls) -> bool:
     k = np.minimum(np.arange(n), n - np.arange(n))
     rough = False
     for name, F in (("wall", body.wall), ("far field", body.far)):
-        sharp = float(np.abs(np.fft.fft(F))[(k > MODES // 2) & (k <= MODES)].sum() / n)
+        sharp = float(modulus(np.fft.fft(F))[(k > MODES // 2) & (k <= MODES)].sum() / n)
         if sharp > SHARPEST[name]:
             rough = name == "wall" and sharp < ROUGHEST and bool(body.corners) and not _has_other_corner(body)
             if not rough:

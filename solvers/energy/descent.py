@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import modulus, times
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.kernels._native import Stiffness
 from meshonet.kernels._native import newton as newton_steps
@@ -137,11 +138,11 @@ def skewness(nodes: Floats) -> Floats:
     """Return the largest 1/sin⁴ of the angles of each cell of `nodes` (ni, nj, 2), infinite where folded."""
     z = nodes[..., 0] + 1j * nodes[..., 1]
     along, across = np.diff(z, axis=0), np.diff(z, axis=1)
-    g, h = np.abs(along), np.abs(across)
+    g, h = modulus(along), modulus(across)
     least = np.full((len(z) - 1, z.shape[1] - 1), np.inf)
     for south in (slice(None, -1), slice(1, None)):
         for west in (slice(None, -1), slice(1, None)):
-            area = (np.conj(along[:, south]) * across[west]).imag
+            area = times(np.conj(along[:, south]), across[west]).imag
             np.minimum(least, area / np.maximum(g[:, south] * h[west], 1e-300), out=least)
     with np.errstate(divide="ignore"):
         return np.asarray((1.0 / np.where(least > 0.0, least, 0.0) ** 2) ** 2)

@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from meshonet.geometry import elementary
+from meshonet.geometry.elementary import modulus, times
 
 FUNCTIONS = {
     "exp": (-700.0, 700.0),
@@ -217,3 +220,28 @@ def test_arrays_are_taken_as_files_give_them(order, offset):
 def test_a_product_of_shapes_that_do_not_fit_is_refused(left, right):
     with pytest.raises(ValueError, match="shapes"):
         elementary.product(np.ones(left), np.ones(right))
+
+
+PARTS = st.floats(-1e3, 1e3, allow_subnormal=False)
+
+
+@given(st.lists(st.tuples(PARTS, PARTS, PARTS, PARTS), min_size=1, max_size=20))
+def test_products_of_complex_numbers_round_every_product_and_sum(parts):
+    a, b, c, d = np.array(parts).T
+    answer = times(a + 1j * b, c + 1j * d)
+    assert np.array_equal(answer.real, a * c - b * d)
+    assert np.array_equal(answer.imag, a * d + b * c)
+
+
+def test_products_of_complex_numbers_have_the_shape_and_kind_of_numpys():
+    z = np.arange(6.0).reshape(2, 3) + 1j
+    assert np.array_equal(times(z, 2.0), 2.0 * z)
+    assert np.array_equal(times(z[:, :1], z), z[:, :1] * z)
+    assert times(1j, z[0, 0]) == 1j * z[0, 0]
+    assert times(z.astype(np.complex64), z.astype(np.complex64)).dtype == np.complex64
+
+
+def test_the_modulus_is_the_length_of_complex_numbers_and_the_size_of_real_ones():
+    assert modulus(3 + 4j) == 5.0
+    assert modulus(np.array([3 + 4j, -1j])).tolist() == [5.0, 1.0]
+    assert modulus(np.array([-2.0, 1.0])).tolist() == [2.0, 1.0]

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.elementary import functions_of
+from meshonet.geometry.elementary import functions_of, times
 from meshonet.solvers.algebraic.resample.spline import places
 
 ACUTE, WIDE = np.radians((30.0, 60.0))
@@ -35,7 +35,7 @@ def openings(z: Any, xp: Any) -> Any:
     corner = xp.stack([west_east[..., 0], west_east[..., -1]], -1)
     along = xp.stack([beside[..., 0], beside[..., -1]], -1) - corner
     up = xp.stack([west_east[..., 1], west_east[..., -2]], -1) - corner
-    angle = xp.abs(functions_of(xp).angle(along * up.conj()))
+    angle = xp.abs(functions_of(xp).angle(times(along, up.conj())))
     return xp.clip((WIDE - angle) / (WIDE - ACUTE), 0.0, 1.0)
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, array_like, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.elementary import functions_of, product
+from meshonet.geometry.elementary import functions_of, modulus, product
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import add_spline_rows
 from meshonet.solvers.algebraic.resample.spline import bending, places, spline_matrix
@@ -59,7 +59,7 @@ def along_lines(z: Any, nj: int, xp: Any = np) -> tuple[Any, Any]:
     """
     n = z.shape[-1]
     moves = z[..., 1:] - z[..., :-1]
-    steps = xp.clip(abs(moves), 1e-300, None)
+    steps = xp.clip(modulus(moves), 1e-300, None)
     length = xp.concatenate([xp.zeros_like(steps[..., :1]), xp.cumsum(steps, -1)], -1)
     first = places(n, nj)[0]
     way = np.arange(nj) * ((n - 1) / (nj - 1)) - first

@@ -19,6 +19,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, complex_of
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import modulus, times
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
@@ -51,7 +52,7 @@ class Canonical:
             z = both if folded <= count_folded(np.moveaxis(planes, 0, -1)) else z
         z = z.T if transposed else z
         z = z[:: -1 if along else 1, :: -1 if across else 1]
-        z = self.origin + self.unit * (z.conj() if _mirrors(self.element) else z)
+        z = self.origin + times(self.unit, (z.conj() if _mirrors(self.element) else z))
         own = self.original
         z[:, 0], z[:, -1] = complex_of(own.south), complex_of(own.north)
         z[0], z[-1] = (z[0], z[0]) if own.topology == "o" else (complex_of(own.west), complex_of(own.east))
@@ -112,7 +113,7 @@ def _framed(sides: tuple[Complexes, ...], element: Element) -> tuple[tuple[Compl
 
 
 def _step(edges: Complexes) -> float:
-    return STEP * 2.0 ** math.ceil(math.log2(np.abs(edges).max()))
+    return STEP * 2.0 ** math.ceil(math.log2(modulus(edges).max()))
 
 
 def _rounded(edge: Complexes, step: float) -> Complexes:

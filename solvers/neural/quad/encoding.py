@@ -6,7 +6,7 @@ is the module, numpy or torch, that arrays are of.
 
 from typing import Any
 
-from meshonet.geometry.elementary import functions_of
+from meshonet.geometry.elementary import functions_of, modulus, times
 
 LATENT = 33  # nodes along xi and eta of the grid the network sees
 SCALE = 0.1  # what an answer of 1 means, in the normalised domain's unit
@@ -59,7 +59,7 @@ def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
     else:
         u, a, where = _slope(z, xp), _bend(z, xp), z
     v, b = _slope(z.swapaxes(1, 2), xp).swapaxes(1, 2), _bend(z.swapaxes(1, 2), xp).swapaxes(1, 2)
-    call, product, lengths = functions_of(xp), u.conj() * v, (abs(u), abs(v))
+    call, product, lengths = functions_of(xp), times(u.conj(), v), (modulus(u), modulus(v))
     angle = product / (lengths[0] * lengths[1] + TINY)
     place = xp.linspace(-1.0, 1.0, n, dtype=z.real.dtype, device=z.device) + 0.0 * z.real
     along = 0.0 * place if around else place.swapaxes(1, 2)

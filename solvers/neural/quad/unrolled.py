@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.geometry.elementary import functions_of
+from meshonet.geometry.elementary import functions_of, modulus, times
 
 AROUND = 65  # nodes along xi, the last a turn after the first, that the network sees around a body
 
@@ -27,7 +27,7 @@ def middles(walls: Any, xp: Any = np) -> Any:
     """
     off = walls - walls[:, :1]  # near the origin, against cancellation
     ahead = xp.roll(off, -1, 1)
-    cross = (off.conj() * ahead).imag
+    cross = times(off.conj(), ahead).imag
     return walls[:, 0] + (cross * (off + ahead)).sum(1) / (3.0 * cross.sum(1))
 
 
@@ -40,7 +40,7 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
         first = xp.cumsum(xp.concatenate([angle_of(off[:, :1, :1]), cut], 2), 2)
         steps = angle_of(off[:, 1:] / off[:, :-1])
         angle = xp.cumsum(xp.concatenate([first, steps], 1), 1)
-        strip = -angle + 1j * functions_of(xp).log(abs(off))
+        strip = -angle + 1j * functions_of(xp).log(modulus(off))
     closed = abs(angle[:, -1] - angle[:, 0] + TURN) < 1e-6
     once = closed.all(1) & xp.isfinite(strip).all(2).all(1)
     return xp.concatenate([strip[:, :-1], strip[:, :1] + TURN], 1), once
@@ -75,4 +75,4 @@ def factors(strips: Any, xp: Any = np) -> Any:
 
 def rolled(strips: Any, centres: Any = 0.0, xp: Any = np) -> Any:
     """Return the O grids of `strips` (batch, m + 1, n) around `centres` (batch, 1, 1)."""
-    return functions_of(xp).exp(-1j * strips) + centres
+    return functions_of(xp).exp(times(-1j, strips)) + centres

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import array_like
-from meshonet.geometry.elementary import functions_of
+from meshonet.geometry.elementary import functions_of, modulus, times
 from meshonet.solvers.conformal.strip import decay, from_columns, to_columns, wavenumbers
 
 DEPTHS = np.array([0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0])  # eta at which the network sees the harmonic base
@@ -32,11 +32,11 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
     """
     mean = (far - wall)[:, 0]
     a, b = (xp.concatenate([xp.zeros_like(side[:, :1]), side[:, 1:]], 1) for side in (wall, far))
-    size = xp.sqrt(xp.clip((abs(a) ** 2 + abs(b) ** 2).sum(1), 1e-24, None))
+    size = xp.sqrt(xp.clip((modulus(a) ** 2 + modulus(b) ** 2).sum(1), 1e-24, None))
     k = wavenumbers(wall, xp)
     near, away = decay(k, mean.real[:, None, None], array_like(DEPTHS, wall, xp), xp)
     h = (a[:, :, None] * near + b[:, :, None] * away).swapaxes(1, 2) / size[:, None, None]
-    value, slope = to_columns(h, xp), SLOPE * to_columns(1j * k * h, xp)
+    value, slope = to_columns(h, xp), SLOPE * to_columns(times(1j * k, h), xp)
     channels = xp.stack([value.real, value.imag, slope.real, slope.imag], 2)
     scalars = xp.stack([functions_of(xp).log(size) + 2.5, mean.real - 4.0, mean.imag], 1)
     return channels.reshape(len(wall), CHANNELS, -1), scalars, size
