@@ -122,9 +122,16 @@ def test_a_disc_has_four_vertices_of_valence_three():
 def test_triangles_are_finer_at_a_singularity():
     m = seamless_map(domain("triangle"))
     assert m.valence[m.singular].tolist() == [3]
-    (place,) = m.triangulation.points[m.singular]
+    (place,) = m.triangulation.points[m.singular]  # beside that of the first field, for which they are finer
+    assert edges_near(m.triangulation, place) < 0.8 * edges_near(triangulate(domain("triangle")), place)
+
+
+def test_triangles_are_as_fine_as_is_asked_for_at_a_place():
     plain = triangulate(domain("triangle"))
-    assert edges_near(m.triangulation, place) < 0.6 * edges_near(plain, place)
+    place = plain.points[np.argmin(np.hypot(*(plain.points - [0.5, 0.28]).T))]
+    size = 0.35 * edges_near(plain, place)
+    finer = triangulate(domain("triangle"), finer=(place[None], np.array([size])))
+    assert edges_near(finer, place) < 0.6 * edges_near(plain, place)
 
 
 def edges_near(triangulation, place):
