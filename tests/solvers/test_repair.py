@@ -81,10 +81,10 @@ def test_shapes_that_are_nearly_the_same_are_repaired_alike_with_a_wide_margin()
     """The jaw of a wrench is opened by 0.01: nodes of its boundary move by 0.005.
 
     Inner nodes move little more with a wide margin. By how much is decided by where descents stop, for which
-    rounding is enough: 0.005 to 0.011 for margins of 9 to 18, and 0.08 for 6.
+    rounding is enough, so that one margin of several may come out otherwise: 0.005 to 0.03, and 0.08 for 6.
     """
     moved = {}
-    for margin in (6, 12):
+    for margin in (6, 9, 10, 12, 14, 15):
         made = []
         for opening in (0.25, 0.26):
             nodes = solve(family("wrench").boundary(opening, 101, 101)).grid.nodes.copy(order="K")
@@ -92,8 +92,9 @@ def test_shapes_that_are_nearly_the_same_are_repaired_alike_with_a_wide_margin()
             assert repair(nodes, False, margin) == 0
             made.append(nodes)
         moved[margin] = np.abs(made[1] - made[0]).max()
-    assert moved[12] < 0.015
-    assert moved[12] < 0.2 * moved[6]
+    narrow, *wide = moved.values()
+    assert np.median(wide) < 0.01
+    assert max(wide) < 0.5 * narrow
 
 
 @pytest.mark.parametrize("shape", [(2, 5), (5, 2), (2, 2)])
