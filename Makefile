@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find kernels -name '*.py*' -o -name '*.pxi' -o -name '*.h' -o -name '*.c' ! -name _native.c)
 
-.PHONY: help demo test test-fast test-clients same fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs tutorials gallery site wheel dist man clean
+.PHONY: help demo test test-fast test-clients same sanitize fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs tutorials gallery site wheel dist man clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
@@ -13,6 +13,7 @@ help:
 	@echo 'make test-clients  files written here, read by cgnscheck and OpenFOAM'
 	@echo 'make same    forty commands as other processors would run them: the same bits everywhere'
 	@echo 'make fuzz    every reader against hostile files, MINUTES=10 each; make kills: commands stopped at random'
+	@echo 'make sanitize  kernels compiled to notice what they must not do, and the tests that run them'
 	@echo 'make lint    style, types and import contracts'
 	@echo 'make train   the shipped models again, from random shapes (resumable; about three hours on one core)'
 	@echo 'make paper   the MeshONet paper again: docs/benchmarks/paper (hours, resumable); make paper-quick: minutes, in build'
@@ -73,6 +74,32 @@ same: $(VENV)/.developing
 	command -v qemu-x86_64 >/dev/null || \
 	  { test "$$(id -u)" = 0 && apt-get update -qq && apt-get install -y -qq --no-install-recommends qemu-user; } || true
 	$(BIN)/python benchmarks/same.py --emulated
+
+# kernels that report what they do outside of arrays or what C leaves undefined (GCC, Linux), for the Python of this
+# tree; nothing goes into a compiler's cache. Their rounding is another one: what tests compare is not judged here
+SANITIZED := $(abspath build/sanitize)
+SANITIZERS := -g -fno-omit-frame-pointer -fsanitize=address,undefined,float-cast-overflow
+SANITIZE_TESTS ?= tests/geometry tests/solvers tests/formats
+# with the runtime of C++: the sanitizer's finds it only when it is there as early
+PRELOAD = $(foreach name,libasan.so libstdc++.so.6,$(shell $(CC) -print-file-name=$(name)))
+
+$(SANITIZED)/.built: $(VENV)/.developing $(KERNELS)
+	$(PIP) --upgrade --target $(SANITIZED)/tools cython setuptools
+	mkdir -p $(SANITIZED)/meshonet/kernels
+	ln -sfn $(abspath kernels/__init__.py) $(SANITIZED)/meshonet/kernels/__init__.py
+	for each in meshonet/__init__.py meshonet/api formats geometry solvers; do \
+	  ln -sfn $(CURDIR)/$$each $(SANITIZED)/meshonet/$${each#meshonet/}; done
+	CCACHE_DISABLE=1 CFLAGS='$(SANITIZERS)' LDFLAGS='$(SANITIZERS)' PYTHONPATH=$(SANITIZED)/tools \
+	  $(BIN)/python setup.py --quiet build_ext --force --build-lib $(SANITIZED) --build-temp $(SANITIZED)/objects
+	@touch $@
+
+# what sanitizers print goes past pytest, which would drop it where a test passes
+sanitize: $(SANITIZED)/.built
+	PYTHONPATH=$(SANITIZED) PYTHONMALLOC=malloc LD_PRELOAD='$(PRELOAD)' UBSAN_OPTIONS=print_stacktrace=1 \
+	  ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 $(BIN)/pytest -n 2 --capture=sys \
+	  -m 'not client and not solver and not browser' $(SANITIZE_TESTS) 2>$(SANITIZED)/report || test $$? -eq 1
+	@if grep -E -A 12 'runtime error: |AddressSanitizer' $(SANITIZED)/report; then exit 1; fi
+	@echo 'the sanitizers found nothing'
 
 # hostile files for MINUTES a reader, JOBS readers at a time; commands killed COUNT times
 MINUTES ?= 10

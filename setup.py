@@ -4,6 +4,7 @@ All C below ``kernels`` is bound by one extension, ``meshonet.kernels._native``.
 """
 
 import os
+import shlex
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from itertools import chain
@@ -23,14 +24,16 @@ FOLDERS = [str(ROOM / "include"), str(ROOM)]
 KERNELS = sorted(str(path) for path in ROOM.glob("*/*.c"))
 HEADERS = sorted(str(path) for end in ("h", "pxi", "pyx") for path in ROOM.rglob(f"*.{end}"))
 WINDOWS = sys.platform == "win32"
+DEBUGGED = "-g" in shlex.split(os.environ.get("CFLAGS", ""))  # by a debugger or sanitizer, which names places
+PLAIN = [] if DEBUGGED else ["-g0"]
 
 # The same bits on every processor: operations and sums in the order in which they are written, products and
 # sums not contracted. No -march: include/clones.h picks the instruction set when the module is loaded.
 NUMERICS = (
-    ["/O2"] if WINDOWS else ["-O3", "-g0", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off"]
+    ["/O2"] if WINDOWS else ["-O3", *PLAIN, "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off"]
 )
-GLUE = [] if WINDOWS else ["-O0", "-g0"]  # checks and calls: nothing to gain
-LINK = ["-Wl,-s"] if sys.platform == "linux" else []  # no symbols but those that are looked up
+GLUE = [] if WINDOWS else ["-O0", *PLAIN]  # checks and calls: nothing to gain
+LINK = ["-Wl,-s"] if sys.platform == "linux" and not DEBUGGED else []  # no symbols but what is looked up
 
 
 class BuildKernels(build_ext):

@@ -1,8 +1,9 @@
 /* One build that is fast on every x86-64 machine: the loader picks the clone that the processor can run.
-   Elsewhere (other processors, other compilers) it is plain C. */
+   Elsewhere (other processors, other compilers, make sanitize) it is plain C. */
 #pragma once
 
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && __GNUC__ >= 12
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && __GNUC__ >= 12 && \
+    !defined(__SANITIZE_ADDRESS__)
 #define MESHONET_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define MESHONET_CLONES
