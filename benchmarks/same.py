@@ -133,8 +133,12 @@ def _each(chosen: list[str], folder: Path, machine: Machine) -> Iterator[tuple[s
 
 
 def digest_of(record: Record) -> str:
-    """Return the digest of what a command left, its numbers and its words."""
-    text = json.dumps([record.numbers, record.words], sort_keys=True)
+    """Return the digest of what a command left, its numbers and its words but those of an emulator."""
+    words = {
+        place: "\n".join(line for line in text.splitlines() if not line.startswith(EMULATOR))
+        for place, text in record.words.items()
+    }
+    text = json.dumps([record.numbers, words], sort_keys=True)
     return sha256(text.encode()).hexdigest()[:16]
 
 
