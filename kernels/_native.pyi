@@ -41,7 +41,6 @@ def crossing_segments(
 
 # algebraic
 def tfi(x: Floats, y: Floats, xs: Edges, ys: Edges, parameters: Edges, threads: int = 1) -> None: ...
-def tfi_batch(nodes: Floats, sides: Edges, parameters: Edges) -> None: ...
 def tfi_coarse(sides: Edges, thin: tuple[Placed, Placed], nodes: Floats) -> None: ...
 def resample(
     coarse: Floats, sides: Edges, fine: tuple[Placed, Placed], opened: Floats, near: float, far: float,
@@ -172,9 +171,8 @@ def inner_faces(
 def connect_quads(quads: Indices, n: int) -> tuple[Indices, Indices, Indices, bool]: ...
 def joined_classes(pairs: Indices, n: int) -> tuple[Indices, int]: ...
 def split_quads(
-    quads: Indices, named: Indices, edge: Indices, twin: Indices, irregular: NDArray[np.bool_],
-    marked: NDArray[np.bool_],
-) -> tuple[Indices, list[Indices], Indices, int] | None: ...  # fmt: skip
+    quads: Indices, edge: Indices, twin: Indices, irregular: NDArray[np.bool_], marked: NDArray[np.bool_]
+) -> tuple[list[Indices], Indices, int] | None: ...  # fmt: skip
 
 # motorcycle
 def probe_rays(

@@ -47,25 +47,6 @@ def tfi(x, y, tuple xs, tuple ys, tuple parameters, int threads=1):
         tfi_fill(px, py, ni, nj, &ex, &ey, &parameter, threads)
 
 
-cdef TfiEdges moved(TfiEdges e, ptrdiff_t along, ptrdiff_t across) noexcept nogil:
-    """Return edges so many numbers further on."""
-    e.south, e.north, e.west, e.east = e.south + along, e.north + along, e.west + across, e.east + across
-    return e
-
-
-def tfi_batch(nodes, tuple sides, tuple parameters):
-    """Interpolate into the planes `nodes` (batch, 2, ni, nj) from edges (batch, 2, n)."""
-    cdef ptrdiff_t batch = nodes.shape[0], ni = nodes.shape[2], nj = nodes.shape[3], b
-    cdef Written x = fills(nodes, (batch, 2, ni, nj))
-    cdef TfiEdges ex = four_edges(sides, (batch, 2, ni), (batch, 2, nj)), ey
-    cdef TfiEdges parameter = four_edges(parameters, (batch, ni), (batch, nj))
-    with nogil:
-        for b in range(batch):
-            ey = moved(ex, ni, nj)
-            tfi_fill(x, x + ni * nj, ni, nj, &ex, &ey, &parameter, 1)
-            x, ex, parameter = x + 2 * ni * nj, moved(ey, ni, nj), moved(parameter, ni, nj)
-
-
 def add_spline_rows(x, first, weights, values, bends, bint rim, int threads=1):
     """Add to `x` (ni, nj) rows of a spline, `values` and `bends` (m, nj); see ``algebraic/evaluate.h``."""
     cdef ptrdiff_t ni, nj, m = len(values)

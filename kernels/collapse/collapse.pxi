@@ -11,8 +11,8 @@ cdef extern from "collapse/topology.h":
                                   ptrdiff_t *parent) nogil
     ptrdiff_t mesh_blocks(const HalfEdges *mesh, const unsigned char *irregular, unsigned char *marked, ptrdiff_t *label,
                           ptrdiff_t *room) nogil
-    ptrdiff_t mesh_lattices(const HalfEdges *mesh, const ptrdiff_t *quads, const unsigned char *marked,
-                            const ptrdiff_t *label, ptrdiff_t count, ptrdiff_t *sizes, ptrdiff_t *lattices,
+    ptrdiff_t mesh_lattices(const HalfEdges *mesh, const unsigned char *marked, const ptrdiff_t *label,
+                            ptrdiff_t count, ptrdiff_t *sizes, ptrdiff_t *lattices,
                             ptrdiff_t *room) nogil
     ptrdiff_t mesh_chords(const HalfEdges *mesh, const unsigned char *marked, ptrdiff_t *label, ptrdiff_t *room) nogil
 
@@ -44,12 +44,12 @@ def joined_classes(pairs, ptrdiff_t n):
     return label, count
 
 
-def split_quads(quads, named, edge, twin, irregular, marked):
-    """Return the block (m,) of each quad, the lattices of the blocks and the chord (e,) of each edge; None for a mesh
+def split_quads(quads, edge, twin, irregular, marked):
+    """Return the lattices of the blocks, the chord (e,) of each edge and how many chords there are; None for a mesh
     whose blocks are no rectangles.
 
-    `edge` and `twin` are those of `quads`; lattices hold numbers of `named` (m, 4), which may be others. `irregular` (n,)
-    says where lines begin; `marked` (e,), edges that bound blocks, is filled up.
+    `edge` and `twin` are those of `quads`. `irregular` (n,) says where lines begin; `marked` (e,), edges that bound
+    blocks, is filled up.
     """
     cdef HalfEdges mesh
     cdef ptrdiff_t m = len(quads), count, written = -1, chords = 0, n = len(irregular), edges = len(marked)
@@ -58,7 +58,6 @@ def split_quads(quads, named, edge, twin, irregular, marked):
     mesh.quads, mesh.m, mesh.n, mesh.edges = reads_places(quads, (m, 4), n), m, n, edges
     mesh.edge = <ptrdiff_t *>reads_places(edge, (m, 4), edges)
     mesh.twin, mesh.ends = <ptrdiff_t *>reads_places(twin, (m, 4), 4 * m, -1), NULL
-    cdef const ptrdiff_t *own = reads_indices(named, (m, 4))
     cdef const unsigned char *begins = <const unsigned char *>numbers(irregular, b"?", 1, (n,), False)
     cdef unsigned char *mark = <unsigned char *>numbers(marked, b"?", 1, (edges,), True)
     cdef ptrdiff_t *block = fills_indices(label, (m,))
@@ -69,10 +68,10 @@ def split_quads(quads, named, edge, twin, irregular, marked):
     with nogil:
         count = mesh_blocks(&mesh, begins, mark, block, scratch)
         if count >= 0:
-            written = mesh_lattices(&mesh, own, mark, block, count, size, lattice, scratch)
+            written = mesh_lattices(&mesh, mark, block, count, size, lattice, scratch)
             chords = mesh_chords(&mesh, mark, side, scratch)
     if written < 0:
         return None
     ends = np.cumsum(sizes[:count, 0] * sizes[:count, 1])[:-1]
     parts = [part.reshape(shape) for part, shape in zip(np.split(lattices[:written], ends), sizes[:count].tolist())]
-    return label, parts, chord, chords
+    return parts, chord, chords

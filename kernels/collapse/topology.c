@@ -198,9 +198,10 @@ ptrdiff_t mesh_blocks(const HalfEdges *mesh, const unsigned char *irregular, uns
 
 /* Write one row of corners along half-edge `h` and its continuations, up to a marked edge; return how many quads, or -1 for
    more than `most`. `low` gets the nodes along it, `high` those on the other side of its quads. */
-static ptrdiff_t row_of(const HalfEdges *mesh, const ptrdiff_t *quads, const unsigned char *marked, ptrdiff_t h, ptrdiff_t most,
-                        ptrdiff_t *low, ptrdiff_t *high)
+static ptrdiff_t row_of(const HalfEdges *mesh, const unsigned char *marked, ptrdiff_t h, ptrdiff_t most, ptrdiff_t *low,
+                        ptrdiff_t *high)
 {
+    const ptrdiff_t *quads = mesh->quads;
     ptrdiff_t length = 0;
     for (;;) {
         const ptrdiff_t ahead = next_of(h);
@@ -216,14 +217,14 @@ static ptrdiff_t row_of(const HalfEdges *mesh, const ptrdiff_t *quads, const uns
 }
 
 /* Write the lattice of a block of `cells` quads from the half-edge along its south side; return whether it is whole. */
-static int lattice_of(const HalfEdges *mesh, const ptrdiff_t *quads, const unsigned char *marked, ptrdiff_t h, ptrdiff_t cells,
-                      ptrdiff_t *size, ptrdiff_t *lattice, ptrdiff_t *room)
+static int lattice_of(const HalfEdges *mesh, const unsigned char *marked, ptrdiff_t h, ptrdiff_t cells, ptrdiff_t *size,
+                      ptrdiff_t *lattice, ptrdiff_t *room)
 {
     ptrdiff_t *rows = room; /* rows of nodes one after another, south first */
     ptrdiff_t wide = 0, high = 0;
     for (;;) {
         ptrdiff_t *row = rows + high * (wide + 1);
-        const ptrdiff_t length = row_of(mesh, quads, marked, h, cells - high * wide, row, row + (wide ? wide + 1 : cells + 1));
+        const ptrdiff_t length = row_of(mesh, marked, h, cells - high * wide, row, row + (wide ? wide + 1 : cells + 1));
         if (length < 0 || (wide && length != wide))
             return 0;
         if (!wide) { /* the first row tells where the second has to be */
@@ -246,8 +247,8 @@ static int lattice_of(const HalfEdges *mesh, const ptrdiff_t *quads, const unsig
     return 1;
 }
 
-ptrdiff_t mesh_lattices(const HalfEdges *mesh, const ptrdiff_t *quads, const unsigned char *marked, const ptrdiff_t *label,
-                        ptrdiff_t count, ptrdiff_t *sizes, ptrdiff_t *lattices, ptrdiff_t *room)
+ptrdiff_t mesh_lattices(const HalfEdges *mesh, const unsigned char *marked, const ptrdiff_t *label, ptrdiff_t count,
+                        ptrdiff_t *sizes, ptrdiff_t *lattices, ptrdiff_t *room)
 {
     ptrdiff_t *corner = room, *cells = room + count, *rows = room + 2 * count, written = 0;
     for (ptrdiff_t b = 0; b < count; b++)
@@ -260,7 +261,7 @@ ptrdiff_t mesh_lattices(const HalfEdges *mesh, const ptrdiff_t *quads, const uns
     }
     for (ptrdiff_t b = 0; b < count; b++) {
         if (corner[b] < 0 ||
-            !lattice_of(mesh, quads, marked, corner[b], cells[b], sizes + 2 * b, lattices + written, rows))
+            !lattice_of(mesh, marked, corner[b], cells[b], sizes + 2 * b, lattices + written, rows))
             return -1;
         written += sizes[2 * b] * sizes[2 * b + 1];
     }

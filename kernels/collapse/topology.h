@@ -32,11 +32,10 @@ ptrdiff_t joined_classes(const ptrdiff_t *pairs, ptrdiff_t k, ptrdiff_t n, ptrdi
 ptrdiff_t mesh_blocks(const HalfEdges *mesh, const unsigned char *irregular, unsigned char *marked, ptrdiff_t *label,
                       ptrdiff_t *room);
 
-/* Write the nodes of each block as a lattice [i][j], one after another, of sizes (count, 2); they are of `quads` (m, 4),
-   which may number other nodes than those of the mesh. Return how many numbers were written, -1 for a block that is no
-   rectangle. `lattices` is of 4 m. */
-ptrdiff_t mesh_lattices(const HalfEdges *mesh, const ptrdiff_t *quads, const unsigned char *marked, const ptrdiff_t *label,
-                        ptrdiff_t count, ptrdiff_t *sizes, ptrdiff_t *lattices, ptrdiff_t *room);
+/* Write the nodes of each block as a lattice [i][j], one after another, of sizes (count, 2). Return how many numbers
+   were written, -1 for a block that is no rectangle. `lattices` is of 4 m. */
+ptrdiff_t mesh_lattices(const HalfEdges *mesh, const unsigned char *marked, const ptrdiff_t *label, ptrdiff_t count,
+                        ptrdiff_t *sizes, ptrdiff_t *lattices, ptrdiff_t *room);
 
 /* Label (edges) the chord of each edge: edges opposite in some quad. With `marked`, chords that run side by side through a
    block are one. Return how many there are; `room` is of 8 m. */

@@ -5,7 +5,7 @@
 #include "elementary.h"
 #include "lift.h"
 
-#define CHUNK 256
+#define CHUNK 256 /* points at a time, so that they stay in the first cache */
 #define FAR 0.0625 /* |e^2| up to which it holds to round-off: FAR^TERMS is 2e-16 */
 #define TOGETHER 8 /* points for which one tells whether it does */
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <stddef.h>
 
-#define PICARD_MODES 63
+#define PICARD_MODES 63 /* these three as in solvers/conformal/strip.py */
 #define PICARD_COUNT (2 * PICARD_MODES + 1)
 #define PICARD_LEVELS 40
 #define PICARD_COLUMNS 128

@@ -9,7 +9,7 @@
 #include "lift_maps.h"
 #include "team.h"
 
-#define ROWS 4
+#define ROWS 4 /* of a product at a time */
 
 /* The points of a row: psi and phi, then x and y; room for LANES more than there are. */
 typedef struct { double *x, *y; } Row;

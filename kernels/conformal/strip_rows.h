@@ -4,8 +4,8 @@
 
 #include "lift.h"
 
-#define PANEL_NODES 16
-#define TAPS 14
+#define PANEL_NODES 16 /* as NODES of solvers/conformal/chebyshev.py */
+#define TAPS 14 /* as in solvers/conformal/nufft.py */
 
 /* Points [from, from + m) of a row weigh the columns around it: (count, 2, width), count a power of two, width a
    multiple of LANES, zero from m on. */

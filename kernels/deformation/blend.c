@@ -4,7 +4,7 @@
 #include <math.h>
 
 enum { LEAST = 64 }; /* points that are worth a thread of their own */
-static const double TINY = 1e-280;
+static const double TINY = 1e-280; /* keeps a sum from being 0 */
 
 /* 1/r^2 with a guard for a point on a place, which then has all the weight that counts. */
 MESHONET_INLINE double inverse_square(double square) { return 1.0 / (square > 1e-140 ? square : 1e-140); }

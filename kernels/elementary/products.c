@@ -4,7 +4,7 @@
 #include "sums.h"
 
 #define ROWS 4    /* of a product at a time, for COLUMNS columns: their sums stay in registers */
-#define QUADS 3
+#define QUADS 3 /* vectors of four doubles in a row of these sums */
 #define COLUMNS (4 * QUADS)
 #define DEPTH 256 /* terms of a sum at a time: the columns they need stay in the first cache */
 

@@ -15,7 +15,7 @@
 #include "variational.h"
 #include <string.h>
 
-#define LANES 16
+#define LANES 16 /* floats of a vector register, at the most */
 #define VECTORS (PANEL / LANES)
 #define ROWS 12   /* of a product at a time: as many sums as registers hold */
 #define DEPTH 192 /* terms of a sum at a time: their panel stays in the first cache */

@@ -18,7 +18,7 @@
 
 #define LARGE 1e30 /* what Verdict puts in place of infinity */
 #define SMALL 1e-300 /* keeps a cell without area or edges from a division by 0 */
-#define BLOCK 128
+#define BLOCK 128 /* cells of a row at a time */
 
 /* Folded cells of one row of cells: any corner Jacobian <= 0, or not a number. x, y point at node (i, 0). */
 MESHONET_CLONES

@@ -3,7 +3,7 @@
 #include "angles.h"
 
 #define LANES 16
-#define BLOCK 128
+#define BLOCK 128 /* values at a time */
 
 MESHONET_CLONES
 void values_reduce(const double *restrict row, ptrdiff_t cells, double *low, double *high, double *sum)

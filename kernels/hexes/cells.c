@@ -4,24 +4,24 @@
 #include <math.h>
 #include <string.h>
 
-MESHONET_INLINE Vector3 edge3(const CellRow *r, int from, ptrdiff_t k, int to, ptrdiff_t l, double scale)
+MESHONET_INLINE Vector edge3(const CellRow *r, int from, ptrdiff_t k, int to, ptrdiff_t l, double scale)
 {
-    return (Vector3){(r->x[to][l] - r->x[from][k]) * scale, (r->y[to][l] - r->y[from][k]) * scale,
+    return (Vector){(r->x[to][l] - r->x[from][k]) * scale, (r->y[to][l] - r->y[from][k]) * scale,
                      (r->z[to][l] - r->z[from][k]) * scale};
 }
 
-MESHONET_INLINE void add3(Vector3 *sum, Vector3 v)
+MESHONET_INLINE void add3(Vector *sum, Vector v)
 {
     sum->x += v.x, sum->y += v.y, sum->z += v.z;
 }
 
-MESHONET_INLINE Vector3 with3(Vector3 a, Vector3 b, double by)
+MESHONET_INLINE Vector with3(Vector a, Vector b, double by)
 {
-    return (Vector3){a.x + by * b.x, a.y + by * b.y, a.z + by * b.z};
+    return (Vector){a.x + by * b.x, a.y + by * b.y, a.z + by * b.z};
 }
 
 /* A corner, with the term in brackets of energy.c where it is regularised. */
-MESHONET_INLINE Corner3 one_corner(Vector3 u, Vector3 v, Vector3 w, const Factors3 *f, double size, const int power,
+MESHONET_INLINE Corner3 one_corner(Vector u, Vector v, Vector w, const Factors3 *f, double size, const int power,
                                    const int regular)
 {
     Corner3 at = corner3(u, v, w, f, power, regular);
@@ -31,8 +31,8 @@ MESHONET_INLINE Corner3 one_corner(Vector3 u, Vector3 v, Vector3 w, const Factor
         const double chi = jacobian < 0.0 ? below : above, over = 1.0 / chi;
         const double by_j = size * (1.0 - over * over) * chi / root;
         at.energy += size * (chi + over);
-        at.du = with3(at.du, cross3(v, w), by_j), at.dv = with3(at.dv, cross3(w, u), by_j);
-        at.dw = with3(at.dw, cross3(u, v), by_j);
+        at.du = with3(at.du, cross(v, w), by_j), at.dv = with3(at.dv, cross(w, u), by_j);
+        at.dw = with3(at.dw, cross(u, v), by_j);
     }
     return at;
 }
@@ -46,7 +46,7 @@ MESHONET_INLINE double whole_row(CellRow *restrict r, ptrdiff_t count, const Ter
     for (ptrdiff_t k = 0; k < count; k++) {
         const double su = r->inverse[0][k], sv = r->inverse[1][k], sw = r->inverse[2][k];
         /* u by (beta, gamma), v by (alpha, gamma), w by (alpha, beta) */
-        Vector3 u[4], v[4], w[4], fu[4] = {{0}}, fv[4] = {{0}}, fw[4] = {{0}};
+        Vector u[4], v[4], w[4], fu[4] = {{0}}, fv[4] = {{0}}, fw[4] = {{0}};
 #pragma GCC unroll 4
         for (int e = 0; e < 4; e++) {
             const int first = e >> 1, second = e & 1;
@@ -91,7 +91,7 @@ static double valid_row(CellRow *r, ptrdiff_t count, const Terms *t)
 }
 
 /* The three edges at corner c of cell k. */
-static void edges_at(const CellRow *r, ptrdiff_t k, int c, Vector3 edge[3])
+static void edges_at(const CellRow *r, ptrdiff_t k, int c, Vector edge[3])
 {
     const int alpha = c >> 2, beta = c >> 1 & 1, gamma = c & 1;
     edge[0] = edge3(r, beta, k + gamma, 2 + beta, k + gamma, r->inverse[0][k]);
@@ -100,7 +100,7 @@ static void edges_at(const CellRow *r, ptrdiff_t k, int c, Vector3 edge[3])
 }
 
 /* Add a force by the edge between corners of cell k, `scale` of which it is. */
-static void add_force(CellRow *r, ptrdiff_t k, int from, int to, Vector3 force, double scale)
+static void add_force(CellRow *r, ptrdiff_t k, int from, int to, Vector force, double scale)
 {
     r->fx[from][k] -= scale * force.x, r->fy[from][k] -= scale * force.y, r->fz[from][k] -= scale * force.z;
     r->fx[to][k] += scale * force.x, r->fy[to][k] += scale * force.y, r->fz[to][k] += scale * force.z;
@@ -117,7 +117,7 @@ static double mixed_row(CellRow *r, ptrdiff_t count, const Terms *t)
         for (int c = 0; c < 8; c++) {
             if (r->skip[k] >> c & 1)
                 continue;
-            Vector3 e[3];
+            Vector e[3];
             edges_at(r, k, c, e);
             const Corner3 at = t->regular ? one_corner(e[0], e[1], e[2], &t->factors, t->size, 1, 1)
                                           : one_corner(e[0], e[1], e[2], &t->factors, t->size, 2, 0);
@@ -150,9 +150,9 @@ static void whole_row_stiffness(CellRow *restrict r, ptrdiff_t count, const Term
 #pragma GCC unroll 8
         for (int c = 0; c < 8; c++) {
             const int alpha = c >> 2, beta = c >> 1 & 1, gamma = c & 1;
-            const Vector3 u = edge3(r, beta, k + gamma, 2 + beta, k + gamma, su);
-            const Vector3 v = edge3(r, 2 * alpha, k + gamma, 2 * alpha + 1, k + gamma, sv);
-            const Vector3 w = edge3(r, 2 * alpha + beta, k, 2 * alpha + beta, k + 1, sw);
+            const Vector u = edge3(r, beta, k + gamma, 2 + beta, k + gamma, su);
+            const Vector v = edge3(r, 2 * alpha, k + gamma, 2 * alpha + 1, k + gamma, sv);
+            const Vector w = edge3(r, 2 * alpha + beta, k, 2 * alpha + beta, k + 1, sw);
             const Stiffness3 at = stiffness3(u, v, w, &factors, power, 1);
             const double along = at.uu * su * su, across = at.vv * sv * sv, up = at.ww * sw * sw;
             sum[c] += along + across + up;
@@ -172,7 +172,7 @@ static void mixed_row_stiffness(CellRow *r, ptrdiff_t count, const Terms *t)
         for (int c = 0; c < 8; c++) {
             if (r->skip[k] >> c & 1)
                 continue;
-            Vector3 e[3];
+            Vector e[3];
             edges_at(r, k, c, e);
             const Stiffness3 at = stiffness3(e[0], e[1], e[2], &t->factors, t->power, 1);
             const double along = at.uu * r->inverse[0][k] * r->inverse[0][k];

@@ -16,7 +16,7 @@
    dr = d (d . dr of the neighbour). Levels of many nodes are eliminated from both ends to the middle, by two threads
    where there are some; the others share what is done node by node. */
 #include "march.h"
-#include "clones.h"
+#include "elementary.h"
 #include "team.h"
 #include <math.h>
 #include <string.h>
@@ -154,24 +154,14 @@ MESHONET_INLINE void measure_areas(const March *m, ptrdiff_t n, double step, int
         m->volume[i] = 0.5 * step * (m->length[i] + m->length[i - 1]);
 }
 
-MESHONET_INLINE double least(double a, double b)
-{
-    return a < b ? a : b; /* one instruction, and vectorised, unlike fmin */
-}
-
-MESHONET_INLINE double most(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 /* ratio^exponent between 0.1 and 50, for exponents of 2 or more, to 1e-12: the series of atanh and exp. */
 MESHONET_INLINE double limited_power(double ratio, double exponent)
 {
-    const double root = sqrt(sqrt(sqrt(least(most(ratio, 0.3), 8.0)))), z = (root - 1.0) / (root + 1.0), q = z * z;
+    const double root = sqrt(sqrt(sqrt(smaller(larger(ratio, 0.3), 8.0)))), z = (root - 1.0) / (root + 1.0), q = z * z;
     double log = 1.0 / 13.0, power = 1.0;
     for (int k = 11; k > 0; k -= 2)
         log = 1.0 / k + q * log;
-    const double e = 0.0625 * least(most(exponent * 16.0 * z * log, -2.302585092994046), 3.912023005428146);
+    const double e = 0.0625 * smaller(larger(exponent * 16.0 * z * log, -2.302585092994046), 3.912023005428146);
     for (int k = 9; k > 0; k--)
         power = 1.0 + e / k * power;
     for (int k = 0; k < 4; k++)
@@ -193,21 +183,21 @@ MESHONET_INLINE void assemble(const March *m, Nodes own, int first, double growt
     if (first)
         for (ptrdiff_t i = own.from; i < own.to; i++) {
             before[i] = length[i] + length[i - 1];
-            let[i] = most(fabs(length[i] - length[i - 1]) / least(length[i], length[i - 1]), tolerated);
+            let[i] = larger(fabs(length[i] - length[i - 1]) / smaller(length[i], length[i - 1]), tolerated);
         }
     MESHONET_INDEPENDENT
     for (ptrdiff_t i = own.from; i < own.to; i++) {
         const double ux = ex[i], uy = ey[i], both = length[i] + length[i - 1], w = 0.5 * both;
-        const double apart = fabs(length[i] - length[i - 1]) / least(length[i], length[i - 1]);
+        const double apart = fabs(length[i] - length[i - 1]) / smaller(length[i], length[i - 1]);
         double tx = ux + ex[i - 1], ty = uy + ey[i - 1];
         const double over = 1.0 / sqrt(tx * tx + ty * ty);
         tx *= over, ty *= over;
         const double rate = v[i] / w, aspect = rate / w;
-        const double concave = most(tx * uy - ty * ux, 0.0); /* n . e+: where the wall bends towards the grid */
-        const double sharp = concave > 0.0 ? least(1.0 / (1.0 - concave * concave + 1e-6), 20.0) : 1.0;
+        const double concave = larger(tx * uy - ty * ux, 0.0); /* n . e+: where the wall bends towards the grid */
+        const double sharp = concave > 0.0 ? smaller(1.0 / (1.0 - concave * concave + 1e-6), 20.0) : 1.0;
         const double eps = smooth * aspect * limited_power(before[i] / both, exponent) * sharp + bend / (w * w);
         before[i] = both;
-        const double even = least(least_even + EVENING * most(apart - let[i], 0.0), 1.0), arc = (1.0 - even) * w;
+        const double even = smaller(least_even + EVENING * larger(apart - let[i], 0.0), 1.0), arc = (1.0 - even) * w;
         const double weight = flux * aspect; /* half: d_xi is over two cells */
         ps[i] = -weight * 2.0 * tx * ty;
         ss[i] = weight * (tx * tx - ty * ty);

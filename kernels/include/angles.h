@@ -4,10 +4,6 @@
 
 #define DEGREES 57.295779513082320876798154814105170332
 
-MESHONET_INLINE double magnitude(double value) { return value < 0 ? -value : value; }
-MESHONET_INLINE double larger(double a, double b) { return a > b ? a : b; }
-MESHONET_INLINE double smaller(double a, double b) { return a < b ? a : b; }
-
 /* asin(s)/s as a polynomial in z = s*s on [0, 1/4]: Chebyshev interpolation of degree 12, relative error 3e-17. */
 MESHONET_INLINE double asin_over_s(double z)
 {

@@ -16,23 +16,9 @@
    Ivanenko, Charakch'yan, USSR Comput. Maths. Math. Phys. 28 (1988) 126-133; Garanzha, Comput. Maths. Math. Phys.
    40 (2000) 1617-1637 (regularisation); Knupp, SIAM J. Sci. Comput. 23 (2001) 193-218 (shape, the inverse mean ratio). */
 #pragma once
-#include "clones.h"
 #include "elementary.h"
+#include "vectors.h"
 #include <math.h>
-
-typedef struct {
-    double x, y, z;
-} Vector3;
-
-MESHONET_INLINE Vector3 cross3(Vector3 a, Vector3 b)
-{
-    return (Vector3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-MESHONET_INLINE double dot3(Vector3 a, Vector3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 /* Weights of the terms, times the weight of the place: for the functional with angles' share w, a = (1 - w) / 3 and
    b = w. ε² and its inverse are read only where corners are regularised. */
@@ -41,7 +27,7 @@ typedef struct {
 } Factors3;
 
 typedef struct {
-    Vector3 du, dv, dw; /* derivatives by the edges */
+    Vector du, dv, dw; /* derivatives by the edges */
     double energy, jacobian;
 } Corner3;
 
@@ -51,19 +37,19 @@ typedef struct {
 } Stiffness3;
 
 typedef struct {
-    Vector3 cu, cv, cw; /* v × w, w × u, u × v */
+    Vector cu, cv, cw; /* v × w, w × u, u × v */
     double jacobian, g, h, q, uv, uw, vw, inverse, chain; /* chain: dχ/dJ, inverse: 1/χ */
     double conformal, angle, by_angle;                    /* both terms, and (second one) / χ² without one g h q */
 } Products3;
 
-MESHONET_INLINE Products3 products3(Vector3 u, Vector3 v, Vector3 w, const Factors3 *f, const int power,
+MESHONET_INLINE Products3 products3(Vector u, Vector v, Vector w, const Factors3 *f, const int power,
                                     const int regular)
 {
     Products3 p;
-    p.cu = cross3(v, w), p.cv = cross3(w, u), p.cw = cross3(u, v);
-    p.jacobian = dot3(u, p.cu);
-    p.g = dot3(u, u), p.h = dot3(v, v), p.q = dot3(w, w);
-    p.uv = dot3(u, v), p.uw = dot3(u, w), p.vw = dot3(v, w);
+    p.cu = cross(v, w), p.cv = cross(w, u), p.cw = cross(u, v);
+    p.jacobian = dot(u, p.cu);
+    p.g = dot(u, u), p.h = dot(v, v), p.q = dot(w, w);
+    p.uv = dot(u, v), p.uw = dot(u, w), p.vw = dot(v, w);
     p.inverse = 1.0 / p.jacobian, p.chain = 1.0;
     if (regular) {
         const double root = sqrt(p.jacobian * p.jacobian + f->eps2);
@@ -80,7 +66,7 @@ MESHONET_INLINE Products3 products3(Vector3 u, Vector3 v, Vector3 w, const Facto
 }
 
 /* E at a corner and its derivatives. `power`, 1 or 2, and `regular` are constants at every call. */
-MESHONET_INLINE Corner3 corner3(Vector3 u, Vector3 v, Vector3 w, const Factors3 *f, const int power, const int regular)
+MESHONET_INLINE Corner3 corner3(Vector u, Vector v, Vector w, const Factors3 *f, const int power, const int regular)
 {
     const Products3 p = products3(u, v, w, f, power, regular);
     const double by_s = 2.0 * f->conformal * p.inverse, by_t = 2.0 * power * p.by_angle;
@@ -91,34 +77,34 @@ MESHONET_INLINE Corner3 corner3(Vector3 u, Vector3 v, Vector3 w, const Factors3 
     const double uv = by_s * p.uv, uw = by_s * p.uw, vw = by_s * p.vw;
     Corner3 r;
     r.energy = p.conformal + p.angle, r.jacobian = p.jacobian;
-    r.du = (Vector3){a * u.x - uv * v.x - uw * w.x + by_j * p.cu.x, a * u.y - uv * v.y - uw * w.y + by_j * p.cu.y,
+    r.du = (Vector){a * u.x - uv * v.x - uw * w.x + by_j * p.cu.x, a * u.y - uv * v.y - uw * w.y + by_j * p.cu.y,
                      a * u.z - uv * v.z - uw * w.z + by_j * p.cu.z};
-    r.dv = (Vector3){b * v.x - uv * u.x - vw * w.x + by_j * p.cv.x, b * v.y - uv * u.y - vw * w.y + by_j * p.cv.y,
+    r.dv = (Vector){b * v.x - uv * u.x - vw * w.x + by_j * p.cv.x, b * v.y - uv * u.y - vw * w.y + by_j * p.cv.y,
                      b * v.z - uv * u.z - vw * w.z + by_j * p.cv.z};
-    r.dw = (Vector3){c * w.x - uw * u.x - vw * v.x + by_j * p.cw.x, c * w.y - uw * u.y - vw * v.y + by_j * p.cw.y,
+    r.dw = (Vector){c * w.x - uw * u.x - vw * v.x + by_j * p.cw.x, c * w.y - uw * u.y - vw * v.y + by_j * p.cw.y,
                      c * w.z - uw * u.z - vw * v.z + by_j * p.cw.z};
     return r;
 }
 
 /* A third of the traces of the positive parts of second derivatives, about: what a preconditioner divides by. */
-MESHONET_INLINE Stiffness3 stiffness3(Vector3 u, Vector3 v, Vector3 w, const Factors3 *f, const int power,
+MESHONET_INLINE Stiffness3 stiffness3(Vector u, Vector v, Vector w, const Factors3 *f, const int power,
                                       const int regular)
 {
     const Products3 p = products3(u, v, w, f, power, regular);
     const double by_s = 2.0 * f->conformal * p.inverse, by_t = 2.0 * power * p.by_angle;
     const double bend = p.inverse * p.chain;
     const double by_jj = (2.0 * p.conformal + 2.0 * power * (2.0 * power + 1.0) * p.angle) * bend * bend / 3.0;
-    return (Stiffness3){by_s * (p.h + p.q) + by_t * p.h * p.q + by_jj * dot3(p.cu, p.cu),
-                        by_s * (p.g + p.q) + by_t * p.g * p.q + by_jj * dot3(p.cv, p.cv),
-                        by_s * (p.g + p.h) + by_t * p.g * p.h + by_jj * dot3(p.cw, p.cw)};
+    return (Stiffness3){by_s * (p.h + p.q) + by_t * p.h * p.q + by_jj * dot(p.cu, p.cu),
+                        by_s * (p.g + p.q) + by_t * p.g * p.q + by_jj * dot(p.cv, p.cv),
+                        by_s * (p.g + p.h) + by_t * p.g * p.h + by_jj * dot(p.cw, p.cw)};
 }
 
 /* The energy of shapes at a point, times `weight`; nonsense where the Jacobian is not positive. */
-MESHONET_INLINE Corner3 shape3(Vector3 u, Vector3 v, Vector3 w, double weight)
+MESHONET_INLINE Corner3 shape3(Vector u, Vector v, Vector w, double weight)
 {
-    const Vector3 cu = cross3(v, w), cv = cross3(w, u), cw = cross3(u, v);
-    const double jacobian = dot3(u, cu), by = 2.0 / 3.0 * weight * exp_double(-2.0 / 3.0 * log_double(jacobian));
-    const double energy = 0.5 * by * (dot3(u, u) + dot3(v, v) + dot3(w, w));
+    const Vector cu = cross(v, w), cv = cross(w, u), cw = cross(u, v);
+    const double jacobian = dot(u, cu), by = 2.0 / 3.0 * weight * exp_double(-2.0 / 3.0 * log_double(jacobian));
+    const double energy = 0.5 * by * (dot(u, u) + dot(v, v) + dot(w, w));
     const double by_j = -2.0 / 3.0 * energy / jacobian;
     return (Corner3){{by * u.x + by_j * cu.x, by * u.y + by_j * cu.y, by * u.z + by_j * cu.z},
                      {by * v.x + by_j * cv.x, by * v.y + by_j * cv.y, by * v.z + by_j * cv.z},
@@ -127,10 +113,10 @@ MESHONET_INLINE Corner3 shape3(Vector3 u, Vector3 v, Vector3 w, double weight)
 }
 
 /* As stiffness3, of the energy of shapes. */
-MESHONET_INLINE Stiffness3 shape_stiffness3(Vector3 u, Vector3 v, Vector3 w, double weight)
+MESHONET_INLINE Stiffness3 shape_stiffness3(Vector u, Vector v, Vector w, double weight)
 {
-    const Vector3 cu = cross3(v, w), cv = cross3(w, u), cw = cross3(u, v);
-    const double jacobian = dot3(u, cu), by = 2.0 / 3.0 * weight * exp_double(-2.0 / 3.0 * log_double(jacobian));
-    const double by_jj = 5.0 / 27.0 * by * (dot3(u, u) + dot3(v, v) + dot3(w, w)) / (jacobian * jacobian);
-    return (Stiffness3){by + by_jj * dot3(cu, cu), by + by_jj * dot3(cv, cv), by + by_jj * dot3(cw, cw)};
+    const Vector cu = cross(v, w), cv = cross(w, u), cw = cross(u, v);
+    const double jacobian = dot(u, cu), by = 2.0 / 3.0 * weight * exp_double(-2.0 / 3.0 * log_double(jacobian));
+    const double by_jj = 5.0 / 27.0 * by * (dot(u, u) + dot(v, v) + dot(w, w)) / (jacobian * jacobian);
+    return (Stiffness3){by + by_jj * dot(cu, cu), by + by_jj * dot(cv, cv), by + by_jj * dot(cw, cw)};
 }

@@ -15,7 +15,7 @@
 #include <stdatomic.h>
 #endif
 
-#define TEAM_MOST 64
+#define TEAM_MOST 64 /* threads */
 
 typedef struct Team Team;
 typedef struct {

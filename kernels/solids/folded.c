@@ -1,7 +1,7 @@
 #include "row.h"
 #include "team.h"
 
-#define BLOCK 128
+#define BLOCK 128 /* cells of a row at a time */
 
 /* Cells of a row of which a corner Jacobian is not positive, or not a number. */
 MESHONET_CLONES

@@ -17,11 +17,11 @@ static void at_nodes(const double *const before[3], const double *const at[3], c
     MESHONET_INDEPENDENT
     for (ptrdiff_t k = 0; k < count; k++) {
         const Vector u = {bx[k] - ax[k], by[k] - ay[k], bz[k] - az[k]}, v = {cx[k] - bx[k], cy[k] - by[k], cz[k] - bz[k]};
-        const double first = __builtin_sqrt(inner(u, u)), second = __builtin_sqrt(inner(v, v));
+        const double first = __builtin_sqrt(dot(u, u)), second = __builtin_sqrt(dot(v, v));
         const double high = larger(first, second), low = smaller(first, second), product = first * second;
         const double ratio = smaller(high / larger(low, 1e-300), LARGE);
         growth[k] = high > 0 ? ratio : 1.0; /* a line that is a point, at a pole */
-        bend[k] = product > 0 ? inner(u, v) / larger(product, 1e-300) : 1.0;
+        bend[k] = product > 0 ? dot(u, v) / larger(product, 1e-300) : 1.0;
     }
     for (ptrdiff_t k = 0; k < count; k++)
         bend[k] = angle(bend[k]);

@@ -1,6 +1,6 @@
 #include "row.h"
 
-#define BLOCK 64
+#define BLOCK 64 /* cells of a row at a time */
 #define LARGE 1e30   /* what Verdict puts in place of infinity */
 #define SMALL 1e-300 /* keeps a cell without volume or edges from a division by 0 */
 
@@ -36,12 +36,12 @@ MESHONET_INLINE void solid_corner(const SolidLines *restrict lines, const SolidL
     MESHONET_INDEPENDENT
     for (ptrdiff_t m = 0; m < count; m++) {
         const ptrdiff_t k = start + m;
-        const Vector u = less(solid_node(&own, 1, b, k + c), solid_node(&own, 0, b, k + c));
-        const Vector v = less(solid_node(&own, a, 1, k + c), solid_node(&own, a, 0, k + c));
-        const Vector w = less(solid_node(&own, a, b, k + 1), solid_node(&own, a, b, k));
+        const Vector u = minus(solid_node(&own, 1, b, k + c), solid_node(&own, 0, b, k + c));
+        const Vector v = minus(solid_node(&own, a, 1, k + c), solid_node(&own, a, 0, k + c));
+        const Vector w = minus(solid_node(&own, a, b, k + 1), solid_node(&own, a, b, k));
         const double jacobian = triple(u, v, w), product = lu[m] * lv[m] * lw[m];
-        const double uv = uv_sign * inner(u, v) * (lu[m] * lv[m]), vw = vw_sign * inner(v, w) * (lv[m] * lw[m]);
-        const double wu = wu_sign * inner(w, u) * (lw[m] * lu[m]);
+        const double uv = uv_sign * dot(u, v) * (lu[m] * lv[m]), vw = vw_sign * dot(v, w) * (lv[m] * lw[m]);
+        const double wu = wu_sign * dot(w, u) * (lw[m] * lu[m]);
         const double high = larger(larger(uv, vw), wu), low = smaller(smaller(uv, vw), wu);
         const double scaled = product > 0 ? jacobian * product : 1.0; /* no corner where an edge has no length */
         off[m] = larger(high, -low);
@@ -64,9 +64,9 @@ MESHONET_INLINE void solid_axes(const SolidLines *restrict lines, ptrdiff_t star
         const Vector u = plus(plus(e.u[0][0], e.u[0][1]), plus(e.u[1][0], e.u[1][1]));
         const Vector v = plus(plus(e.v[0][0], e.v[0][1]), plus(e.v[1][0], e.v[1][1]));
         const Vector w = plus(plus(e.w[0][0], e.w[0][1]), plus(e.w[1][0], e.w[1][1]));
-        const double lu = __builtin_sqrt(inner(u, u)), lv = __builtin_sqrt(inner(v, v)), lw = __builtin_sqrt(inner(w, w));
+        const double lu = __builtin_sqrt(dot(u, u)), lv = __builtin_sqrt(dot(v, v)), lw = __builtin_sqrt(dot(w, w));
         const double inverse = 1.0 / larger(lu * lv * lw, SMALL);
-        const double uv = magnitude(inner(u, v)) * lw, vw = magnitude(inner(v, w)) * lu, wu = magnitude(inner(w, u)) * lv;
+        const double uv = magnitude(dot(u, v)) * lw, vw = magnitude(dot(v, w)) * lu, wu = magnitude(dot(w, u)) * lv;
         const double centre = triple(u, v, w) * inverse;
         at->scaled[m] = smaller(at->scaled[m], centre);
         at->cross[m] = larger(larger(uv, vw), wu) * inverse;

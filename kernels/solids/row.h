@@ -11,23 +11,11 @@
 #pragma once
 #include "angles.h"
 #include "solids.h"
+#include "vectors.h"
 
 typedef struct {
     const double *at[2][2][3]; /* x, y, z of node (i+a, j+b, 0) */
 } SolidLines;
-
-typedef struct {
-    double x, y, z;
-} Vector;
-
-MESHONET_INLINE Vector less(Vector a, Vector b) { return (Vector){a.x - b.x, a.y - b.y, a.z - b.z}; }
-MESHONET_INLINE Vector plus(Vector a, Vector b) { return (Vector){a.x + b.x, a.y + b.y, a.z + b.z}; }
-MESHONET_INLINE double inner(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-MESHONET_INLINE Vector outer(Vector a, Vector b)
-{
-    return (Vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-MESHONET_INLINE double triple(Vector a, Vector b, Vector c) { return inner(a, outer(b, c)); }
 
 MESHONET_INLINE Vector solid_node(const SolidLines *lines, int a, int b, ptrdiff_t k)
 {
@@ -54,9 +42,9 @@ MESHONET_INLINE SolidEdges solid_edges(const SolidLines *lines, ptrdiff_t k)
     SolidEdges e;
     for (int a = 0; a < 2; a++)
         for (int b = 0; b < 2; b++) {
-            e.u[a][b] = less(solid_node(lines, 1, a, k + b), solid_node(lines, 0, a, k + b));
-            e.v[a][b] = less(solid_node(lines, a, 1, k + b), solid_node(lines, a, 0, k + b));
-            e.w[a][b] = less(solid_node(lines, a, b, k + 1), solid_node(lines, a, b, k));
+            e.u[a][b] = minus(solid_node(lines, 1, a, k + b), solid_node(lines, 0, a, k + b));
+            e.v[a][b] = minus(solid_node(lines, a, 1, k + b), solid_node(lines, a, 0, k + b));
+            e.w[a][b] = minus(solid_node(lines, a, b, k + 1), solid_node(lines, a, b, k));
         }
     return e;
 }
@@ -72,14 +60,14 @@ MESHONET_INLINE double bezier_least(const SolidEdges *e, int p)
     double d[2][2][2][2]; /* b, b', c, c' */
     for (int bb = 0; bb < 2; bb++)
         for (int cc = 0; cc < 2; cc++) {
-            Vector normal = p == 0   ? outer(e->v[0][cc], e->w[0][bb])
-                            : p == 2 ? outer(e->v[1][cc], e->w[1][bb])
-                                     : plus(outer(e->v[0][cc], e->w[1][bb]), outer(e->v[1][cc], e->w[0][bb]));
+            Vector normal = p == 0   ? cross(e->v[0][cc], e->w[0][bb])
+                            : p == 2 ? cross(e->v[1][cc], e->w[1][bb])
+                                     : plus(cross(e->v[0][cc], e->w[1][bb]), cross(e->v[1][cc], e->w[0][bb]));
             if (p == 1)
                 normal = (Vector){0.5 * normal.x, 0.5 * normal.y, 0.5 * normal.z};
             for (int b = 0; b < 2; b++)
                 for (int c = 0; c < 2; c++)
-                    d[b][bb][c][cc] = inner(e->u[b][c], normal);
+                    d[b][bb][c][cc] = dot(e->u[b][c], normal);
         }
     double least = 1e300;
     for (int c = 0; c < 3; c++) {

@@ -17,9 +17,9 @@ static void row_volumes(const SolidLines *lines, ptrdiff_t cells, double *restri
         const Vector a = plus(plus(s.u[0][0], s.u[0][1]), plus(s.u[1][0], s.u[1][1]));
         const Vector b = plus(plus(s.v[0][0], s.v[0][1]), plus(s.v[1][0], s.v[1][1]));
         const Vector c = plus(plus(s.w[0][0], s.w[0][1]), plus(s.w[1][0], s.w[1][1]));
-        const Vector d = less(plus(s.v[0][1], s.v[1][1]), plus(s.v[0][0], s.v[1][0]));
-        const Vector e = less(plus(s.u[0][1], s.u[1][1]), plus(s.u[0][0], s.u[1][0]));
-        const Vector f = less(plus(s.u[1][0], s.u[1][1]), plus(s.u[0][0], s.u[0][1]));
+        const Vector d = minus(plus(s.v[0][1], s.v[1][1]), plus(s.v[0][0], s.v[1][0]));
+        const Vector e = minus(plus(s.u[0][1], s.u[1][1]), plus(s.u[0][0], s.u[1][0]));
+        const Vector f = minus(plus(s.u[1][0], s.u[1][1]), plus(s.u[0][0], s.u[0][1]));
         /* 1/8 of each of these is the derivative by a coordinate that runs from -1 to 1 */
         const double sides = triple(a, f, e) + triple(f, b, d) + triple(e, d, c);
         volumes[k] = magnitude(triple(a, b, c) + sides * (1.0 / 3.0)) * (1.0 / 64.0);

@@ -7,10 +7,10 @@
    Ghosts stand behind the nodes in every array of positions, sorted by owner; each is read by its owner alone, so
    whoever works on a range of nodes fills their ghosts first. */
 #pragma once
-#include "clones.h"
+#include "vectors.h"
 #include <stddef.h>
 
-#define MOST_NEIGHBOURS 24
+#define MOST_NEIGHBOURS 24 /* of a node */
 
 typedef struct {
     ptrdiff_t nodes, red, ghosts, odd, fixed;
@@ -25,10 +25,6 @@ typedef struct {
     const double *boost;           /* (nodes): factor of the explicit smoothing */
     const double *moves;           /* (3, fixed): 0 where they do not move along an axis, else 1 */
 } Graph;
-
-typedef struct {
-    double x, y, z;
-} Vector;
 
 /* First of `count` ascending numbers that is not less than `least`. */
 static inline ptrdiff_t first_from(const ptrdiff_t *numbers, ptrdiff_t count, ptrdiff_t least)
@@ -82,17 +78,4 @@ MESHONET_INLINE Vector at(const double *values, ptrdiff_t rows, ptrdiff_t i)
 MESHONET_INLINE void put(double *values, ptrdiff_t rows, ptrdiff_t i, Vector v)
 {
     values[i] = v.x, values[rows + i] = v.y, values[2 * rows + i] = v.z;
-}
-
-MESHONET_INLINE Vector plus(Vector a, Vector b) { return (Vector){a.x + b.x, a.y + b.y, a.z + b.z}; }
-
-MESHONET_INLINE Vector minus(Vector a, Vector b) { return (Vector){a.x - b.x, a.y - b.y, a.z - b.z}; }
-
-MESHONET_INLINE Vector times(double s, Vector a) { return (Vector){s * a.x, s * a.y, s * a.z}; }
-
-MESHONET_INLINE double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-MESHONET_INLINE Vector cross(Vector a, Vector b)
-{
-    return (Vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

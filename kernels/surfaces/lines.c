@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WIDE 8
+#define WIDE 8 /* lines at a time */
 #define FITS 6 /* rounds that fit the length */
 
 typedef double Row[WIDE];

@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double FAR_POWER = 0.15;
-static const double LEAST_YIELD = 0.3;
+static const double FAR_POWER = 0.15; /* of the height over the size, by which smoothing sets in */
+static const double LEAST_YIELD = 0.3; /* volume swept by that of a straight march, at least */
 enum { HALVINGS = 2 };
 
 typedef struct {

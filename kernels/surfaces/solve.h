@@ -4,7 +4,7 @@
 #include "team.h"
 
 #define CHUNK 256 /* nodes that are added up together */
-#define SUMS 6
+#define SUMS 6 /* of a round, in each chunk */
 
 typedef struct {
     Step step;

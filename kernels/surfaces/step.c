@@ -15,11 +15,7 @@
 #include <math.h>
 
 static const double LEAST_SPREAD = 0.1, MOST_SPREAD = 1e3; /* of the factor d */
-static const double MOST_SMOOTHING = 4.0, LEAST_SINE = 0.05;
-
-MESHONET_INLINE double least(double a, double b) { return a < b ? a : b; }
-
-MESHONET_INLINE double most(double a, double b) { return a > b ? a : b; }
+static const double MOST_SMOOTHING = 4.0, LEAST_SINE = 0.05; /* the sine squared */
 
 /* What a node sees of its neighbours. */
 typedef struct {
@@ -29,14 +25,14 @@ typedef struct {
 
 MESHONET_INLINE double spread(double before, double now, double power)
 {
-    const double exponent = least(most(power * log_double(before / now), -30.0), 30.0);
-    return least(most(exp_double(exponent), LEAST_SPREAD), MOST_SPREAD);
+    const double exponent = smaller(larger(power * log_double(before / now), -30.0), 30.0);
+    return smaller(larger(exp_double(exponent), LEAST_SPREAD), MOST_SPREAD);
 }
 
 /* How much more a direction is smoothed whose edges rise by `cosine` times their length. */
 MESHONET_INLINE double hollow(double cosine)
 {
-    return cosine > 0.0 ? 1.0 / most(1.0 - cosine * cosine, LEAST_SINE) : 1.0;
+    return cosine > 0.0 ? 1.0 / larger(1.0 - cosine * cosine, LEAST_SINE) : 1.0;
 }
 
 /* Whether faces of normals f and g meet at edge e sharper than the limit, convexly. */
@@ -51,7 +47,7 @@ MESHONET_INLINE void put_row(const Step *s, const StepRule *rule, ptrdiff_t i, c
     const ptrdiff_t n = s->graph->nodes;
     const double go = f->averaged ? 0.0 : 1.0;
     const Vector normal = cross(f->xi, f->eta);
-    const double over = (1.0 + rule->theta) * 0.5 * go / most(dot(normal, normal), 1e-300);
+    const double over = (1.0 + rule->theta) * 0.5 * go / larger(dot(normal, normal), 1e-300);
     const Vector p = times(over, cross(f->eta, normal)), q = times(over, cross(normal, f->xi)), r = times(over, normal);
     const Vector t = cross(f->eta, f->zeta), u = cross(f->zeta, f->xi), z = f->zeta;
     const double matrices[18] = {
@@ -95,8 +91,8 @@ MESHONET_INLINE void regular_row(const Step *s, const StepRule *rule, double pow
     const double first = rule->first ? 0.0 : 0.5;
     const double di = spread(s->before[i], l0 + l2, power), dj = spread(s->before[n + i], l1 + l3, power);
     const double strength = rule->explicit_smoothing * s->graph->boost[i] * far * h;
-    const double si = first * least(strength * di * ai / sqrt(dot(f.xi, f.xi)), MOST_SMOOTHING);
-    const double sj = first * least(strength * dj * aj / sqrt(dot(f.eta, f.eta)), MOST_SMOOTHING);
+    const double si = first * smaller(strength * di * ai / sqrt(dot(f.xi, f.xi)), MOST_SMOOTHING);
+    const double sj = first * smaller(strength * dj * aj / sqrt(dot(f.eta, f.eta)), MOST_SMOOTHING);
     f.smooth = plus(times(si, plus(e[0], e[2])), times(sj, plus(e[1], e[3])));
     put_row(s, rule, i, &f, 4.0);
 }
@@ -127,7 +123,7 @@ static void odd_row(const Step *s, const StepRule *rule, double power, ptrdiff_t
     f.zeta = times(h / sqrt(dot(normal, normal)), normal);
     const double d = spread(s->before[i], length, power);
     const double wanted = rule->explicit_smoothing * s->graph->boost[i] * rule->far * d * h * count / length;
-    const double strength = least(wanted, MOST_SMOOTHING);
+    const double strength = smaller(wanted, MOST_SMOOTHING);
     f.smooth = times(rule->first ? 0.0 : 2.0 / count * strength, f.smooth);
     put_row(s, rule, i, &f, count);
 }
@@ -191,7 +187,7 @@ double step_sizes(const Step *step, ptrdiff_t first, ptrdiff_t last)
         odd_sizes(step, k);
     double shortest = s.reach[first];
     for (ptrdiff_t i = first + 1; i < last; i++)
-        shortest = least(shortest, s.reach[i]);
+        shortest = smaller(shortest, s.reach[i]);
     return shortest;
 }
 

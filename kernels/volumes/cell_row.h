@@ -13,14 +13,14 @@ typedef struct {
     double over[3];
 } CellRow3;
 
-MESHONET_INLINE Vector3 edge3(const double *from, const double *to, ptrdiff_t nodes, double over)
+MESHONET_INLINE Vector edge3(const double *from, const double *to, ptrdiff_t nodes, double over)
 {
-    return (Vector3){over * (to[0] - from[0]), over * (to[nodes] - from[nodes]), over * (to[2 * nodes] - from[2 * nodes])};
+    return (Vector){over * (to[0] - from[0]), over * (to[nodes] - from[nodes]), over * (to[2 * nodes] - from[2 * nodes])};
 }
 
-MESHONET_INLINE Vector3 sum3(Vector3 a, Vector3 b)
+MESHONET_INLINE Vector sum3(Vector a, Vector b)
 {
-    return (Vector3){a.x + b.x, a.y + b.y, a.z + b.z};
+    return (Vector){a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
 MESHONET_INLINE double lower(double a, double b)
@@ -32,10 +32,10 @@ MESHONET_INLINE double lower(double a, double b)
 
 /* The twelve edges of a cell, or forces on them: u by (dj, dk), v by (di, dk), w by (di, dj). */
 typedef struct {
-    Vector3 u00, u10, u01, u11, v00, v10, v01, v11, w00, w10, w01, w11;
+    Vector u00, u10, u01, u11, v00, v10, v01, v11, w00, w10, w01, w11;
 } Edges3;
 
-MESHONET_INLINE Corner3 term3(Vector3 u, Vector3 v, Vector3 w, const Factors3 *f, const int power, const int regular)
+MESHONET_INLINE Corner3 term3(Vector u, Vector v, Vector w, const Factors3 *f, const int power, const int regular)
 {
     return power == SHAPES ? shape3(u, v, w, f->angle) : corner3(u, v, w, f, power, regular);
 }
@@ -66,11 +66,11 @@ MESHONET_INLINE double eight_terms(const Edges3 *e, const Factors3 *f, Edges3 *b
 }
 
 /* Of the share `near` from a point itself and the rest from its neighbour, along two directions. */
-MESHONET_INLINE Vector3 blend(Vector3 own, Vector3 one, Vector3 two, Vector3 both)
+MESHONET_INLINE Vector blend(Vector own, Vector one, Vector two, Vector both)
 {
     const double near = 0.78867513459481288225, far = 1.0 - near; /* (1 + 1/sqrt(3)) / 2 */
     const double p = near * near, q = near * far, r = far * far;
-    return (Vector3){p * own.x + q * (one.x + two.x) + r * both.x, p * own.y + q * (one.y + two.y) + r * both.y,
+    return (Vector){p * own.x + q * (one.x + two.x) + r * both.x, p * own.y + q * (one.y + two.y) + r * both.y,
                      p * own.z + q * (one.z + two.z) + r * both.z};
 }
 
@@ -171,8 +171,8 @@ MESHONET_INLINE void stiffness_row3(const CellRow3 *row, double *restrict parts,
                 double *restrict up = parts + (4 * di + 2 * dj + (1 - dk)) * width;
                 MESHONET_INDEPENDENT
                 for (ptrdiff_t k = 0; k < row->cells; k++) {
-                    const Vector3 u = edge3(a + k, b + k, n, o1), v = edge3(c + k, d + k, n, o2);
-                    const Vector3 w = edge3(e + k, e + k + 1, n, o3);
+                    const Vector u = edge3(a + k, b + k, n, o1), v = edge3(c + k, d + k, n, o2);
+                    const Vector w = edge3(e + k, e + k + 1, n, o3);
                     const Stiffness3 s = power == SHAPES ? shape_stiffness3(u, v, w, f.angle)
                                                          : stiffness3(u, v, w, &f, power, regular);
                     const double uu = o1 * o1 * s.uu, vv = o2 * o2 * s.vv, ww = o3 * o3 * s.ww;

@@ -298,9 +298,9 @@ static void jacobian_row(const double *at, ptrdiff_t nodes, ptrdiff_t face, ptrd
                 const double *u = at + dj * n3 + dk, *v = at + di * face + dk, *w = at + di * face + dj * n3;
                 MESHONET_INDEPENDENT
                 for (ptrdiff_t k = 0; k < n3 - 1; k++) {
-                    const Vector3 normal = cross3(edge3(u + k, u + k + face, nodes, scale),
+                    const Vector normal = cross(edge3(u + k, u + k + face, nodes, scale),
                                                   edge3(v + k, v + k + n3, nodes, 1.0));
-                    const double jacobian = dot3(normal, edge3(w + k, w + k + 1, nodes, 1.0));
+                    const double jacobian = dot(normal, edge3(w + k, w + k + 1, nodes, 1.0));
                     least[k] = lower(least[k], jacobian);
                 }
             }

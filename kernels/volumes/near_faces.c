@@ -8,13 +8,13 @@
 #include "corner3.h"
 #include "team.h"
 
-#define ROUNDING 1e-12
+#define ROUNDING 1e-12 /* relative */
 #define PLAINLY 0.05 /* product of the sum of four unit normals with each of them: they have a common side */
 #define FLAT 1e-4    /* sum of four determinants below which normals are too nearly in a plane to tell anything */
 #define CHUNK 256    /* nodes that a thread takes at a time */
 
 typedef struct {
-    Vector3 normal;
+    Vector normal;
     double bound; /* of normal · p */
 } Half;
 
@@ -22,47 +22,47 @@ typedef struct {
     const Wall3 *walls;
     int count;
     const ptrdiff_t *first, *last;
-    Vector3 centre;
+    Vector centre;
     ptrdiff_t found[TEAM_MOST];
 } Search;
 
-static Vector3 from_to(const double *from, const double *to)
+static Vector from_to(const double *from, const double *to)
 {
-    return (Vector3){to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+    return (Vector){to[0] - from[0], to[1] - from[1], to[2] - from[2]};
 }
 
 /* The four half-spaces of the node of a wall at (p, q). */
-MESHONET_INLINE void half_spaces(const Wall3 *wall, ptrdiff_t p, ptrdiff_t q, Vector3 centre, Half *halves)
+MESHONET_INLINE void half_spaces(const Wall3 *wall, ptrdiff_t p, ptrdiff_t q, Vector centre, Half *halves)
 {
     const double *here = wall->nodes + 3 * (p * wall->m + q);
     const double inwards = (wall->end ? -1.0 : 1.0) * (wall->axis == 1 ? -1.0 : 1.0);
-    const Vector3 place = {here[0] - centre.x, here[1] - centre.y, here[2] - centre.z};
+    const Vector place = {here[0] - centre.x, here[1] - centre.y, here[2] - centre.z};
     for (int a = 0; a < 2; a++)
         for (int b = 0; b < 2; b++) {
-            const Vector3 along = from_to(here, here + (a ? 3 : -3) * wall->m), across = from_to(here, here + (b ? 3 : -3));
-            const Vector3 n = cross3(along, across);
-            const double sign = a == b ? inwards : -inwards, length = sqrt(dot3(n, n));
+            const Vector along = from_to(here, here + (a ? 3 : -3) * wall->m), across = from_to(here, here + (b ? 3 : -3));
+            const Vector n = cross(along, across);
+            const double sign = a == b ? inwards : -inwards, length = sqrt(dot(n, n));
             const double by = sign / (length > 1e-300 ? length : 1e-300);
             Half *half = halves + 2 * a + b;
-            half->normal = (Vector3){by * n.x, by * n.y, by * n.z};
-            half->bound = dot3(half->normal, place);
+            half->normal = (Vector){by * n.x, by * n.y, by * n.z};
+            half->bound = dot(half->normal, place);
         }
 }
 
 static int plainly_open(const Half *h)
 {
-    Vector3 sum = {0.0, 0.0, 0.0};
+    Vector sum = {0.0, 0.0, 0.0};
     for (int k = 0; k < 4; k++)
         sum.x += h[k].normal.x, sum.y += h[k].normal.y, sum.z += h[k].normal.z;
     for (int k = 0; k < 4; k++)
-        if (!(dot3(sum, h[k].normal) > PLAINLY))
+        if (!(dot(sum, h[k].normal) > PLAINLY))
             return 0;
     return 1;
 }
 
 static double determinant(const Half *a, const Half *b, const Half *c)
 {
-    return dot3(a->normal, cross3(b->normal, c->normal));
+    return dot(a->normal, cross(b->normal, c->normal));
 }
 
 static int four_are_apart(const Half *a, const Half *b, const Half *c, const Half *d)
@@ -82,7 +82,7 @@ static int four_are_apart(const Half *a, const Half *b, const Half *c, const Hal
 /* Opposite half-spaces, as of plane faces. */
 static int two_are_apart(const Half *a, const Half *b)
 {
-    return dot3(a->normal, b->normal) < -1.0 + ROUNDING && a->bound + b->bound >= -ROUNDING * fabs(a->bound);
+    return dot(a->normal, b->normal) < -1.0 + ROUNDING && a->bound + b->bound >= -ROUNDING * fabs(a->bound);
 }
 
 static int closed(const Half *halves, int count)

@@ -1,8 +1,8 @@
-"""A domain in, a valid grid of blocks out."""
+"""From a domain to a valid grid of blocks."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,16 +10,19 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.blocking.chords import Chords
-from meshonet.solvers.blocking.collapse import irregular_inside
-from meshonet.solvers.blocking.decompose import Timings, decompose
-from meshonet.solvers.blocking.errors import most_folded
-from meshonet.solvers.blocking.refine import multiplied, refine
-from meshonet.solvers.energy.quad_problem import ALLOWED
-from meshonet.solvers.energy.quads import optimise
+from meshonet.geometry.quality.measure import count_folded_in
+from meshonet.solvers.blocking.decomposition.collapse.collapse import irregular_inside
+from meshonet.solvers.blocking.decomposition.decompose import Timings, decompose
+from meshonet.solvers.blocking.decomposition.errors import most_folded
+from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
+from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.blocking.sizes.refine import multiplied, refine
+from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
+from meshonet.solvers.energy.quads import QuadOptimum, optimise
 
 CELLS = 2500
 """Cells where nobody asked for a count."""
@@ -69,7 +72,7 @@ def block_grid(
     fine = fine_layout(layout, cells=cells, cell_size=cell_size, timings=timings)
     with timings.stage("grid"):
         grid = to_grid(fine)
-    folded = sum(count_folded(block.nodes) for block in grid.blocks)
+    folded = count_folded_in(grid)
     if folded:
         raise NoValidGridError(f"{folded} cells of the blocks stay folded")
     facts = BlockFacts(len(fine.blocks), fine.cells, irregular_inside(fine.mesh), timings)
@@ -142,11 +145,22 @@ def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timi
         fine = refine(chords.layout, counts, chords)
         fine = multiplied(fine, times) if times > 1 else fine
     with timings.stage("optimum"):
-        optimum = optimise(fine.mesh, iterations=ITERATIONS, turning=turning)
+        optimum = _optimum(fine.mesh, turning)
     if not optimum.valid:
         where = most_folded(optimum.mesh)
         raise NoValidGridError(f"cells of the blocks stay folded after optimisation, most {where}")
     return Layout(optimum.mesh, fine.blocks)
+
+
+def _optimum(mesh: QuadMesh, turning: float) -> QuadOptimum:
+    """Return the optimum of a mesh, its nodes symmetric to mirrors of the domain to which its quads are."""
+    images = images_of(mesh, mirrors_of(mesh.domain))
+    if images:
+        optimum = optimise(made_symmetric(mesh, images), iterations=ITERATIONS, turning=turning)
+        symmetric = made_symmetric(optimum.mesh, images)
+        if optimum.valid and smallest_jacobian(symmetric.nodes, symmetric.quads) > 0.0:
+            return replace(optimum, mesh=symmetric)
+    return optimise(mesh, iterations=ITERATIONS, turning=turning)
 
 
 def _more_along_walls(fine: Chords, finer: float, times: int) -> Indices:

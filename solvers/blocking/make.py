@@ -15,9 +15,9 @@ from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
-from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.decomposition.decompose import Timings, decompose
+from meshonet.solvers.blocking.decomposition.reuse import carried_over
 from meshonet.solvers.blocking.request import CELLS, LAYERED_CELLS, MOST_CELLS, BlockRequest
-from meshonet.solvers.blocking.reuse import carried_over
 from meshonet.solvers.blocking.wall_note import wall_note
 from meshonet.solvers.solution import Solution
 
@@ -39,20 +39,18 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     layout = _given(shape, domain, request)
     cells, size = _wanted(domain, request)
     height = request.height(shape.unit)
-    about: tuple[str, ...] = ()
     if request.pitch is not None:
         fine = _passage(domain, request, height, timings)
     elif height is None:
         layout = layout or decompose(domain, timings=timings)
         fine = fine_layout(layout, cells=cells, cell_size=size, halved=request.refine, timings=timings)
     else:
-        fine, about = _with_layers(domain, request, height, layout, timings)
+        fine = _with_layers(domain, request, height, layout, timings)
     grid = to_grid(around_body(fine)).with_provenance(method=METHOD, cells=fine.cells)
     at_walls = "" if height is None else wall_note(grid, domain, request.walls, height)
     said = (
-        request.note(shape.unit),
+        request.height_note(f"on a length of {shape.unit:.6g}", shape.unit),
         at_walls,
-        *about,
         _cut_off(fine),
         *_folded_coarser(grid, request.refine),
     )
@@ -97,7 +95,7 @@ def _given(shape: DomainShape, domain: Domain, request: BlockRequest) -> Layout 
     if shape.layout is not None and shape.layout.fronts:
         problem = "is a layout of what layers leave of a domain"
         raise InputError(problem, "give the domain, and this with {layout}")
-    if request.layout is None or request.layers:
+    if request.layout is None or request.at_walls:
         return request.layout or shape.layout
     if request.layout.fronts:
         problem = "the layout leaves room for layers"
@@ -107,33 +105,29 @@ def _given(shape: DomainShape, domain: Domain, request: BlockRequest) -> Layout 
 
 def _with_layers(
     domain: Domain, request: BlockRequest, height: float, layout: Layout | None, timings: Timings
-) -> tuple[Layout, tuple[str, ...]]:
-    """Return a fine layout with layers at the walls that were named, or around all holes, and notes."""
-    from meshonet.solvers.blocking.c_layered import bodies_with_layers
-    from meshonet.solvers.blocking.layer_rows import LayerSettings
-    from meshonet.solvers.blocking.layered import layered
-    from meshonet.solvers.blocking.stretches import layered_walls
+) -> Layout:
+    """Return a fine layout with layers at the walls that were named, or around all holes."""
+    from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+    from meshonet.solvers.blocking.layers.layered import layered
+    from meshonet.solvers.blocking.layers.stretches import layered_walls
 
     numbers, stretches = layered_walls(domain, request.walls)
     size = _wanted(domain, request)[1]
     settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1, request.multiple)
     cells = 0 if size else (request.cells or LAYERED_CELLS) * request.multiple**2
     size = (size or 0.0) / request.multiple
-    if layout is None and cells and request.multiple == 1 and not stretches:
-        return bodies_with_layers(domain, numbers, settings, cells=cells, timings=timings)
-    fine = layered(
+    return layered(
         domain, numbers, settings, stretches=stretches, cells=cells, cell_size=size, layout=layout,
         timings=timings,
     )  # fmt: skip
-    return fine, ()
 
 
 def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout: Layout | None) -> Layout:
     """Return the blocks of what the layers leave of a domain."""
-    from meshonet.solvers.blocking.layer_rows import LayerSettings
-    from meshonet.solvers.blocking.outside import found_outside, taken_outside
-    from meshonet.solvers.blocking.stretches import layered_walls
-    from meshonet.solvers.blocking.wall_layers import WallLayers
+    from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+    from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
+    from meshonet.solvers.blocking.layers.stretches import layered_walls
+    from meshonet.solvers.blocking.layers.wall_layers import WallLayers
 
     for name in ("cells", "cell_size", "res", "refine"):
         if getattr(request, name):
@@ -142,15 +136,15 @@ def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout
     loops, stretches = layered_walls(domain, request.walls)
     walls = WallLayers.of(domain, loops, LayerSettings(height), stretches)
     if layout is None:
-        return found_outside(walls.rest, walls.fronts, spans=walls.spans)
+        return found_outside(walls.rest, walls.fronts)
     return taken_outside(layout, walls.rest, walls.fronts)
 
 
 def _passage(domain: Domain, request: BlockRequest, height: float | None, timings: Timings) -> Layout:
     """Return the passage of a cascade, whose blade is the only hole of a domain."""
-    from meshonet.solvers.blocking.cascade import Cascade
-    from meshonet.solvers.blocking.cascade_layout import cascade_layout
-    from meshonet.solvers.blocking.layer_rows import LayerSettings
+    from meshonet.solvers.blocking.cascade.cascade import Cascade
+    from meshonet.solvers.blocking.cascade.cascade_layout import cascade_layout
+    from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 
     if request.layout is not None:
         problem = "{layout} beside {pitch}"

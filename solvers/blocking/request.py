@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.y_plus import first_cell, height_note
+from meshonet.geometry.spacing.first_cell import FirstCell
 
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
@@ -21,7 +21,7 @@ MOST_HALVINGS = 8
 
 
 @dataclass(frozen=True)
-class BlockRequest:
+class BlockRequest(FirstCell):
     """How to make a grid of blocks from a domain; the values are checked when it is made.
 
     Parameters
@@ -48,10 +48,6 @@ class BlockRequest:
     cells: int | None = None
     cell_size: float | None = None
     res: int | None = None
-    first_cell: float | None = None
-    y_plus: float | None = None
-    reynolds: float | None = None
-    chord_fraction: float = 0.5
     growth: float | None = None
     constant_layers: int | None = None
     walls: tuple[str, ...] = ()
@@ -82,7 +78,7 @@ class BlockRequest:
                 raise InputError(f"{value:g} is not a positive length", "give e.g. 0.1", parameter=name)
         if any(not name for name in self.walls):
             raise InputError("an empty name", "give the names of walls, e.g. slat,flap", parameter="walls")
-        if self.walls and not self.layers:
+        if self.walls and not self.at_walls:
             problem = "{walls} without a first cell"
             raise InputError(problem, "give {first_cell} or {y_plus} as well")
         if self.pitch is not None and not 0 < math.hypot(*self.pitch) < math.inf:
@@ -97,19 +93,3 @@ class BlockRequest:
     def multiple(self) -> int:
         """What divides all counts of cells: 2 to the power of `refine`."""
         return 1 << self.refine
-
-    @property
-    def layers(self) -> bool:
-        """Whether cells at walls have a height."""
-        return self.first_cell is not None or self.y_plus is not None
-
-    def height(self, unit: float) -> float | None:
-        """Return the height of the first cell in the unit of a domain whose reference length is `unit`."""
-        if self.y_plus is None or self.reynolds is None:
-            return self.first_cell
-        return first_cell(self.y_plus, self.reynolds, self.chord_fraction) * unit
-
-    def note(self, unit: float) -> str:
-        """Return where the height comes from, when it was computed."""
-        where = f"on a length of {unit:.6g}"
-        return height_note(self.y_plus, self.reynolds, where, f"{self.height(unit) or 0.0:.6g}")

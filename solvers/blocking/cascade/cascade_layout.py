@@ -1,0 +1,189 @@
+"""Grids of a cascade: layers around the blade, blocks of its passage, rows to inlet and outlet.
+
+::
+
+    blade --march--> ring    front, pitch --map--> template --counts, optimum--> fine layout
+                      |                                                               |
+                      +--- columns at the nodes of the front, straight rows ----------+--> whole
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import log
+from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.cascade.cascade import Cascade
+from meshonet.solvers.blocking.cascade.passage import (
+    BLADE,
+    INLET,
+    OUTLET,
+    Passage,
+    extended,
+    laid_out,
+    turned_round,
+)
+from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
+from meshonet.solvers.blocking.decomposition.decompose import Timings
+from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
+from meshonet.solvers.blocking.layers.finished import evened
+from meshonet.solvers.blocking.layers.folds import smallest_corner
+from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
+from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.blocking.sizes.refine import multiplied, refine
+from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
+from meshonet.solvers.energy.quads import optimise
+
+MOST_OPTIMISED = 4000
+"""Cells that are optimised at the most; finer grids are splines through these."""
+CORNERS = ("at first", "later", "nowhere")
+"""When nodes are put at the corners of the blade, in the order of attempts."""
+LEAST = 4
+"""Cells along the side of a block that is optimised."""
+FIRST, ITERATIONS, PASSES = 150, 120, 2
+WEIGHTS = 0.95, 1e-3
+"""w and β of the functional: with less β angles are better, but rounding moves nodes by 1 % of a passage."""
+ROW_GROWTH = 1.1
+"""Ratio of neighbouring cells on the way to inlet and outlet."""
+_BISECTIONS = 14
+
+
+def cascade_layout(
+    cascade: Cascade, *, cells: int | None = None, cell_size: float | None = None,
+    timings: Timings | None = None,
+) -> Layout:  # fmt: skip
+    """Return a fine layout of a passage of about so many `cells`, or of cells of a size away from the blade.
+
+    Its outer loop is named periodic1, outlet, periodic2 and inlet; nodes of periodic2 are those of periodic1
+    moved by the pitch. Raises InputError: no room for layers, inlet or outlet; NoValidGridError: folds.
+    """
+    timings = timings or Timings()
+    with timings.stage("layers"):
+        passage = cascade.passage
+    for attempt in CORNERS:
+        try:
+            coarse, times, metric = _outside(cascade, passage, attempt, cells, cell_size, timings)
+            break
+        except NoValidGridError:
+            if attempt == CORNERS[-1]:
+                raise
+    with timings.stage("refine"):
+        fine = multiplied(coarse, times)
+        flat = laid_out(fine, passage, cut_of(fine))
+    with timings.stage("layers"):
+        rows = _rows(cascade, flat.layout, metric)
+        whole = extended(flat, passage, cascade.blade, rows)
+        whole = evened(whole, cascade.layers)
+    if smallest_corner(whole.mesh) <= 0.0:
+        raise NoValidGridError("cells of the passage are folded")
+    return turned_round(whole) if cascade.opposite else whole
+
+
+def _outside(
+    cascade: Cascade, passage: Passage, corners: str, cells: int | None, cell_size: float | None,
+    timings: Timings,
+) -> tuple[Layout, int, SizeMetric]:  # fmt: skip
+    """Return the coarse layout outside the layers, how much finer it is to be, and sizes of cells."""
+    if corners == "nowhere":
+        blade, *ends = passage.domain.loops
+        smooth = replace(blade, corners=(), names=blade.names[:1])
+        passage = replace(passage, domain=replace(passage.domain, loops=(smooth, *ends)))
+    with timings.stage("first optimum"):
+        coarse = _optimised(template(passage, at_corners=corners == "at first"), FIRST, None)
+    with timings.stage("refine"):
+        chords = Chords.of(coarse)
+        counts, times, metric = _counts(cascade, chords, cells, cell_size)
+        coarse = refine(coarse, counts, chords)
+    with timings.stage("optimum"):
+        for _ in range(PASSES):
+            coarse = _optimised(coarse, ITERATIONS, metric)
+    return coarse, times, metric
+
+
+def _optimised(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
+    targets = metric.gradual(layout.mesh) if metric else None
+    optimum = optimise(layout.mesh, iterations=iterations, targets=targets, weights=WEIGHTS)
+    if not optimum.valid:
+        raise NoValidGridError("cells of the passage stay folded")
+    return replace(layout, mesh=optimum.mesh)
+
+
+def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
+    """Return the layers, and the straight rows to inlet and outlet."""
+    mesh, passage = layout.mesh, cascade.passage
+    inner = heights_inside(layout, BLADE)
+    rows = [ring_rows(mesh, BLADE, cascade.ring, cascade.rows_of_layers, cascade.layers, inner)]
+    axis = np.array([passage.map.axis.real, passage.map.axis.imag])
+    for number, length, way in _straight(cascade):
+        if length > 0.0:
+            start = mesh.nodes[loop_nodes(mesh, number)]
+            steps = _steps(math.exp(log(heights_inside(layout, number)).mean()), length, metric.largest)
+            nodes = start[:, None] + steps[:, None] * (way * axis)
+            rows.append(Rows(number, nodes, np.zeros(len(start)), False))
+    return rows
+
+
+def _straight(cascade: Cascade) -> list[tuple[int, float, float]]:
+    """Return loop, length and direction of the rows to inlet and outlet."""
+    passage = cascade.passage
+    axial = passage.map.axial(passage.front.curve.points)
+    before = cascade.ends[0] - float(axial.min() - passage.inlet)
+    behind = cascade.ends[1] - float(passage.outlet - axial.max())
+    some = 1e-6 * abs(cascade.left)
+    return [(INLET, before if before > some else 0.0, -1.0), (OUTLET, behind if behind > some else 0.0, 1.0)]
+
+
+def _steps(first: float, length: float, largest: float) -> Floats:
+    """Return distances from 0 to a length, of cells that grow from `first` to about `largest`."""
+    cells = [min(first * ROW_GROWTH**0.5, length)]
+    while sum(cells) < length - 0.5 * cells[-1]:
+        cells.append(max(min(cells[-1] * ROW_GROWTH, largest), cells[0]))
+    steps = np.concatenate([[0.0], np.cumsum(cells)]) * (length / sum(cells))
+    steps[-1] = length
+    return np.asarray(steps)
+
+
+def _counts(
+    cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
+) -> tuple[Indices, int, SizeMetric]:
+    """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
+    wanted = WantedCounts(chords, cascade.metric)
+    if cell_size is not None:
+        sizes = np.minimum(cascade.metric.across, cell_size)
+        metric = replace(cascade.metric, across=sizes, along=sizes, largest=cell_size)
+        counts = wanted.counts(metric)
+    else:
+        low, high = math.log(0.05), math.log(20.0)
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            metric = cascade.scaled(math.exp(middle))
+            counts = wanted.counts(metric)
+            total = chords.cells(counts) + _attached_cells(cascade, chords, counts, metric)
+            low, high = (middle, high) if total > (cells or 0) else (low, middle)
+    times = 1
+    while chords.cells(counts) / times**2 > MOST_OPTIMISED:
+        times += 1
+    least = np.maximum(chords.least, LEAST)
+    return np.maximum(least, np.round(counts / times).astype(np.intp)), times, metric
+
+
+def _attached_cells(cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric) -> int:
+    """Return the cells of the layers and of the rows to inlet and outlet."""
+    along = np.zeros(3, dtype=np.intp)
+    mesh = chords.layout.mesh
+    for edge in np.flatnonzero(chords.wall):
+        along[mesh.places.loop[chords.edges[edge][0]]] += counts[chords.chord[edge]]
+    total = int(along[BLADE]) * cascade.rows_of_layers
+    for number, length, _ in _straight(cascade):
+        if length > 0.0:
+            total += int(along[number]) * (
+                len(_steps(abs(cascade.left) / along[number], length, metric.largest)) - 1
+            )
+    return total

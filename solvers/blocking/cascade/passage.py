@@ -1,0 +1,202 @@
+"""The passage of a cascade: the plane of its map, where blocks are optimised, and the way back.
+
+::
+
+    blade (or the front of its layers), pitch --map--> a domain with two holes, blocks in it
+    layout --cut, laid out beside the blade--> layers of the blade, rows to inlet and outlet attached
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.domain.domain import Domain, Periodic
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import product
+from meshonet.geometry.layout.lattice import lattice_quads
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.cascade.passage_map import PassageMap, inner_point
+from meshonet.solvers.blocking.cascade.unwrap import unwrap
+from meshonet.solvers.blocking.layers.attach import Rows, attach, loop_nodes
+
+BLADE, INLET, OUTLET = 0, 1, 2
+"""Numbers of the loops of a passage in the plane of its map."""
+NEAR = 0.3
+"""Pitches in front of and behind a blade that blocks end at; straight rows lead on from there."""
+_ROUND = 96  # points of the circles that inlet and outlet are in the plane of the map
+STRETCH_NAMES = ("periodic1", "outlet", "periodic2", "inlet")
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """A cascade around one blade.
+
+    Parameters
+    ----------
+    front : the blade, or the front of its layers, the passage on its left.
+    map : to the plane in which it is an ordinary domain.
+    domain : that domain: front, inlet, outlet.
+    inlet, outlet : distances from the centre of the map, along its axis, at which blocks end.
+    """
+
+    front: Loop
+    map: PassageMap
+    domain: Domain
+    inlet: float
+    outlet: float
+
+    @classmethod
+    def around(cls, front: Loop, pitch: complex, inlet: float, outlet: float, name: str = "") -> Passage:
+        """Return the passage around a closed front; `pitch` leads to the next blade, left of the flow.
+
+        `inlet` and `outlet` are the distances before and behind the front at which blocks end at the latest.
+        """
+        points = front.curve.points
+        passage = PassageMap(pitch, inner_point(points))
+        axial = passage.axial(points)
+        near = NEAR * abs(pitch)
+        first, last = float(axial.min()) - min(near, inlet), float(axial.max()) + min(near, outlet)
+        blade = Loop(_polygon(passage.forward(points)), front.corners, front.names)
+        ends = [
+            Loop(_polygon(passage.line(distance, _ROUND)), (), (side,))
+            for distance, side in ((first, "inlet"), (last, "outlet"))
+        ]
+        return cls(front, passage, Domain((blade, *ends), name), first, last)
+
+    @property
+    def pitch(self) -> Floats:
+        """(2,) vector from a blade to the next."""
+        return np.array([self.map.pitch.real, self.map.pitch.imag])
+
+    def line_arcs(self, number: int, places: Floats) -> Floats:
+        """Return the arc lengths (n,), on the circle that inlet or outlet is, of `places` (n, 2) near it."""
+        circle = self.domain.loops[number].curve
+        along = self.map.along(self.map.back(np.concatenate([circle.points[:1], places])))
+        share = np.mod((along[1:] - along[0]) * (1.0 if number == OUTLET else -1.0), 1.0)
+        count = len(circle.points)
+        knots = np.append(circle.knots, circle.length)
+        return np.asarray(np.interp(share * count, np.arange(count + 1.0), knots) % circle.length)
+
+    def front_arcs(self, arcs: Floats) -> Floats:
+        """Return the arc lengths (n,) of the front at those of its image in the plane of the map."""
+        loop = self.domain.loops[BLADE]
+        here = np.append(loop.curve.knots, loop.length)
+        there = np.append(self.front.curve.knots, self.front.length)
+        return np.asarray(np.interp(np.mod(arcs, loop.length), here, there))
+
+
+def _polygon(points: Floats) -> Curve:
+    return Curve(points, closed=True, corners=(), straight=np.ones(len(points), dtype=bool))
+
+
+@dataclass(frozen=True, eq=False)
+class Flat:
+    """A passage laid out beside its blade.
+
+    Parameters
+    ----------
+    layout : its loops are those of the map's plane: the front, and lines of nodes at inlet and outlet.
+    lower, upper : (k,) nodes of the sides of its cut, the second a pitch from the first.
+    """
+
+    layout: Layout
+    lower: Indices
+    upper: Indices
+
+
+def laid_out(layout: Layout, passage: Passage, cut: Indices) -> Flat:
+    """Return the layout beside the blade, cut along its nodes `cut` (k,).
+
+    Nodes of front, inlet and outlet lie on them.
+    """
+    flat = unwrap(layout, passage.map, cut)
+    nodes, places, pitch = flat.nodes, flat.places, passage.pitch
+    on = np.flatnonzero(places.loop == BLADE)
+    arcs = passage.front_arcs(places.arc[on])
+    exact = passage.front.at(arcs)
+    nodes -= np.round(passage.map.along(nodes[on]) - passage.map.along(exact)).mean() * pitch
+    nodes[on], places.arc[on] = exact, arcs
+    axis = np.array([passage.map.axis.real, passage.map.axis.imag])
+    for loop, distance in ((INLET, passage.inlet), (OUTLET, passage.outlet)):
+        on = np.flatnonzero(places.loop == loop)
+        nodes[on] += (distance - passage.map.axial(nodes[on]))[:, None] * axis
+        side = passage.map.along(nodes[on])
+        # the passage is on the left of each loop: down at the inlet, up at the outlet
+        places.arc[on] = side.max() - side if loop == INLET else side - side.min()
+    nodes[flat.upper] = nodes[flat.lower] + pitch
+    mesh = QuadMesh(passage.domain, nodes, lattice_quads(flat.blocks), places)
+    return Flat(Layout(mesh, flat.blocks), flat.lower, flat.upper)
+
+
+def extended(flat: Flat, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
+    """Return the layout with `rows` attached, around a `wall`, as a domain of its own with periodic sides."""
+    mesh = flat.layout.mesh
+    count = len(mesh.nodes)
+    domain = replace(passage.domain, loops=(wall, *passage.domain.loops[1:]))
+    whole = attach(flat.layout, domain, rows)
+    low, high = [flat.lower], [flat.upper]
+    for each in rows:
+        order, away = loop_nodes(mesh, each.loop), each.nodes.shape[1] - 1
+        if each.loop != BLADE:
+            ends = [count + np.arange(away) + away * k for k in (0, len(order) - 1)]
+            if order[0] in flat.upper:
+                ends.reverse()
+            whole.mesh.places.partner[ends[1]] = ends[0]
+            for line, new in zip((low, high), ends, strict=True):
+                line.insert(*((0, new[::-1]) if each.loop == INLET else (len(line), new)))
+        count += len(order) * away
+    return _closed(whole, passage, np.concatenate(low), np.concatenate(high))
+
+
+def _closed(layout: Layout, passage: Passage, lower: Indices, upper: Indices) -> Layout:
+    """Return the layout in a domain whose outer loop is cut, outlet, cut and inlet."""
+    mesh, places, pitch = layout.mesh, layout.mesh.places, passage.pitch
+    nodes = mesh.nodes.copy()
+    nodes[upper] = nodes[lower] + pitch
+    along = product(nodes, pitch)
+    ends = np.concatenate([lower, upper])
+    outlet, inlet = (np.setdiff1d(np.flatnonzero(places.loop == loop), ends) for loop in (OUTLET, INLET))
+    ring = [
+        lower,
+        outlet[np.argsort(along[outlet], kind="stable")],
+        upper[::-1],
+        inlet[np.argsort(-along[inlet], kind="stable")],
+    ]
+    order = np.concatenate(ring)
+    sizes = np.cumsum([0, *(len(part) for part in ring)])
+    corners = [0, len(lower) - 1, int(sizes[2]), int(sizes[3]) - 1]
+    outer = Loop(_polygon(nodes[order]), tuple(corners), STRETCH_NAMES)
+    loop, arc, cells = np.where(places.loop == BLADE, 1, -1), places.arc.copy(), places.cells.copy()
+    cells[loop < 0] = 0
+    loop[order], arc[order] = 0, outer.curve.knots
+    cells[order[corners]] = outer.corner_cells
+    knots = outer.curve.knots[corners]
+    shift = (float(pitch[0]), float(pitch[1]))
+    periodic = Periodic((float(knots[0]), float(knots[1])), (float(knots[2]), float(knots[3])), shift)
+    domain = Domain((outer, mesh.domain.loops[BLADE]), passage.domain.name, periodic=periodic)
+    moved = replace(places, loop=loop, arc=arc, cells=cells)
+    return Layout(QuadMesh(domain, nodes, mesh.quads, moved), layout.blocks, layout.layers)
+
+
+def turned_round(layout: Layout) -> Layout:
+    """Return a passage whose second periodic side is the first, moved by the opposite of the pitch."""
+    mesh, places = layout.mesh, layout.mesh.places
+    images = np.flatnonzero(places.partner >= 0)
+    partner = np.full(len(places.partner), -1, dtype=np.intp)
+    partner[places.partner[images]] = images
+    loops, periodic = mesh.domain.loops, mesh.domain.periodic
+    if periodic is None:
+        return layout
+    names = tuple(loops[0].names[k] for k in (2, 1, 0, 3))
+    outer = Loop(loops[0].curve, loops[0].corners, names)
+    shift = (-periodic.shift[0], -periodic.shift[1])
+    swapped = Periodic(periodic.second, periodic.first, shift)
+    domain = replace(mesh.domain, loops=(outer, *loops[1:]), periodic=swapped)
+    return replace(layout, mesh=replace(mesh, domain=domain, places=replace(places, partner=partner)))

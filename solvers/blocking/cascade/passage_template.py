@@ -1,0 +1,155 @@
+r"""Blocks of a cascade's passage: a ring around the blade, the channel, and rows to inlet and outlet.
+
+In the plane G of a `PassageFlow`, whose slit is the blade, all but the ring are rectangles::
+
+    iπ - e  +----------+=====================+----------+     = the ring's outer side
+            |          |       channel       |          |
+       i e  +----------s=====================s----------+
+      inlet |          | ring [--slit--] ring|          | outlet
+      -i e  +----------s=====================s----------+
+
+Five blocks meet at each s, four at all other nodes inside. The channel and what lies before and behind it
+are two rows of blocks each, so that a line of nodes leads straight from inlet to outlet: the cut.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import arccosh, cosh, exp, modulus
+from meshonet.geometry.layout.lattice import lattice_quads
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.cascade.passage import BLADE, INLET, OUTLET, Passage
+from meshonet.solvers.blocking.cascade.passage_flow import PassageFlow
+from meshonet.solvers.blocking.cascade.passage_map import of_zeta
+
+CELLS = 6
+"""Cells across the ring, and at the least along each side of a block."""
+LONG = np.pi / 12.0
+"""Length of cells along the channel, in the plane of the flow."""
+ASIDE, AHEAD = 0.45, 0.12
+"""Distances of the ring's outer side from the slit, aside and at its ends; the period is π."""
+
+
+_SAME = 1e-9  # distance at which nodes are one
+_FEET = 1e3  # a place that is not used
+
+
+def template(passage: Passage, *, at_corners: bool = True) -> Layout:
+    """Return the layout of a passage in the plane of its map, if wanted with nodes at the blade's corners."""
+    flow = PassageFlow.of(passage.map.zeta(passage.front.curve.points))
+    x = flow.half + AHEAD
+    to_axis = np.pi / abs(passage.map.pitch)
+    before = max(flow.far[0] - to_axis * passage.inlet, x + AHEAD)
+    behind = max(to_axis * passage.outlet - flow.far[1], x + AHEAD)
+    columns = (-before, -x, x, behind)
+    along = max(CELLS, round(2.0 * x / LONG))
+    rows = (-ASIDE, ASIDE, 0.5 * np.pi, np.pi - ASIDE)
+    pieces = []
+    for i in range(3):
+        for j in range(3):
+            if (i, j) != (1, 0):
+                u = np.linspace(columns[i], columns[i + 1], (along if i == 1 else CELLS) + 1)[:, None]
+                v = np.linspace(rows[j], rows[j + 1], CELLS + 1)[None, :]
+                pieces.append(np.asarray(u + 1j * v, dtype=np.complex128))
+    ring, angles = _ring(flow, x, along)
+    nodes, blocks = _joined(pieces + ring)
+    layout = _placed(passage, flow, nodes, blocks, angles)
+    if at_corners:
+        _put_at_corners(layout, passage.domain.loops[BLADE])
+    return layout
+
+
+def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], list[Floats]]:
+    """Return the four blocks of the ring, i clockwise around the blade, j away from it.
+
+    Their feet are not where they should be; the second list has the angles (n,) of these instead. Lines lead
+    away along hyperbolae, G = h cosh(μ + iν).
+    """
+    along, up = np.linspace(-x, x, cells + 1), np.linspace(-ASIDE, ASIDE, CELLS + 1)
+    blocks, angles = [], []
+    for side in (along + 1j * ASIDE, x - 1j * up, -along - 1j * ASIDE, -x + 1j * up):
+        outer = arccosh(side / flow.half)
+        lines = np.linspace(0.0, 1.0, CELLS + 1) * outer.real[:, None] + 1j * outer.imag[:, None]
+        blocks.append(flow.half * cosh(lines))
+        blocks[-1][:, 0] = _FEET * exp(1j * outer.imag)  # away from all others: nodes are told apart
+        angles.append(outer.imag)
+    return blocks, angles
+
+
+def _joined(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
+    """Return the places of nodes, and blocks of their numbers.
+
+    What coincides, but for periods iπ, is one node.
+    """
+    places = np.concatenate([piece.ravel() for piece in pieces])
+    inner = np.zeros(len(places), dtype=bool)
+    ends = np.cumsum([0, *(piece.size for piece in pieces)])
+    for start, piece in zip(ends[:-1], pieces, strict=True):
+        inner[start : start + piece.size].reshape(piece.shape)[1:-1, 1:-1] = True
+    side = np.flatnonzero(~inner)
+    own = np.arange(len(places))
+    away = places[side, None] - places[side]
+    away -= 1j * np.pi * np.round(away.imag / np.pi) * (modulus(places[side]) < 0.5 * _FEET)
+    own[side] = side[(modulus(away) < _SAME).argmax(axis=1)]
+    kept, number = np.unique(own, return_inverse=True)
+    parts = np.split(number.astype(np.intp), ends[1:-1])
+    return places[kept], tuple(part.reshape(piece.shape) for part, piece in zip(parts, pieces, strict=True))
+
+
+def _placed(
+    passage: Passage, flow: PassageFlow, nodes: Complexes, blocks: tuple[Indices, ...], angles: list[Floats]
+) -> Layout:
+    """Return the layout with `nodes` taken to the plane of the map, those of walls on its loops.
+
+    Those of the blade are at `angles` around the slit, for each block of the ring.
+    """
+    domain = passage.domain
+    front = domain.loops[BLADE]
+    mapped = of_zeta(flow.to_places(np.where(modulus(nodes) < 0.5 * _FEET, nodes, 0.5j * np.pi)))
+    places = Places.inside(len(nodes))
+    feet, angle = np.concatenate([block[:, 0] for block in blocks[-4:]]), np.concatenate(angles)
+    places.loop[feet], places.arc[feet] = BLADE, _arcs(flow, angle, front)
+    for number, columns in (
+        (INLET, [block[0] for block in blocks[:3]]),
+        (OUTLET, [block[-1] for block in blocks[-7:-4]]),
+    ):
+        on = np.unique(np.concatenate(columns))
+        places.loop[on] = number
+        places.arc[on] = passage.line_arcs(number, mapped[on])
+    for number, loop in enumerate(domain.loops):
+        on = places.loop == number
+        mapped[on] = loop.at(places.arc[on])
+    return Layout(QuadMesh(domain, mapped, lattice_quads(blocks), places), blocks)
+
+
+def _put_at_corners(layout: Layout, front: Loop) -> None:
+    """Put the nearest node, none twice, at each corner of the blade or of its layers, in place."""
+    places = layout.mesh.places
+    free = places.loop == BLADE
+    for arc, cells in zip(front.corner_arcs, front.corner_cells, strict=True):
+        away = np.abs(places.arc - arc)
+        away = np.where(free, np.minimum(away, front.length - away), np.inf)
+        node = int(np.argmin(away))
+        places.arc[node], places.cells[node], free[node] = arc, cells, False
+        layout.mesh.nodes[node] = front.at(np.array([arc]))[0]
+
+
+def _arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
+    """Return the arc lengths (k,) of angles (k,) around the slit, on the loop whose points `flow` has."""
+    turn = 2.0 * np.pi
+    around, knots = flow.around, np.append(front.curve.knots, front.length)
+    closed = np.append(around, around[0] + np.copysign(turn, around[-1] - around[0]))
+    if closed[-1] < closed[0]:
+        closed, knots = closed[::-1], knots[::-1]
+    at = closed[0] + np.mod(angles - closed[0], turn)
+    return np.asarray(np.mod(np.interp(at, closed, knots), front.length))
+
+
+def cut_of(layout: Layout) -> Indices:
+    """Return the nodes (k,) of the cut of a layout with the template's blocks, from the inlet."""
+    return np.concatenate([layout.blocks[1][:, -1], layout.blocks[3][1:, -1], layout.blocks[6][1:, -1]])

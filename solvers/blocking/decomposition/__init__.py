@@ -1,0 +1,1 @@
+"""A planar domain cut into four-sided blocks."""

@@ -1,0 +1,1 @@
+"""Blocks of a quad mesh, and fewer of them."""

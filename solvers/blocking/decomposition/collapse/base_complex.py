@@ -1,0 +1,91 @@
+"""The blocks that a quad mesh consists of: what its lines through irregular nodes cut it into.
+
+From every irregular node all edges are followed straight on, through regular nodes, to the boundary or
+another irregular node. Between these lines lie lattices, or rings: these get one more line.
+
+Tarini, Puppo, Panozzo, Pietroni, Cignoni, "Simple quad domains for field aligned mesh parametrization", ACM
+Trans. Graph. 30 (2011), section 3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import split_quads
+from meshonet.solvers.blocking.decomposition.errors import BlockingError
+
+
+@dataclass(frozen=True, eq=False)
+class BaseComplex:
+    """Blocks of a quad mesh, the edges that bound them, and its chords."""
+
+    mesh: QuadMesh
+    blocks: tuple[Indices, ...]
+    """Lattices (ni, nj) of nodes, right-handed."""
+    bounds: NDArray[np.bool_]
+    """(e,) edges that bound blocks."""
+    chord: Indices
+    """(e,) number of the chord of each edge: opposite sides of a block are of one chord, and so are all edges
+    beside them inside the block."""
+    chords: int
+
+    @property
+    def layout(self) -> Layout:
+        """The blocks as a layout."""
+        return Layout(self.mesh, self.blocks)
+
+    @cached_property
+    def sides(self) -> tuple[Indices, Indices, Indices]:
+        """Sides of the blocks: south, north, west and east of each, one after another.
+
+        The edge behind each of their nodes (k,), -1 behind the last of a side, where in these each side
+        begins (4 b,), and its chord (4 b,).
+        """
+        lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
+        nodes = np.concatenate(lines)
+        first = np.cumsum([0] + [len(line) for line in lines[:-1]])
+        edge = np.append(self.mesh.edges_between(nodes[:-1], nodes[1:]), -1)
+        edge[first[1:] - 1] = -1
+        return edge, first, self.chord[edge[first]]
+
+    def moved(self, mesh: QuadMesh) -> BaseComplex:
+        """Return the blocks of the same quads with other nodes."""
+        moved = replace(self, mesh=mesh)
+        if "sides" in self.__dict__:
+            moved.__dict__["sides"] = self.sides
+        return moved
+
+    def side_lengths(self, unit: Floats | None = None) -> Floats:
+        """Return the lengths (b, 4) of south, north, west and east of each block, in units (e,) at edges."""
+        edge, first, _ = self.sides
+        step = self.mesh.nodes[self.mesh.edges[:, 1]] - self.mesh.nodes[self.mesh.edges[:, 0]]
+        length = np.hypot(step[:, 0], step[:, 1])
+        if unit is not None:
+            length = length / unit
+        along = np.where(edge >= 0, length[edge], 0.0)
+        return np.asarray(np.add.reduceat(along, first).reshape(-1, 4))
+
+
+def base_complex(mesh: QuadMesh, lines: NDArray[np.bool_] | None = None) -> BaseComplex:
+    """Return the blocks of a quad mesh.
+
+    Blocks end at edges on more `lines` (e,) too. Raises BlockingError: the mesh is not manifold, or what its
+    lines bound are no lattices.
+    """
+    quads = np.ascontiguousarray(mesh.quads, dtype=np.intp)
+    bounds = mesh.on_wall.copy() if lines is None else mesh.on_wall | lines
+    parts = None
+    if mesh.manifold:
+        parts = split_quads(quads, mesh.edge_of, mesh.twin, mesh.irregular, bounds)
+    if parts is None:
+        raise BlockingError("the lines of the quad mesh do not bound lattices")
+    blocks, chord, chords = parts
+    return BaseComplex(mesh, tuple(blocks), bounds, chord, chords)

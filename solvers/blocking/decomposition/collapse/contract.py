@@ -1,0 +1,91 @@
+"""Edges of a quad mesh contracted, where a conforming mesh of the same domain is left.
+
+Nodes that become one are where the corner among them is, else on the wall in the middle, else at their mean.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import distinct
+from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import joined_classes
+from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
+
+VALENCES = (3, 5)
+"""Fewest and most quads around a node inside."""
+
+
+def contract(mesh: QuadMesh, rungs: NDArray[np.bool_]) -> QuadMesh | None:
+    """Return the mesh with the nodes of each edge in `rungs` (e,) made one; None where it would be invalid.
+
+    That is where two corners would become one, wall nodes that no wall edges in `rungs` join, where more wall
+    nodes than before have a wrong count of quads, or where what is left is no conforming mesh of the same
+    domain with 3 to 5 quads around each node inside.
+    """
+    label, count = joined_classes(np.ascontiguousarray(mesh.edges[rungs]), len(mesh.nodes))
+    kept = ~rungs[mesh.edge_of].any(axis=1)
+    if not kept.any() or not _may_join(mesh, label, count, rungs):
+        return None
+    places = Places.inside(count)
+    wall, corners = np.flatnonzero(mesh.places.loop >= 0), np.flatnonzero(mesh.places.cells > 0)
+    places.loop[label[wall]] = mesh.places.loop[wall]
+    places.cells[label[corners]] = mesh.places.cells[corners]
+    trial = QuadMesh(mesh.domain, np.zeros((count, 2)), label[mesh.quads[kept]], places)
+    more = np.count_nonzero(wrong_count(trial)) > np.count_nonzero(wrong_count(mesh))
+    return _placed(trial, mesh, label) if not more and is_conforming(trial) else None
+
+
+def _may_join(mesh: QuadMesh, label: Indices, count: int, rungs: NDArray[np.bool_]) -> bool:
+    """Return whether no class of nodes has two corners, and wall nodes in one are joined along the wall."""
+    corners, wall = np.flatnonzero(mesh.places.cells > 0), np.flatnonzero(mesh.places.loop >= 0)
+    if len(distinct(label[corners])) < len(corners):
+        return False
+    of_wall = np.bincount(label[wall], minlength=count)
+    walls = rungs & mesh.on_wall & (mesh.places.loop[mesh.edges] >= 0).all(axis=1)
+    links = np.bincount(label[mesh.edges[walls, 0]], minlength=count)
+    return not ((of_wall > 1) & (links != of_wall - 1)).any()
+
+
+def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
+    """Put the nodes of `trial`, classes of those of `mesh`, at their places."""
+    places, count = mesh.places, len(trial.nodes)
+    corners, wall = np.flatnonzero(places.cells > 0), np.flatnonzero(places.loop >= 0)
+    of, loop, cells = label[wall], trial.places.loop, trial.places.cells
+    members = np.bincount(of, minlength=count)
+    first, arc = np.zeros(count), np.zeros(count)
+    first[of[::-1]] = places.arc[wall[::-1]]
+    lengths = np.array([loop.length for loop in mesh.domain.loops])
+    length = lengths[places.loop[wall]]
+    off = np.mod(places.arc[wall] - first[of] + 0.5 * length, length) - 0.5 * length
+    mean = first + np.bincount(of, off, minlength=count) / np.maximum(members, 1)
+    arc[of] = np.mod(mean[of], length)
+    size = np.bincount(label, minlength=count)
+    nodes = np.stack([np.bincount(label, axis, minlength=count) / size for axis in mesh.nodes.T], axis=1)
+    nodes[of] = mesh.nodes[wall]
+    merged = np.flatnonzero(members > 1)
+    for number in distinct(loop[merged]):
+        moved = merged[loop[merged] == number]
+        nodes[moved] = mesh.domain.loops[number].at(arc[moved])
+    arc[label[corners]], nodes[label[corners]] = places.arc[corners], mesh.nodes[corners]
+    return trial.with_places(nodes, Places(loop, arc, cells, trial.places.partner))
+
+
+def is_conforming(mesh: QuadMesh) -> bool:
+    """Return whether the quads are a mesh of the domain: manifold, holes kept, wall nodes on walls.
+
+    Nodes inside have as many quads as `VALENCES` allow.
+    """
+    quads, wall = mesh.quads, mesh.wall_nodes
+    euler = len(wall) - len(mesh.edges) + len(quads)
+    if not mesh.manifold or euler != 2 - len(mesh.domain.loops):
+        return False
+    repeated = [(quads == np.roll(quads, k, axis=1)).any() for k in (1, 2)]
+    if any(repeated) or not np.array_equal(wall, mesh.places.loop >= 0):
+        return False
+    around = np.bincount(mesh.edges[mesh.on_wall].ravel(), minlength=len(wall))
+    inside = mesh.valence[~wall]
+    fits = not inside.size or (inside.min() >= VALENCES[0] and inside.max() <= VALENCES[1])
+    return bool((around[wall] == 2).all() and fits)

@@ -1,0 +1,84 @@
+"""How good a quad mesh is as the start of a layout: its angles after optimisation, and what blocks cost.
+
+::
+
+    mean deviation of corner angles from 90 degrees
+    + 0.05 of the 99th percentile of cells' worst + 0.1 of what the worst exceeds 60 degrees by
+    + 0.15 of what the turning of a wall along one edge exceeds 35 degrees by
+    + 4 for each wall node with a wrong count of quads + `price` for each block
+    + `SIZES` times the mean square of the log of cell lengths over the lengths wanted
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, percentiles_of
+from meshonet.geometry.elementary import arctan2, exp, log
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex
+from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
+from meshonet.solvers.blocking.sizes.wall_turning import turning_between
+
+PRICE = 0.12
+"""Degrees of mean deviation that a block costs."""
+
+
+SIZES = 8.0
+"""Degrees of mean deviation that cells everywhere e times too long or short cost."""
+
+
+def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = None) -> float:
+    """Return the score of blocks whose edges should be `wanted` (e,) long, or all alike; less is better."""
+    mesh = blocks.mesh
+    off = deviations(mesh)
+    worst = off.max(axis=1)
+    return float(
+        off.mean()
+        + 0.05 * percentiles_of(worst, (99,))[0]
+        + 0.1 * max(0.0, worst.max() - 60.0)
+        + 0.15 * max(0.0, largest_turning(mesh) - 35.0)
+        + 4.0 * np.count_nonzero(wrong_count(mesh))
+        + price * len(blocks.blocks)
+        + SIZES * size_spread(blocks, wanted)
+    )
+
+
+def size_spread(blocks: BaseComplex, wanted: Floats | None = None) -> float:
+    """Return the mean square of log(length / mean length) of sides of blocks across each chord.
+
+    A chord has as many cells everywhere, so the spread of these lengths is that of its cells. Means are by
+    the area of blocks. With lengths `wanted` (e,) of edges, lengths and areas are in units of these.
+    """
+    lengths = log(blocks.side_lengths(wanted))
+    chord = blocks.sides[2]
+    across = exp(lengths).reshape(-1, 2, 2).mean(axis=2)
+    area = np.repeat(across[:, 0] * across[:, 1], 4)
+    weight = np.bincount(chord, area, blocks.chords)
+    mean = np.bincount(chord, area * lengths.ravel(), blocks.chords) / weight
+    return float((area * (lengths.ravel() - mean[chord]) ** 2).sum() / area.sum())
+
+
+def deviations(mesh: QuadMesh) -> Floats:
+    """Return |angle - 90| (m, 4), in degrees, at each corner of each quad; folded ones exceed 90."""
+    x, y = mesh.nodes.T
+    sides = np.roll(mesh.quads, -1, axis=1)
+    ux, uy = x[sides] - x[mesh.quads], y[sides] - y[mesh.quads]
+    vx, vy = -np.roll(ux, 1, axis=1), -np.roll(uy, 1, axis=1)
+    angle = np.degrees(arctan2(ux * vy - uy * vx, ux * vx + uy * vy)) % 360.0
+    return np.abs(angle - 90.0)
+
+
+def largest_turning(mesh: QuadMesh) -> float:
+    """Return the most degrees by which a wall turns along one edge of the mesh."""
+    on = mesh.on_wall[mesh.edge_of]
+    first, second = mesh.quads[on], np.roll(mesh.quads, -1, axis=1)[on]
+    loops, arcs = mesh.places.loop, mesh.places.arc
+    most = 0.0
+    for number, loop in enumerate(mesh.domain.loops):
+        here = loops[first] == number
+        if here.any():
+            start = arcs[first[here]]
+            length = np.mod(arcs[second[here]] - start, loop.length)
+            most = max(most, float(turning_between(loop, start, start + length).max()))
+    return most

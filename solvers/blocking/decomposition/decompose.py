@@ -1,0 +1,191 @@
+"""Any planar domain cut into four-sided blocks: all stages, again with another triangulation where one fails.
+
+::
+
+    domain -> triangulation -> cross field -> seamless map -> quad mesh -> ring of quads along smooth loops
+           -> blocks -> chords collapsed while the score falls -> layout
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import reduce
+
+import numpy as np
+
+from meshonet.geometry.domain.check import describe
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.errors import SolverError
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex, base_complex
+from meshonet.solvers.blocking.decomposition.collapse.collapse import simplify
+from meshonet.solvers.blocking.decomposition.collapse.score import PRICE, score
+from meshonet.solvers.blocking.decomposition.errors import BlockingError, most_folded
+from meshonet.solvers.blocking.decomposition.field.seamless_map import seamless_map
+from meshonet.solvers.blocking.decomposition.quads.padding import (
+    Span,
+    loops_to_pad,
+    pad,
+    pad_span,
+    spans_to_pad,
+)
+from meshonet.solvers.blocking.decomposition.quads.quad_mesh import quad_mesh
+from meshonet.solvers.blocking.decomposition.symmetry.symmetric import symmetric_blocks
+from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.stages import reached
+
+ATTEMPTS = 5
+"""Triangulations tried: of 201 domains two needed a second one, and none a third."""
+HELD_ITERATIONS, FIRST_ITERATIONS, BEFORE_PADDING = 10, 60, 25
+"""Iterations with wall nodes held, which unfold; with them free; with them free before rows of quads come."""
+CELLS = 900
+"""Cells of the quad mesh that blocks are found in and judged on."""
+MOST = 9_000
+"""Blocks, before any collapse, beyond which there is no answer in good time: of too many corners, say."""
+COUNT = 1500
+"""About how many points the triangulation has."""
+FEWER = 1
+"""Attempts with as few singularities as are worth it; the smoothest field of all comes after these."""
+PADDED = 3
+"""Attempts in which stretches without singularities are asked for."""
+
+
+@dataclass
+class Timings:
+    """Seconds each stage took, over all attempts, and how many attempts there were."""
+
+    seconds: dict[str, float] = field(default_factory=dict)
+    attempts: int = 0
+    blocks_found: int = 0
+    """Blocks before any chord was collapsed."""
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Add the time spent inside to a stage."""
+        reached(name)
+        begun = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - begun
+
+
+def decompose(
+    domain: Domain,
+    *,
+    cells: int = CELLS,
+    count: int = COUNT,
+    price: float = PRICE,
+    attempts: int = ATTEMPTS,
+    timings: Timings | None = None,
+    sizes: SizeMetric | None = None,
+    spans: Sequence[Span] = (),
+) -> Layout:
+    """Return a layout of the blocks of a domain, its quad mesh optimised.
+
+    Of a symmetric domain they are symmetric (`symmetry.symmetric`), but with `sizes` or `spans`, which are of
+    what layers leave of a domain: its nodes are symmetric to fewer digits.
+
+    Parameters
+    ----------
+    cells : of the quad mesh that blocks are found in.
+    count : about how many points the triangulation has.
+    price : of a block, in degrees of mean deviation from 90: the higher, the fewer blocks.
+    attempts : how often to try, each time with a finer triangulation and another seed.
+    timings : filled with what the stages took.
+    sizes : of the edges of the quad mesh, in place of `cells`; by default they are all alike.
+    spans : stretches of loops between convex corners along which no singularity is to lie.
+
+    Raises BlockingError: no attempt came to a valid layout, or the domain has too many corners.
+    """
+    timings = timings or Timings()
+    blocks = _found(domain, cells, count, price, attempts, timings, sizes, spans)
+    if sizes is not None or spans:
+        return blocks.layout
+    part_timings = Timings(timings.seconds)
+
+    def of_part(part: Domain, parts: int, rows: Sequence[Span]) -> QuadMesh:
+        shares = cells // parts, count // parts
+        return _found(part, *shares, parts * price, attempts, part_timings, None, rows).mesh
+
+    def optimised(mesh: QuadMesh) -> QuadMesh:
+        with timings.stage("first optimum"):
+            return _optimised(mesh, FIRST_ITERATIONS, None)
+
+    return symmetric_blocks(blocks, of_part, optimised, lambda blocks: score(blocks, price)).layout
+
+
+def _found(
+    domain: Domain, cells: int, count: int, price: float, attempts: int, timings: Timings,
+    sizes: SizeMetric | None, spans: Sequence[Span],
+) -> BaseComplex:  # fmt: skip
+    """Return the blocks of a domain by the first attempt that comes to any."""
+    problem: SolverError | None = None
+    for attempt in range(attempts):
+        timings.attempts = attempt + 1
+        finer = int(count * (1.0 + 0.3 * attempt)), int(cells * (1.0 + 0.5 * attempt))
+        try:
+            mesh = _quad_mesh(domain, *finer, attempt, timings, sizes)
+            if len(mesh.quads) > MOST and len(base_complex(mesh).blocks) > MOST:
+                break
+            return _blocks(mesh, price, timings, sizes, spans if attempt < PADDED else ())
+        except SolverError as error:
+            problem = error
+    else:
+        raise BlockingError(f"no blocks found in {attempts} attempts: {problem}") from problem
+    raise BlockingError(_too_many(domain))
+
+
+def _too_many(domain: Domain) -> str:
+    """Return what is wrong with a domain that takes too many blocks: most likely its corners."""
+    number = int(np.argmax([len(loop.corners) for loop in domain.loops]))
+    loop = domain.loops[number]
+    at = loop.curve.points[loop.corners[0] if loop.corners else 0]
+    return (
+        f"the domain takes more than {MOST} blocks: "
+        f"{describe(domain, number)} has {len(loop.corners)} corners, the first at "
+        f"({at[0]:.6g}, {at[1]:.6g}); smooth it, or name its corners"
+    )
+
+
+def _blocks(
+    mesh: QuadMesh, price: float, timings: Timings, sizes: SizeMetric | None, spans: Sequence[Span]
+) -> BaseComplex:
+    """Return the blocks of a quad mesh as it comes, its nodes anywhere."""
+    loops, spans = loops_to_pad(mesh), spans_to_pad(mesh, spans)
+    with timings.stage("first optimum"):
+        mesh = _optimised(mesh, BEFORE_PADDING if loops or spans else FIRST_ITERATIONS, sizes)
+        if loops or spans:
+            mesh = reduce(pad_span, spans, pad(mesh, loops))
+            mesh = _optimised(mesh, FIRST_ITERATIONS, sizes)
+    timings.blocks_found = len(base_complex(mesh).blocks)
+    with timings.stage("collapse"):
+        return simplify(mesh, price=price, sizes=sizes)
+
+
+def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> QuadMesh:
+    """Return the mesh with its nodes optimised, wall nodes where they are to begin with.
+
+    A folded mesh would else be unfolded by sliding most of it along smooth walls into a small part of them.
+    """
+    wall, targets = mesh.places.loop >= 0, sizes.edges(mesh) if sizes else None
+    held = optimise(mesh, iterations=HELD_ITERATIONS, held=wall, targets=targets)
+    optimum = optimise(held.mesh if held.valid else mesh, iterations=iterations, targets=targets)
+    if not optimum.valid or not np.isfinite(optimum.value):
+        raise BlockingError(f"the quad mesh stays folded {most_folded(optimum.mesh)}")
+    return optimum.mesh
+
+
+def _quad_mesh(
+    domain: Domain, count: int, cells: int, seed: int, timings: Timings, sizes: SizeMetric | None
+) -> QuadMesh:
+    """Return a quad mesh along a cross field."""
+    with timings.stage("map"):
+        seamless = seamless_map(domain, count=count, seed=seed, fewer=seed < FEWER)
+    with timings.stage("quad mesh"):
+        return quad_mesh(seamless, cells=cells, sizes=sizes)

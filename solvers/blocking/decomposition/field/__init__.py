@@ -1,0 +1,1 @@
+"""A cross field on a surface of triangles, and the seamless map that follows it."""

@@ -1,0 +1,137 @@
+"""Crosses of four directions, smooth inside a domain and aligned with its walls: where blocks' lines run.
+
+A cross of angle theta is the complex number u = exp(4 i theta), the same for all four of its directions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.elementary import angle, exp, modulus
+from meshonet.geometry.errors import SolverError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.field.singular_pairs import without_pairs
+from meshonet.solvers.blocking.decomposition.field.wall_directions import (
+    QUARTER,
+    WallDirections,
+    wall_directions,
+)
+from meshonet.solvers.blocking.decomposition.surface.laplacian import Laplacian, solve_complex
+from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS, TriangleSurface
+
+_STEPS, _AFTER = 6, 3
+"""Steps of diffusion, and more of them after pairs of singular points were taken out.
+
+The mean score of 22 domains is 7.60 with 1, 7.17 with 6, 7.02 with 12: most is won by the first few."""
+_DIFFUSION = 0.003
+"""Time of a step of diffusion, by the domain's area: a tenth of it gives 22 domains 36 blocks more
+than 431, ten times as much 26 more but better angles."""
+
+
+@dataclass(frozen=True, eq=False)
+class CrossField:
+    """A field of crosses on a surface, and what its lines do around each vertex."""
+
+    surface: TriangleSurface
+    walls: WallDirections
+    crosses: Complexes
+    """(n,) exp(4 i theta) at vertices."""
+    shears: Complexes
+    """(n,) linear maps z - nu conj(z), |nu| < 1, that make acute corners right ones."""
+    angles: Floats
+    """(t,) theta in each triangle, of one of its cross's four directions: that of the frame."""
+    quarters: Indices
+    """(t, 3) quarter-turns by which the frame across each edge lags behind."""
+    wall_axis: Indices
+    """(w,) quarter-turns from the frame to each wall edge, in the order of `TriangleSurface.walls`."""
+    valence: Indices
+    """(n,) cells that meet at inner vertices, 0 at wall vertices."""
+    boundary_cells: Indices
+    """(n,) cells that meet at wall vertices, 0 at inner ones."""
+
+    @property
+    def singular(self) -> Indices:
+        """Inner vertices where other than four cells meet, ascending."""
+        return np.flatnonzero((self.valence != 4) & (self.valence > 0))
+
+
+def cross_field(surface: TriangleSurface, fewer: bool = True) -> CrossField:
+    """Return the smooth cross field of a surface whose walls are lines of it.
+
+    A harmonic u, then steps of normalisation and diffusion (Viertel, Osting, SIAM J. Sci. Comput. 41 (2019)
+    A452-A479), which take singularities apart that the harmonic one has in a heap. If `fewer`,
+    pairs of them are then taken out that are not worth it.
+
+    Raises SolverError: the sum of the singularities is not what the surface's topology asks for.
+    """
+    walls = wall_directions(surface)
+    crosses, shears = _smooth(surface, walls, fewer)
+    angles = angle(crosses[surface.vertices].sum(axis=1)) / 4.0
+    inner = surface.neighbours >= 0
+    lag = (angles[:, None] - angles[surface.neighbours]) / QUARTER
+    quarters = np.where(inner, np.round(lag), 0.0).astype(np.intp)
+    triangle, _ = surface.walls
+    wall_axis = np.round((walls.edges - angles[triangle]) / QUARTER).astype(np.intp)
+    valence, boundary_cells = _around_vertices(surface, walls, quarters, wall_axis)
+    field = CrossField(surface, walls, crosses, shears, angles, quarters, wall_axis, valence, boundary_cells)
+    _check_sum(field)
+    return field
+
+
+def _smooth(surface: TriangleSurface, walls: WallDirections, fewer: bool) -> tuple[Complexes, Complexes]:
+    """Return the crosses (n,), unit numbers, and the harmonic shears."""
+    crosses = np.where(surface.on_wall, exp(4j * walls.vertices), 0.0)
+    free = ~surface.on_wall
+    if not free.any():
+        return crosses, walls.shears
+    laplacian = Laplacian(surface, free)
+    flow, factor = laplacian.flow(crosses), laplacian.factor()
+    shears = walls.shears.copy()
+    shears[free] = solve_complex(factor, laplacian.flow(shears))
+    inside = solve_complex(factor, flow)
+    lag = surface.masses[free] / (_DIFFUSION * float(surface.areas.sum()))
+    step = laplacian.factor(lag)
+    for _ in range(_STEPS):
+        inside = solve_complex(step, lag * _unit(inside) + flow)
+    crosses[free] = _unit(inside)
+    changed = without_pairs(surface, laplacian, factor, crosses) if fewer else crosses
+    if changed is not crosses:
+        inside = changed[free]
+        for _ in range(_AFTER):
+            inside = solve_complex(step, lag * _unit(inside) + flow)
+        crosses[free] = _unit(inside)
+    return crosses, shears
+
+
+def _unit(z: Complexes) -> Complexes:
+    return np.asarray(z / np.maximum(modulus(z), 1e-12))
+
+
+def _around_vertices(
+    surface: TriangleSurface, walls: WallDirections, quarters: Indices, wall_axis: Indices
+) -> tuple[Indices, Indices]:
+    """Return the cells (n,) that meet at inner and at wall vertices."""
+    # crossed counter-clockwise around a corner's vertex is the edge that arrives at it
+    turned = np.round(surface.gather(quarters[:, PREVIOUS].astype(np.float64))).astype(np.intp)
+    valence = np.where(surface.on_wall, 0, 4 - turned)
+    triangle, edge = surface.walls
+    leaving, arriving = surface.vertices[triangle, edge], surface.vertices[triangle, NEXT[edge]]
+    own, between = walls.edges - walls.offsets, walls.inside.copy()
+    between[leaving] += own
+    between[arriving] -= own
+    boundary = np.round(between / QUARTER).astype(np.intp) - turned  # half a turn, but for whole ones
+    boundary[leaving] -= wall_axis
+    boundary[arriving] += wall_axis
+    return valence, np.where(surface.on_wall, boundary, 0)
+
+
+def _check_sum(field: CrossField) -> None:
+    """Raise SolverError unless the theorem of Poincare and Hopf holds."""
+    inner = int((4 - field.valence[field.valence > 0]).sum())
+    wall = int((2 - field.boundary_cells[field.surface.on_wall]).sum())
+    if inner + wall != 4 * field.surface.euler:
+        problem = f"singularities of the cross field sum up to {inner + wall} quarters"
+        raise SolverError(f"{problem}, not {4 * field.surface.euler}")

@@ -1,0 +1,146 @@
+"""Pairs of singular points taken out of a cross field that is about as smooth without them.
+
+The phase of u = exp(4 i theta) turns once around a point where three cells meet, and once the other way where
+five meet. Two such points are gone when the phase jumps by a whole turn across a line between them; its
+gradient is then made as small as it can be with these jumps, by a linear equation (Crane, Desbrun, Schroeder,
+Comput. Graph. Forum 29 (2010) 1525-1533).
+
+The energy of a field is half the integral of the squared gradient of its phase, outside of the cores of its
+singular points (Bethuel, Brezis, Helein, Ginzburg-Landau Vortices, 1994): a point adds pi log(R / r), R a
+length of the domain and r the radius of its core. The smaller cores are, the fewer points are worth it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Complexes, Floats, complex_of
+from meshonet.geometry.elementary import angle, exp, modulus, product, times
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.surface.laplacian import Laplacian
+from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, TriangleSurface
+from meshonet.solvers.sparse import Factor
+
+CORE = 1.0
+"""Radius of cores, by the size of triangles there: of 1, a point costs the energy that triangles see."""
+MOST_PAIRS = 64
+"""Pairs looked at, the nearest of them."""
+_TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class _Lines:
+    """Straight lines inside a surface, from singular points of one kind to those of the other."""
+
+    ends: Indices
+    """(k, 2) triangles in which each begins and ends."""
+    line: Indices
+    """(m,) line of each crossing of an edge."""
+    triangle: Indices
+    """(m,) that is left."""
+    edge: Indices
+    """(m,) of that triangle."""
+
+
+def without_pairs(
+    surface: TriangleSurface, laplacian: Laplacian, factor: Factor, crosses: Complexes
+) -> Complexes:
+    """Return the crosses (n,) without the pairs of singular points that cost more energy than they save.
+
+    `laplacian` is of the vertices inside, `factor` its factors. Crosses of walls stay; it is the same array
+    where no pair goes.
+    """
+    phase = angle(crosses)
+    steps = phase[surface.vertices[:, NEXT]] - phase[surface.vertices]
+    steps -= _TURN * np.round(steps / _TURN)
+    turns = np.round(steps.sum(axis=1) / _TURN).astype(np.intp)
+    lines = _lines(surface, np.flatnonzero(turns > 0), np.flatnonzero(turns < 0))
+    if not len(lines.ends):
+        return crosses
+    halves, jumps = _jumps(surface, lines)
+    triangle, edge = np.divmod(halves, 3)
+    here, there = surface.vertices[triangle, edge], surface.vertices[triangle, NEXT[edge]]
+    twin = surface.neighbours[triangle, edge], surface.neighbour_edge[triangle, edge]
+    weight = -surface.edge_weights[triangle, edge] - surface.edge_weights[twin]
+    jumped = weight[:, None] * jumps
+    right = np.zeros((surface.size, len(lines.ends) + 1))  # of each line, and of the field as it is
+    np.add.at(right[:, :-1], here, jumped)
+    np.add.at(right[:, :-1], there, -jumped)
+    right[:, -1] = _divergence(surface, steps)
+    moved = np.zeros_like(right)
+    moved[laplacian.free] = factor.solve(right[laplacian.free])
+    change = moved[there] - moved[here]
+    # gradients are orthogonal to steps that are as small as can be, so products are sums over crossed edges
+    taken = _taken(
+        lines.ends,
+        product(steps[triangle, edge] + change[:, -1], jumped),
+        product(jumped.T, jumps + change[:, :-1]),
+    )
+    if not taken:
+        return crosses
+    phase = phase + moved[:, -1] + moved[:, taken].sum(axis=1)
+    return np.where(laplacian.free, exp(1j * phase), crosses)
+
+
+def _divergence(surface: TriangleSurface, steps: Floats) -> Floats:
+    """Return what steps (t, 3) of the phase along edges give on the right of Laplace's equation (n,)."""
+    flow = (-surface.edge_weights * steps).ravel()
+    leaving = np.bincount(surface.vertices.ravel(), flow, surface.size)
+    arriving = np.bincount(surface.vertices[:, NEXT].ravel(), flow, surface.size)
+    return np.asarray(leaving - arriving)
+
+
+def _jumps(surface: TriangleSurface, lines: _Lines) -> tuple[Indices, Floats]:
+    """Return the edges (e,) that lines cross, as 3 t + i, and jumps (e, k) of the phase along them."""
+    across = 3 * surface.neighbours + surface.neighbour_edge
+    half = 3 * lines.triangle + lines.edge
+    twin = across[lines.triangle, lines.edge]
+    halves, number = np.unique(np.minimum(half, twin), return_inverse=True)
+    jumps = np.zeros((len(halves), len(lines.ends)))
+    np.add.at(jumps, (number, lines.line), np.where(half < twin, -_TURN, _TURN))
+    return halves, jumps
+
+
+def _taken(ends: Indices, gain: Floats, products: Floats) -> list[int]:
+    """Return the pairs to take out, one after another, each that which lowers the energy most.
+
+    Taking out pairs x changes it by `gain` (k,) x + x `products` (k, k) x / 2.
+    """
+    change = gain + 0.5 * np.diagonal(products) + _TURN * math.log(CORE)
+    taken: list[int] = []
+    while True:
+        best = int(np.argmin(change))
+        if not change[best] < 0.0:
+            return taken
+        taken.append(best)
+        change = change + products[best]
+        change[(ends == ends[best]).any(axis=1)] = np.inf
+
+
+def _lines(surface: TriangleSurface, first: Indices, second: Indices) -> _Lines:
+    """Return the lines from the middles of `first` triangles to those of `second`, the shortest."""
+    points = complex_of(surface.triangulation.points[surface.triangulation.triangles])
+    middle = points.mean(axis=1)
+    ends = np.stack([np.repeat(first, len(second)), np.tile(second, len(first))], axis=1)
+    apart = modulus(middle[ends[:, 1]] - middle[ends[:, 0]])
+    ends = ends[np.argsort(apart, kind="stable")[:MOST_PAIRS]]
+    begin, way = middle[ends[:, 0]], middle[ends[:, 1]] - middle[ends[:, 0]]
+    at, going = ends[:, 0].copy(), np.arange(len(ends))
+    seen = np.zeros(len(ends), dtype=bool)
+    crossed: list[tuple[Indices, Indices, Indices]] = []
+    for _ in range(len(points)):
+        side = times(np.conj(way[going])[:, None], (points[at] - begin[going][:, None])).imag
+        edge = np.argmax((side < 0.0) & (side[:, NEXT] >= 0.0), axis=1)  # from right to left: where it leaves
+        crossed.append((going, at, edge))
+        at = surface.neighbours[at, edge]
+        seen[going[at == ends[going, 1]]] = True
+        goes_on = (at >= 0) & (at != ends[going, 1])
+        at, going = at[goes_on], going[goes_on]
+        if not going.size:
+            break
+    line, triangle, edge = (np.concatenate(column) for column in zip(*crossed, strict=True))
+    whole, number = seen[line], np.cumsum(seen) - 1
+    return _Lines(ends[seen], number[line[whole]], triangle[whole], edge[whole])

@@ -1,0 +1,114 @@
+"""Directions of the cross field along walls, turned near corners to have a whole number of cells there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import angle as angle_of
+from meshonet.geometry.elementary import exp, tan, times
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, TriangleSurface
+
+Flags: TypeAlias = NDArray[np.bool_]
+
+QUARTER = 0.5 * np.pi
+_REACH = 0.15
+"""How far a corner turns the field, as part of its loop; at most half the way to the next corner.
+
+A third and twice as much change the mean score of 22 domains, 7.17, by less than .02."""
+
+
+@dataclass(frozen=True, eq=False)
+class WallDirections:
+    """Angles along walls as the field is to have them."""
+
+    corner_cells: Indices
+    """(b,) cells wanted at boundary vertices that are corners, 0 at all others."""
+    vertices: Floats
+    """(n,) angle at each wall vertex, 0 at all others."""
+    shears: Complexes
+    """(n,) near acute corners the linear map z - nu conj(z) that turns the walls to have these angles: it
+    takes the place of one that shrinks to nothing in the corner as a power of the distance."""
+    edges: Floats
+    """(w,) angle of each wall edge, in the order of `TriangleSurface.walls`."""
+    offsets: Floats
+    """(w,) by how much that differs from the edge's own angle."""
+    inside: Floats
+    """(n,) angle between the two walls of a wall vertex."""
+
+
+def wall_directions(surface: TriangleSurface) -> WallDirections:
+    """Return directions along the walls of a surface.
+
+    At a corner of angle alpha where k cells are to meet, either wall is taken to be turned by half of
+    k 90 degrees - alpha, less and less away from it: the cross at the corner is then the same for both, and
+    the valence there is a boundary condition. Elsewhere the direction is the mean of both edges.
+    """
+    triangle, edge = surface.walls
+    start = surface.vertices[triangle, edge]
+    own = angle_of(surface.edges[triangle, edge])
+    inside = surface.gather(surface.angles)
+    cells, after, before, acute = _corner_offsets(surface, np.where(surface.on_wall, inside, 0.0))
+    places = surface.triangulation.triangles
+    leaving, arriving = after[places[triangle, edge]], before[places[triangle, NEXT[edge]]]
+    angle = np.zeros(surface.size)
+    angle[start] = own - 0.5 * (np.pi - inside[start])
+    here = cells[start] > 0
+    angle[start[here]] = own[here]
+    angle[start] += leaving
+    shears = np.zeros(surface.size, dtype=np.complex128)
+    sheared = np.where(acute[places[triangle, edge]], tan(leaving), 0.0)
+    shears[start] = times(-1j * sheared, exp(2j * angle[start]))
+    offsets = 0.5 * (leaving + arriving)
+    inside = np.where(surface.on_wall, inside, 0.0)
+    return WallDirections(cells, angle, shears, own + offsets, offsets, inside)
+
+
+def _corner_offsets(surface: TriangleSurface, inside: Floats) -> tuple[Indices, Floats, Floats, Flags]:
+    """Return cells wanted (b,), offsets (b,) of walls that leave vertices and of those that arrive.
+
+    And whether (b,) the nearest corner is acute: less than 90 degrees, and one cell is wanted.
+    """
+    triangulation = surface.triangulation
+    count = len(triangulation.arc)
+    cells = np.zeros(count, dtype=np.intp)
+    after, before, acute = np.zeros(count), np.zeros(count), np.zeros(count, dtype=bool)
+    for number, loop in enumerate(triangulation.domain.loops):
+        if not loop.corners:
+            continue
+        mine = np.flatnonzero(triangulation.loop == number)
+        arcs = triangulation.arc[mine]
+        at = mine[_nearest(loop.corner_arcs, arcs, loop.length)]
+        wanted = loop.corner_cells
+        cells[at] = wanted
+        half = 0.5 * (wanted * QUARTER - inside[at])
+        nearest = _nearest(arcs, loop.corner_arcs, loop.length)
+        reach, distance = _reaches(loop)[nearest], _around(arcs - loop.corner_arcs[nearest], loop.length)
+        acute[mine] = ((wanted == 1) & (half > 0))[nearest]
+        offset = half[nearest] * np.maximum(0.0, 1.0 - np.abs(distance) / reach) ** 2
+        after[mine] = before[mine] = np.where(distance > 0, -offset, offset)
+        after[at], before[at] = -half, half
+    return cells, after, before, acute
+
+
+def _reaches(loop: Loop) -> Floats:
+    steps = np.diff(loop.corner_arcs, append=loop.corner_arcs[0] + loop.length)
+    return np.minimum(0.5 * np.minimum(steps, np.roll(steps, 1)), _REACH * loop.length)
+
+
+def _nearest(arcs: Floats, places: Floats, length: float) -> Indices:
+    """Return which of some ascending `places` around a loop is nearest to each arc length (m,)."""
+    after = np.searchsorted(places, arcs)
+    before, after = (after - 1) % len(places), after % len(places)
+    nearer = np.abs(_around(arcs - places[before], length)) <= np.abs(_around(arcs - places[after], length))
+    return np.where(nearer, before, after)
+
+
+def _around(length: Floats, whole: float) -> Floats:
+    return np.asarray(length - whole * np.round(length / whole))

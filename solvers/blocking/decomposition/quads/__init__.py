@@ -1,0 +1,1 @@
+"""The quad mesh of a seamless map."""

@@ -1,0 +1,160 @@
+"""Whole numbers nearest to wanted ones under sums that must be equal: cells of arcs and of chords.
+
+The integers are those of arcs of a T-mesh rather than of coordinates of the map (Campen, Bommes, Kobbelt,
+ACM Trans. Graph. 34 (2015) 192; Lyon, Campen, Bommes, Kobbelt, Comput. Graph. Forum 38 (2019) 21-32). The
+programme is solved by HiGHS (Huangfu, Hall, Math. Program. Comput. 10 (2018) 119-142).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from meshonet.geometry import ties
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import product
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.errors import BlockingError
+from meshonet.solvers.blocking.decomposition.quads.t_mesh import TMesh
+
+OPTIONS: dict[str, bool | int | float | str] = {
+    "output_flag": False,
+    "threads": 1,
+    "random_seed": 0,
+    "presolve": "off",
+    "mip_rel_gap": 0.02,
+    "mip_max_nodes": 2000,
+}
+"""Of HiGHS. One thread, a fixed seed and no limit of time: the same numbers always."""
+STEPS = (1.0, 1.05, 1.1, 1.2, 1.4, 1.6, 2.0, 2.0, np.inf)
+"""Factors by which a number goes up or down in each step, by 1 at least."""
+LOOP = 4
+"""Cells along a closed wall, at least."""
+
+Row = tuple[Mapping[int, float], float, float]
+"""Coefficients of some numbers, and the least and greatest that their sum may be."""
+
+
+def arc_counts(mesh: TMesh, wanted: Floats) -> Indices:
+    """Return cells (a,) along each arc, at least 1, near the `wanted` (a,), alike on opposite sides of faces.
+
+    Parameters
+    ----------
+    mesh : its faces are rectangles of the map, so the lengths of arcs in the map, scaled, satisfy all rows.
+    wanted : cells, any positive numbers.
+
+    Raises BlockingError: no whole numbers found.
+    """
+    pairs = [pair for face in mesh.faces for pair in ((face[0], face[2]), (face[1], face[3]))]
+    arcs = [tuple([half // 2 for half in side] for side in pair) for pair in pairs]
+    rows = [_balance(*pair) for pair in arcs]
+    loops = mesh.on_wall
+    for trail in sorted(set(mesh.trail[loops >= 0].tolist())):
+        rows.append((dict.fromkeys(np.flatnonzero(mesh.trail == trail).tolist(), 1.0), LOOP, np.inf))
+    return nearest_whole(wanted, np.ones(len(wanted)), [row for row in rows if row[0]])
+
+
+def _balance(first: Sequence[int], second: Sequence[int]) -> Row:
+    """Return the row that says that the sums of two runs are equal; what is in both cancels."""
+    row: dict[int, float] = {}
+    for run, sign in ((first, 1.0), (second, -1.0)):
+        for arc in run:
+            row[arc] = row.get(arc, 0.0) + sign
+    return {arc: value for arc, value in row.items() if value}, 0.0, 0.0
+
+
+def nearest_whole(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices:
+    """Return whole numbers n (k,) of at least `least` (k,) that keep the rows.
+
+    Of these, the sum of n / wanted + wanted / n is smallest: of squared logarithms, where they are small.
+
+    Raises BlockingError: there are none, or none was found.
+    """
+    if not len(wanted):
+        return np.zeros(0, dtype=np.intp)
+    steps = _steps(wanted, least)
+    solution = _solved(_model(steps, rows), steps[2])
+    moved = product(steps[1], solution)
+    whole = np.round(steps[0] + moved).astype(np.intp)
+    for row, low, high in rows:
+        total = sum(value * whole[k] for k, value in row.items())
+        if not low - 1e-6 <= total <= high + 1e-6:
+            raise BlockingError("numbers of cells found are not alike on opposite sides")
+    return whole
+
+
+def _solved(programme: Any, lengths: Floats) -> Floats:
+    """Return the steps (b, k) taken, whole ones: mostly those of the relaxed programme are already."""
+    from highspy import Highs, HighsVarType
+
+    solver: Any = Highs()  # type: ignore[no-untyped-call]
+    for name, value in OPTIONS.items():
+        solver.setOptionValue(name, value)
+    for whole in (False, True):
+        programme.integrality_ = [HighsVarType.kInteger] * lengths.size if whole else []
+        solver.passModel(programme)
+        solver.run()
+        solution = np.array(solver.getSolution().col_value)
+        if len(solution) != lengths.size or solver.getInfo().primal_solution_status != 2:
+            break
+        if np.abs(solution - np.round(solution)).max() < 1e-6:
+            return np.round(solution).reshape(lengths.shape)
+    raise BlockingError("no whole numbers of cells keep opposite sides alike")
+
+
+def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return where steps start from (k,), and signs (b,), lengths (b, k) and costs (b, k) of the steps."""
+    size = np.maximum(wanted, 0.5)
+
+    def cost(n: Floats) -> Floats:
+        return np.asarray(n / size + size / np.maximum(n, 0.5))
+
+    base = np.maximum(least, ties.nearest_whole(wanted))
+    signs, lengths, costs = [], [], []
+    for sign in (1.0, -1.0):
+        at = base
+        for factor in STEPS:
+            ends = np.isinf(factor)
+            times = 2.0 if ends else factor
+            to = ties.nearest_whole(at * times if sign > 0 else at / times)
+            to = np.maximum(least, np.maximum(to, at + 1.0) if sign > 0 else np.minimum(to, at - 1.0))
+            if ends and sign < 0:
+                to = least
+            far = np.abs(to - at)
+            rise = np.divide(cost(to) - cost(at), far, out=np.zeros(len(base)), where=far > 0)
+            signs.append(sign)
+            lengths.append(np.full(len(base), np.inf) if ends and sign > 0 else far)
+            costs.append(rise)
+            at = to
+    return base, np.array(signs), np.array(lengths), ties.made_unlike(np.array(costs))
+
+
+def _model(steps: tuple[Floats, Floats, Floats, Floats], rows: Sequence[Row]) -> Any:
+    """Return the programme in steps: n = base + those up - those down, each step dearer than the one before.
+
+    The cost is then linear between whole numbers and not below them, and relaxed solutions are whole, or
+    nearly so: each arc is in two rows with coefficients +-1 (bidirected networks have half-integral corners).
+    """
+    from highspy import HighsLp, MatrixFormat
+
+    base, signs, lengths, costs = steps
+    blocks, count = lengths.shape
+    lp = HighsLp()
+    lp.num_col_, lp.num_row_ = lengths.size, len(rows)
+    lp.col_cost_, lp.col_lower_, lp.col_upper_ = costs.ravel(), np.zeros(lengths.size), lengths.ravel()
+    sizes = np.array([len(row) for row, _, _ in rows], dtype=np.intp)
+    index = np.array([k for row, _, _ in rows for k in row], dtype=np.intp)
+    value = np.array([v for row, _, _ in rows for v in row.values()])
+    line = np.repeat(np.arange(len(rows)), sizes)
+    shift = np.bincount(line, value * base[index], minlength=len(rows))
+    lp.row_lower_ = np.array([row[1] for row in rows]) - shift
+    lp.row_upper_ = np.array([row[2] for row in rows]) - shift
+    matrix = lp.a_matrix_
+    matrix.format_ = MatrixFormat.kRowwise
+    matrix.start_ = np.append(0, np.cumsum(blocks * sizes)).astype(np.int32)
+    # a row has all blocks of its first number, then of its second
+    matrix.index_ = (index[:, None] + count * np.arange(blocks)).ravel().astype(np.int32)
+    matrix.value_ = (value[:, None] * signs).ravel()
+    return lp

@@ -1,0 +1,142 @@
+"""A row of quads along smooth walls where the field put singularities on the wall.
+
+A loop without corners, a disc for instance, may carry nodes where more or fewer than two quads meet. With a
+ring of quads along the loop they become irregular nodes inside, and every node on the wall regular. So does a
+row of quads along a stretch between two corners where one quad meets.
+
+Mitchell, Tautges, "Pillowing doublets: refining a mesh to ensure that faces share at most one edge", 4th
+International Meshing Roundtable (1995).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+
+INSET = 0.25
+"""How far old wall nodes move inside, in lengths of the shorter edge beside them."""
+
+Span = tuple[int, float, float]
+"""Number of a loop, and the arc lengths of the corners at which a stretch of it begins and ends."""
+
+
+def wrong_count(mesh: QuadMesh) -> NDArray[np.bool_]:
+    """Return the boundary nodes (n,) where other than the wanted count of quads meet: 2 but at corners."""
+    cells = mesh.places.cells
+    return np.asarray(mesh.wall_nodes & (mesh.valence != np.where(cells > 0, cells, 2)))
+
+
+def loops_to_pad(mesh: QuadMesh) -> list[int]:
+    """Return the numbers of loops without corners on which some node has a wrong count of quads."""
+    wrong = distinct(mesh.places.loop[wrong_count(mesh)])
+    return [int(loop) for loop in wrong if loop >= 0 and not mesh.domain.loops[loop].corners]
+
+
+def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
+    """Return those of some stretches within which some node has a wrong count of quads."""
+    places, wrong = mesh.places, wrong_count(mesh)
+    return [
+        (loop, begin, end)
+        for loop, begin, end in spans
+        if wrong[(places.loop == loop) & (places.arc > begin) & (places.arc < end)].any()
+    ]
+
+
+def pad(mesh: QuadMesh, loops: list[int]) -> QuadMesh:
+    """Return the mesh with a ring of quads along these loops; old wall nodes lie inside then.
+
+    >>> from meshonet.geometry.domain.domain import Domain
+    >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    >>> places = Places(np.zeros(4, int), np.arange(4.0), np.zeros(4, int), np.full(4, -1))
+    >>> one = QuadMesh(Domain.of_polygons([square]), square, np.array([[0, 1, 2, 3]]), places)
+    >>> ring = pad(one, [0])
+    >>> len(ring.quads), ring.valence.tolist()
+    (5, [3, 3, 3, 3, 2, 2, 2, 2])
+    """
+    if not loops:
+        return mesh
+    along, ahead = _wall_edges(mesh, loops)
+    n, k = len(mesh.nodes), len(along)
+    copy = np.full(n, -1, dtype=np.intp)
+    copy[along] = n + np.arange(k)
+    ring = np.stack([copy[along], copy[ahead], ahead, along], axis=1)
+    before = np.empty(n, dtype=np.intp)
+    before[ahead] = along
+    nodes = np.concatenate([mesh.nodes, mesh.nodes[along]])
+    nodes[along] += _inwards(mesh.nodes, before[along], along, ahead)
+    return QuadMesh(mesh.domain, nodes, np.concatenate([mesh.quads, ring]), _moved(mesh.places, along))
+
+
+def _inwards(nodes: Floats, before: Indices, along: Indices, ahead: Indices) -> Floats:
+    """Return by what wall nodes (k,) move inside, between those before and ahead of them."""
+    here, last, coming = nodes[along], nodes[before], nodes[ahead]
+    tangent = coming - last
+    tangent /= np.hypot(*tangent.T)[:, None]
+    left = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
+    shorter = np.minimum(np.hypot(*(here - last).T), np.hypot(*(coming - here).T))
+    return np.asarray(INSET * shorter[:, None] * left)
+
+
+def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
+    """Return the mesh with a row of quads along a stretch, which begins and ends at corners of one quad.
+
+    Old nodes at these corners go on along the walls beyond. Where both are the same, the row goes all round.
+    """
+    number, begin, end = span
+    places, loop = mesh.places, mesh.domain.loops[number]
+    along, ahead = _wall_edges(mesh, [number])
+    after = dict(zip(along.tolist(), ahead.tolist(), strict=True))
+    arcs = places.arc[along]
+    chain = [int(along[np.argmin(np.abs(arcs - begin))])]
+    last = int(along[np.argmin(np.abs(arcs - end % loop.length))])
+    while chain[-1] != last or len(chain) == 1:
+        chain.append(after[chain[-1]])
+    line, n = np.array(chain), len(mesh.nodes)
+    new = n + np.arange(len(line))
+    nodes = np.concatenate([mesh.nodes, mesh.nodes[line]])
+    row = np.stack([new[:-1], new[1:], line[1:], line[:-1]], axis=1)
+    inner = line[1:-1]
+    nodes[inner] += _inwards(mesh.nodes, line[:-2], inner, line[2:])
+    moved = _moved(places, line)
+    if line[0] == line[-1]:  # all of the loop: the row crosses itself, in a quad at a corner of its own
+        corner, first = n + len(line), int(line[0])
+        ends = (int(new[0]), int(line[1]), begin), (int(new[-1]), int(line[-2]), end)
+        row = np.concatenate([row, [[corner, new[0], first, new[-1]]]])
+        nodes[first] += _inwards(mesh.nodes, line[-2:-1], line[:1], line[1:2])[0]
+        nodes = np.concatenate([nodes, mesh.nodes[line[:1]]])
+        moved = Places(*(np.append(values, values[new[0]]) for values in vars(moved).values()))
+        moved.cells[new[[0, -1]]], moved.cells[corner] = 0, 1
+    else:
+        previous = int(along[ahead == line[0]][0])
+        ends = (int(line[0]), previous, begin), (last, after[last], end)
+        moved.cells[new[[0, -1]]] = 1
+    for node, beyond, arc in ends:
+        way = places.arc[beyond] - arc
+        way -= loop.length * np.round(way / loop.length)
+        moved.loop[node], moved.arc[node] = number, np.mod(arc + INSET * way, loop.length)
+        nodes[node] = loop.at(moved.arc[node : node + 1])[0]
+    return QuadMesh(mesh.domain, nodes, np.concatenate([mesh.quads, row]), moved)
+
+
+def _wall_edges(mesh: QuadMesh, loops: list[int]) -> tuple[Indices, Indices]:
+    """Return where the edges on these loops begin and end, the domain on their left, by node."""
+    on = mesh.on_wall[mesh.edge_of] & np.isin(mesh.places.loop[mesh.quads], loops)
+    first, second = mesh.quads[on], np.roll(mesh.quads, -1, axis=1)[on]
+    order = np.argsort(first, kind="stable")
+    return first[order], second[order]
+
+
+def _moved(places: Places, along: Indices) -> Places:
+    """Return the places after those of the nodes `along` a loop went to copies behind all others."""
+    loop, arc, cells, partner = places.loop, places.arc, places.cells, places.partner
+    copies = (np.concatenate([values, values[along]]) for values in (loop, arc, cells, partner))
+    loop, arc, cells, partner = copies
+    loop[along], arc[along], cells[along], partner[along] = -1, 0.0, 0, -1
+    cells[len(places.loop) :][cells[len(places.loop) :] > 0] = 2
+    return Places(loop, arc, cells, partner)

@@ -1,0 +1,119 @@
+"""The ways out of the singular vertices and corners of a seamless map."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.elementary import angle, times
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
+
+QUARTER = np.pi / 2
+SLACK = 0.5
+"""Radians by which a ray may lie outside of the triangle that it is counted in."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ports:
+    """Nodes at vertices, and the rays that leave them."""
+
+    vertex: Indices
+    """(n,)"""
+    quarters: Indices
+    """(n,) right angles around each node: the cells that meet there."""
+    on_wall: NDArray[np.bool_]
+    """(n,)"""
+    node: Indices
+    """(t, 3) node at each corner of each triangle, or -1."""
+    port: Indices
+    """(t, 3, 4) number of the way out of that node through the triangle along each axis, or -1. At walls 1 is
+    the first way inside; inside 0 is the first axis counter-clockwise of the fan's first edge."""
+    starts: Indices
+    """(r, 6) rays: node, port, triangle, corner, axis, and a column left to the caller. Nodes where the wall
+    is straight in the map, though it has a corner, have none."""
+
+
+def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
+    """Return the ports of corners and singular vertices, then of `joined` on walls."""
+    cells = seamless.boundary_cells
+    count = len(seamless.surface.on_wall)
+    around = np.zeros(count, dtype=np.intp)
+    around[: len(cells)] = cells
+    corners = np.zeros(count, dtype=bool)
+    corners[: len(cells)] = (seamless.corner_cells > 0) | ((cells != 2) & (cells > 0))
+    around = np.where(seamless.surface.on_wall, around, seamless.valence)
+    vertex = np.concatenate([np.flatnonzero(corners), seamless.singular, joined]).astype(np.intp)
+    on_wall, quarters = seamless.surface.on_wall[vertex], around[vertex]
+    entry, owner = _fans(seamless, vertex)
+    face, corner = np.divmod(entry, 3)
+    port, margin = _directions(seamless, face, corner, owner, quarters, on_wall)
+    node_at = np.full(seamless.surface.vertices.shape, -1, dtype=np.intp)
+    node_at[face, corner] = owner
+    port_at = np.full((*seamless.surface.vertices.shape, 4), -1, dtype=np.intp)
+    port_at[face, corner] = np.where(margin > -SLACK, port, -1)
+    late = np.arange(len(vertex)) >= len(vertex) - len(joined)
+    shoots = late | ~on_wall | (quarters != 2)
+    starts = _starts(face, corner, owner, port, margin, shoots, int(quarters.max(initial=1)))
+    return Ports(vertex, quarters, on_wall, node_at, port_at, starts)
+
+
+def _fans(seamless: SeamlessMap, vertex: Indices) -> tuple[Indices, Indices]:
+    """Return the corners (e,) around the vertices, and for each the node that it belongs to."""
+    fans = [seamless.fan(int(v)) for v in vertex]
+    if not fans:
+        return np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp)
+    owner = np.repeat(np.arange(len(fans)), [len(fan) for fan in fans])
+    return np.concatenate(fans).astype(np.intp), owner.astype(np.intp)
+
+
+def _directions(
+    seamless: SeamlessMap,
+    face: Indices,
+    corner: Indices,
+    owner: Indices,
+    quarters: Indices,
+    on_wall: NDArray[np.bool_],
+) -> tuple[Indices, NDArray[np.float64]]:
+    """Return the port (e, 4) of each axis at each corner, -1 for walls, and how far inside it is."""
+    w = seamless.corner_coords
+    here = w[face, corner]
+    right, left = w[face, (corner + 1) % 3] - here, w[face, (corner + 2) % 3] - here
+    width = angle(times(left, right.conj()))
+    new = np.append(True, owner[1:] != owner[:-1])[: len(owner)]
+    total = np.cumsum(width) - width
+    before = total - total[np.flatnonzero(new)][owner] if len(owner) else total
+    own = angle(right) / QUARTER
+    off = (np.ceil(own + 1e-12) - own)[np.flatnonzero(new)] if len(owner) else own
+    off = np.where(on_wall, 0.0, off)[owner]
+    axes = np.array([1, 1j, -1, -1j])
+    inside = angle(times(axes[None], right.conj()[:, None]))
+    # an axis right behind the first edge may be turned by nearly pi either way
+    inside = np.where(inside < -SLACK, inside + 2 * np.pi, inside)
+    port = np.round((before[:, None] + inside) / QUARTER - off[:, None]).astype(np.intp)
+    k = quarters[owner][:, None]
+    wall = on_wall[owner][:, None]
+    port = np.where(wall, np.where((port >= 1) & (port < k), port, -1), port % np.maximum(k, 1))
+    return port, np.minimum(inside, width[:, None] - inside)
+
+
+def _starts(
+    face: Indices,
+    corner: Indices,
+    owner: Indices,
+    port: Indices,
+    margin: NDArray[np.float64],
+    shoots: NDArray[np.bool_],
+    most: int,
+) -> Indices:
+    """Return the rays: for each port the corner that it lies deepest in."""
+    e, axis = np.nonzero((port >= 0) & (margin > -SLACK) & shoots[owner][:, None])
+    key = owner[e] * (most + 1) + port[e, axis]
+    order = np.lexsort((-margin[e, axis], key))
+    first = np.append(True, key[order][1:] != key[order][:-1])[: len(order)]
+    best = order[first]
+    e, axis = e[best], axis[best]
+    rows = [owner[e], port[e, axis], face[e], corner[e], axis, np.zeros(len(e))]
+    return np.ascontiguousarray(np.stack(rows, axis=1), dtype=np.intp)

@@ -1,0 +1,185 @@
+"""Lines of a seamless map as pieces in triangles, on which nodes are found again by length."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from meshonet.geometry.arrays import Complexes, Floats, complex_of
+from meshonet.geometry.elementary import modulus, times
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.errors import BlockingError
+from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
+
+Tables = tuple[Floats, Indices, Indices, Indices]
+
+
+def map_tables(seamless: SeamlessMap) -> Tables:
+    """Return coordinates (t, 3, 2), neighbours, their edges and turns (t, 3) as the kernels want them."""
+    coords = np.ascontiguousarray(seamless.corner_coords).view(np.float64).reshape(-1, 3, 2)
+    whole = (seamless.surface.neighbours, seamless.surface.neighbour_edge, seamless.turns)
+    near, edge, turns = (np.ascontiguousarray(table, dtype=np.intp) for table in whole)
+    return coords, near, edge, turns
+
+
+@dataclass(frozen=True, eq=False)
+class Trails:
+    """Lines of constant u or v, each a run of pieces (p,), one a triangle."""
+
+    first: Indices
+    """(k + 1,) first piece of each trail."""
+    face: Indices
+    """(p,) triangle that the piece is in."""
+    edge: Indices
+    """(p,) edge of it that the piece is, at walls; -1 elsewhere."""
+    axis: Indices
+    """(p,) direction in the coordinates of that triangle: i^axis."""
+    origin: Complexes
+    """(p,) coordinates of the start."""
+    length: Floats
+    """(p + k,) length of the trail in the map at the start of each piece, and at its end."""
+    begin: Complexes
+    """(p,) the start in the plane."""
+    end: Complexes
+    """(p,) the end in the plane."""
+    loop: Indices
+    """(k,) number of the loop, for walls; -1 for rays."""
+    arc: Floats
+    """(p, 2) arc lengths on the loop at the start of the piece and how much it is long; 0 for rays."""
+    vertex: Indices
+    """(p,) vertex at the start of the piece, at walls; -1 elsewhere."""
+
+    @cached_property
+    def _edges(self) -> dict[tuple[int, int], int]:
+        """Piece of each wall's triangle and edge."""
+        keys = zip(self.face.tolist(), self.edge.tolist(), strict=True)
+        return {key: piece for piece, key in enumerate(keys)}
+
+    @cached_property
+    def _vertices(self) -> dict[int, int]:
+        """Piece that starts at each wall's vertex."""
+        return {vertex: piece for piece, vertex in enumerate(self.vertex.tolist())}
+
+    def total(self, trail: int) -> float:
+        """Return the length of a trail in the map."""
+        return float(self.length[self.first[trail + 1] + trail])
+
+    def trail_of(self, piece: int) -> int:
+        """Return the trail of a piece."""
+        return int(np.searchsorted(self.first, piece, side="right")) - 1
+
+    def at_vertex(self, vertex: int) -> tuple[int, float]:
+        """Return the trail of walls through a vertex, and its length there."""
+        piece = self._vertices[vertex]
+        trail = self.trail_of(piece)
+        return trail, float(self.length[piece + trail])
+
+    def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
+        """Return the trail of walls over part of an edge, and its length there."""
+        piece = self._edges[face, edge]
+        trail = self.trail_of(piece)
+        start, stop = self.length[piece + trail : piece + trail + 2]
+        return trail, float(start + part * (stop - start))
+
+    def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
+        """Return the piece (q,) of a trail at a length of it, and the part of that piece before it."""
+        ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
+        offset = np.append(0.0, np.cumsum(ends))
+        owner = np.repeat(np.arange(len(ends)), np.diff(self.first))
+        index = np.arange(len(self.face)) + owner
+        start, stop = self.length[index], self.length[index + 1]
+        piece = np.searchsorted(start + offset[owner], length + offset[trail], side="right") - 1
+        piece = np.clip(piece, self.first[trail], self.first[trail + 1] - 1)
+        span = stop[piece] - start[piece]
+        part = np.divide(length - start[piece], span, out=np.zeros(len(piece)), where=span > 0)
+        return piece, np.clip(part, 0.0, 1.0)
+
+    def joined(self, others: Trails) -> Trails:
+        """Return these trails and then the others."""
+        names = [each.name for each in fields(self)]
+        mine, theirs = ([getattr(trails, name) for name in names] for trails in (self, others))
+        theirs[0] = theirs[0][1:] + self.first[-1]
+        return Trails(*(np.concatenate(pair) for pair in zip(mine, theirs, strict=True)))
+
+
+def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int) -> Trails:
+    """Return the trails of rays from the pieces (p, 3) and (p, 5) that `trace_rays` drew."""
+    order = np.argsort(pieces[:, 0], kind="stable")
+    pieces, lines = pieces[order], lines[order]
+    count = np.bincount(pieces[:, 0], minlength=rays)
+    first = np.append(0, np.cumsum(count)).astype(np.intp)
+    origin, stop = complex_of(lines[:, :2]), complex_of(lines[:, 2:4])
+    face = pieces[:, 1]
+    length = np.insert(lines[:, 4], first[1:], 0.0) if rays else np.zeros(0)
+    last = first[1:] - 1
+    ran = np.flatnonzero(count)
+    length[(first[1:] + np.arange(rays))[ran]] = (lines[:, 4] + modulus(stop - origin))[last[ran]]
+    return Trails(
+        first=first,
+        face=face,
+        edge=np.full(len(face), -1, dtype=np.intp),
+        axis=pieces[:, 2],
+        origin=origin,
+        length=length,
+        begin=to_plane(seamless, face, origin),
+        end=to_plane(seamless, face, stop),
+        loop=np.full(rays, -1, dtype=np.intp),
+        arc=np.zeros((len(face), 2)),
+        vertex=np.full(len(face), -1, dtype=np.intp),
+    )
+
+
+def wall_trails(seamless: SeamlessMap) -> Trails:
+    """Return the closed trails along the walls, the domain on their left, the outer loop's first."""
+    triangulation = seamless.triangulation
+    faces, edges = np.nonzero(seamless.surface.neighbours < 0)
+    start = seamless.surface.vertices[faces, edges]
+    follow = dict(zip(start.tolist(), zip(faces.tolist(), edges.tolist(), strict=True), strict=True))
+    order: list[tuple[int, int]] = []
+    first = [0]
+    for vertex in sorted(follow):
+        at = vertex
+        while at in follow:
+            f, e = follow.pop(at)
+            order.append((f, e))
+            at = int(seamless.surface.vertices[f, (e + 1) % 3])
+        if len(order) > first[-1]:
+            if at != vertex:
+                raise BlockingError("a wall of the triangulation is not closed")
+            first.append(len(order))
+    face, edge = (np.array(column, dtype=np.intp) for column in zip(*order, strict=True))
+    here = triangulation.triangles[face, edge]
+    there = triangulation.triangles[face, (edge + 1) % 3]
+    origin = seamless.corner_coords[face, edge]
+    step = modulus(seamless.corner_coords[face, (edge + 1) % 3] - origin)
+    runs = [np.append(0.0, np.cumsum(step[a:b])) for a, b in pairwise(first)]
+    loops = triangulation.loop[here[first[:-1]]]
+    whole = np.array([loop.length for loop in triangulation.domain.loops])[triangulation.loop[here]]
+    arc = triangulation.arc[here]
+    plane = complex_of(triangulation.points)
+    return Trails(
+        first=np.array(first, dtype=np.intp),
+        face=face,
+        edge=edge,
+        axis=seamless.wall_axis[face, edge],
+        origin=origin,
+        length=np.concatenate(runs),
+        begin=plane[here],
+        end=plane[there],
+        loop=np.asarray(loops, dtype=np.intp),
+        arc=np.stack([arc, np.mod(triangulation.arc[there] - arc, whole)], axis=1),
+        vertex=seamless.surface.vertices[face, edge],
+    )
+
+
+def to_plane(seamless: SeamlessMap, face: Indices, w: Complexes) -> Complexes:
+    """Return the points (q,) of the plane at coordinates w (q,) of triangles (q,)."""
+    corners = seamless.corner_coords[face]
+    a, b, q = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], w - corners[:, 0]
+    size = times(a.conj(), b).imag
+    s, r = times(q.conj(), b).imag / size, times(a.conj(), q).imag / size
+    z = complex_of(seamless.triangulation.points[seamless.triangulation.triangles[face]])
+    return np.asarray(z[:, 0] * (1 - s - r) + z[:, 1] * s + z[:, 2] * r)

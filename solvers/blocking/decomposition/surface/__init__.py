@@ -1,0 +1,1 @@
+"""The triangles of a domain, and equations on them."""

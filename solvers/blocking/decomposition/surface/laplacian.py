@@ -1,0 +1,43 @@
+"""The Laplacian on a surface of triangles, linear elements, where values at some vertices are given."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS, TriangleSurface
+from meshonet.solvers.sparse import Factor, SparsePattern
+
+
+class Laplacian:
+    """Integrals of products of gradients over a surface, for its vertices `free` (n,)."""
+
+    def __init__(self, surface: TriangleSurface, free: NDArray[np.bool_]) -> None:
+        self.surface, self.free = surface, free
+        number = np.cumsum(free) - 1
+        start, stop, weight = surface.vertices, surface.vertices[:, NEXT], surface.edge_weights
+        both = free[start] & free[stop]
+        each = np.arange(int(free.sum()))
+        self.pattern = SparsePattern(
+            len(each), np.concatenate([number[start[both]], each]), np.concatenate([number[stop[both]], each])
+        )
+        self._edges = weight[both]
+        self._diagonal = surface.gather(-weight - weight[:, PREVIOUS])[free]
+
+    def factor(self, mass: Floats | float = 0.0) -> Factor:
+        """Return the factored matrix with `mass` (free,) added to its diagonal."""
+        return self.pattern.factor(np.append(self._edges, self._diagonal + mass))
+
+    def flow(self, values: Complexes) -> Complexes:
+        """Return what values (n,) at vertices that are not free, 0 at all others, give on the right."""
+        surface, weight = self.surface, self.surface.edge_weights
+        corner = values[surface.vertices]
+        flow = -weight * corner[:, NEXT] - weight[:, PREVIOUS] * corner[:, PREVIOUS]
+        return np.asarray((surface.gather(flow.real) + 1j * surface.gather(flow.imag))[self.free])
+
+
+def solve_complex(factor: Factor, right: Complexes) -> Complexes:
+    """Return the complex solution (n,) of a real system."""
+    pairs = np.ascontiguousarray(right).view(np.float64).reshape(-1, 2)
+    return np.asarray(factor.solve(pairs).view(np.complex128)[:, 0])

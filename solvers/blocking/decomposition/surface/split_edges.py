@@ -1,0 +1,71 @@
+"""Edges that join two walls through the inside are split: a map has no freedom between them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.surface.triangulation import Triangulation
+
+_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
+
+
+def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:
+    """Return the triangulation with a vertex in the middle of every inner edge from wall to wall.
+
+    Without it a triangle in the bend of a wall, two of its edges on it, has all of its vertices on one line
+    of the map, and in a gap one triangle wide there is no place for a singularity.
+    """
+    boundary = len(triangulation.arc)
+    while True:
+        triangles, neighbours = triangulation.triangles, triangulation.neighbours
+        on_wall = triangles < boundary
+        triangle, edge = np.nonzero(
+            on_wall & on_wall[:, _NEXT] & (neighbours > np.arange(len(triangles))[:, None])
+        )
+        if not len(triangle):
+            return triangulation
+        neighbour = neighbours[triangle, edge]
+        # one edge of a triangle at a time
+        least = np.full(len(triangles), len(triangle))
+        number = np.arange(len(triangle))
+        np.minimum.at(least, triangle, number)
+        np.minimum.at(least, neighbour, number)
+        now = (least[triangle] == number) & (least[neighbour] == number)
+        triangulation = _split(triangulation, triangle[now], edge[now])
+
+
+def _split(triangulation: Triangulation, triangle: Indices, edge: Indices) -> Triangulation:
+    """Return the triangulation with edges split that no two of have a triangle in common."""
+    triangles, points = triangulation.triangles, triangulation.points
+    neighbour = triangulation.neighbours[triangle, edge]
+    back = triangulation.neighbour_edge[triangle, edge]
+    start, stop = triangles[triangle, edge], triangles[triangle, _NEXT[edge]]
+    left, right = triangles[triangle, _LAST[edge]], triangles[neighbour, _LAST[back]]
+    middle = len(points) + np.arange(len(triangle))
+    new = triangles.copy()
+    new[triangle] = np.stack([start, middle, left], axis=1)
+    new[neighbour] = np.stack([stop, middle, right], axis=1)
+    halves = [np.stack([middle, stop, left], axis=1), np.stack([middle, start, right], axis=1)]
+    new = np.concatenate([new, *halves])
+    neighbours, neighbour_edge = join_triangles(new)
+    return replace(
+        triangulation,
+        points=np.concatenate([points, 0.5 * (points[start] + points[stop])]),
+        triangles=new,
+        neighbours=neighbours,
+        neighbour_edge=neighbour_edge,
+    )
+
+
+def join_triangles(triangles: Indices) -> tuple[Indices, Indices]:
+    """Return the triangle (t, 3) across each edge, and the edge's number there, -1 at walls."""
+    start, stop = triangles.ravel(), triangles[:, _NEXT].ravel()
+    size = int(triangles.max()) + 1
+    key, mate = start * size + stop, stop * size + start
+    order = np.argsort(key, kind="stable")
+    place = np.minimum(np.searchsorted(key, mate, sorter=order), len(key) - 1)
+    half = np.where(key[order[place]] == mate, order[place], -1).reshape(-1, 3)
+    return np.where(half < 0, -1, half // 3), np.where(half < 0, -1, half % 3)

@@ -1,0 +1,122 @@
+"""The triangles of a domain as a surface: what is around each vertex, where walls are, gradients.
+
+Corner c = 3 f + i is corner i of triangle f; edge i of a triangle goes from its corner i to the next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Complexes, Floats, complex_of
+from meshonet.geometry.elementary import angle, modulus, times
+from meshonet.geometry.errors import SolverError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import surface_fans
+from meshonet.solvers.blocking.decomposition.surface.triangulation import Triangulation
+
+NEXT = np.array([1, 2, 0])
+PREVIOUS = np.array([2, 0, 1])
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleSurface:
+    """Triangles joined at their edges."""
+
+    triangulation: Triangulation
+
+    @property
+    def vertices(self) -> Indices:
+        """(t, 3) vertex at each corner, counter-clockwise."""
+        return self.triangulation.triangles
+
+    @property
+    def neighbours(self) -> Indices:
+        """(t, 3) triangle across each edge, -1 at walls."""
+        return self.triangulation.neighbours
+
+    @property
+    def neighbour_edge(self) -> Indices:
+        """(t, 3) number of that edge in the neighbour, -1 at walls."""
+        return self.triangulation.neighbour_edge
+
+    @property
+    def size(self) -> int:
+        """Number of vertices, n."""
+        return len(self.triangulation.points)
+
+    @property
+    def arrays(self) -> tuple[Indices, Indices, Indices]:
+        """What kernels take."""
+        return self.vertices, self.neighbours, self.neighbour_edge
+
+    @cached_property
+    def fans(self) -> tuple[Indices, Indices]:
+        """Where the corners around each vertex start (n + 1,) in the list of all corners (3 t,)."""
+        start, corners, reached = surface_fans(self.arrays, self.size)
+        if reached != len(corners):
+            raise SolverError("triangles that meet in a point only")
+        return start, corners
+
+    @cached_property
+    def edges(self) -> Complexes:
+        """(t, 3) edge i of each triangle as a complex number."""
+        z = complex_of(self.triangulation.points[self.vertices])
+        return np.asarray(z[:, NEXT] - z)
+
+    @cached_property
+    def areas(self) -> Floats:
+        """(t,) areas of the triangles."""
+        return np.asarray(0.5 * times(np.conj(self.edges[:, 0]), -self.edges[:, 2]).imag)
+
+    @cached_property
+    def angles(self) -> Floats:
+        """(t, 3) angles at the corners."""
+        return np.asarray(angle(-self.edges[:, PREVIOUS] / self.edges))
+
+    @cached_property
+    def gradients(self) -> Complexes:
+        """(t, 3) gradient of the function that is linear in a triangle, 1 at a corner, 0 at the others."""
+        return np.asarray(times(1j, self.edges[:, NEXT]) / (2.0 * self.areas[:, None]))
+
+    @cached_property
+    def walls(self) -> tuple[Indices, Indices]:
+        """Triangles and edges (w,) on walls."""
+        triangles, edges = np.nonzero(self.neighbours < 0)
+        return triangles, edges
+
+    @cached_property
+    def on_wall(self) -> NDArray[np.bool_]:
+        """(n,) vertices on walls."""
+        flags = np.zeros(self.size, dtype=bool)
+        flags[self.vertices[self.walls]] = True
+        return flags
+
+    @cached_property
+    def edge_weights(self) -> Floats:
+        """(t, 3) integral of the product of the gradients at an edge's ends: minus half a cotangent."""
+        g = self.gradients
+        return np.asarray(self.areas[:, None] * times(g, np.conj(g[:, NEXT])).real)
+
+    @cached_property
+    def masses(self) -> Floats:
+        """(n,) a third of the triangles around each vertex."""
+        return self.gather(np.repeat(self.areas[:, None] / 3.0, 3, axis=1))
+
+    @cached_property
+    def euler(self) -> int:
+        """Euler's number: 1 for a disc, 0 for an annulus."""
+        inner = int((self.neighbours >= 0).sum()) // 2
+        return self.size - inner - len(self.walls[0]) + len(self.vertices)
+
+    def gather(self, corners: Floats) -> Floats:
+        """Return the sums (n,) of numbers of corners (t, 3) around each vertex."""
+        return np.asarray(np.bincount(self.vertices.ravel(), corners.ravel(), self.size))
+
+    def edge_size(self, vertices: Indices) -> Floats:
+        """Return the mean length of the edges around each of some vertices."""
+        lengths = self.gather(modulus(self.edges))
+        return np.asarray(lengths[vertices] / np.diff(self.fans[0])[vertices])

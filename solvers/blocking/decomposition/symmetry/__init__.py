@@ -1,0 +1,1 @@
+"""Symmetric layouts of symmetric domains."""

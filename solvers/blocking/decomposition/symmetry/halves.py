@@ -1,0 +1,164 @@
+"""One half of a symmetric domain, with the mirror as a wall, and the mesh of both halves.
+
+The mirror becomes a line of the mesh. The halves of a loop that lies across it meet it at right angles, or at
+half a corner, where as many cells meet in each half as its angle asks for, and in the whole an even count.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.errors import BlockingError
+from meshonet.solvers.blocking.decomposition.quads.padding import Span
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
+
+_NEAR = 1e-6
+"""Part of a loop within which places are the same: more than images are off a boundary, less than a cell."""
+_SHARPEST = 52.5
+"""Degrees of half a corner, at the least: one of 90 degrees keeps its one cell, one of 120 is cut in two."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Stretch:
+    """Half of a loop of the whole: its arc lengths (n,), rising from mirror to mirror, and their points."""
+
+    loop: int
+    arcs: Floats
+    points: Floats
+    """(n, 2)"""
+    corners: Indices
+    """Which of them are corners, those on the mirror included."""
+    breaks: Indices
+    """At which its tangent may jump."""
+    straight: NDArray[np.bool_]
+    """(n,) whether the way to the next is straight, as it is from the last along the mirror."""
+
+
+@dataclass(frozen=True, eq=False)
+class Half:
+    """The left half of a domain: `stretches` of its outer loop, and loops `holes` of the whole, are walls."""
+
+    whole: Domain
+    mirror: Mirror
+    domain: Domain
+    stretches: tuple[_Stretch, ...]
+    holes: tuple[int, ...]
+
+
+def spans_between(loop: Loop) -> list[Span]:
+    """Return the stretches of the outer loop of a part from a corner of one cell to the next, two between.
+
+    A row of quads along one takes singularities off the wall, or off the mirror.
+    """
+    corners = zip(loop.corner_arcs.tolist(), loop.corner_cells.tolist(), strict=True)
+    turns = [(arc, cells) for arc, cells in corners if cells != 2]
+    pairs = pairwise([*turns, *((arc + loop.length, cells) for arc, cells in turns[:1])])
+    return [(0, begin, end) for (begin, first), (end, last) in pairs if first == last == 1]
+
+
+def left_half(domain: Domain, mirror: Mirror) -> Half:
+    """Return the half of a domain on the left of a mirror; raises BlockingError: it cuts a sharp corner."""
+    outer, *others = (
+        _stretch(loop, k, mirror) for k, loop in enumerate(domain.loops) if mirror.loops[k] == k
+    )
+    begin, end = (mirror.ahead_and_left(outer.points[k])[0] for k in (0, -1))
+    way = 1.0 if begin > end else -1.0  # from the end of the outer half back to where it begins
+    others.sort(key=lambda stretch: way * float(mirror.ahead_and_left(stretch.points[0])[0]))
+    row = (outer, *others)
+    counts = [len(stretch.points) for stretch in row]
+    first = np.cumsum([0, *counts[:-1]])
+    corners = np.concatenate([k + stretch.corners for k, stretch in zip(first, row, strict=True)])
+    breaks = np.concatenate([k + stretch.breaks for k, stretch in zip(first, row, strict=True)])
+    points = np.concatenate([stretch.points for stretch in row])
+    straight = np.concatenate([stretch.straight for stretch in row])
+    curve = Curve(points, closed=True, corners=breaks, straight=straight)
+    loop = Loop(curve, tuple(corners.tolist()), ("half",))
+    ends = np.isin(corners, [first, first + counts - 1])
+    if (loop.corner_angles[ends] < _SHARPEST).any():
+        raise BlockingError("a mirror through a sharp corner")
+    left = [mirror.ahead_and_left(loop.curve.points[0])[1] > 0.0 for loop in domain.loops]
+    holes = tuple(k for k in np.flatnonzero(left).tolist() if mirror.loops[k] != k)
+    return Half(domain, mirror, Domain((loop, *(domain.loops[k] for k in holes)), domain.name), row, holes)
+
+
+def _stretch(loop: Loop, number: int, mirror: Mirror) -> _Stretch:
+    """Return the half of a loop across the mirror that lies to its left."""
+    half, near = 0.5 * loop.length, _NEAR * loop.length
+    begin = 0.5 * mirror.sums[number]
+    if mirror.ahead_and_left(loop.at(begin + 0.5 * half))[1] < 0.0:
+        begin += half
+    knots = np.append(loop.curve.knots, loop.length)
+    along, corners, breaks = (
+        np.concatenate([[0.0], inner[(inner > near) & (inner < half - near)], [half]])
+        for inner in (
+            distinct(np.mod(arcs - begin, loop.length))
+            for arcs in (
+                np.append(knots, 0.5 * (knots[1:] + knots[:-1])),
+                loop.corner_arcs,
+                loop.curve.corners,
+            )
+        )
+    )
+    straight = np.zeros(len(knots) - 1, dtype=bool) if loop.curve.straight is None else loop.curve.straight
+    middles = np.mod(begin + 0.5 * (along[1:] + along[:-1]), loop.length)
+    straight = straight[np.searchsorted(knots, middles, side="right") - 1]
+    points = loop.at(begin + along)
+    points[[0, -1]] = 0.5 * (points[[0, -1]] + mirror.images(points[[0, -1]]))
+    corners, breaks = (np.searchsorted(along, arcs - near) for arcs in (corners, breaks))
+    return _Stretch(number, begin + along, points, corners, breaks, np.append(straight, True))
+
+
+def both_halves(mesh: QuadMesh, half: Half) -> QuadMesh:
+    """Return the mesh of the whole domain, made of that of its left half and the mirror image."""
+    whole, mirror = half.whole, half.mirror
+    loop, arc, on_mirror = _places(mesh, half)
+    nodes = mesh.nodes.copy()
+    nodes[on_mirror] = 0.5 * (nodes[on_mirror] + mirror.images(nodes[on_mirror]))
+    added = np.flatnonzero(~on_mirror)
+    to = np.arange(len(nodes))
+    to[added] = len(nodes) + np.arange(len(added))
+    on = loop[added] >= 0
+    arc = np.append(arc, np.where(on, mirror.sums[loop[added]] - arc[added], 0.0))
+    loop = np.append(loop, np.where(on, mirror.loops[loop[added]], -1))
+    places = Places.inside(len(loop))
+    places.loop[:] = loop
+    points = np.concatenate([nodes, mirror.images(nodes[added])])
+    for number, each in enumerate(whole.loops):
+        walls = np.flatnonzero(loop == number)
+        arcs = np.mod(arc[walls], each.length)
+        for corner, cells in zip(each.corner_arcs, each.corner_cells, strict=True):
+            off = np.abs(np.mod(arcs - corner + 0.5 * each.length, each.length) - 0.5 * each.length)
+            at = off.argmin()
+            arcs[at], places.cells[walls[at]] = corner, cells
+        places.arc[walls], points[walls] = arcs, each.at(arcs)
+    quads = np.concatenate([mesh.quads, to[mesh.quads[:, ::-1]]])
+    odd = np.flatnonzero(on_mirror & (places.cells[: len(nodes)] % 2 == 1))
+    places.cells[odd] = np.bincount(quads.ravel(), minlength=len(loop))[odd]
+    return QuadMesh(whole, points, quads, places)
+
+
+def _places(mesh: QuadMesh, half: Half) -> tuple[Indices, Floats, NDArray[np.bool_]]:
+    """Return loop and arc length in the whole of the nodes of a half, and which lie on the mirror."""
+    old, outer = mesh.places, half.domain.loops[0]
+    loop, arc = np.full(len(old.loop), -1, dtype=np.intp), np.zeros(len(old.loop))
+    on_mirror, near, first = old.loop == 0, _NEAR * outer.length, 0
+    for stretch in half.stretches:
+        knots = outer.curve.knots[first : first + len(stretch.arcs)]
+        first += len(knots)
+        on = (old.loop == 0) & (old.arc >= knots[0] - near) & (old.arc <= knots[-1] + near)
+        loop[on], arc[on] = stretch.loop, np.interp(old.arc[on], knots, stretch.arcs)
+        on_mirror &= ~on | (old.arc <= knots[0] + near) | (old.arc >= knots[-1] - near)
+    for number, hole in enumerate(half.holes, start=1):
+        on = old.loop == number
+        loop[on], arc[on] = hole, old.arc[on]
+    return loop, arc, on_mirror

@@ -1,0 +1,146 @@
+"""The lines about which a domain is its own mirror image.
+
+A mirror turns the boundary round: it takes a loop to a loop, and the place at arc length s there to that at
+c - s, one constant c a loop. So where a place on a wall goes is known exactly, whatever the curve is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, along_and_across, norms
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.polygon.corners import Indices
+
+SAME = 1e-7
+"""Distance of a boundary from its mirror image, by the extent, up to which they are one: drawings that are
+meant to be symmetric are so to 1e-12, others not to 1e-4."""
+MOST = 64
+"""Directions looked at closely: a circle has as many as points, of which the first will do."""
+_STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of two places an interval
+
+
+@dataclass(frozen=True, eq=False)
+class Mirror:
+    """A line through `centre` (2,) along the unit vector `along` (2,), and what it does to loops.
+
+    The image of loop k is the loop `loops[k]`, and that of its arc length s is `sums[k]` - s there.
+    """
+
+    centre: Floats
+    along: Floats
+    loops: Indices
+    sums: Floats
+
+    def images(self, points: Floats) -> Floats:
+        """Return the mirror images of points (..., 2)."""
+        return _images(points, self.centre, self.along)
+
+    def ahead_and_left(self, points: Floats) -> tuple[Floats, Floats]:
+        """Return how far points (..., 2) are from the centre along the line, and to the left of it."""
+        return along_and_across(points - self.centre, self.along)
+
+
+@lru_cache(maxsize=64)
+def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
+    """Return two mirrors of a domain at right angles if there are such, else one, or none.
+
+    Those along x and y are taken before others.
+    """
+    middles, centre = _centroids(domain)
+    for along in _directions(domain, middles, centre):
+        across = np.array([-along[1], along[0]])
+        both = (mirror_about(domain, centre, along), mirror_about(domain, centre, across))
+        if any(both):
+            return tuple(mirror for mirror in both if mirror)
+    return ()
+
+
+def mirror_about(domain: Domain, centre: Floats, along: Floats) -> Mirror | None:
+    """Return the mirror about a line if the domain is symmetric to `SAME` of its extent, else None."""
+    middles, _ = _centroids(domain)
+    apart = norms(_images(middles, centre, along)[:, None] - middles)
+    apart[0, 1:] = apart[1:, 0] = np.inf  # the outer loop is its own image
+    loops, near = apart.argmin(axis=1), SAME * domain.extent
+    sums = []
+    for loop, number in zip(domain.loops, loops.tolist(), strict=True):
+        total = _sum_of_arcs(loop, domain.loops[number], centre, along, near)
+        if total is None:
+            return None
+        sums.append(total)
+    return Mirror(centre, along, loops, np.array(sums))
+
+
+def _images(points: Floats, centre: Floats, along: Floats) -> Floats:
+    ahead, left = along_and_across(points - centre, along)
+    image = np.stack([ahead * along[0] + left * along[1], ahead * along[1] - left * along[0]], axis=-1)
+    return np.asarray(centre + image)
+
+
+def _centroids(domain: Domain) -> tuple[Floats, Floats]:
+    """Return the centroids of the areas inside each loop (loops, 2), and of the domain (2,)."""
+    start, moments = domain.loops[0].curve.points[0], []
+    for loop in domain.loops:
+        here = loop.curve.points - start
+        there = np.roll(here, -1, axis=0)
+        cross = here[:, 0] * there[:, 1] - there[:, 0] * here[:, 1]
+        moments.append([cross.sum() / 2.0, *((here + there) * cross[:, None]).sum(axis=0) / 6.0])
+    area, first = np.array(moments)[:, :1], np.array(moments)[:, 1:]
+    return start + first / area, start + first.sum(axis=0) / area.sum()
+
+
+def _directions(domain: Domain, middles: Floats, centre: Floats) -> list[Floats]:
+    """Return the directions that a mirror may have: that of x, or y, first.
+
+    It takes the first corner of the outer loop, or its first point if there are no corners, to one as far
+    from the centroid, and the centroids of holes to each other.
+    """
+    outer, near = domain.loops[0], SAME * domain.extent
+    arms = outer.curve.points[list(outer.corners) or slice(None)] - centre
+    arms = arms[np.abs(norms(arms) - norms(arms[0])) <= near]
+    sums, steps = arms[0] + arms, arms[0] - arms
+    quarter = np.stack([-steps[:, 1], steps[:, 0]], axis=1)
+    ways = np.where((norms(sums) > norms(steps))[:, None], sums, quarter)
+    ways /= norms(ways)[:, None]
+    fits = [
+        way for way in ways
+        if (norms(_images(middles, centre, way)[:, None] - middles).min(axis=1) <= near).all()
+    ]  # fmt: skip
+    return [np.array([1.0, 0.0]), *fits[:MOST]]
+
+
+def _sum_of_arcs(loop: Loop, other: Loop, centre: Floats, along: Floats, near: float) -> float | None:
+    """Return c where the image of arc length s of a loop is c - s on the other one; None where it is not."""
+    if abs(loop.length - other.length) > near or len(loop.corners) != len(other.corners):
+        return None
+    begin = loop.corner_arcs[0] if loop.corners else 0.0
+    total = begin + _nearest(other, _images(loop.at(np.array([begin])), centre, along)[0])
+    for one, two in ((loop, other), (other, loop)):
+        arcs = _samples(one)
+        if norms(_images(one.at(arcs), centre, along) - two.at(total - arcs)).max() > near:
+            return None
+    for arc, cells in zip(loop.corner_arcs, loop.corner_cells, strict=True):
+        off = total - arc - other.corner_arcs
+        off = np.abs(off - other.length * np.round(off / other.length))
+        if off.min() > near or other.corner_cells[off.argmin()] != cells:
+            return None
+    return float(np.mod(total, other.length))
+
+
+def _samples(loop: Loop) -> Floats:
+    """Return the arc lengths of the points of a loop, and of the middles between."""
+    knots = np.append(loop.curve.knots, loop.length)
+    return np.concatenate([knots[:-1], 0.5 * (knots[1:] + knots[:-1])])
+
+
+def _nearest(loop: Loop, point: Floats) -> float:
+    """Return the arc length of the place of a loop that is nearest to a point (2,) on it."""
+    arcs = _samples(loop)
+    arc = arcs[norms(loop.at(arcs) - point).argmin()][None]
+    for _ in range(_STEPS):
+        arc = arc + ((point - loop.at(arc)) * loop.tangent(arc)).sum(axis=1)
+    return float(arc[0])

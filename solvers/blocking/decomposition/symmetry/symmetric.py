@@ -1,0 +1,131 @@
+"""Symmetric blocks of symmetric domains, where they are about as good as those that were found.
+
+Three ways: nodes at the means of themselves and their images, where the quads are symmetric; where only the
+blocks are, the same with equal counts of cells; and the blocks of a half, or of a quarter, and their images.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from meshonet.geometry.arrays import distinct
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.ties import less
+from meshonet.kernels._native import joined_classes
+from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseComplex, base_complex
+from meshonet.solvers.blocking.decomposition.collapse.contract import is_conforming
+from meshonet.solvers.blocking.decomposition.errors import BlockingError
+from meshonet.solvers.blocking.decomposition.quads.padding import Span, wrong_count
+from meshonet.solvers.blocking.decomposition.symmetry.halves import both_halves, left_half, spans_between
+from meshonet.solvers.blocking.decomposition.symmetry.images import Images, images_of, made_symmetric
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirror_about, mirrors_of
+from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.blocking.sizes.refine import refine
+from meshonet.solvers.energy.quad_problem import smallest_jacobian
+
+WORTH = 1.0
+"""What symmetry may cost, in degrees of mean deviation: blocks stay as found where it costs more."""
+EVEN = 4
+"""Cells along the sides of all blocks when their images are looked for."""
+FindPart = Callable[[Domain, int, Sequence[Span]], QuadMesh]
+"""From a part of a domain, which part it is (2 for a half), and stretches for rows of quads to its mesh."""
+Optimised = Callable[[QuadMesh], QuadMesh]
+
+
+def symmetric_blocks(
+    blocks: BaseComplex, find: FindPart, optimised: Optimised, score: Callable[[BaseComplex], float]
+) -> BaseComplex:
+    """Return symmetric blocks of the domain of some blocks; these where there are none about as good.
+
+    With two mirrors at right angles they are symmetric to both if that can be, else to the first that can be.
+    Those of a part have to be better, and no more, than the blocks as found if these are symmetric already.
+    """
+    mesh, mirrors = blocks.mesh, mirrors_of(blocks.mesh.domain)
+    irregular = wrong_count(mesh).any() or (mesh.irregular & ~mesh.wall_nodes).any()
+    for group in [mirrors, mirrors[:1], mirrors[1:]][: (0, 1, 3)[len(mirrors)]]:
+        ways: list[Callable[[], QuadMesh]]
+        ways = [lambda: mesh, partial(_of_part, mesh.domain, group, find), partial(_recounted, blocks, group)]
+        best, least = None, score(blocks) + WORTH
+        for number, way in enumerate(ways):
+            if best is not None and (number == 2 or not irregular):
+                break
+            trial = _trial(way, group, optimised)
+            fewer = trial is not None and (best is None or len(trial.blocks) <= len(best.blocks))
+            if trial is not None and fewer and less(score(trial), least):
+                best, least = trial, score(trial)
+        if best is not None:
+            return best
+    return blocks
+
+
+def _trial(
+    way: Callable[[], QuadMesh], mirrors: Sequence[Mirror], optimised: Optimised
+) -> BaseComplex | None:
+    """Return the blocks of a mesh, optimised with its nodes symmetric; None where that cannot be."""
+    try:
+        mesh, images = _symmetric(optimised(_symmetric(way(), mirrors)[0]), mirrors)
+        if not is_conforming(mesh) or smallest_jacobian(mesh.nodes, mesh.quads) <= 0.0:
+            return None
+        return _cut_on_mirrors(base_complex(mesh), images)
+    except (SolverError, InputError):
+        return None
+
+
+def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Images]:
+    """Return the mesh with its nodes symmetric, and their images; raises BlockingError: its quads are not."""
+    images = images_of(mesh, mirrors)
+    if len(images) < len(mirrors):
+        raise BlockingError("quads that are not symmetric")
+    return made_symmetric(mesh, images), images
+
+
+def _cut_on_mirrors(blocks: BaseComplex, images: Images) -> BaseComplex:
+    """Return the blocks cut along mirrors that go through corners of the domain where two cells meet.
+
+    One cuts a ring too, which is cut open anywhere. So images of sides of blocks are sides of blocks. Raises
+    BlockingError: it has no line on a mirror.
+    """
+    mesh = blocks.mesh
+    ring = any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
+    lines = np.zeros(len(mesh.edges), dtype=bool)
+    for _, to in images:
+        own = to == np.arange(len(to))
+        line = own[mesh.edges].all(axis=1)
+        label, count = joined_classes(np.ascontiguousarray(mesh.edges[line]), len(to))
+        cut = np.zeros(count, dtype=bool)
+        cut[label[own & (mesh.places.cells == 2)]] = True
+        if ring and not lines.any() and line.any():
+            cut[label[mesh.edges[line][0, 0]]] = True
+        lines |= line & cut[label[mesh.edges[:, 0]]]
+    if ring and not lines.any():
+        raise BlockingError("a ring without a line on a mirror")
+    return base_complex(mesh, lines) if lines.any() else blocks
+
+
+def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror]) -> QuadMesh:
+    """Return the mesh of the same blocks with counts of cells that images have in common."""
+    chords = Chords.of(blocks.layout)
+    even = refine(blocks.layout, np.full(chords.count, max(EVEN, int(chords.least.max()))), chords)
+    chords = Chords.of(replace(even, mesh=_symmetric(even.mesh, mirrors)[0]))
+    return refine(chords.layout, chords.counts_for_cells(len(blocks.mesh.quads)), chords).mesh
+
+
+def _of_part(domain: Domain, mirrors: Sequence[Mirror], find: FindPart) -> QuadMesh:
+    """Return the mesh of a half and its image, or of a quarter and its images."""
+    part, halves = domain, []
+    for each in mirrors:
+        mirror = mirror_about(part, each.centre, each.along)
+        if mirror is None:
+            raise BlockingError("a half that is not symmetric")
+        halves.append(left_half(part, mirror))
+        part = halves[-1].domain
+    mesh = find(part, 2 * len(halves), spans_between(part.loops[0]))
+    for half in reversed(halves):
+        mesh = both_halves(mesh, half)
+    return mesh

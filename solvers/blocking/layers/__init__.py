@@ -1,0 +1,1 @@
+"""Layers of cells at walls, and blocks around them."""

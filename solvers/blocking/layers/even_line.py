@@ -1,0 +1,189 @@
+"""Nodes moved along a curve so that neighbouring steps differ by at most a ratio, in several measures.
+
+A measure rises along the curve: its arc length, that of a wall beneath it. With the places t of the nodes
+and ρ the logarithms of the ratios of neighbouring steps of each measure::
+
+    E = the term of `growth_limit` in ρ + σ Σ (t - t0)² / s²
+
+t0 are the places at first, s the steps there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import log
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
+from meshonet.solvers.least_squares import NormalEquations
+
+MOVE = 1e-2
+"""σ."""
+MARGIN = 0.006
+"""How far below the limit, in logarithms, ratios are to come."""
+STEPS = 24
+MOST, RELAXED, TRIES = 6.0, 1.5, 6
+"""Steps by which places may move, and by what limits that take more are multiplied, so often."""
+
+FINER = 8
+"""Parts of a column in which measures are told apart."""
+SLACK = np.array([2.0, 1.0, 0.9])
+"""Logarithms of ratios along fronts, at walls, and in the level next to these, by that of the limit."""
+
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Measures:
+    """What steps along a curve are to be even in.
+
+    Parameters
+    ----------
+    arcs : (m,) places along the curve, ascending.
+    values : (k, m) measures there, each rising; between these places they are linear.
+    slack : (k,) what the limit, a logarithm, is multiplied by for each.
+    """
+
+    arcs: Floats
+    values: Floats
+    slack: Floats | float = 1.0
+
+    def at(self, places: Floats, closed: bool) -> tuple[Floats, Floats]:
+        """Return the measures (k, n) at `places` (n,), which may go round closed curves, and their slopes."""
+        turns = np.zeros(len(places))
+        if closed:
+            turns, places = np.divmod(places, self.arcs[-1])
+        k = np.clip(np.searchsorted(self.arcs, places, side="right") - 1, 0, len(self.arcs) - 2)
+        slope = (self.values[:, k + 1] - self.values[:, k]) / (self.arcs[k + 1] - self.arcs[k])
+        return self.values[:, k] + slope * (places - self.arcs[k]) + turns * self.whole, slope
+
+    @property
+    def whole(self) -> Floats:
+        """(k, 1) by how much they rise in all."""
+        return self.values[:, -1:] - self.values[:, :1]
+
+
+def evened_places(places: Floats, fixed: Bools, measures: Measures, limit: float, closed: bool) -> Floats:
+    """Return places (n,) near ascending ones of which neighbouring steps differ by a limited ratio.
+
+    Those that are `fixed` (n,) stay. `limit` is the logarithm of the ratio; where it cannot be kept it is
+    exceeded by as little as may be. Of a closed curve, that of `measures`, the last step leads to the first
+    place.
+    """
+    line = _Line.of(places, fixed, measures, closed)
+    new = places
+    for _ in range(TRIES):
+        if fixed.all() or not line.exceeded(places, limit):
+            return places
+        new = line.evened(places, limit)
+        if (np.abs(new - places)[line.free] ** 2 * line.stiffness).max() < MOVE * MOST**2:
+            break
+        limit *= RELAXED
+    return new
+
+
+def evened_steps(steps: Floats, limit: float) -> Floats:
+    """Return steps (n,) around a closed curve, with the same sum, that differ by a limited ratio."""
+    places = np.concatenate([[0.0], np.cumsum(steps)])
+    ends = places[[0, -1]]
+    fixed = np.arange(len(steps)) == 0
+    places[:-1] = evened_places(places[:-1], fixed, Measures(ends, ends[None]), limit, closed=True)
+    return np.diff(places)
+
+
+@dataclass(frozen=True, eq=False)
+class _Line:
+    measures: Measures
+    closed: bool
+    free: Indices
+    """(f,) numbers of the places that move."""
+    triples: Indices
+    """(r, 3) numbers of places, of the two steps of each ratio."""
+    stiffness: Floats
+    """(f,) σ / s²."""
+
+    @classmethod
+    def of(cls, places: Floats, fixed: Bools, measures: Measures, closed: bool) -> _Line:
+        n = len(places)
+        first = np.arange(n if closed else n - 2)
+        triples = (first[:, None] + np.arange(3)) % n
+        free = np.flatnonzero(~fixed)
+        around = np.concatenate([[places[-1] - measures.arcs[-1]], places, [places[0] + measures.arcs[-1]]])
+        if not closed:
+            around[[0, -1]] = 2.0 * places[0] - places[1], 2.0 * places[-1] - places[-2]
+        step = np.diff(around)
+        return cls(measures, closed, free, triples, (MOVE / (step[1:] * step[:-1]))[free])
+
+    @cached_property
+    def equations(self) -> NormalEquations:
+        """Those of the places that move; most lines are even, and need none."""
+        unknown = np.full(self.triples.max() + 1, -1, dtype=np.intp)
+        unknown[self.free] = np.arange(len(self.free))
+        return NormalEquations(len(self.free), [unknown[self.triples]] * len(self.measures.values))
+
+    def _steps(self, places: Floats) -> tuple[Floats, Floats]:
+        """Return the steps (k, r + 1 or n) of each measure, and the derivatives (k, n) of the measures."""
+        value, slope = self.measures.at(places, self.closed)
+        if self.closed:
+            value = np.concatenate([value, value[:, :1] + self.measures.whole], axis=1)
+        return np.diff(value, axis=1), slope
+
+    def growth(self, places: Floats) -> Floats:
+        """Return the logarithms (k, r) of the ratios of neighbouring steps."""
+        steps = self._steps(places)[0]
+        logs = log(steps)
+        return np.diff(logs, axis=1, append=logs[:, :1]) if self.closed else np.diff(logs, axis=1)
+
+    def _limits(self, limit: float) -> Floats:
+        """Return the limits (k,) of the measures."""
+        return np.broadcast_to(limit * np.asarray(self.measures.slack), (len(self.measures.values),))
+
+    def exceeded(self, places: Floats, limit: float) -> bool:
+        """Return whether a ratio exceeds the limit of its measure."""
+        return bool((np.abs(self.growth(places)) > self._limits(limit)[:, None]).any())
+
+    def evened(self, places: Floats, limit: float) -> Floats:
+        """Return the places after some steps of Gauss-Newton."""
+        places, start, weight = places.copy(), places[self.free], EXCESS
+        limits = self._limits(limit)
+        terms = [
+            GrowthLimit.at(each, most - MARGIN)
+            for each, most in zip(self.growth(places), limits, strict=True)
+        ]
+
+        def values(at: Floats) -> Floats:
+            moved = places.copy()
+            moved[self.free] = at
+            if self._steps(moved)[0].min() <= 0.0:
+                return np.array([np.inf])
+            value = sum(
+                term.values(each, weight).sum() for term, each in zip(terms, self.growth(moved), strict=True)
+            )
+            return np.array([value + (self.stiffness * (at - start) ** 2).sum()])
+
+        part = np.zeros(len(self.free), dtype=np.intp)
+        for _ in range(STEPS):
+            weight = min(weight * RISE, MOST_WEIGHT)
+            steps, slope = self._steps(places)
+            residuals = [
+                term.residuals(growth, self._derivatives(each, rise), weight)
+                for term, growth, each, rise in zip(terms, self.growth(places), steps, slope, strict=True)
+            ]
+            pull = self.stiffness * (places[self.free] - start)
+            step = self.equations.step(residuals, self.stiffness, pull)
+            places[self.free] += damped(values, places[self.free], step, part)
+            if not self.exceeded(places, limit):
+                break
+        return places
+
+    def _derivatives(self, steps: Floats, slope: Floats) -> Floats:
+        """Return those (r, 3) of the logarithms of ratios by the places, of one measure."""
+        first, middle, last = self.triples.T
+        before, after = steps[first], steps[middle]
+        rise = slope[middle]
+        return np.stack([slope[first] / before, -rise / before - rise / after, slope[last] / after], axis=1)

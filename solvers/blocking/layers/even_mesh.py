@@ -1,0 +1,264 @@
+"""Nodes of a mesh moved so that neighbouring edges along its lines differ by at most a given ratio.
+
+With the logarithms ρ of the ratios of consecutive edges, the angles θ of corners of cells, and the nodes z::
+
+    E = the term of `growth_limit` in ρ + ν Σ (θ - θ0)² + σ Σ |z - z0|² / h²
+
+θ0, z0 are those at first, angles cut to between 60 and 120 degrees, and h is the shortest edge at a node.
+ρ and θ are parts of logarithms of edges as complex numbers: of the quotient of two that follow each other,
+and of two that leave a corner. So cells a thousand times as long as high are no harder than squares, and each
+step of Gauss-Newton solves one sparse system. Only nodes near ratios that exceed the limit move.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.elementary import angle, arctan2, log, modulus, times
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import line_neighbours
+from meshonet.solvers.blocking.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
+from meshonet.solvers.blocking.sizes.on_loops import on_loops
+from meshonet.solvers.least_squares import NormalEquations, Residuals
+
+ANGLE, MOVE = 2.0, 1e-3
+"""ν, σ."""
+MARGIN = 0.03
+"""How far below the limit, in logarithms, ratios are to come."""
+AROUND, REACH = 5, 1.0
+"""Cells around ratios that exceed the limit in which nodes move, and more for each cell of excess."""
+ROUNDS, STEPS = 8, 3
+"""How often it is looked which nodes move, and the steps for each such set."""
+RAIL = 1e9
+"""What holds nodes that slide on their tangent, by σ."""
+WORTH, FEW = 0.7, 5e-4
+"""Part of what exceeds the limit that a round may leave for another one, and share of ratios that are few."""
+_ANGLES = np.radians(60.0), np.radians(120.0)
+
+Bools = NDArray[np.bool_]
+
+
+def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:
+    """Return the mesh with nodes, but for `held` (n,) ones, moved where edges along lines grow too fast.
+
+    Nodes on loops that are not held slide along them, all but corners and those with a partner.
+    `limit` is the logarithm of the ratio that neighbouring edges may have. Where that cannot be reached they
+    differ by as little more as cells of good angles allow.
+    """
+    lines = consecutive_edges(mesh)
+    sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0) & (mesh.places.partner < 0)
+    fixed = held | (mesh.wall_nodes & ~sliding)
+    weight, before = EXCESS, np.inf
+    for _ in range(ROUNDS):
+        z = mesh.nodes[:, 0] + 1j * mesh.nodes[:, 1]
+        growth = growth_along(z, lines)
+        free = _near(mesh, lines, growth, limit) & ~fixed
+        excess = np.maximum(np.abs(growth) - limit, 0.0).sum()
+        many = np.count_nonzero(np.abs(growth) > limit) > FEW * len(lines)
+        if not free.any() or (many and excess > WORTH * before):
+            break
+        before = excess
+        z, weight = _Patch.of(mesh, lines, z, free, _tangents(mesh, sliding & free), limit).evened(z, weight)
+        mesh = on_loops(mesh.with_nodes(np.stack([z.real, z.imag], axis=1)), sliding & free)
+    return mesh
+
+
+def _tangents(mesh: QuadMesh, sliding: Bools) -> Complexes:
+    """Return the directions (n,) of the loops at the nodes that slide, 0 at others."""
+    tangents = np.zeros(len(mesh.nodes), dtype=np.complex128)
+    for number, loop in enumerate(mesh.domain.loops):
+        on = np.flatnonzero(sliding & (mesh.places.loop == number))
+        x, y = loop.tangent(mesh.places.arc[on]).T
+        tangents[on] = x + 1j * y
+    return tangents
+
+
+def consecutive_edges(mesh: QuadMesh) -> Indices:
+    """Return the nodes (k, 3) of all pairs of edges that follow each other along grid lines."""
+    edges = np.arange(len(mesh.edges))
+    beside, _ = line_neighbours(
+        np.ascontiguousarray(mesh.quads), mesh.edge_of, np.arange(len(mesh.nodes)), edges
+    )
+    first, second = np.repeat(edges, beside.shape[1]), beside.ravel()
+    one, other = mesh.edges[first[first < second]], mesh.edges[second[first < second]]
+    parts = []
+    for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        meet = one[:, i] == other[:, j]
+        parts.append(np.stack([one[meet, 1 - i], one[meet, i], other[meet, 1 - j]], axis=1))
+    return np.concatenate([*parts, _around_irregular(mesh)])
+
+
+def _around_irregular(mesh: QuadMesh) -> Indices:
+    """Return the nodes (k, 3) of edges at irregular vertices inside that have one edge between them.
+
+    Cells on both sides of a block's side that ends there are as large, then, as at its other nodes.
+    """
+    parts = [np.empty((0, 3), dtype=np.intp)]
+    for vertex in np.flatnonzero(mesh.irregular & ~mesh.wall_nodes).tolist():
+        ends = mesh.edges[(mesh.edges == vertex).any(axis=1)]
+        ends = ends.sum(axis=1) - vertex
+        away = mesh.nodes[ends] - mesh.nodes[vertex]
+        ends = ends[np.argsort(arctan2(away[:, 1], away[:, 0]), kind="stable")]
+        parts.append(np.stack([ends, np.full(len(ends), vertex), np.roll(ends, -2)], axis=1))
+    return np.concatenate(parts)
+
+
+def growth_along(z: Complexes, lines: Indices) -> Floats:
+    """Return the logarithms (k,) of the ratios of the edges between the nodes of `lines` (k, 3)."""
+    before, after = z[lines[:, 1]] - z[lines[:, 0]], z[lines[:, 2]] - z[lines[:, 1]]
+    return np.asarray(log(modulus(after) / modulus(before)))
+
+
+def _near(mesh: QuadMesh, lines: Indices, growth: Floats, limit: float) -> Bools:
+    """Return which nodes (n,) are near the middle ones of `lines` (k, 3) whose growth (k,) exceeds the limit.
+
+    That is within `AROUND` cells, and `REACH` more for each cell that it takes to grow so much.
+    """
+    uneven = np.abs(growth) > limit
+    near = np.zeros(len(mesh.nodes), dtype=bool)
+    reach = AROUND + np.floor(REACH * (np.abs(growth[uneven]) / limit - 1.0)).astype(np.intp)
+    middle = lines[uneven, 1]
+    for cells in range(int(reach.max(initial=0)), 0, -1):
+        near[middle[reach >= cells]] = True
+        near[mesh.quads[near[mesh.quads].any(axis=1)]] = True
+    return near
+
+
+@dataclass(frozen=True, eq=False)
+class _Patch:
+    """The nodes that move, and the terms of E that change with them."""
+
+    nodes: Indices
+    """(m,) those that move."""
+    lines: Indices
+    """(k, 3) nodes of edges that follow each other."""
+    corners: Indices
+    """(c, 3) corners of cells, the nodes after and before them."""
+    growth: GrowthLimit
+    angles: Floats
+    """(c,) θ0."""
+    start: Complexes
+    """(m,) z0."""
+    stiffness: Floats
+    """(m,) σ / h²."""
+    axes: Complexes
+    """(n,) direction of the first of the two unknowns of each node: the tangent where it slides."""
+    across: Floats
+    """(m,) what the stiffness of the second is multiplied by: those that slide stay on the tangent."""
+    equations: NormalEquations
+    part: Indices
+    """(n,) number of the part of the patch that a node is in, -1 for none; parts do not change each other."""
+
+    @classmethod
+    def of(
+        cls, mesh: QuadMesh, lines: Indices, z: Complexes, free: Bools, tangents: Complexes, limit: float
+    ) -> _Patch:
+        nodes = np.flatnonzero(free)
+        lines = lines[free[lines].any(axis=1)]
+        quads = mesh.quads[free[mesh.quads].any(axis=1)]
+        corners = np.concatenate(
+            [np.stack([quads[:, k], quads[:, (k + 1) % 4], quads[:, k - 1]], axis=1) for k in range(4)]
+        )
+        corners = corners[free[corners].any(axis=1)]
+        shortest = np.full(len(z), np.inf)
+        length = modulus(z[mesh.edges[:, 1]] - z[mesh.edges[:, 0]])
+        for end in mesh.edges.T:
+            np.minimum.at(shortest, end, length)
+        unknown = np.full((len(z), 2), -1, dtype=np.intp)
+        unknown[nodes] = np.arange(2 * len(nodes)).reshape(-1, 2)
+        kinds = [unknown[of].reshape(len(of), 6) for of in (lines, corners)]
+        return cls(
+            nodes, lines, corners,
+            GrowthLimit.at(growth_along(z, lines), limit - MARGIN),
+            np.clip(_angles(z, corners), *_ANGLES),
+            z[nodes], MOVE / shortest[nodes] ** 2,
+            np.where(tangents == 0, 1.0, tangents), np.where(tangents[nodes] == 0, 1.0, RAIL),
+            NormalEquations(2 * len(nodes), kinds), _parts(free, (lines, quads)),
+        )  # fmt: skip
+
+    def evened(self, z: Complexes, weight: float) -> tuple[Complexes, float]:
+        """Return the nodes after some steps, and the last weight of what exceeds the limit."""
+        z, part = z.copy(), self.part[self.nodes]
+        for _ in range(STEPS):
+            weight = min(weight * RISE, MOST_WEIGHT)
+            z[self.nodes] += damped(
+                partial(self._values, z, weight), z[self.nodes], self._step(z, weight), part
+            )
+            if (np.abs(growth_along(z, self.lines)) <= self.growth.limit + MARGIN).all():
+                break
+        return z, weight
+
+    def _values(self, z: Complexes, weight: float, at: Complexes) -> Floats:
+        """Return E of each part (p,) with the nodes that move at `at` (m,); infinite where folded."""
+        z = z.copy()
+        z[self.nodes] = at
+        angles = _angles(z, self.corners)
+        turned = np.where(angles > 0.0, ANGLE * (angles - self.angles) ** 2, np.inf)
+        grown = self.growth.values(growth_along(z, self.lines), weight)
+        moved = self.stiffness * modulus(at - self.start) ** 2
+        count = int(self.part.max()) + 1
+        value = np.bincount(self.part[self.nodes], moved, count)
+        value += np.bincount(self.part[self.lines].max(axis=1), grown, count)
+        value += np.bincount(self.part[self.corners].max(axis=1), turned, count)
+        return np.asarray(value, dtype=np.float64)
+
+    def _step(self, z: Complexes, weight: float) -> Complexes:
+        """Return by how much nodes (m,) move in a step of Gauss-Newton."""
+        before, after = (z[self.lines[:, k + 1]] - z[self.lines[:, k]] for k in (0, 1))
+        along, back = (z[self.corners[:, k]] - z[self.corners[:, 0]] for k in (1, 2))
+        by_line = np.stack([1.0 / before, -1.0 / before - 1.0 / after, 1.0 / after], axis=1)
+        by_corner = np.stack([1.0 / along - 1.0 / back, -1.0 / along, 1.0 / back], axis=1)
+        growth, turned = growth_along(z, self.lines), _angles(z, self.corners) - self.angles
+        axes = self.axes[self.nodes]
+        pull = times(np.conj(axes) * self.stiffness, (z[self.nodes] - self.start))
+        step = self.equations.step(
+            [
+                self.growth.residuals(growth, _by_coordinates(times(self.axes[self.lines], by_line)), weight),
+                Residuals(
+                    _by_coordinates(times(times(-1j, self.axes[self.corners]), by_corner)),
+                    np.full(len(turned), ANGLE),
+                    ANGLE * turned,
+                ),
+            ],
+            np.stack([self.stiffness, self.across * self.stiffness], axis=1).ravel(),
+            np.stack([pull.real, pull.imag], axis=1).ravel(),
+        )
+        return np.asarray(times(axes, (step[::2] + 1j * step[1::2])))
+
+
+def _angles(z: Complexes, corners: Indices) -> Floats:
+    """Return the angles (c,) of corners, negative where they are folded."""
+    corner = z[corners[:, 0]]
+    return angle((z[corners[:, 2]] - corner) / (z[corners[:, 1]] - corner))
+
+
+def _parts(free: Bools, groups: Sequence[Indices]) -> Indices:
+    """Return the number (n,) of the part that each free node is in, -1 for others.
+
+    Free nodes of a row of one of `groups` (k, m) are in the same part.
+    """
+    label = np.where(free, np.arange(len(free)), len(free))
+    while True:
+        before = label.copy()
+        for group in groups:
+            inside = free[group]
+            least = np.broadcast_to(label[group].min(axis=1)[:, None], group.shape)
+            np.minimum.at(label, group[inside], least[inside])
+        label[free] = label[label[free]]
+        if np.array_equal(label, before):
+            break
+    part = np.full(len(free), -1, dtype=np.intp)
+    part[free] = np.unique(label[free], return_inverse=True)[1]
+    return part
+
+
+def _by_coordinates(derivatives: Complexes) -> Floats:
+    """Return derivatives (k, 6) by both parts of moves of the real part of `derivatives` (k, 3) by these."""
+    return np.stack([derivatives.real, -derivatives.imag], axis=2).reshape(len(derivatives), 6)

@@ -1,0 +1,129 @@
+"""Layers in a ring: what their front asks of the cells beyond it, and the rows under the nodes of a front."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, running_sums
+from meshonet.geometry.elementary import exp, log
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.spacing.growth import cells_for_growth
+from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes, spaced
+from meshonet.solvers.blocking.layers.layer_law import layer_arcs
+from meshonet.solvers.blocking.layers.rings import Ring
+from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+
+JOIN = 1.1
+"""Ratio of the first cell outside a ring to the last one inside."""
+_WINDOW = 4  # columns to either side over which lengths along fronts are averaged
+
+
+@dataclass(frozen=True)
+class LayerSettings:
+    """Layers of cells at walls.
+
+    Parameters
+    ----------
+    first : height of the first cells, in the domain's unit.
+    growth : largest ratio of neighbouring cells, on average along a column.
+    constant : cells of that height.
+    multiple : the number of layers is a multiple of it, so that coarser grids are nested.
+    """
+
+    first: float
+    growth: float = 1.2
+    constant: int = 1
+    multiple: int = 1
+
+    def rows(self, thickness: float) -> int:
+        """Return how many layers fill a thickness."""
+        rest = max(thickness - (self.constant - 1) * self.first, self.first)
+        rows = self.constant - 1 + max(2, cells_for_growth(self.first, rest, self.growth))
+        return -(-rows // self.multiple) * self.multiple
+
+
+def ring_metric(ring: Ring, settings: LayerSettings) -> SizeMetric:
+    """Return the sizes that the front of a ring asks for: its columns and its last layer."""
+    points = ring.front.curve.points
+    step = np.roll(points, -1, axis=0) - points
+    length = np.hypot(*step.T)
+    along = _smooth(0.5 * (length + np.roll(length, 1)))
+    tangent = step + np.roll(step, 1, axis=0)
+    across = last_layers(ring.thickness, settings.rows(float(ring.thickness.max())), settings)
+    return SizeMetric(points, _normals(tangent), across, along, np.inf)
+
+
+def last_layers(thickness: Floats, rows: int, settings: LayerSettings) -> Floats:
+    """Return the heights (n,) that cells beyond so many layers, `thickness` (n,) in all, begin with."""
+    none = np.full_like(thickness, np.inf)
+    arcs = layer_arcs(thickness, settings.first, none, rows, settings.constant)
+    return np.asarray(JOIN * (arcs[:, -1] - arcs[:, -2]))
+
+
+def _normals(tangents: Floats) -> Floats:
+    """Return unit normals (n, 2) to the left of tangents (n, 2)."""
+    unit = tangents / np.hypot(*tangents.T)[:, None]
+    return np.stack([-unit[:, 1], unit[:, 0]], axis=1)
+
+
+def ring_rows(
+    mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats
+) -> Rows:
+    """Return the layers under the nodes of a front, `inner` (k,) the heights of the cells beyond it."""
+    order = loop_nodes(mesh, loop)
+    columns, starts = ring.columns(mesh.places.arc[order])
+    lines = layer_lines(columns, mesh.nodes[order], inner, rows, settings)
+    return Rows(loop, lines[:, ::-1], starts, True)
+
+
+def layer_lines(columns: Floats, ends: Floats, inner: Floats, rows: int, settings: LayerSettings) -> Floats:
+    """Return the nodes (k, rows + 1, 2) of layers along columns (k, m, 2), from the wall to `ends` (k, 2).
+
+    `inner` (k,) are the heights of the cells beyond.
+    """
+    columns = columns + arc_shares(columns)[..., None] * (ends - columns[:, -1])[:, None]
+
+    def law(length: Floats) -> Floats:
+        return layer_arcs(length, settings.first, inner / JOIN, rows, settings.constant, settings.growth)
+
+    lines = spaced(columns, law)
+    exact(lines, settings.first)
+    return lines
+
+
+def heights_inside(layout: Layout, loop: int) -> Floats:
+    """Return the lengths (k,) of the edges that leave the nodes of a loop for the inside, by arc length."""
+    mesh = layout.mesh
+    height = np.zeros(len(mesh.nodes))
+    for block in layout.blocks:
+        for side, next_row in (
+            (block[:, 0], block[:, 1]), (block[:, -1], block[:, -2]),
+            (block[0], block[1]), (block[-1], block[-2]),
+        ):  # fmt: skip
+            if (mesh.places.loop[side] == loop).all():
+                height[side] = np.maximum(
+                    height[side], np.hypot(*(mesh.nodes[next_row] - mesh.nodes[side]).T)
+                )
+    return height[loop_nodes(mesh, loop)]
+
+
+def _smooth(values: Floats, window: int = _WINDOW) -> Floats:
+    """Return the geometric running mean (n,) of values around a closed curve."""
+    around = np.arange(-window, len(values) + window) % len(values)
+    return exp(running_sums(log(values)[around], 2 * window + 1) / (2 * window + 1))
+
+
+def arc_shares(lines: Floats) -> Floats:
+    """Return how far (k, m) along their length the nodes of lines (k, m, 2) are, 0 to 1."""
+    length = np.hypot(*np.diff(lines, axis=1).transpose(2, 0, 1))
+    total = np.cumsum(length, axis=1)
+    return np.concatenate([np.zeros((len(lines), 1)), total / total[:, -1:]], axis=1)
+
+
+def exact(lines: Floats, first: float) -> None:
+    """Put the first node of each line (k, m, 2) exactly `first` from the wall, in place."""
+    step = lines[:, 1] - lines[:, 0]
+    lines[:, 1] = lines[:, 0] + step * (first / np.hypot(*step.T))[:, None]

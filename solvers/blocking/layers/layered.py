@@ -1,0 +1,190 @@
+"""Grids of blocks with layers at walls: rings around loops, rows of quads elsewhere, rows to a far field.
+
+::
+
+    walls --march--> rings
+    fronts, near field --decompose--> layout --rows of quads--> layout with layers
+                                                 |  counts, optimum, columns by the law
+    rings --columns at the nodes of the fronts---+--> whole
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats, middle
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.elementary import exp, log
+from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.decompose import Timings
+from meshonet.solvers.blocking.layers.attach import attach
+from meshonet.solvers.blocking.layers.even_loops import evened_loops
+from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
+from meshonet.solvers.blocking.layers.finished import finished
+from meshonet.solvers.blocking.layers.folds import smallest_corner, unfolded
+from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, heights_inside, ring_rows
+from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
+from meshonet.solvers.blocking.layers.placed_rows import held_nodes, layers_of, with_layers
+from meshonet.solvers.blocking.layers.sheet import has_sharp_edge, wake_of
+from meshonet.solvers.blocking.layers.stretches import Stretch
+from meshonet.solvers.blocking.layers.wall_layers import ROWS, Counts, WallLayers, wanted_counts
+from meshonet.solvers.blocking.layers.wall_rows import WallRows, with_wall_rows
+from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.blocking.sizes.even_metric import metric_places
+from meshonet.solvers.blocking.sizes.refine import multiplied, refine
+from meshonet.solvers.energy.quads import optimise
+
+ITERATIONS, STRIDING = 120, 60
+COUNTINGS = 3
+"""How often cells are counted, nodes optimised after each, before nodes on fronts are evened and held."""
+EVEN = math.log(1.24)
+"""Logarithm of the ratio by which neighbouring cells along fronts may differ."""
+LIMITS = 1.0, 2.0, 4.0
+"""Multiples of it that are tried in turn: nodes that move far along a front fold the cells beside it."""
+BASE_GROWTH = math.log(4.0)
+"""Logarithm of the ratio of neighbouring edges along a wall and its wake beyond which it gets a ring."""
+
+
+def layered(
+    domain: Domain, loops: Sequence[int], settings: LayerSettings, *, stretches: Sequence[Stretch] = (),
+    cells: int = 0, cell_size: float = 0.0, layout: Layout | None = None, timings: Timings | None = None,
+) -> Layout:  # fmt: skip
+    """Return a fine layout of about so many cells, with layers at loops of a domain and stretches of others.
+
+    Without `cells`, none away from walls is longer than `cell_size`. `layout` is to be taken instead of one
+    that is found: of a domain like it outside rings like these, or of the whole of it.
+    Raises InputError, BlockingError; NoValidGridError: cells stay folded.
+    """
+    timings = timings or Timings()
+    sheets = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))
+    while True:
+        with timings.stage("layers"):
+            rings = [k for k in loops if k not in sheets]
+            walls = WallLayers.of(domain, rings, settings, stretches, sheets)
+        coarse = layout and taken_outside(layout, walls.rest, walls.fronts)
+        coarse = coarse or found_outside(walls.rest, walls.fronts, timings)
+        free = tuple(k for k in sheets if walls.is_free(k, coarse.mesh, wake_of(coarse.mesh, k)))
+        if free == sheets:
+            coarse, rows = with_wall_rows(coarse, walls.stretches, sheets)
+            coarse, counts = _optimum(walls, rows, coarse, (cells, cell_size), None, timings)
+            for _ in range(1, COUNTINGS if rows.loops else COUNTINGS - 1):
+                coarse, counts = _optimum(walls, rows, coarse, (cells, cell_size), counts, timings)
+            wakes = rows.wakes(coarse)  # they have moved
+            free = tuple(
+                k for k in sheets
+                if walls.has_room(k, wakes[k], counts.scale) and rows.growth(coarse, k) < BASE_GROWTH
+            )  # fmt: skip
+        if free == sheets:
+            break
+        sheets = free
+    fine = _fine(walls, rows, coarse, counts, timings)
+    with timings.stage("layers"):
+        return _joined(walls, rows, fine)
+
+
+def _optimum(
+    walls: WallLayers, rows: WallRows, layout: Layout, size: tuple[int, float], before: Counts | None,
+    timings: Timings,
+) -> tuple[Layout, Counts]:  # fmt: skip
+    """Return the layout outside the rings with cells counted anew, optimised."""
+    chords = Chords.of(layout)
+    with timings.stage("refine"):
+        counts = wanted_counts(walls, rows, chords, *size, before)
+        places = metric_places(chords, counts.coarse, counts.metric)
+        for edge in np.flatnonzero(rows.of_chords(chords)[chords.chord] >= 0):
+            places[edge] = np.linspace(0.0, len(chords.edges[edge]) - 1.0, ROWS + 1)
+        coarse = refine(layout, counts.coarse, chords, places)
+    with timings.stage("optimum"):
+        if counts.stride > 1:
+            with suppress(NoValidGridError):  # so few cells may stay folded, and more not
+                coarse = _optimised(coarse, walls, rows, counts, STRIDING)
+            coarse = multiplied(coarse, counts.stride)
+        coarse = _optimised(coarse, walls, rows, counts, ITERATIONS)
+    settings, known = walls.settings, before.layers if before else (1.0,) * len(rows.loops)
+    layers = [
+        layers_of(coarse, rows, number, counts.times, settings)
+        / walls.sizes[loop].rows(counts.scale, settings)
+        for number, loop in enumerate(rows.loops)
+    ]
+    damped = tuple(math.sqrt(new * old) for new, old in zip(layers, known, strict=True))
+    return coarse, replace(counts, layers=damped)
+
+
+def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, timings: Timings) -> Layout:
+    """Return the fine layout outside the rings, its rows with all their layers."""
+    settings, times = walls.settings, counts.times
+    with timings.stage("optimum"):
+        on = np.isin(coarse.mesh.places.loop, list(walls.measures))
+        for limit in (EVEN * np.array(LIMITS)).tolist():
+            even = evened_loops(coarse, walls.measures, times * limit)
+            if smallest_corner(even.mesh) > 0.0:
+                coarse = _optimised(even, walls, rows, counts, ITERATIONS, on)
+                break
+        coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on, times * EVEN))
+    with timings.stage("refine"):
+        chords = Chords.of(coarse)
+        row, cells = rows.of_chords(chords), times * chords.counts
+        for number in range(len(rows.loops)):
+            cells[row == number] = layers_of(coarse, rows, number, times, settings)
+        fine = refine(coarse, cells, chords)
+        fine = unfolded(fine, np.isin(fine.mesh.places.loop, list(walls.measures)))
+        moved = evened_loops(fine, walls.measures, EVEN)
+        fine = moved if smallest_corner(moved.mesh) > 0.0 else fine
+        return with_layers(fine, rows, settings)
+
+
+def _optimised(
+    layout: Layout, walls: WallLayers, rows: WallRows, counts: Counts, iterations: int,
+    held: NDArray[np.bool_] | None = None,
+) -> Layout:  # fmt: skip
+    """Return a layout with its nodes optimised for some sizes; `held` (n,) stay."""
+    mesh = layout.mesh
+    targets = counts.metric.edges(mesh)
+    if rows.loops:
+        step = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
+        targets *= exp(middle(log(np.hypot(*step.T) / targets)))  # cells are larger than they will be
+        for number, loop in enumerate(rows.loops):
+            for table in rows.columns(layout, number):
+                thick = _thickness(walls, mesh, table[:, 0], loop, counts.scale)
+                edges = mesh.edges_between(table[:, :-1], table[:, 1:])
+                targets[edges] = (thick / (table.shape[1] - 1))[:, None]
+    optimum = optimise(mesh, iterations=iterations, targets=targets, aspects=mesh.aspects(targets), held=held)
+    if not optimum.valid:
+        raise NoValidGridError("cells outside the layers stay folded")
+    return replace(layout, mesh=optimum.mesh)
+
+
+def _thickness(walls: WallLayers, mesh: QuadMesh, base: Indices, loop: int, scale: float) -> Floats:
+    """Return how thick layers are to be over nodes (k,) of a wall, or of the wake behind it."""
+    sizes = walls.sizes[loop]
+    thick = sizes.thickness_at(mesh.places.arc[base], scale, walls.settings)
+    behind = mesh.places.loop[base] != loop
+    if behind.any():
+        edge = sizes.loop.at(sizes.loop.corner_arcs[:1])[0]
+        away = np.hypot(*(mesh.nodes[base[behind]] - edge).T)
+        thick[behind] = sizes.thickness_behind(away, scale, walls.settings)
+    return thick
+
+
+def _joined(walls: WallLayers, rows: WallRows, layout: Layout) -> Layout:
+    """Return the layout with the rings, and the rows to a distant outer loop, attached, its cells evened."""
+    settings, mesh = walls.settings, layout.mesh
+    attached = [
+        ring_rows(mesh, number, ring, walls.ring_rows(ring), settings, heights_inside(layout, number))
+        for number, ring in walls.rings.items()
+    ]
+    if walls.near is not None:
+        attached.append(walls.near.rows(mesh, heights_inside(layout, 0), multiple=settings.multiple))
+    whole = attach(layout, walls.domain, attached)
+    held = np.zeros(len(whole.mesh.nodes), dtype=bool)
+    held[: len(mesh.nodes)] = held_nodes(layout, rows, settings)
+    return finished(whole, settings, held)

@@ -1,0 +1,124 @@
+"""Levels of layers, marched from the columns of a wall as thick as is wanted at each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.grading import graded
+from meshonet.geometry.elementary import power, times
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
+from meshonet.kernels._native import hyperbolic_march
+from meshonet.solvers.hyperbolic.march import AREA_SMOOTHING
+from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
+
+GAP_PART = 0.38
+"""Part of the gap in front of a wall that layers may fill: those of two walls leave a fourth of it."""
+SLOPE = 0.25
+"""How fast the thickness of layers may change along the wall."""
+MARCH_GROWTH = 1.2
+"""Ratio of neighbouring levels of the march; the layers themselves are placed anew on its lines."""
+THINNER = 0.6
+"""What the thickness is multiplied by when the march has folded with every setting."""
+TRIES = 4
+FEWEST_CELLS = 4.0
+"""Thickness of layers in first cells, at the least."""
+
+Bools = NDArray[np.bool_]
+
+
+def marched(
+    start: Floats, thickness: Floats, first: float, attempts: Sequence[MarchSettings]
+) -> tuple[Floats | None, Bools]:
+    """Return levels (n, m, 2), and which columns of cells are folded, of the best of several marches.
+
+    They start at the columns `start` (n, 2) of a wall that closes, the domain to its left, with cells as high
+    as `first`, and reach `thickness` (n,). No levels where all marches overflow.
+    """
+    cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
+    ratios = np.array(
+        [growth_ratio(first, each, cells) if each > cells * first else 1.0 for each in thickness]
+    )
+    best, where = None, np.ones(len(start), dtype=bool)
+    for settings in attempts:
+        levels = _march(start, cells, first, ratios, settings)
+        if not np.isfinite(levels).all():
+            continue
+        folded = folded_columns(levels)
+        if best is None or folded.sum() < where.sum():
+            best, where = levels, folded
+        if not folded.any():
+            break
+    return best, where
+
+
+def fitted(
+    start: Floats, arcs: Floats, length: float, room: Floats, thickness: float, first: float,
+    attempts: Sequence[MarchSettings], *, place: Callable[[int], str],
+) -> Floats:  # fmt: skip
+    """Return levels (n, m, 2) as thick as `thickness`, where `room` (n,) allows it, that are not folded.
+
+    `arcs` (n,) are those of the columns on a wall that closes after `length`; `place` names that of a column.
+    Raises InputError: a gap that no layer fits in, or a wall that every march folds at.
+    """
+    check_room(room, first, place)
+    least = FEWEST_CELLS * first
+    thickness = max(thickness, least)  # of thick first cells
+    folded = np.zeros(len(start), dtype=bool)
+    for _ in range(TRIES):
+        wanted = graded(np.minimum(thickness, room), arcs, length, SLOPE)
+        if wanted.min() < 0.99 * least:
+            break
+        levels, folded = marched(start, wanted, first, attempts)
+        if levels is not None and not folded.any():
+            return levels
+        thickness *= THINNER
+    raise InputError(
+        "layers fold at the wall however thin", "smooth the wall there, or leave its layers out",
+        place=place(int(np.argmax(folded))),
+    )  # fmt: skip
+
+
+def check_room(room: Floats, first: float, place: Callable[[int], str]) -> None:
+    """Raise InputError where `room` (n,) is too little for layers that start with `first`.
+
+    `room` is `GAP_PART` of the gaps in front of the wall; `place` names that of the number k.
+    """
+    k = int(np.argmin(room))
+    if room[k] < FEWEST_CELLS * first:
+        raise InputError(
+            f"a gap of {room[k] / GAP_PART:.3g} leaves no room for layers of {first:.3g}",
+            "use thinner first cells, or none there",
+            place=place(k),
+        )
+
+
+def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: MarchSettings) -> Floats:
+    """Return levels (n, cells + 1, 2) whose steps grow by `ratios` (n,)."""
+    levels = np.empty((2, cells + 1, len(start)))
+    levels[:, 0] = start.T
+    most = float(ratios.max())
+    knobs = (
+        settings.dissipation, settings.even, settings.tolerated, settings.bend, 1.0 + settings.theta,
+        AREA_SMOOTHING, settings.sweeps, round(RISING * cells),
+    )  # fmt: skip
+    steps = np.asarray(first * power(most, np.arange(cells)), dtype=np.float64)
+    hyperbolic_march(levels[0], levels[1], steps, *knobs, ends=None, ratios=ratios / most)
+    return np.ascontiguousarray(levels.transpose(2, 1, 0))
+
+
+def folded_columns(levels: Floats) -> Bools:
+    """Return which columns of cells (n,) of levels (n, m, 2) around a wall have one with a folded corner."""
+    z = levels[..., 0] + 1j * levels[..., 1]
+    z = np.concatenate([z, z[:1]])
+    along, across = np.diff(z, axis=0), np.diff(z, axis=1)
+    least = [
+        times(np.conj(edge), side).imag.min(axis=1)
+        for edge in (along[:, :-1], along[:, 1:])
+        for side in (across[:-1], across[1:])
+    ]
+    return np.asarray(np.min(least, axis=0) <= 0.0)

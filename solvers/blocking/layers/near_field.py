@@ -1,0 +1,111 @@
+"""A distant outer loop, and the smaller circle that stands in for it while blocks are found."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import arctan2, cos, exp, log, sin
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.spacing.growth import growing_steps
+from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
+from meshonet.solvers.blocking.layers.even_line import evened_steps
+
+FAR = 4.0
+"""Radii of the circle around all bodies at which an outer loop counts as distant."""
+NEAR = 2.2
+"""The same radii of the circle that stands in for it."""
+_POINTS = 240
+_EVEN = 1.1
+_UNLIKE = 1.2  # first cells of rows over their mean
+_OWN = 0.5  # part of a row in which it becomes like the others
+MOST_GROWTH = 1.18
+
+
+@dataclass(frozen=True, eq=False)
+class NearField:
+    """A circle around the bodies, and the outer loop as seen from its centre.
+
+    `angles` (n,) ascend over one turn, `radii` (n,) are those of the outer loop, `arcs` (n,) its arc lengths.
+    """
+
+    circle: Loop
+    centre: Floats
+    radius: float
+    outer: Loop
+    angles: Floats
+    radii: Floats
+    arcs: Floats
+
+    @classmethod
+    def of(cls, domain: Domain) -> NearField | None:
+        """Return the near field of a domain; None unless its outer loop is smooth, distant and seen whole."""
+        outer = domain.loops[0]
+        if len(domain.loops) < 2 or outer.corners:
+            return None
+        bodies = np.concatenate([loop.curve.points for loop in domain.loops[1:]])
+        centre = 0.5 * (bodies.min(axis=0) + bodies.max(axis=0))
+        reach = float(np.hypot(*(bodies - centre).T).max())
+        arcs = np.linspace(0.0, outer.length, 8 * _POINTS, endpoint=False)
+        away = outer.at(arcs) - centre
+        radii = np.hypot(*away.T)
+        if radii.min() < FAR * reach:
+            return None
+        angles = np.unwrap(arctan2(away[:, 1], away[:, 0]))
+        if (np.diff(angles) <= 0).any():
+            return None
+        turn = 2.0 * math.pi * np.arange(_POINTS) / _POINTS
+        points = centre + NEAR * reach * np.stack([cos(turn), sin(turn)], axis=1)
+        curve = Curve(points, closed=True, corners=())
+        circle = Loop(curve, (), outer.names[:1])
+        return cls(circle, centre, NEAR * reach, outer, angles, radii, arcs)
+
+    def cells(self, first: float, growth: float = MOST_GROWTH, multiple: int = 1) -> int:
+        """Return the cells of a row from a first one to the outer loop, a multiple of a number."""
+        distance = float(self.radii.mean()) - self.radius
+        cells = max(2, math.ceil(math.log1p(distance / first * (growth - 1.0)) / math.log(growth)))
+        return -(-cells // multiple) * multiple
+
+    def rows(self, mesh: QuadMesh, heights: Floats, growth: float = MOST_GROWTH, multiple: int = 1) -> Rows:
+        """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer loop.
+
+        `heights` (k,) are those of the cells inside the circle; the rows begin with them and grow by at most
+        `growth`; there are a multiple of `multiple` of them.
+        """
+        order = loop_nodes(mesh, 0)
+        start = mesh.nodes[order]
+        away = start - self.centre
+        angle = arctan2(away[:, 1], away[:, 0])
+        angle = self.angles[0] + np.mod(angle - self.angles[0], 2.0 * math.pi)
+        closed = np.append(self.angles, self.angles[0] + 2.0 * math.pi)
+        arcs = np.interp(angle, closed, np.append(self.arcs, self.arcs[0] + self.outer.length))
+        end = self.outer.at(arcs)
+        length = np.hypot(*(end - start).T)
+        wanted = evened_steps(heights, math.log(_EVEN)) * growth**0.5
+        mean = math.exp(log(wanted).mean())
+        wanted = np.clip(wanted, mean / _UNLIKE, _UNLIKE * mean)
+        cells = self.cells(mean, growth, multiple)
+        whole = np.stack([_shares(first, cells) for first in (mean / length).tolist()])
+        # each row begins with its own cell and becomes like the others: their angles stay right
+        own = np.clip(1.0 - np.arange(cells) / (_OWN * cells), 0.0, 1.0) ** 2
+        step = np.diff(whole, axis=1) * exp(log(wanted / mean)[:, None] * own)
+        step[:, own == 0.0] *= ((1.0 - step[:, own > 0.0].sum(axis=1)) / step[:, own == 0.0].sum(axis=1))[
+            :, None
+        ]
+        share = np.concatenate([np.zeros((len(step), 1)), np.cumsum(step, axis=1)], axis=1)
+        nodes = start[:, None] + share[..., None] * (end - start)[:, None]
+        nodes[:, -1] = end
+        return Rows(0, nodes, np.mod(arcs, self.outer.length), False)
+
+
+def _shares(first: float, cells: int) -> Floats:
+    """Return (cells + 1,) parts of a length, from 0 to 1, in cells that grow from `first` by one ratio."""
+    equal = first * cells >= 1.0
+    steps = np.full(cells, 1.0 / cells) if equal else growing_steps(first, 1.0, cells)
+    return np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])

@@ -1,0 +1,221 @@
+"""Layers in the rows of a layout: how many there are, and their nodes along the lines from walls."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats, percentiles_of
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import exp, log, power
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.algebraic.tfi import interpolate, parameters
+from meshonet.solvers.blocking.layers.attach import spaced
+from meshonet.solvers.blocking.layers.column_weights import line_lengths
+from meshonet.solvers.blocking.layers.layer_law import layer_arcs
+from meshonet.solvers.blocking.layers.layer_rows import JOIN, LayerSettings, exact
+from meshonet.solvers.blocking.layers.wall_rows import WallRows
+from meshonet.solvers.blocking.sizes.on_loops import on_loops
+
+MOST_COLUMNS = 75
+"""Percentage of the columns of a row whose layers are enough to grow at one ratio to the cells beyond."""
+SHORT_COLUMNS = 20
+"""Percentage of columns that may be too short for so many first cells: cells shrink from the wall there."""
+STEEPEST = 0.6
+"""Part of a column that its last cell may have."""
+OPENS = 0.15
+"""Distance behind a sharp edge, in lengths of its loop, in which layers of a wake open: first cells grow."""
+_STEPS = 50
+
+Bools = NDArray[np.bool_]
+
+
+def layers_of(layout: Layout, rows: WallRows, row: int, finer: int, settings: LayerSettings) -> int:
+    """Return how many layers lead at one ratio from the first cell to those beyond a row.
+
+    The layout is to have `finer` times as many cells along and beyond it.
+    """
+    blocks = np.nonzero(rows.across == row)[0]
+    tables = [
+        table
+        for block, table in zip(blocks.tolist(), rows.columns(layout, row), strict=True)
+        if rows.across[block].min() < 0
+    ]
+    beyond = _beyond(layout, tables) / finer
+    first, extra = settings.first, settings.constant - 1
+    columns = np.concatenate(tables)
+    room = line_lengths(layout.mesh.nodes[columns]) / first
+    columns = columns[layout.mesh.places.loop[columns[:, 0]] == rows.loops[row]]  # a wake has as many
+    thick = line_lengths(layout.mesh.nodes[columns]) - extra * first
+    last = beyond[columns[:, -1]] / JOIN
+    last = np.clip(last, 1.01 * first, np.maximum(STEEPEST * thick, 1.02 * first))
+    ratio = (thick - first) / np.maximum(thick - last, 1e-3 * first)
+    wanted = extra + log(last / first) / log(np.maximum(ratio, 1.0 + 1e-6))
+    count = int(np.ceil(percentiles_of(wanted, (MOST_COLUMNS,))[0]))
+    count = min(count, int(percentiles_of(room, (SHORT_COLUMNS,))[0]))
+    return -(-max(count, 2 + extra) // settings.multiple) * settings.multiple
+
+
+def with_layers(layout: Layout, rows: WallRows, settings: LayerSettings) -> Layout:
+    """Return a fine layout with the nodes of its rows moved along the lines across them.
+
+    First cells are exact, the others grow to those beyond the front.
+    """
+    mesh = layout.mesh
+    moved = np.zeros(len(mesh.nodes), dtype=bool)
+    for row in range(len(rows.loops)):
+        tables = rows.columns(layout, row)
+        beyond = _beyond(replace(layout, mesh=mesh), tables)
+        nodes = mesh.nodes.copy()
+        for table in tables:
+            opened = _opened(mesh, table[:, 0], rows.loops[row])
+            lines = _lines(mesh.nodes[table], beyond[table[:, -1]], opened, settings)
+            nodes[table[:, 1:-1]] = lines[:, 1:-1]
+            moved[table[:, 1:-1]] = True
+        mesh = mesh.with_nodes(nodes)
+    mesh = on_loops(mesh, moved & mesh.wall_nodes)
+    nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()
+    for corner in _corners(layout, rows):
+        loop = mesh.domain.loops[mesh.places.loop[corner[0, 0]]]
+        for wall, beside in ((corner[:, 0], corner[:, -1]), (corner[0], corner[-1])):
+            arcs[wall] = _wall_arcs(loop, arcs[wall], nodes[beside], settings)
+            nodes[wall] = loop.at(arcs[wall])
+        nodes[corner] = _between(nodes[corner], settings.first)
+    return replace(layout, mesh=mesh.with_nodes(nodes, arcs))
+
+
+def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings) -> Bools:
+    """Return the nodes (n,) of rows that give first cells their height: those next to walls, and corners."""
+    held = np.zeros(len(layout.mesh.nodes), dtype=bool)
+    for row in range(len(rows.loops)):
+        for table in rows.columns(layout, row):
+            on = layout.mesh.places.loop[table[:, 0]] == rows.loops[row]
+            held[table[on, : settings.constant + 1]] = True
+    for corner in _corners(layout, rows):
+        held[corner] = True
+    return held
+
+
+def _corners(layout: Layout, rows: WallRows) -> list[Indices]:
+    """Return the nodes of the blocks where two rows cross, seen from the corner of the wall."""
+    corners = []
+    for block, across in zip(layout.blocks, rows.across.tolist(), strict=True):
+        if min(across) >= 0:
+            on = [layout.mesh.places.cells[block[i, j]] > 0 for i, j in ((0, 0), (-1, 0), (-1, -1), (0, -1))]
+            walls = [
+                layout.mesh.wall_nodes[line].all()
+                for line in (block[:, 0], block[-1], block[:, -1], block[0])
+            ]
+            k = next(k for k in range(4) if on[k] and walls[k] and walls[k - 1])
+            corners.append((block, block[::-1], block[::-1, ::-1], block[:, ::-1])[k])
+    return corners
+
+
+def _beyond(layout: Layout, tables: list[Indices]) -> Floats:
+    """Return the height (n,) of the cells beyond the front of a row, infinite elsewhere."""
+    mesh = layout.mesh
+    inside, front = (np.zeros(len(mesh.nodes), dtype=bool) for _ in range(2))
+    for table in tables:
+        inside[table] = True
+        front[table[:, -1]] = True
+    length = np.hypot(*(mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]).T)
+    beyond = np.zeros(len(mesh.nodes))
+    for here, there in ((0, 1), (1, 0)):
+        leaving = front[mesh.edges[:, here]] & ~inside[mesh.edges[:, there]]
+        np.maximum.at(beyond, mesh.edges[leaving, here], length[leaving])
+    return np.where(beyond > 0.0, beyond, np.inf)
+
+
+def _opened(mesh: QuadMesh, base: Indices, loop: int) -> Floats:
+    """Return 0 for columns (k,) on the wall, and along wakes up to 1, where first cells no longer count."""
+    on = mesh.places.loop[base] == loop
+    if on.all():
+        return np.zeros(len(base))
+    edge = mesh.domain.loops[loop].at(mesh.domain.loops[loop].corner_arcs[:1])[0]
+    share = np.hypot(*(mesh.nodes[base] - edge).T) / (OPENS * mesh.domain.loops[loop].length)
+    return np.where(on, 0.0, np.clip(share, 1e-9, 1.0))
+
+
+def _lines(columns: Floats, beyond: Floats, opened: Floats, settings: LayerSettings) -> Floats:
+    """Return the nodes (k, n, 2) of layers along columns (k, n, 2); `beyond` (k,) are the cells there.
+
+    Where columns are `opened` (k,) by 1, cells grow at one ratio to those beyond, whatever the first.
+    """
+    rows, first = columns.shape[1] - 1, settings.first
+
+    def law(length: Floats) -> Floats:
+        short = length < 1.02 * rows * first
+        arcs = layer_arcs(
+            np.where(short, 1.05 * rows * first, length), first, beyond / JOIN, rows, settings.constant,
+            settings.growth,
+        )  # fmt: skip
+        if short.any():
+            arcs[short] = _shrinking(length[short], first, rows)
+        wide = opened > 0.0
+        if wide.any():
+            last = np.minimum(beyond[wide] / JOIN, (1.0 - 1.0 / settings.growth) * length[wide])
+            even = np.diff(_growing_back(length[wide], last, rows), axis=1)
+            steps = log(np.diff(arcs[wide], axis=1))
+            steps = exp(steps + opened[wide, None] * (log(even) - steps))
+            places = np.cumsum(steps, axis=1)
+            arcs[wide, 1:] = length[wide, None] * places / places[:, -1:]
+        return arcs
+
+    lines = spaced(columns, law)
+    on = opened == 0.0
+    walls = lines[on]
+    exact(walls, first)
+    lines[on] = walls
+    return lines
+
+
+def _growing_back(length: Floats, last: Floats, rows: int) -> Floats:
+    """Return places (k, rows + 1) of cells that fill a `length` (k,), at one ratio up to the `last` (k,)."""
+    low, high = np.full(len(length), 0.5), np.full(len(length), 3.0)
+    powers = np.arange(rows - 1.0, -1.0, -1.0)
+    for _ in range(_STEPS):
+        ratio = 0.5 * (low + high)
+        more = last * power(ratio[:, None], -powers).sum(axis=1) > length
+        low, high = np.where(more, ratio, low), np.where(more, high, ratio)
+    arcs = np.cumsum(power(ratio[:, None], -powers), axis=1)
+    return np.pad(length[:, None] * arcs / arcs[:, -1:], ((0, 0), (1, 0)))
+
+
+def _shrinking(length: Floats, first: float, rows: int) -> Floats:
+    """Return places (k, rows + 1) up to a `length` (k,) of cells that shrink from the first one on."""
+    low, high = np.zeros(len(length)), np.ones(len(length))
+    powers = np.arange(float(rows))
+    for _ in range(_STEPS):
+        ratio = 0.5 * (low + high)
+        less = first * power(ratio[:, None], powers).sum(axis=1) < length
+        low, high = np.where(less, ratio, low), np.where(less, high, ratio)
+    arcs = np.cumsum(power(high[:, None], powers), axis=1)
+    return np.pad(length[:, None] * arcs / arcs[:, -1:], ((0, 0), (1, 0)))
+
+
+def _wall_arcs(loop: Loop, arcs: Floats, beside: Floats, settings: LayerSettings) -> Floats:
+    """Return arc lengths (n,) of nodes of a wall from a corner on, layers like those `beside` (n, 2)."""
+    way = arcs[-1] - arcs[0]
+    way -= loop.length * np.round(way / loop.length)
+    column = np.hypot(*np.diff(beside, axis=0).T)
+    length = np.array([abs(way)])
+    last = length * column[-1] / column.sum()
+    away = layer_arcs(length, settings.first, last, len(arcs) - 1, settings.constant, settings.growth)[0]
+    return np.concatenate([np.mod(arcs[0] + np.copysign(away[:-1], way), loop.length), arcs[-1:]])
+
+
+def _between(nodes: Floats, first: float) -> Floats:
+    """Return the nodes (n, m, 2) of a block from its sides, of which west and south are walls."""
+    sides = nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1]
+    filled = np.empty((2, *nodes.shape[:2]))
+    interpolate(filled[0], filled[1], sides, parameters(sides, "arclength"))
+    block = filled.transpose(1, 2, 0)
+    block[:, 0], block[:, -1], block[0], block[-1] = sides
+    for wall in (block[1:-1], block.transpose(1, 0, 2)[1:-1]):
+        exact(wall, first)
+    block[1, 1] = block[1, 0] + block[0, 1] - block[0, 0]
+    return np.asarray(block)

@@ -1,0 +1,152 @@
+"""Rings of layers around the loops of a domain: marched from the wall, no thicker than the gaps allow.
+
+::
+
+    wall --march, step by step as thick as the gap in front allows--> front
+
+The front is a smooth loop that stands in for the wall when the rest of the domain is decomposed; the ring
+itself is a map from (place along the front, height) that gives a column of nodes anywhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.gap import wall_gaps
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.layers.column_weights import (
+    column_weights,
+    line_lengths,
+    started,
+    whole_columns,
+)
+from meshonet.solvers.blocking.layers.even_line import FINER, SLACK, Measures
+from meshonet.solvers.blocking.layers.marched import GAP_PART, fitted
+from meshonet.solvers.blocking.layers.wall_columns import wall_columns
+from meshonet.solvers.hyperbolic.settings import ATTEMPTS
+
+
+@dataclass(frozen=True, eq=False)
+class Ring:
+    """Layers around a loop.
+
+    Parameters
+    ----------
+    wall : the loop.
+    arcs : (n,) places on it where the columns of `levels` start, ascending from a corner's if there are any.
+    levels : (n, m, 2) nodes from the wall (0) to the front (m - 1).
+    front : the loop along the last level, its points those of the columns in order. Corners of the wall have
+        a point there too, which is a corner at which two cells meet: a node.
+    """
+
+    wall: Loop
+    arcs: Floats
+    levels: Floats
+    front: Loop
+
+    @property
+    def thickness(self) -> Floats:
+        """(n,) lengths of the columns."""
+        return line_lengths(self.levels)
+
+    def columns(self, places: Floats) -> tuple[Floats, Floats]:
+        """Return the lines (k, m, 2) to `places` (k,), arc lengths of the front, and where they start.
+
+        These are arc lengths (k,) of the wall. Between columns, cubics through four of them that do not
+        reach over a corner.
+        """
+        n = len(self.arcs)
+        knots = np.append(self.front.curve.knots, self.front.length)
+        index = np.interp(np.mod(places, self.front.length), knots, np.arange(n + 1.0))
+        index = whole_columns(index)
+        low, high = self._piece(np.minimum(index.astype(np.intp), n - 1))
+        weights, first = column_weights(index, low, high)
+        nodes = np.zeros((len(places), *self.levels.shape[1:]))
+        for k in range(4):
+            nodes += weights[:, k, None, None] * self.levels[(first + k) % n]
+        starts = (
+            monotone_cubic(np.arange(-1.0, n + 2.0), self._unwrapped(), np.clip(index, 0.0, n))
+            % self.wall.length
+        )
+        exact = index == np.round(index)
+        starts[exact] = self.arcs[index[exact].astype(np.intp) % n]
+        return started(nodes, self.wall.at(starts)), starts
+
+    @cached_property
+    def along(self) -> Measures:
+        """Arc lengths of the front, of the wall beneath it, and of the level next to the wall."""
+        n = len(self.arcs)
+        index = np.arange(FINER * n + 1) / FINER
+        knots = np.append(self.front.curve.knots, self.front.length)
+        wall = monotone_cubic(np.arange(-1.0, n + 2.0), self._unwrapped(), index)
+        level = self.levels[:, 1]
+        step = np.hypot(*(np.roll(level, -1, axis=0) - level).T)
+        around = np.cumsum(np.concatenate([[0.0], step[-1:], step, step[:1]]))
+        above = monotone_cubic(np.arange(-1.0, n + 2.0), around, index)
+        front = np.interp(index, np.arange(n + 1.0), knots)
+        return Measures(front, np.stack([front, wall - wall[0], above - above[0]]), SLACK)
+
+    def _unwrapped(self) -> Floats:
+        """Return arc lengths (n + 3,) of columns -1 to n + 1, ascending."""
+        around = np.append(self.arcs, [self.arcs[0] + self.wall.length, self.arcs[1] + self.wall.length])
+        return np.concatenate([[self.arcs[-1] - self.wall.length], around])
+
+    def _piece(self, base: Indices) -> tuple[Indices, Indices]:
+        """Return the first and last column of the stretch between corners in which a column lies."""
+        n, corners = len(self.arcs), np.array(self.front.corners, dtype=np.intp)
+        if len(corners) == 0:
+            return base - 1, base + 2
+        k = np.searchsorted(corners, base, side="right") - 1
+        low = np.where(k < 0, corners[-1] - n, corners[k])
+        high = np.where(k + 1 < len(corners), corners[(k + 1) % len(corners)], corners[0] + n)
+        return low, high
+
+
+def march_ring(domain: Domain, loop: Loop, first: float, thickness: float, largest: float) -> Ring:
+    """Return the ring around a loop of a domain, as thick as `thickness` where there is room.
+
+    `first` is the height of first cells, `largest` the length of cells along the wall, all in the domain's
+    unit. Raises InputError: a gap that no layer fits in, or a wall that every march folds at; with the place.
+    """
+    arcs = wall_columns(loop, largest)
+    room = GAP_PART * wall_gaps(domain, loop, arcs)
+    levels = fitted(
+        loop.at(arcs),
+        arcs,
+        loop.length,
+        room,
+        thickness,
+        first,
+        ATTEMPTS,
+        place=lambda k: place(loop, arcs[k]),
+    )
+    return _ring(loop, arcs, levels)
+
+
+def place(loop: Loop, arc: float) -> str:
+    """Return the name and the coordinates of a place on a loop, for messages."""
+    x, y = loop.at(np.array([arc]))[0]
+    return f"{loop.name_at(float(arc))}, ({x:.6g}, {y:.6g})"
+
+
+def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
+    corners = _corner_columns(loop, arcs)
+    if len(corners):  # from a corner on, so that pieces between corners do not wrap
+        arcs, levels = np.roll(arcs, -corners[0]), np.roll(levels, -corners[0], axis=0)
+        corners = corners - corners[0]
+        arcs = np.where(arcs < arcs[0], arcs + loop.length, arcs)
+    curve = Curve(levels[:, -1], closed=True, corners=())
+    front = Loop(curve, tuple(int(k) for k in corners), (loop.names[0],))
+    return Ring(loop, arcs, levels, front)
+
+
+def _corner_columns(loop: Loop, arcs: Floats) -> Indices:
+    return np.flatnonzero(np.isin(arcs, loop.corner_arcs))

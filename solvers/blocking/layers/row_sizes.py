@@ -1,0 +1,131 @@
+"""How long cells are along walls whose layers are rows of a layout, and how thick these layers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.gap import gaps_in_front, wall_points
+from meshonet.geometry.domain.grading import graded
+from meshonet.geometry.domain.loop import Loop
+from meshonet.solvers.blocking.layers.layer_rows import JOIN, LayerSettings, last_layers
+from meshonet.solvers.blocking.layers.marched import GAP_PART, SLOPE, check_room
+from meshonet.solvers.blocking.layers.rings import place
+from meshonet.solvers.blocking.layers.stretches import Stretch
+from meshonet.solvers.blocking.sizes.size_metric import GRADING, SizeMetric
+from meshonet.solvers.blocking.sizes.wall_bend import wall_bend
+
+COLUMNS = 140.0
+"""Cells along a loop, if all were as long as the longest."""
+TURN = np.radians(3.5)
+"""By how much a wall turns along one cell of it, at the default count of cells."""
+CELLS_IN_GAP = 15.0
+ALONG = 0.2
+"""Growth of sizes along walls, over the length between."""
+UNEVEN = 2.0
+"""Thickest layers of a loop over the thinnest: all have as many cells."""
+THINNEST = 8.0
+"""Thickness of layers in first cells, at the least."""
+SPREAD = 0.1
+"""Growth of the thickness of layers along a wake, over the distance from the sharp edge."""
+AROUND_CORNER = 2.5
+"""Way along a loop, in straight distances, up to which its own wall is around a corner and no gap."""
+_SAMPLES, _WINDOW = 400, 3
+
+
+@dataclass(frozen=True, eq=False)
+class RowSizes:
+    """Sizes along the stretches of a loop that have layers.
+
+    Parameters
+    ----------
+    loop : the wall.
+    arcs : (n,) places on it, ascending.
+    length : (n,) of cells there at a scale of 1.
+    gap : (n,) distance to the next wall in front.
+    on : (n,) which places have layers.
+    """
+
+    loop: Loop
+    arcs: Floats
+    length: Floats
+    gap: Floats
+    on: np.ndarray
+
+    @classmethod
+    def of(cls, domain: Domain, number: int, stretches: Sequence[Stretch]) -> RowSizes:
+        """Return the sizes along stretches of a loop of a domain, along all of it without any."""
+        loop = domain.loops[number]
+        arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
+        gap = _gaps(domain, number, arcs)
+        length = np.minimum(loop.length / COLUMNS, TURN / np.maximum(wall_bend(loop, arcs, _WINDOW), 1e-300))
+        length = graded(np.minimum(length, gap / CELLS_IN_GAP), arcs, loop.length, ALONG)
+        on = np.full(len(arcs), not stretches)
+        for begin, end in (each.span(loop) for each in stretches):
+            on |= np.mod(arcs - begin, loop.length) <= end - begin
+        return cls(loop, arcs, length, gap, on)
+
+    def thickness(self, scale: float, settings: LayerSettings) -> Floats:
+        """Return how thick (n,) layers are: until cells that grow at the limit are square, as gaps allow."""
+        last = scale * self.length * settings.growth
+        full = np.maximum((last - settings.first) / (settings.growth - 1.0), THINNEST * settings.first)
+        full = np.minimum(full, GAP_PART * self.gap)
+        full = np.minimum(full, UNEVEN * full[self.on].min())
+        return graded(full, self.arcs, self.loop.length, SLOPE)
+
+    def thickness_at(self, arcs: Floats, scale: float, settings: LayerSettings) -> Floats:
+        """Return the thickness (k,) at places (k,) of the loop."""
+        return np.interp(arcs, self.arcs, self.thickness(scale, settings), period=self.loop.length)
+
+    def thickness_behind(self, away: Floats, scale: float, settings: LayerSettings) -> Floats:
+        """Return the thickness (k,) along a wake, `away` (k,) from the sharp edge."""
+        edge = self.thickness_at(self.loop.corner_arcs[:1], scale, settings)
+        return edge + SPREAD * away
+
+    def rows(self, scale: float, settings: LayerSettings) -> int:
+        """Return about how many layers there are to be."""
+        return settings.rows(float(self.thickness(scale, settings)[self.on].max()))
+
+    def check_room(self, settings: LayerSettings) -> None:
+        """Raise InputError where a gap leaves no room for layers, with the place."""
+        room = np.where(self.on, GAP_PART * self.gap, np.inf)
+        check_room(room, settings.first, lambda k: place(self.loop, self.arcs[k]))
+
+    def metric(self, scale: float, settings: LayerSettings) -> SizeMetric:
+        """Return the sizes of cells beyond the layers."""
+        on, along = self.on, np.maximum(scale * self.length, settings.first)
+        thick, tangent = self.thickness(scale, settings), self.loop.tangent(self.arcs)
+        normals = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
+        across = np.minimum(last_layers(thick, self.rows(scale, settings), settings), along)
+        points = self.loop.at(self.arcs) + thick[:, None] * normals
+        return SizeMetric(points[on], normals[on], across[on], along[on], np.inf)
+
+    def wake_metric(self, wake: Floats, scale: float, settings: LayerSettings) -> SizeMetric:
+        """Return the sizes of cells beside a wake (k, 2), from the sharp edge on."""
+        tangent = np.gradient(wake, axis=0)
+        normals = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1) / np.hypot(*tangent.T)[:, None]
+        away = np.hypot(*(wake - wake[0]).T)
+        across = self.thickness_behind(away, scale, settings) * (1.0 - 1.0 / settings.growth) * JOIN
+        along = scale * self.length.min() + GRADING * min(scale, 1.0) * away
+        return SizeMetric(wake, normals, across, np.maximum(along, across), np.inf)
+
+
+def _gaps(domain: Domain, number: int, arcs: Floats) -> Floats:
+    """Return the distance (n,) to the next wall in front, but for the loop's own around a corner."""
+    loop = domain.loops[number]
+    points, along = loop.at(arcs), loop.tangent(arcs)
+    others = [each for k, each in enumerate(domain.loops) if k != number]
+    gap = gaps_in_front(wall_points(others), points, along) if others else np.full(len(arcs), np.inf)
+    own = np.linspace(0.0, loop.length, 2 * _SAMPLES, endpoint=False)
+    walls = loop.at(own)
+    for k, arc in enumerate(arcs.tolist()):
+        way = np.abs(np.mod(own - arc + 0.5 * loop.length, loop.length) - 0.5 * loop.length)
+        away = np.hypot(*(walls - points[k]).T)
+        there = walls[way > AROUND_CORNER * away]
+        if len(there):
+            gap[k] = min(gap[k], float(gaps_in_front(there, points[k : k + 1], along[k : k + 1])[0]))
+    return gap

@@ -1,0 +1,83 @@
+"""Which walls layers go along: whole loops, and stretches of loops between convex corners."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.errors import InputError
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A part of a loop with layers that begins and ends at corners where one cell meets.
+
+    Parameters
+    ----------
+    loop : its number.
+    first, last : numbers of the corners among those of the loop; the same where it is all of the loop.
+    joined : whether the wall beyond these corners has layers too: they meet in a block of their own. Else the
+        layers end on what lies there.
+    """
+
+    loop: int
+    first: int
+    last: int
+    joined: tuple[bool, bool]
+
+    def span(self, loop: Loop) -> tuple[float, float]:
+        """Return the arc lengths at which it begins and ends, the second the larger."""
+        begin, end = (float(loop.corner_arcs[k]) for k in (self.first, self.last))
+        return begin, end if end > begin else end + loop.length
+
+
+def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int], tuple[Stretch, ...]]:
+    """Return the numbers of loops that have layers all around, and stretches of others, by names of walls.
+
+    Without names those are all holes. Raises InputError: there are none; layers would end where the boundary
+    goes straight on or turns away; with the place.
+    """
+    whole: list[int] = []
+    stretches: list[Stretch] = []
+    for number, loop in enumerate(domain.loops):
+        on = [name in names if names else number > 0 for name in loop.names]
+        on = on * len(loop.corners) if len(on) == 1 and loop.corners else on
+        if all(on) and not (loop.corner_cells == 1).any():
+            whole.append(number)
+        elif any(on):
+            stretches += _stretches(loop, number, on)
+    if not whole and not stretches:
+        remedy = "name the walls with {walls}: without names, layers go around holes"
+        raise InputError("a first cell in a domain without holes", remedy)
+    return whole, tuple(stretches)
+
+
+def _stretches(loop: Loop, number: int, on: list[bool]) -> list[Stretch]:
+    """Return the stretches of a loop of which the parts `on` (corners,) have layers."""
+    count, convex = len(on), loop.corner_cells == 1
+    for k in range(count):
+        if on[k] != on[k - 1] and not convex[k]:
+            raise _no_end(loop, k, on[k])
+    begins = [k for k in range(count) if on[k] and (convex[k] or not on[k - 1])]
+    stretches = []
+    for begin in begins:
+        end = (begin + 1) % count
+        while on[end] and not convex[end]:
+            end = (end + 1) % count
+        stretches.append(Stretch(number, begin, end, (on[begin - 1], on[end])))
+    return stretches
+
+
+def _no_end(loop: Loop, corner: int, begins: bool) -> InputError:
+    with_layers, without = (corner, corner - 1) if begins else (corner - 1, corner)
+    names = loop.names if len(loop.names) > 1 else loop.names * len(loop.corners)
+    cells = int(loop.corner_cells[corner])
+    way = "goes straight on" if cells == 2 else "turns away"
+    x, y = loop.at(loop.corner_arcs[corner : corner + 1])[0]
+    return InputError(
+        f"layers at {names[with_layers]} would end where the boundary {way}, at ({x:.6g}, {y:.6g})",
+        f"name {names[without]} as well: layers end at corners of about 90 degrees only",
+        parameter="walls",
+    )

@@ -1,0 +1,65 @@
+"""Where the columns of a layer of cells start on a wall: dense at corners and where the wall turns."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.domain.grading import graded
+from meshonet.geometry.domain.loop import Loop
+from meshonet.solvers.blocking.sizes.wall_bend import wall_bend
+
+TURN = np.radians(4.0)
+"""How much of the wall's turning one cell takes."""
+GROWTH = 0.1
+"""By how much of the length between them cells may differ."""
+_SAMPLES = 4000
+_CORNER_PART = 1.0 / 40.0  # cell at a corner, in cells elsewhere
+_PIECE_PART = 1.0 / 3.0  # and at the most in lengths of the pieces of wall that end there
+
+
+def wall_columns(loop: Loop, largest: float) -> Floats:
+    """Return ascending arc lengths (n,) of columns around a loop, its corners among them.
+
+    `largest` is the length of the largest cell.
+    """
+    arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
+    size = _sizes(loop, arcs, largest)
+    closed = np.append(arcs, loop.length)
+    density = 1.0 / np.append(size, size[0])
+    count = np.append(0.0, np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(closed)))
+    starts = loop.corner_arcs if len(loop.corners) else np.zeros(1)
+    ends = np.append(starts[1:], starts[0] + loop.length)
+    columns = []
+    for start, end in zip(starts, ends, strict=True):
+        first, last = (_counted(arc, closed, count, loop.length) for arc in (start, end))
+        cells = max(2, round(last - first))
+        wanted = first + (last - first) * np.arange(cells) / cells
+        turns, part = np.divmod(wanted, count[-1])
+        column = np.interp(part, count, closed) + turns * loop.length
+        column[0] = start  # to the bit: the corner
+        columns.append(column)
+    arcs = np.concatenate(columns) % loop.length
+    return np.asarray(np.roll(arcs, -int(np.argmin(arcs))))
+
+
+def _counted(arc: float, closed: Floats, count: Floats, length: float) -> float:
+    turns, part = divmod(arc, length)
+    return float(np.interp(part, closed, count) + turns * count[-1])
+
+
+def _sizes(loop: Loop, arcs: Floats, largest: float) -> Floats:
+    """Return the length (n,) of cells at arc lengths (n,)."""
+    length = loop.length
+    bend = wall_bend(loop, arcs, max(3, round(0.004 * len(arcs))))
+    size = np.minimum(largest, TURN / np.maximum(bend, 1e-300))
+    size = np.maximum(size, _CORNER_PART * largest)
+    corners = loop.corner_arcs
+    if len(corners):
+        pieces = np.diff(corners, append=corners[0] + length)
+        shortest = np.minimum(pieces, np.roll(pieces, 1))
+        at_corner = np.minimum(_CORNER_PART * largest, _PIECE_PART * shortest)
+        for arc, smallest, cells in zip(corners, at_corner, loop.corner_cells, strict=True):
+            if cells > 1:  # columns converge at convex corners, where layers end
+                size[np.searchsorted(arcs, arc)] = smallest
+    return graded(size, arcs, length, GROWTH)

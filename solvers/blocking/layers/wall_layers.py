@@ -1,0 +1,223 @@
+"""Walls with their layers, what these leave of a domain, and how fine cells there are to be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.gap import wall_points
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import nearest_points
+from meshonet.solvers.blocking.layers.even_line import Measures
+from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
+from meshonet.solvers.blocking.layers.marched import GAP_PART
+from meshonet.solvers.blocking.layers.near_field import NearField
+from meshonet.solvers.blocking.layers.rings import Ring, march_ring
+from meshonet.solvers.blocking.layers.row_sizes import RowSizes
+from meshonet.solvers.blocking.layers.stretches import Stretch
+from meshonet.solvers.blocking.layers.wall_rows import WallRows
+from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
+
+COLUMNS = 140
+"""Cells around a loop, if all were as long as the longest."""
+THICKNESS = 0.018
+"""Thickness of layers where there is room, in lengths of their loop."""
+INNER_THICKNESS = 0.12
+"""The same of layers inside an outer loop, in hydraulic diameters: four times the area over the perimeter."""
+MOST_OPTIMISED = 4000
+"""Cells that are optimised at the most; finer grids are splines through these."""
+ROWS = 3
+"""Cells that stand for a row of layers in the optimum, which so never sees cells far longer than high."""
+_BISECTIONS = 14
+
+
+@dataclass(frozen=True, eq=False)
+class WallLayers:
+    """Walls with their layers, and the domain in which blocks are looked for.
+
+    `rings` are by number of their loop, which is the same in both domains; along `stretches`, and around the
+    loops `sheets` and the wakes behind them, layers are rows of the layout itself, whose `sizes` are by loop;
+    `near` stands in for a distant outer loop.
+    """
+
+    domain: Domain
+    rings: Mapping[int, Ring]
+    near: NearField | None
+    rest: Domain
+    settings: LayerSettings
+    stretches: tuple[Stretch, ...] = ()
+    sheets: tuple[int, ...] = ()
+    sizes: Mapping[int, RowSizes] = field(default_factory=dict)
+
+    @classmethod
+    def of(
+        cls, domain: Domain, loops: Sequence[int], settings: LayerSettings,
+        stretches: Sequence[Stretch] = (), sheets: Sequence[int] = (),
+    ) -> WallLayers:  # fmt: skip
+        """Return the layers of a domain: rings around some loops, rows along stretches and around `sheets`.
+
+        Raises InputError: no room for layers; a wall that they fold at.
+        """
+        rings = rings_around(domain, loops, settings)
+        numbers = sorted({*sheets, *(stretch.loop for stretch in stretches)})
+        near = None if 0 in rings or 0 in numbers else NearField.of(domain)
+        rest = list(domain.loops)
+        if near is not None:
+            rest[0] = near.circle
+        for k, ring in rings.items():
+            rest[k] = ring.front
+        left = Domain(tuple(rest), domain.name)
+        sizes = {k: RowSizes.of(left, k, [s for s in stretches if s.loop == k]) for k in numbers}
+        for each in sizes.values():
+            each.check_room(settings)
+        return cls(domain, rings, near, left, settings, tuple(stretches), tuple(sheets), sizes)
+
+    @property
+    def fronts(self) -> tuple[int, ...]:
+        """Numbers of the loops of `rest` that are fronts of layers."""
+        return tuple(self.rings)
+
+    def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
+        """Return whether a wake, nodes from a sharp edge on, has room for layers out to the outer loop."""
+        return bool(mesh.places.loop[wake[-1]] == 0) and self.has_room(number, mesh.nodes[wake])
+
+    def has_room(self, number: int, wake: Floats, scale: float = 1.0) -> bool:
+        """Return whether other bodies leave room for layers along a wake (k, 2)."""
+        others = [loop for k, loop in enumerate(self.rest.loops) if k not in (0, number)]
+        if not others:
+            return True
+        gap = np.sqrt(nearest_points(np.ascontiguousarray(wake), wall_points(others))[1])
+        thick = self.sizes[number].thickness_behind(np.hypot(*(wake - wake[0]).T), scale, self.settings)
+        return bool((thick < GAP_PART * gap).all())
+
+    @cached_property
+    def _ring_metric(self) -> SizeMetric | None:
+        parts = [ring_metric(ring, self.settings) for ring in self.rings.values()]
+        return SizeMetric.joined(parts) if parts else None
+
+    def metric(
+        self, scale: float, size: float = 0.0, wakes: Mapping[int, Floats] | None = None
+    ) -> SizeMetric:
+        """Return the sizes of cells outside the layers: at most `size`, or `scale` times their columns.
+
+        `wakes` (k, 2) are by the number of their loop.
+        """
+        scale = 1.0 if size else scale
+        parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
+        for loop, wake in (wakes or {}).items():
+            parts.append(self.sizes[loop].wake_metric(wake, scale, self.settings))
+        if self._ring_metric is not None:
+            rings = self._ring_metric
+            parts.append(replace(rings, along=scale * rings.along))
+        metric = SizeMetric.joined(parts)
+        if size:
+            along = metric.along * max(size / metric.along.max(), 1.0) ** 0.5
+            return replace(metric, along=np.minimum(along, size), largest=size)
+        finer = min(scale, 1.0)  # as sizes at walls are, so that sizes grow alike at any count of cells
+        largest = self.rest.extent / 12.0 * scale**0.5
+        return replace(metric, largest=largest, grading=finer * metric.grading)
+
+    @property
+    def measures(self) -> dict[int, Measures]:
+        """What steps are to be even in, besides arc length, along the loops that stand in for others."""
+        measures = {k: ring.along for k, ring in self.rings.items()}
+        if self.near is not None:
+            ends = np.array([0.0, self.near.circle.length])
+            measures[0] = Measures(ends, ends[None])
+        return measures
+
+    def ring_rows(self, ring: Ring) -> int:
+        """Return the layers of a ring."""
+        return self.settings.rows(float(ring.thickness.max()))
+
+    def attached_cells(self, chords: Chords, counts: Indices) -> int:
+        """Return the cells of rings and of the rows to the far field, for counts (chords,)."""
+        along = np.zeros(len(self.rest.loops), dtype=np.intp)
+        places = chords.layout.mesh.places
+        for edge in np.flatnonzero(chords.wall):
+            along[int(places.loop[chords.edges[edge][0]])] += int(counts[chords.chord[edge]])
+        total = sum(int(along[number]) * self.ring_rows(ring) for number, ring in self.rings.items())
+        if self.near is not None:
+            first = 2.0 * np.pi * self.near.radius / max(int(along[0]), 1)
+            total += int(along[0]) * self.near.cells(first, multiple=self.settings.multiple)
+        return total
+
+
+def rings_around(domain: Domain, loops: Sequence[int], settings: LayerSettings) -> dict[int, Ring]:
+    """Return the rings around some loops of a domain, by number.
+
+    Raises InputError: no room for layers; a wall that they fold at.
+    """
+    return {k: march_ring(domain, domain.loops[k], settings.first, *_sizes(domain, k)) for k in loops}
+
+
+def _sizes(domain: Domain, number: int) -> tuple[float, float]:
+    """Return the thickness of layers at a loop, and the length of the longest cells along it."""
+    loop = domain.loops[number]
+    thickness = THICKNESS * loop.length
+    if number == 0:
+        around = sum(each.length for each in domain.loops)
+        thickness = min(thickness, INNER_THICKNESS * 2.0 * domain.area / around)
+    return thickness, loop.length / COLUMNS
+
+
+@dataclass(frozen=True, eq=False)
+class Counts:
+    """Cells along the chords of a coarse layout, and how a fine one comes from it.
+
+    Parameters
+    ----------
+    coarse : (chords,) counts of the layout that is optimised, over `stride`.
+    stride, times : by how much counts are multiplied before cells are optimised, and after.
+    scale : of the sizes along walls.
+    metric : the sizes that counts follow.
+    layers : (rows,) layers of each row over those that its thickness asked for, known after the optimum, and
+        the geometric mean with what was known before it: each changes the other.
+    """
+
+    coarse: Indices
+    stride: int
+    times: int
+    scale: float
+    metric: SizeMetric
+    layers: tuple[float, ...] = ()
+
+
+def wanted_counts(
+    walls: WallLayers, rows: WallRows, chords: Chords, cells: int, size: float, before: Counts | None
+) -> Counts:
+    """Return counts for about so many cells in all, or else for cells of a size.
+
+    A row has `ROWS` cells across while nodes are optimised, however many it is to have. `before` are the
+    counts of the optimum before this one.
+    """
+    multiple, row = walls.settings.multiple, rows.of_chords(chords)
+    wakes = rows.wakes(chords.layout)
+    low, high = math.log(0.05), math.log(12.0)
+    wanted = WantedCounts(chords, walls.metric(1.0, wakes=wakes))
+    for _ in range(_BISECTIONS):
+        scale = math.exp(0.5 * (low + high))
+        metric = walls.metric(scale, 0.0 if cells else size, wakes)
+        counts = wanted.counts(metric, multiple)
+        for number, loop in enumerate(rows.loops):
+            layers = walls.sizes[loop].rows(scale, walls.settings)
+            counts[row == number] = round(layers * before.layers[number]) if before else layers
+        total = chords.cells(counts) + walls.attached_cells(chords, counts)
+        low, high = (math.log(scale), high) if total > cells else (low, math.log(scale))
+    inner, times = row < 0, 1
+    while chords.cells(np.where(inner, counts / times, ROWS)) > MOST_OPTIMISED:
+        times += 1
+    while times % multiple and multiple % times:  # either divides the other
+        times -= 1
+    stride = max(multiple // times, 1)
+    coarse = np.maximum(chords.least, np.round(counts / (times * stride)).astype(np.intp))
+    return Counts(np.where(inner, coarse, ROWS), stride, times, scale, metric)

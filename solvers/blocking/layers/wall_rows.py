@@ -1,0 +1,130 @@
+"""Rows of quads along walls of a finished layout: the blocks of the layers there.
+
+::
+
+    a corner between two walls, each with a row          a row that ends alone
+        |   |   |                                            |   |   |
+        |---+---+--- front                        front -----+---+---|
+        |   |   |                                            |   |   | the wall beyond
+        +---+---+--- wall                         wall  -----+---+---+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.collapse.base_complex import base_complex
+from meshonet.solvers.blocking.decomposition.quads.padding import pad_span
+from meshonet.solvers.blocking.layers.even_mesh import consecutive_edges, growth_along
+from meshonet.solvers.blocking.layers.sheet import with_sheet
+from meshonet.solvers.blocking.layers.stretches import Stretch
+from meshonet.solvers.blocking.sizes.chords import Chords
+
+Edge = tuple[int, int]
+
+
+@dataclass(frozen=True, eq=False)
+class WallRows:
+    """Which blocks of a layout are rows along walls.
+
+    Parameters
+    ----------
+    loops : number of the loop of each row.
+    across : (b, 2) row that a block crosses from its south to its north side, and from west to east; -1 for
+        none. Refined layouts have the same blocks, so that it holds for these too.
+    back : (b, 2) whether it does so from the front to the wall.
+    """
+
+    loops: tuple[int, ...]
+    across: Indices
+    back: NDArray[np.bool_]
+
+    def of_chords(self, chords: Chords) -> Indices:
+        """Return the row (chords,) that the edges of each chord cross, -1 for none."""
+        row = np.full(chords.count, -1, dtype=np.intp)
+        row[chords.chord[chords.sides[:, 2]]] = self.across[:, 0]
+        row[chords.chord[chords.sides[:, 0]]] = self.across[:, 1]
+        return row
+
+    def columns(self, layout: Layout, row: int) -> list[Indices]:
+        """Return the nodes (k, n) of the lines across a row, from wall or wake to front, a table a block."""
+        tables = []
+        for block, direction in zip(*np.nonzero(self.across == row), strict=True):
+            table = layout.blocks[block].T if direction else layout.blocks[block]
+            tables.append(table[:, ::-1] if self.back[block, direction] else table)
+        return tables
+
+    def growth(self, layout: Layout, loop: int) -> float:
+        """Return the largest logarithm of the ratio of neighbouring edges along a wall and its wake."""
+        base = np.zeros(len(layout.mesh.nodes), dtype=bool)
+        for table in self.columns(layout, self.loops.index(loop)):
+            base[table[:, 0]] = True
+        lines = consecutive_edges(layout.mesh)
+        z = layout.mesh.nodes[:, 0] + 1j * layout.mesh.nodes[:, 1]
+        return float(np.abs(growth_along(z, lines[base[lines].all(axis=1)])).max())
+
+    def wakes(self, layout: Layout) -> dict[int, Floats]:
+        """Return the lines (k, 2) behind sharp edges that rows go along, by the number of their loop."""
+        mesh, lines = layout.mesh, {}
+        for row, loop in enumerate(self.loops):
+            base = distinct(np.concatenate([table[:, 0] for table in self.columns(layout, row)]))
+            edge = (mesh.places.loop[base] == loop) & (mesh.places.cells[base] == 4)
+            if (mesh.places.loop[base] != loop).any():
+                wake = mesh.nodes[base[edge | (mesh.places.loop[base] != loop)]]
+                away = np.hypot(*(wake - mesh.nodes[base[edge][0]]).T)
+                lines[loop] = wake[np.argsort(away, kind="stable")]
+        return lines
+
+
+def with_wall_rows(
+    layout: Layout, stretches: Sequence[Stretch], sheets: Sequence[int] = ()
+) -> tuple[Layout, WallRows]:
+    """Return a layout with a row of quads along some stretches and around some loops with a sharp edge.
+
+    With it comes which blocks these are. Raises BlockingError: the lines of the mesh do not bound blocks.
+    """
+    mesh = layout.mesh
+    rungs: list[Edge] = []  # an edge across each row, from wall to front
+    fronts: list[list[Edge]] = []
+    for number in sheets:
+        before = len(mesh.quads)
+        mesh = with_sheet(mesh, number)
+        row = mesh.quads[before:].tolist()
+        fronts.append([(quad[3], quad[2]) for quad in row])
+        rungs.append((row[len(row) // 2][0], row[len(row) // 2][3]))
+    for stretch in stretches:
+        before = len(mesh.quads)
+        mesh = pad_span(mesh, (stretch.loop, *stretch.span(mesh.domain.loops[stretch.loop])))
+        row = mesh.quads[before:].tolist()
+        whole = len(row) > 1 and row[0][3] == row[-1][2]
+        row = row[:-1] if whole else row  # the last one is at the corner
+        across = [(quad[0], quad[3]) for quad in row] + [(row[-1][1], row[-1][2])]
+        ends = {node for front in fronts for node in (front[0][0], front[-1][1])}
+        ends |= {across[0][1]} if whole else set()
+        fronts += [[edge] for edge in across if edge[1] in ends]  # fronts go on to the wall that crosses them
+        fronts.append([(quad[3], quad[2]) for quad in row])
+        rungs.append(across[len(row) // 2])
+    lines = np.zeros(len(mesh.edges), dtype=bool)
+    lines[_edges(mesh, [edge for front in fronts for edge in front])] = True
+    parts = base_complex(mesh, lines & ~mesh.on_wall)
+    row_of = np.full(parts.chords, -1, dtype=np.intp)
+    row_of[parts.chord[_edges(mesh, rungs)]] = np.arange(len(rungs))
+    rows_across = row_of[parts.sides[2].reshape(-1, 4)][:, [2, 0]]
+    on_front = np.zeros(len(mesh.nodes), dtype=bool)
+    on_front[[node for front in fronts for edge in front for node in edge]] = True
+    back = np.array([[on_front[block[:, 0]].all(), on_front[block[0]].all()] for block in parts.blocks])
+    loops = (*sheets, *(stretch.loop for stretch in stretches))
+    return replace(layout, mesh=mesh, blocks=parts.blocks), WallRows(loops, rows_across, back)
+
+
+def _edges(mesh: QuadMesh, pairs: Sequence[Edge]) -> Indices:
+    """Return the numbers of the edges between pairs of nodes."""
+    return mesh.edges_between(*np.array(pairs, dtype=np.intp).reshape(-1, 2).T)

@@ -1,0 +1,171 @@
+"""Edges of the blocks of a layout, and the chords that they form: edges with equal counts of cells.
+
+Opposite edges of a block have as many cells, and a shared edge has them for both its blocks. So a layout has
+one count a chord. Edges of periodic sides have those of their partners.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import exp, log, times
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.ties import nearest_whole
+from meshonet.kernels._native import joined_classes
+from meshonet.solvers.blocking.sizes.wall_turning import corners_between, turning_between
+
+LEAST = 2
+"""Fewest cells along an edge of a block."""
+TURNING_DEG = 25.0
+"""Most degrees by which a wall turns along a cell."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chords:
+    """The edges of a layout's blocks, each once.
+
+    `sides` (b, 4) are the edges at south, north, west and east of each block, `reversed` (b, 4) says where
+    the block runs the other way along one, `wall` (e,) which are walls; the `partner` (e,) of an
+    edge is the one that it is, moved by the period, else -1, and `chord` (e,) numbers the chord of each.
+    """
+
+    layout: Layout
+    edges: tuple[Indices, ...]
+    sides: Indices
+    reversed: NDArray[np.bool_]
+    wall: NDArray[np.bool_]
+    partner: Indices
+    chord: Indices
+    count: int
+
+    @classmethod
+    def of(cls, layout: Layout) -> Chords:
+        """Return the edges and chords of a layout."""
+        edges: list[Indices] = []
+        numbers: dict[tuple[int, ...], int] = {}
+        sides = np.empty((len(layout.blocks), 4), dtype=np.intp)
+        turned = np.empty(sides.shape, dtype=bool)
+        for b, block in enumerate(layout.blocks):
+            for k, line in enumerate((block[:, 0], block[:, -1], block[0], block[-1])):
+                key, turned[b, k] = _key(line)
+                if key not in numbers:
+                    numbers[key] = len(edges)
+                    edges.append(line[::-1] if turned[b, k] else line)
+                sides[b, k] = numbers[key]
+        partner = _partners(layout, edges, numbers)
+        has = np.flatnonzero(partner >= 0)
+        wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
+        wall[has], wall[partner[has]] = False, False
+        pairs = np.concatenate([sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)])
+        chord, count = joined_classes(np.ascontiguousarray(pairs), len(edges))
+        return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count)
+
+    @cached_property
+    def counts(self) -> Indices:
+        """(chords,) cells along the edges of each chord, as the layout has them."""
+        cells = np.empty(self.count, dtype=np.intp)
+        cells[self.chord] = [len(edge) - 1 for edge in self.edges]
+        return cells
+
+    @cached_property
+    def lengths(self) -> Floats:
+        """(e,) lengths of the edges, as polygons through their nodes."""
+        nodes = self.layout.mesh.nodes
+        return np.array([np.hypot(*np.diff(nodes[edge], axis=0).T).sum() for edge in self.edges])
+
+    def arcs(self, edge: int) -> Floats:
+        """Return the arc lengths (n,) of the nodes of a wall edge, rising or falling without a jump."""
+        nodes, places = self.edges[edge], self.layout.mesh.places
+        length = self.layout.mesh.domain.loops[places.loop[nodes[0]]].length
+        step = np.diff(places.arc[nodes])
+        step = np.mod(step + 0.5 * length, length) - 0.5 * length
+        if abs(np.sign(step).sum()) < len(step):  # a loop in two or three steps: keep the way of most
+            way = np.sign(np.sign(step).sum()) or 1.0
+            step = np.where(step * way < 0, step + way * length, step)
+        return places.arc[nodes[0]] + np.concatenate([[0.0], np.cumsum(step)])
+
+    @cached_property
+    def least(self) -> Indices:
+        """(chords,) fewest cells: `LEAST`, a node at each corner of the domain, `TURNING_DEG` at walls."""
+        least = np.full(self.count, LEAST, dtype=np.intp)
+        mesh = self.layout.mesh
+        for edge in np.flatnonzero(self.wall):
+            arcs = self.arcs(int(edge))
+            loop = mesh.domain.loops[mesh.places.loop[self.edges[edge][0]]]
+            ends = np.sort(arcs[[0, -1]])
+            turned = float(turning_between(loop, ends[:1], ends[1:])[0])
+            cells = int(np.ceil(turned / TURNING_DEG - 1e-9))
+            cells = max(cells, len(corners_between(loop, *ends.tolist())[0]) + 1)  # a node at each
+            least[self.chord[edge]] = max(least[self.chord[edge]], cells)
+        return least
+
+    def cells(self, counts: Indices) -> int:
+        """Return the cells of all blocks with these `counts` (chords,)."""
+        along = counts[self.chord[self.sides]]
+        return int((along[:, 0] * along[:, 2]).sum())
+
+    def cut_off(self) -> Floats:
+        """Return the areas (e,) between the walls and the cells along each edge, whatever their signs."""
+        mesh, lost = self.layout.mesh, np.zeros(len(self.edges))
+        part = np.linspace(0.0, 1.0, 5)
+        for edge in np.flatnonzero(self.wall):
+            arcs = self.arcs(int(edge))
+            loop = mesh.domain.loops[mesh.places.loop[self.edges[edge][0]]]
+            points = loop.at((arcs[:-1, None] + part * np.diff(arcs)[:, None]).ravel())
+            z = (points[:, 0] + 1j * points[:, 1]).reshape(-1, len(part))
+            z -= z[:, :1]
+            lost[edge] = 0.5 * np.abs(times(np.conj(z[:, :-1]), z[:, 1:]).imag.sum(axis=1)).sum()
+        return lost
+
+    def bend(self, edge: int) -> float:
+        """Return the most radians by which the wall turns along one cell of a wall edge."""
+        arcs = np.sort(self.arcs(edge))
+        loop = self.layout.mesh.domain.loops[self.layout.mesh.places.loop[self.edges[edge][0]]]
+        return float(np.radians(turning_between(loop, arcs[:-1], arcs[1:]).max()))
+
+    def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
+        """Return counts (chords,) for cells of a size: the geometric mean over edges of length / size.
+
+        They are at least `least` (chords,), by default the property of that name.
+        """
+        wanted = log(np.maximum(self.lengths / size, 1e-9))
+        mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
+        return np.maximum(self.least if least is None else least, nearest_whole(exp(mean)).astype(np.intp))
+
+    def counts_for_cells(self, cells: int, least: Indices | None = None) -> Indices:
+        """Return counts (chords,) for about so many cells in all; more where the fewest possible are more."""
+        size = np.sqrt(self.layout.mesh.domain.area / cells)
+        best = self.counts_for_size(size, least)
+        for _ in range(12):
+            total = self.cells(best)
+            if abs(total - cells) <= 0.02 * cells:
+                break
+            size *= np.sqrt(total / cells)
+            counts = self.counts_for_size(size, least)
+            if abs(self.cells(counts) - cells) < abs(total - cells):
+                best = counts
+        return best
+
+
+def _key(line: Indices) -> tuple[tuple[int, ...], bool]:
+    """Return what tells a line of nodes, run through either way, from others, and which way this is."""
+    first, second, last_but_one, last = (int(line[k]) for k in (0, 1, -2, -1))
+    if (first, second) <= (last, last_but_one):
+        return (first, second, last_but_one, last), False
+    return (last, last_but_one, second, first), True
+
+
+def _partners(layout: Layout, edges: list[Indices], numbers: dict[tuple[int, ...], int]) -> Indices:
+    partner = np.full(len(edges), -1, dtype=np.intp)
+    of = layout.mesh.places.partner
+    if (of >= 0).any():
+        for number, edge in enumerate(edges):
+            if (of[edge] >= 0).all():
+                partner[number] = numbers.get(_key(of[edge])[0], -1)
+    return partner

@@ -1,0 +1,41 @@
+"""The sizes that the features of a domain's walls ask for: their curvature, corners and gaps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import distinct
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.gap import wall_gaps
+from meshonet.geometry.domain.grading import graded
+from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+from meshonet.solvers.blocking.sizes.wall_bend import wall_bend
+
+TURN = np.radians(20.0)
+"""How much of a wall's turning one cell takes."""
+CELLS_IN_GAP = 2.5
+CELLS_AROUND = 24.0
+"""Cells around a loop at the least."""
+ALONG_WALL = 0.2
+"""Growth of sizes along walls, over the length between."""
+INSIDE = 0.2
+"""Growth of sizes with the distance from walls."""
+CELLS_ACROSS = 30.0
+"""Cells across a domain at the least, where nothing is near."""
+_SAMPLES, _WINDOW = 400, 3
+
+
+def feature_sizes(domain: Domain) -> SizeMetric:
+    """Return isotropic sizes of cells that show every feature of the walls of a domain."""
+    points, normals, sizes = [], [], []
+    for loop in domain.loops:
+        arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
+        along, bend = loop.tangent(arcs), wall_bend(loop, arcs, _WINDOW)
+        size = np.minimum(loop.length / CELLS_AROUND, TURN / np.maximum(bend, 1e-300))
+        size = np.minimum(size, wall_gaps(domain, loop, arcs) / CELLS_IN_GAP)
+        points.append(loop.at(arcs))
+        normals.append(np.stack([-along[:, 1], along[:, 0]], axis=1))
+        sizes.append(graded(size, arcs, loop.length, ALONG_WALL))
+    size = np.concatenate(sizes)
+    largest = domain.extent / CELLS_ACROSS
+    return SizeMetric(np.concatenate(points), np.concatenate(normals), size, size, largest, INSIDE)

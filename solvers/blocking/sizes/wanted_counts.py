@@ -1,0 +1,35 @@
+"""Counts of cells along the chords of a layout that sizes of cells ask for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.elementary import exp, log
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.ties import nearest_whole
+from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+
+_PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
+
+
+class WantedCounts:
+    """What edges of chords want, for any sizes at the same points."""
+
+    def __init__(self, chords: Chords, metric: SizeMetric) -> None:
+        self.chords = chords
+        nodes = chords.layout.mesh.nodes
+        start = nodes[np.concatenate([edge[:-1] for edge in chords.edges])]
+        step = nodes[np.concatenate([edge[1:] for edge in chords.edges])] - start
+        self.length = np.hypot(*step.T)
+        self.near = [metric.near(start + part * step, step) for part in _PARTS]
+        self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
+
+    def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
+        """Return counts (chords,), multiples near what edges want: its geometric mean, by length."""
+        parts = [self.length / near.length(metric) for near in self.near]
+        chords = self.chords
+        wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
+        weight = np.bincount(chords.chord, wanted, chords.count)
+        mean = np.bincount(chords.chord, wanted * log(np.maximum(wanted, 1e-9)), chords.count) / weight
+        return multiple * np.maximum(chords.least, nearest_whole(exp(mean) / multiple).astype(np.intp))
