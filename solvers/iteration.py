@@ -25,9 +25,14 @@ def check_tolerances(tol: float | None, max_cycles: int | None) -> None:
 def initial_nodes(boundary: Boundary, initial: Grid) -> Floats:
     """Return a planar copy of the nodes of `initial` with the edges of `boundary`, but the cut of an O."""
     nodes = initial.nodes.copy(order="K")
+    put_edges(nodes, boundary)
+    return nodes
+
+
+def put_edges(nodes: Floats, boundary: Boundary) -> None:
+    """Give `nodes` (ni, nj, 2) the edges of `boundary`, in place; of an O its cut is closed."""
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
-    if boundary.topology == "o":
+    if boundary.periodic:
         nodes[-1] = nodes[0]
     else:
         nodes[0], nodes[-1] = boundary.west, boundary.east
-    return nodes

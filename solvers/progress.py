@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.listeners import Listeners
+from meshonet.solvers.stages import Listeners
 
 if TYPE_CHECKING:
     from meshonet.solvers.solution import Solution
@@ -59,7 +59,7 @@ def cycle_ended(
 
 
 @dataclass(frozen=True)
-class Row:
+class HistoryRow:
     """A cycle of a history."""
 
     method: str  # that iterated
@@ -78,7 +78,7 @@ class History:
     """A listener that keeps the cycles of one solve."""
 
     def __init__(self) -> None:
-        self._rows: list[Row] = []
+        self._rows: list[HistoryRow] = []
         self._begun = time.perf_counter()
         self._attempt = 0
 
@@ -90,17 +90,17 @@ class History:
         self._attempt += cycle.number == 0
         place = cycle.method, cycle.ni, cycle.nj, self._attempt, cycle.number
         self._rows.append(
-            Row(*place, cycle.residual, cycle.change, self._spent(), cycle.folded, cycle.functional)
+            HistoryRow(*place, cycle.residual, cycle.change, self._spent(), cycle.folded, cycle.functional)
         )
 
-    def of(self, solution: Solution) -> tuple[Row, ...]:
+    def of(self, solution: Solution) -> tuple[HistoryRow, ...]:
         """Return the rows of the method of `solution`; for one without cycles, a row of its result."""
         rows = tuple(row for row in self._rows if row.method == solution.method)
         if rows:
             return rows
         method, grid = solution.method, solution.grid
         result = solution.cycles, solution.residual, None, self._spent(), None
-        return (Row(method, grid.ni, grid.nj, 1, *result),)
+        return (HistoryRow(method, grid.ni, grid.nj, 1, *result),)
 
     def _spent(self) -> float:
         return round(time.perf_counter() - self._begun, 6)

@@ -1,12 +1,17 @@
 """What a solver returns: the grid, how the solve ended and what it took."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import wraps
+from typing import ParamSpec
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import spelled
+
+P = ParamSpec("P")
 
 
 class Outcome(Enum):
@@ -52,3 +57,15 @@ class Solution:
     boundary: Boundary | None = None
     outcome: Outcome = Outcome.DONE
     first_cells: Mapping[str, float] = field(default_factory=dict)
+
+
+def timed(solve: Callable[P, Solution]) -> Callable[P, Solution]:
+    """Have a function say in its solution how many seconds it took, as the stage ``grid``."""
+
+    @wraps(solve)
+    def run(*args: P.args, **kwargs: P.kwargs) -> Solution:
+        begun = time.perf_counter()
+        solution = solve(*args, **kwargs)
+        return replace(solution, seconds={"grid": time.perf_counter() - begun})
+
+    return run

@@ -95,7 +95,7 @@ class Factor:
         return x.reshape(np.shape(right))
 
     def refine(self, matrix: SparseMatrix, right: Floats, steps: int) -> Floats:
-        """Return x of a matrix that differs a little from A, by so many steps of iterative refinement."""
+        """Return the solution for a matrix close to A, by `steps` of iterative refinement."""
         x = self.solve(right)
         for _ in range(steps):
             x += self.solve(right - matrix.times(x))

@@ -13,7 +13,6 @@ and its position is the Boolean sum of the two edge interpolations there (a, b, 
 Gordon and Hall, Int. J. Numer. Meth. Engng 7 (1973) 461-477; the crossing: Soni, AIAA 85-1526 (1985).
 """
 
-import time
 from typing import Literal, get_args
 
 import numpy as np
@@ -24,7 +23,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import tfi as fill
-from meshonet.solvers.solution import Solution
+from meshonet.solvers.solution import Solution, timed
 
 Blending = Literal["linear", "arclength"]
 Four = tuple[Floats, Floats, Floats, Floats]
@@ -44,11 +43,11 @@ def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
     return boundary.grid(nodes, facts)
 
 
+@timed
 def solve(boundary: Boundary, *, blending: Blending = "arclength") -> Solution:
     """Return the transfinite interpolation of `boundary` as a solution (`tfi`)."""
-    begun = time.perf_counter()
     grid = tfi(boundary, blending)
-    return Solution(grid, "tfi", seconds={"grid": time.perf_counter() - begun})
+    return Solution(grid, "tfi")
 
 
 def parameters(edges: Four, blending: Blending) -> Four:

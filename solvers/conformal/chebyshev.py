@@ -15,7 +15,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import cos, sin
 
-NODES = 16
+NODES = 16  # as PANEL_NODES in kernels/conformal/strip_rows.h
 NEAREST = 0.25  # psi from the wall's outermost point to the first panel
 WORTH = 3  # times as many grid nodes as Chebyshev points: fewer are evaluated themselves
 

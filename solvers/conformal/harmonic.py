@@ -17,6 +17,7 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.elementary import cos, exp, expm1, product, sin
+from meshonet.solvers.iteration import put_edges
 
 FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so far are left out
 
@@ -30,8 +31,7 @@ def extend(boundary: Boundary) -> Floats:
     [0.25, 0.5]
     """
     nodes = _ring(boundary) if boundary.periodic else _rectangle(boundary)
-    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
-    nodes[0], nodes[-1] = (nodes[0], nodes[0]) if boundary.periodic else (boundary.west, boundary.east)
+    put_edges(nodes, boundary)
     return nodes
 
 

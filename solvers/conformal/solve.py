@@ -23,7 +23,7 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.conformal.bisector import halve_corners
 from meshonet.solvers.conformal.evaluate import StripGrid
 from meshonet.solvers.conformal.strip import across, harmonic, modes, picard
-from meshonet.solvers.conformal.walls import Walls, is_rough, sharp_turns, walls
+from meshonet.solvers.conformal.walls import StripWalls, is_rough, sharp_turns, walls
 from meshonet.solvers.solution import Solution
 
 Polish = Literal["auto", "off"] | int  # steps: a number, ``off`` for none, ``auto`` until they change little
@@ -52,12 +52,12 @@ def solve(
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()
     lifted = [_lifted(boundary) for boundary in boundaries]
-    starts = iter(_starts([body for body, _ in lifted if isinstance(body, Walls)], correction))
+    starts = iter(_starts([body for body, _ in lifted if isinstance(body, StripWalls)], correction))
     shared = (time.perf_counter() - begun) / max(len(boundaries), 1)
     solutions = []
     for boundary, (body, rough) in zip(boundaries, lifted, strict=True):
         begun = time.perf_counter() - shared
-        if isinstance(body, Walls):
+        if isinstance(body, StripWalls):
             solution = _solved(boundary, body, next(starts), polish, model, rough=rough)
         else:
             why = f"the {_called(model)} cannot take this body ({body.problem})"
@@ -67,7 +67,7 @@ def solve(
 
 
 def _solved(
-    boundary: Boundary, body: Walls, start: Complexes, polish: Polish, model: str | None, *, rough: bool
+    boundary: Boundary, body: StripWalls, start: Complexes, polish: Polish, model: str | None, *, rough: bool
 ) -> Solution:
     c, changes = _polished(start, polish)
     if changes and not changes[-1] < DIVERGED:
@@ -91,7 +91,7 @@ def _called(model: str | None) -> str:
     return "operator" if model else "conformal map"
 
 
-def _lifted(boundary: Boundary) -> tuple[Walls | InputError, bool]:
+def _lifted(boundary: Boundary) -> tuple[StripWalls | InputError, bool]:
     """Return the walls in the strip, or why there are none, and whether the body's is rough."""
     try:
         body = walls(boundary)
@@ -100,7 +100,7 @@ def _lifted(boundary: Boundary) -> tuple[Walls | InputError, bool]:
         return error, False
 
 
-def _starts(bodies: Sequence[Walls], correction: Correction | None) -> list[Complexes]:
+def _starts(bodies: Sequence[StripWalls], correction: Correction | None) -> list[Complexes]:
     """Return where Picard's iteration starts for each body: the harmonic base, and the correction."""
     ends = [(modes(body.wall), modes(body.far)) for body in bodies]
     added: Iterable[Complexes | float] = (0.0 for _ in bodies)
@@ -121,7 +121,7 @@ def _polished(c: Complexes, polish: Polish) -> tuple[Complexes, list[float]]:
     return c, changes
 
 
-def _evaluated(boundary: Boundary, body: Walls, c: Complexes) -> tuple[Floats, bool]:
+def _evaluated(boundary: Boundary, body: StripWalls, c: Complexes) -> tuple[Floats, bool]:
     """Return the nodes of a strip solution, and whether they are finite."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
     grid = StripGrid(c, body.wall, body.far, np.linspace(0.0, 1.0, boundary.nj))

@@ -20,7 +20,7 @@ SHARP_TURN = np.radians(25.0)  # of an unevenly spaced wall, from which the line
 CORNER = np.radians(85.0)  # turn at a node, trailing edge aside, that makes a body no airfoil
 
 
-class Walls(NamedTuple):
+class StripWalls(NamedTuple):
     """A body's two walls in the strip.
 
     `lift` to the plane; F on the `wall` and on the `far` field (n,), where F = w - i theta is periodic and
@@ -37,7 +37,7 @@ class Walls(NamedTuple):
     hand: int
 
 
-def walls(boundary: Boundary) -> Walls:
+def walls(boundary: Boundary) -> StripWalls:
     """Return the walls of an O boundary in the strip. Raises InputError when the body cannot be lifted."""
     z, far = mirrored(boundary.south[:-1]), mirrored(boundary.north[:-1])
     hand, (point, direction) = handedness(z, far)
@@ -48,10 +48,10 @@ def walls(boundary: Boundary) -> Walls:
     lift = replace(lift, centre=lift.centre + z[0])
     away -= 2j * np.pi * np.round((away.imag - w.imag).mean() / (2.0 * np.pi))
     axis = None if hand else (point.conjugate(), direction.conjugate())
-    return Walls(lift, w - 1j * theta, away - 1j * theta, z, corners, axis, hand)
+    return StripWalls(lift, w - 1j * theta, away - 1j * theta, z, corners, axis, hand)
 
 
-def is_rough(body: Walls) -> bool:
+def is_rough(body: StripWalls) -> bool:
     """Return whether uneven spacing exceeds the strip's resolution a little, so that a grid may fold.
 
     Airfoils have at most 0.013 in the wall, 0.06 where nodes are evenly spaced around the leading edge;
@@ -69,18 +69,18 @@ def is_rough(body: Walls) -> bool:
     return rough
 
 
-def sharp_turns(body: Walls) -> tuple[int, ...]:
+def sharp_turns(body: StripWalls) -> tuple[int, ...]:
     """Return the trailing corners, then the nodes at which the wall turns so much that lines may cross it."""
     others = set(np.flatnonzero(_turn(body) > SHARP_TURN).tolist()) - set(body.corners)
     return (*body.corners, *sorted(others))
 
 
-def _has_other_corner(body: Walls) -> bool:
+def _has_other_corner(body: StripWalls) -> bool:
     turn = np.abs(_turn(body))
     turn[list(body.corners)] = 0.0
     return bool(turn.max() > CORNER)
 
 
-def _turn(body: Walls) -> Floats:
+def _turn(body: StripWalls) -> Floats:
     """Return the angle (n,) by which the wall turns at every node."""
     return turning(np.stack([body.z.real, body.z.imag], axis=1), closed=True)

@@ -1,4 +1,4 @@
-"""Does a moved wall cross the rest of the boundary, or lie beyond it: no grid can follow it there."""
+"""Checks that a moved wall neither crosses the rest of the boundary nor lies beyond it."""
 
 from __future__ import annotations
 
@@ -6,18 +6,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, complex_of
-from meshonet.geometry.elementary import angle
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import contains
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.polygon.self_intersection import find_crossings
 from meshonet.solvers.deformation.outer import NodeTable, Piece, lines_of
-from meshonet.solvers.deformation.targets import Targets
+from meshonet.solvers.deformation.targets import NodeTargets
 
-_MOST = 4096
+_MOST = 4096  # crossings looked at: those where lines are joined come among them and do not count
 
 
-def check_apart(table: NodeTable, targets: Targets) -> None:
+def check_apart(table: NodeTable, targets: NodeTargets) -> None:
     """Raise InputError, with the place, when planar walls in their new places cross other boundaries.
 
     Sides that slide are left out: where they end is not known before.
@@ -39,8 +38,8 @@ def check_apart(table: NodeTable, targets: Targets) -> None:
     for line in lines_of(walls):
         closed = [other for other in lines if other[0] == other[-1] and other[0] != line[0]]
         for other in closed if line[0] == line[-1] else ():
-            before = _around(table.nodes[other], table.nodes[line[0]])
-            if _around(targets.nodes[other], targets.nodes[line[0]]) != before:
+            before = contains(table.nodes[other], table.nodes[line[0]])
+            if contains(targets.nodes[other], targets.nodes[line[0]]) != before:
                 name, beyond = (_name(table.pieces, each[:2]) for each in (line, other))
                 raise InputError(
                     f"{name} is moved to the other side of {beyond}", "keep it", parameter="wall"
@@ -50,9 +49,3 @@ def check_apart(table: NodeTable, targets: Targets) -> None:
 def _name(pieces: Sequence[Piece], edge: Indices) -> str:
     names = [piece.patch.name for piece in pieces if np.isin(edge, piece.numbers).all()]
     return names[0] if names else "a side"
-
-
-def _around(line: Floats, point: Floats) -> int:
-    """Return how often a closed line (n, 2) goes round a point (2,)."""
-    way = complex_of(line - point)
-    return round(float(angle(way[1:] / way[:-1]).sum()) / (2.0 * np.pi))

@@ -8,7 +8,6 @@ are repaired, and then all nodes but those of layers optimised.
 from __future__ import annotations
 
 import contextlib
-import time
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
@@ -16,55 +15,50 @@ import numpy as np
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError
-from meshonet.geometry.quality.measure import count_folded, worst_cells_of
+from meshonet.geometry.quality.measure import count_folded_in, worst_cells_of
 from meshonet.solvers.deformation.crossings import check_apart
 from meshonet.solvers.deformation.follow import Follow, sliding_notes
 from meshonet.solvers.deformation.outer import NodeTable, first_heights
-from meshonet.solvers.deformation.targets import NewWall, Targets, targets_of
-from meshonet.solvers.solution import Outcome, Solution
+from meshonet.solvers.deformation.targets import NewWall, NodeTargets, targets_of
+from meshonet.solvers.solution import Outcome, Solution, timed
 
 METHOD = "deformation"
 STEPS = 2, 4, 8
 """In how many steps the way is gone, tried in turn while cells are folded."""
 
 
+@timed
 def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
     """Return `grid` with `walls` in their new places, and notes of what was done.
 
     Raises InputError: a surface, a starting grid with folded cells, a wall that the grid does not have, what
     cannot be its new shape, walls that cross.
     """
-    begun = time.perf_counter()
     table = NodeTable.of(grid)
-    folded = _folded(grid)
+    folded = count_folded_in(grid)
     if folded:
         where = worst_cells_of(grid, 1)[0]
         raise InputError(f"{folded} cells of the starting grid are folded, ({where})", "give a valid grid")
     targets = targets_of(table, walls)
     follow = Follow.of(table, targets.moved)
     made, path = _made(follow, targets)
-    outcome = Outcome.FOLDED if _folded(made) else Outcome.DONE
+    outcome = Outcome.FOLDED if count_folded_in(made) else Outcome.DONE
     notes = (*targets.notes, *sliding_notes(follow, targets.nodes), *_layers(table, made, targets))
     made = made.with_provenance(method=METHOD, walls=",".join(targets.names))
-    seconds = {"grid": time.perf_counter() - begun}
-    return Solution(made, METHOD, path=path, notes=notes, outcome=outcome, seconds=seconds)
+    return Solution(made, METHOD, path=path, notes=notes, outcome=outcome)
 
 
-def _folded(grid: Grid) -> int:
-    return sum(count_folded(block.nodes) for block in grid.blocks)
-
-
-def _made(follow: Follow, targets: Targets) -> tuple[Grid, tuple[str, ...]]:
+def _made(follow: Follow, targets: NodeTargets) -> tuple[Grid, tuple[str, ...]]:
     """Return the first grid without folded cells, or that with the fewest, and the stages it took."""
     tried: list[tuple[int, Grid, tuple[str, ...]]] = []
     for made, path in _ways(follow, targets):
-        tried.append((_folded(made), made, path))
+        tried.append((count_folded_in(made), made, path))
         if not tried[-1][0]:
             break
     return min(tried, key=lambda each: each[0])[1:]
 
 
-def _ways(follow: Follow, targets: Targets) -> Iterator[tuple[Grid, tuple[str, ...]]]:
+def _ways(follow: Follow, targets: NodeTargets) -> Iterator[tuple[Grid, tuple[str, ...]]]:
     made = _in_steps(follow, targets, 1)
     yield made, ()
     if made.form == "plane":
@@ -75,7 +69,7 @@ def _ways(follow: Follow, targets: Targets) -> Iterator[tuple[Grid, tuple[str, .
     yield from _mended(made)
 
 
-def _in_steps(follow: Follow, targets: Targets, steps: int) -> Grid:
+def _in_steps(follow: Follow, targets: NodeTargets, steps: int) -> Grid:
     """Return the grid after so many equal steps."""
     table = now = follow.table
     for number in range(1, steps + 1):
@@ -106,7 +100,7 @@ def _mended(grid: Grid) -> Iterator[tuple[Grid, tuple[str, ...]]]:
             yield smooth_volumes(grid).grid, ("smoothing",)
 
 
-def _layers(table: NodeTable, after: Grid, targets: Targets) -> tuple[str, ...]:
+def _layers(table: NodeTable, after: Grid, targets: NodeTargets) -> tuple[str, ...]:
     """Return a note of the largest change of a first cell's height at the moved walls."""
     pieces = [piece for piece in table.pieces if piece.patch.name in targets.names]
     walls = [piece for piece in pieces if piece.patch.kind == "wall"] or pieces

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, middle
+from meshonet.geometry.arrays import Floats, extent_of, middle
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import singular_values
 from meshonet.geometry.polygon.corners import Indices
@@ -94,7 +94,7 @@ class Follow:
 
 def _near(moved: Floats, fixed: Floats) -> float:
     """Return the distance inside which the nearest of the sources (n, d) prevail."""
-    extent = NEAR * float(np.ptp(moved, axis=0).max())
+    extent = NEAR * extent_of(moved)
     if not len(fixed):
         return extent
     some = moved[:: len(moved) // _SOME + 1]

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.elementary import arctan2, product, sin
+from meshonet.geometry.elementary import product, sin
 from meshonet.geometry.linear import inverse, nearest_rotation
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.polygon.corners import Indices, angle_between
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,9 +39,7 @@ class Turning:
     def angles(self, old: Floats, new: Floats) -> Floats:
         """Return the angles (n,) in radians by which the wall turns at nodes, from `old` to `new` (n, 2)."""
         before, after = (nodes[self.edges[:, 1]] - nodes[self.edges[:, 0]] for nodes in (old, new))
-        cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-        turn = arctan2(cross, (before * after).sum(axis=1))
-        return self._at_nodes(turn, len(old))
+        return self._at_nodes(angle_between(before, after), len(old))
 
     def _at_nodes(self, turn: Floats, n: int) -> Floats:
         shares = (self.share * turn[:, None]).ravel()

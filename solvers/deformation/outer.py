@@ -16,11 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.blocks.block import Block, face_of
+from meshonet.geometry.blocks.across import rows_at
+from meshonet.geometry.blocks.block import Block, face_of, part_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.blocks.shared_nodes import shared_nodes
+from meshonet.geometry.blocks.shared_nodes import node_table
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.polygon.corners import Indices
 
 _BACKWARDS = ("north", "west")
@@ -53,13 +55,7 @@ class NodeTable:
         """
         if grid.form == "surface":
             raise InputError("a surface has no cells that could follow it", "give a planar grid or a volume")
-        numbers = shared_nodes([block.counts for block in grid.blocks], grid.connections)
-        if len(grid.blocks) == 1 and not grid.connections:
-            return cls(grid, np.ascontiguousarray(grid.nodes.reshape(-1, grid.nodes.shape[-1])), numbers)
-        nodes = np.empty((1 + max(int(number.max()) for number in numbers), grid.blocks[0].nodes.shape[-1]))
-        for block, number in zip(grid.blocks, numbers, strict=True):
-            nodes[number] = block.nodes
-        return cls(grid, nodes, numbers)
+        return cls(grid, *node_table(grid.blocks, grid.connections))
 
     def with_nodes(self, nodes: Floats) -> tuple[Block, ...]:
         """Return the blocks with other nodes (n, d)."""
@@ -77,10 +73,7 @@ class NodeTable:
             Patch("", side, *span[0], across=span[1] if span[1:] else None, block=block)
             for each in self.grid.connections
             if each.transform is not None
-            for block, side, span in (
-                (each.block, each.side, each.range),
-                (each.donor, each.donor_side, each.donor_range),
-            )
+            for block, side, span in each.ends
         ]
         return tuple(self.piece(patch) for patch in (*self.grid.outer_patches(), *periodic))
 
@@ -88,7 +81,7 @@ class NodeTable:
         """Return the nodes of a patch."""
         face = face_of(self.numbers[patch.block], patch.side)
         span = patch.range(face.shape)
-        numbers = face[tuple(slice(first, last + 1) for first, last in span)]
+        numbers = part_of(face, span)
         if numbers.ndim == 1 and patch.side in _BACKWARDS:
             numbers = numbers[::-1]
         return Piece(patch, numbers)
@@ -126,10 +119,7 @@ def elements_of(pieces: Sequence[Piece], dimension: int) -> Indices:
     if dimension == 2:
         parts = [np.stack([p.numbers[:-1], p.numbers[1:]], axis=1) for p in pieces]
     else:
-        parts = [
-            np.stack([n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]], axis=-1).reshape(-1, 4)
-            for n in (p.numbers for p in pieces)
-        ]
+        parts = [lattice_quads([p.numbers for p in pieces])] if pieces else []
     return np.concatenate(parts) if parts else np.empty((0, 2 * (dimension - 1)), dtype=np.intp)
 
 
@@ -137,9 +127,6 @@ def first_heights(grid: Grid, pieces: Sequence[Piece]) -> Floats:
     """Return the distances (n,) of the first nodes off pieces of the boundary from the piece's own."""
     heights = []
     for piece in pieces:
-        patch, (axis, end) = piece.patch, piece.patch.place
-        nodes = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
-        at = tuple(slice(first, last + 1) for first, last in patch.range(nodes.shape[1:-1]))
-        own, beside = (nodes[-1], nodes[-2]) if end else (nodes[0], nodes[1])
-        heights.append(norms(beside[at] - own[at]).ravel())
+        own, beside = rows_at(grid, piece.patch, 2)
+        heights.append(norms(beside - own).ravel())
     return np.concatenate(heights)

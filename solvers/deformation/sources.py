@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, extent_of, norms
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.deformation.outer import NodeTable, Piece, elements_of, first_heights
 
@@ -80,7 +80,7 @@ def _group(table: NodeTable, piece: Piece, moved: Bools, areas: Floats) -> None:
     box = np.stack([table.nodes[moved].min(axis=0), table.nodes[moved].max(axis=0)])
     away = norms(nodes - np.clip(nodes, *box)).min()
     size = min(REACH * float(away), CELLS * float(first_heights(table.grid, [piece]).min()))
-    if size <= 1e-9 * float(np.ptp(nodes.reshape(-1, nodes.shape[-1]), axis=0).max()):
+    if size <= 1e-9 * extent_of(nodes.reshape(-1, nodes.shape[-1])):
         return
     labels: Indices = np.zeros(nodes.shape[:-1], dtype=np.intp)
     for axis in range(nodes.ndim - 1):

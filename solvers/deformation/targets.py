@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
@@ -36,7 +36,7 @@ SAME = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Targets:
+class NodeTargets:
     """Which nodes (n,) of a table are moved, where all nodes (n, d) go that are, and notes."""
 
     moved: NDArray[np.bool_]
@@ -45,7 +45,7 @@ class Targets:
     notes: tuple[str, ...] = ()
 
 
-def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> Targets:
+def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> NodeTargets:
     """Return where the nodes of walls go; without a name it is those of the only wall, or of all patches.
 
     Raises InputError: a wall that the grid does not have, or what cannot be its new shape.
@@ -64,13 +64,13 @@ def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> Targ
             problem = "a wall is moved where it ends on a periodic side"
             raise InputError(problem, "keep its ends, or make the grid anew", parameter="wall")
     names = dict.fromkeys(piece.patch.name for _, _, pieces in named for piece in pieces)
-    return Targets(moved, nodes, tuple(names), tuple(dict.fromkeys(notes)))
+    return NodeTargets(moved, nodes, tuple(names), tuple(dict.fromkeys(notes)))
 
 
 def _named(
     table: NodeTable, walls: Mapping[str, NewWall] | NewWall
 ) -> Iterator[tuple[str, NewWall, list[Piece]]]:
-    """Yield names, new shapes and pieces of the walls that are meant."""
+    """Yield names, new shapes and pieces of the walls that are moved."""
     if isinstance(walls, Mapping):
         if not walls:
             raise InputError("no wall is named", "give the new shape of one", parameter="wall")
@@ -234,7 +234,7 @@ def _on_boundary(wall: Floats, new: Boundary, name: str, *, closed: bool) -> tup
 
 def _check(name: str, old: Floats, before: Floats, after: Floats, known: NDArray[np.bool_]) -> None:
     """Raise InputError where nodes that another piece has moved already go elsewhere."""
-    extent = float(np.ptp(old, axis=0).max())
+    extent = extent_of(old)
     apart = np.abs(before - after).max(axis=1)
     if known.any() and apart[known].max() > SAME * extent:
         x = ", ".join(f"{value:.6g}" for value in old[known][int(np.argmax(apart[known]))])

@@ -16,7 +16,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.quality.measure import count_folded_in
 from meshonet.solvers.deformation.field import Field
 from meshonet.solvers.deformation.follow import Follow
 from meshonet.solvers.deformation.motions import Turning, turns_in_plane
@@ -48,7 +48,7 @@ class DeformationDerivative:
         self._turning = Turning.of(table.nodes, self._follow.sources.elements)
         nodes = self._follow.nodes_to(targets.nodes)
         self.grid = Grid(table.with_nodes(nodes), grid.patches, grid.connections, grid.name, grid.provenance)
-        folded = sum(count_folded(block.nodes) for block in self.grid.blocks)
+        folded = count_folded_in(self.grid)
         if folded:
             raise NoValidGridError(f"{folded} cells fold in one step; go part of the way first")
         self.walls = {name: self._line(name) for name in targets.names}

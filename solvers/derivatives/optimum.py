@@ -29,8 +29,8 @@ STILL = 1e-11
 """Move of a node, in its shortest edges, below which these end."""
 _NEAR = 0.5  # of its shortest edge, that a node of a grid near the optimum moves by at the most
 _SHIFT = 1e-9  # of the second diagonal of the system that is not symmetric
-_REFINED = 3
-_REACH = {"variational": 2, "winslow": 1}
+_REFINED = 3  # steps of refinement that make up for that
+_REACH = {"variational": 2, "winslow": 1}  # nodes each way that an equation sees
 
 
 class OptimumDerivative:

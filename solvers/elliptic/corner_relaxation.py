@@ -27,7 +27,7 @@ Window = tuple[slice, slice]
 Corner = tuple[str, int]
 
 
-class Patch:
+class CornerPatch:
     """The nodes in a `window` around one corner of a `level`, relaxed with those beyond held fixed."""
 
     def __init__(
@@ -66,11 +66,11 @@ def reentrant(edges: Four) -> list[Corner]:
 
 def patches(
     level: MultigridLevel, xi: Direction, eta: Direction, corners: list[Corner], scratch: Floats
-) -> list[Patch]:
+) -> list[CornerPatch]:
     """Return the patches of `level` around `corners`, whose indices are those of the finest level."""
     if min(xi.cells, eta.cells) < LEAST:
         return []
-    return [Patch(level, xi, eta, _window(xi, eta, side, index), scratch) for side, index in corners]
+    return [CornerPatch(level, xi, eta, _window(xi, eta, side, index), scratch) for side, index in corners]
 
 
 def _window(xi: Direction, eta: Direction, side: str, index: int) -> Window:

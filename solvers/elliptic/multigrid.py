@@ -18,7 +18,7 @@ from meshonet.kernels._native import MultigridLevel, multigrid_scratch
 from meshonet.solvers.algebraic.tfi import Four, interpolate, parameters
 from meshonet.solvers.elliptic.coarsening import Direction, uniform
 from meshonet.solvers.elliptic.control import Controls
-from meshonet.solvers.elliptic.corner_relaxation import Patch, patches, reentrant
+from meshonet.solvers.elliptic.corner_relaxation import CornerPatch, patches, reentrant
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Multigrid:
         self._edges: list[Four] = []
         self._along: list[Four] = []
         self._directions: list[tuple[Direction, Direction]] = []
-        self._patches: list[list[Patch]] = []
+        self._patches: list[list[CornerPatch]] = []
         corners = [] if periodic else reentrant(edges)
         along = parameters(edges, "arclength")
         xi = uniform(nodes.shape[0], periodic)
@@ -144,7 +144,7 @@ class Multigrid:
 
 
 def relax(nodes: Floats, sweeps: int) -> None:
-    """Relax the inner nodes of planar `nodes` (ni, nj, 2) in place by so many sweeps, on this level alone."""
+    """Relax the inner nodes of planar `nodes` (ni, nj, 2) in place by `sweeps`, on this level alone."""
     xi, eta = (uniform(n, False).differences for n in nodes.shape[:2])
     scratch = np.empty(multigrid_scratch(nodes.shape[0] - 1, nodes.shape[1] - 1))
     MultigridLevel(nodes[..., 0], nodes[..., 1], xi, eta, False, scratch, False).smooth(False, sweeps)

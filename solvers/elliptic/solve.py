@@ -1,4 +1,4 @@
-"""Boundary in, elliptic grid out: start, cycles, stop, and what to do when they diverge.
+"""From a boundary to an elliptic grid: start, cycles, stopping, and what follows divergence.
 
 ::
 
@@ -6,8 +6,6 @@
                                           |
                                        diverges --> more sweeps --> controls little by little
 """
-
-import time
 
 import numpy as np
 
@@ -19,7 +17,7 @@ from meshonet.solvers.elliptic.control import Controls, thomas_middlecoff
 from meshonet.solvers.elliptic.multigrid import Multigrid, Settings
 from meshonet.solvers.iteration import check_settings, initial_nodes
 from meshonet.solvers.progress import cycle_ended
-from meshonet.solvers.solution import Outcome, Solution
+from meshonet.solvers.solution import Outcome, Solution, timed
 
 ATTEMPTS = (Settings(), Settings(coarsest=32, sweeps=4), Settings(coarsest=64, sweeps=8))
 """Settings tried in turn when the residual grows, stalls or is not finite.
@@ -37,6 +35,7 @@ class _DivergedError(Exception):
     """The residual is not finite or grew."""
 
 
+@timed
 def solve(
     boundary: Boundary, *, tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None,
     controls: Controls | None = None, method: str = "winslow",
@@ -51,7 +50,6 @@ def solve(
     Raises InputError for bad settings or counts, SolverError when it diverged from every start tried.
     """
     check_settings(boundary, tol, max_cycles, initial)
-    begun = time.perf_counter()
     notes: tuple[str, ...] = ()
     outcome = Outcome.DONE
     for k, (settings, steps) in enumerate(_attempts(controls)):
@@ -69,10 +67,7 @@ def solve(
             notes += (f"stopped after {cycles} cycles at residual {residual:.1e}, short of {tol:g}",)
         facts = {"method": method, "residual": residual, "cycles": cycles}
         grid = boundary.grid(nodes, facts)
-        spent = {"grid": time.perf_counter() - begun}
-        return Solution(
-            grid, method, residual=residual, cycles=cycles, seconds=spent, notes=notes, outcome=outcome
-        )
+        return Solution(grid, method, residual=residual, cycles=cycles, notes=notes, outcome=outcome)
     name = "Winslow's equations" if controls is None else f"the equations of {method}"
     problem = f"{name} diverged from every start ({'; '.join(notes)})"
     raise SolverError(f"{problem}; use more nodes, variational or tfi")

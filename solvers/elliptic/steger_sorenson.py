@@ -12,7 +12,6 @@ wall at the angle.
 """
 
 import math
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -24,14 +23,14 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import arcsin
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
+from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.elliptic.wall_control import ControlledEdge
-from meshonet.solvers.elliptic.wall_lines import first_heights, lines_off
+from meshonet.solvers.elliptic.wall_lines import first_heights, lines_from_side
 from meshonet.solvers.iteration import check_settings
-from meshonet.solvers.solution import Solution
+from meshonet.solvers.solution import Solution, timed
 
 FEW = 129  # nodes along a direction up to which sources are sought first
 ROUNDS = 80, 12  # rounds of correction at the most, on few nodes and on all
@@ -42,6 +41,7 @@ THINNEST = 0.5  # thinnest first cells that sources are to hold, in those of Win
 RELAXATION = 0.5  # part of the linearised correction that is made
 
 
+@timed
 def solve_steger_sorenson(
     boundary: Boundary, *, heights: Mapping[str, float] | None = None, angle: float = 90.0,
     tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None,
@@ -57,7 +57,6 @@ def solve_steger_sorenson(
     """
     check_settings(boundary, tol, max_cycles, initial)
     heights = _checked(boundary, heights, angle)
-    begun = time.perf_counter()
     start = initial.nodes if initial is not None else solve(boundary).grid.nodes
     edges = _edges(boundary, heights, angle, start)
     counts = min(boundary.ni, FEW), min(boundary.nj, FEW)
@@ -68,13 +67,13 @@ def solve_steger_sorenson(
         _seek(nodes, small, few, ROUNDS[0])
         for edge, coarse in zip(edges, few, strict=True):
             edge.resample(coarse)
-        nodes, rounds = evaluate(nodes, boundary), ROUNDS[1]
+        nodes, rounds = refine_grid(nodes, boundary), ROUNDS[1]
     else:
         nodes, rounds = start.copy(order="K"), ROUNDS[0]
     _seek(nodes, boundary, edges, rounds)
     solution, part = _settled(boundary, start, nodes, edges, tol, max_cycles)
     notes = (*solution.notes, _angle_note(solution.grid.nodes, edges, part))
-    return replace(solution, seconds={"grid": time.perf_counter() - begun}, notes=notes)
+    return replace(solution, notes=notes)
 
 
 def largest_lean(nodes: Floats, boundary: Boundary) -> float:
@@ -111,7 +110,7 @@ def _edges(
     closed = boundary.periodic
     for side, height in heights.items():
         count = boundary.nj if side in ("south", "north") else boundary.ni
-        free = float(np.median(first_heights(lines_off(nodes, side))))
+        free = float(np.median(first_heights(lines_from_side(nodes, side))))
         held = max(height, THINNEST * free) if height else 0.0
         edges.append(ControlledEdge(side, getattr(boundary, side), count, angle, held, closed))
     return edges

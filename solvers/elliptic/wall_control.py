@@ -19,7 +19,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import exp, log
 from meshonet.solvers.elliptic.control import Controls, Factors
-from meshonet.solvers.elliptic.wall_lines import first_heights, leaning, lines_off
+from meshonet.solvers.elliptic.wall_lines import first_heights, leaning, lines_from_side
 
 DECAY = 6.0  # exponent of the decay from an edge to the opposite one
 RAMP = 0.03  # part of the nodes of an edge over which control sets in beside a corner
@@ -49,7 +49,7 @@ class ControlledEdge:
 
         (n,) each, less and less towards corners and ends of the edge, where the angle cannot be had.
         """
-        lines = lines_off(nodes, self.side)
+        lines = lines_from_side(nodes, self.side)
         lean = leaning(lines, self._tangent) - math.cos(math.radians(self.angle))
         high = log(first_heights(lines) / self.height) if self.height else np.zeros(len(lines))
         return self._weight * lean, self._weight * high
@@ -57,7 +57,7 @@ class ControlledEdge:
     def correct(self, nodes: Floats, relaxation: float) -> None:
         """Change the sources against what is wrong with `nodes`."""
         lean, high = self.errors(nodes)
-        up = first_heights(lines_off(nodes, self.side))
+        up = first_heights(lines_from_side(nodes, self.side))
         steps = self._steps
         beside = np.concatenate([steps[:1], 0.5 * (steps[:-1] + steps[1:]), steps[-1:]])
         flat = float(np.mean(up) / np.mean(beside))

@@ -1,11 +1,11 @@
-"""The grid lines that leave a side of a grid."""
+"""The grid lines that start at a side of a grid: their first heights and angles."""
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 
 
-def lines_off(nodes: Floats, side: str) -> Floats:
+def lines_from_side(nodes: Floats, side: str) -> Floats:
     """Return a view of `nodes` (ni, nj, 2) as lines that leave `side`: (along it, away from it, 2)."""
     lines = nodes if side in ("south", "north") else np.swapaxes(nodes, 0, 1)
     return lines[:, ::-1] if side in ("north", "east") else lines

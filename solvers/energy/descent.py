@@ -115,7 +115,7 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
     Splines smear what corners of a wall do to the lines that leave them. There the functional is far from a
     parabola, and descents of whole grids spend most of their iterations on a few cells.
     """
-    skewed = skewness(nodes)
+    skewed = corner_distortion(nodes)
     poor = np.argwhere(skewed > SKEWED)
     if 2 * len(poor) > skewed.size:
         poor = np.argwhere(skewed == np.inf)
@@ -134,7 +134,7 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
         window.put(nodes, True, patch)
 
 
-def skewness(nodes: Floats) -> Floats:
+def corner_distortion(nodes: Floats) -> Floats:
     """Return the largest 1/sin⁴ of the angles of each cell of `nodes` (ni, nj, 2), infinite where folded."""
     z = nodes[..., 0] + 1j * nodes[..., 1]
     along, across = np.diff(z, axis=0), np.diff(z, axis=1)

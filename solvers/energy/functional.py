@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, cross2
 from meshonet.geometry.elementary import sin
 from meshonet.geometry.polygon.corners import turning
 from meshonet.kernels._native import variational_energy
@@ -69,12 +69,8 @@ def aspect_of(nodes: Floats, periodic: bool = False) -> float:
     """
     if periodic:
         u, v = np.diff(nodes, axis=0)[:, :-1], np.diff(nodes, axis=1)[:-1]
-        area = np.abs(_cross(u, v))
+        area = np.abs(cross2(u, v))
         return float(np.sqrt(((v**2).sum(axis=-1) / area).mean() / ((u**2).sum(axis=-1) / area).mean()))
     walls, sides = nodes[:, :: nodes.shape[1] - 1], nodes[:: nodes.shape[0] - 1]
     along, across = walls[1:] - walls[:-1], sides[:, 1:] - sides[:, :-1]
     return float(np.sqrt((across**2).mean() / (along**2).mean()))
-
-
-def _cross(u: Floats, v: Floats) -> Floats:
-    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])

@@ -109,9 +109,7 @@ def _cuts(mesh: HexMesh, number: int) -> list[list[int]]:
     """Return the nodes along each direction of a block at which connections begin or end."""
     cuts = [{0, n - 1} for n in mesh.blocks[number].shape]
     for each in mesh.connections:
-        for block, side, spans in (
-            (each.block, each.side, each.range), (each.donor, each.donor_side, each.donor_range),
-        ):  # fmt: skip
+        for block, side, spans in each.ends:
             along = [axis for axis in range(3) if axis != PLACES[side][0]]
             for axis, span in zip(along, spans, strict=True):
                 if block == number:

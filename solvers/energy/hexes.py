@@ -19,7 +19,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.threads import MANY_VISITS, threads_for
-from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
+from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, corners_of
 from meshonet.kernels._native import HexDescent
 from meshonet.solvers.energy.hex_bricks import Bricks, Targets, bricks_of, cell_lengths, forces_of
 
@@ -48,7 +48,7 @@ class Slides:
 
 
 @dataclass(frozen=True, eq=False)
-class Optimum:
+class HexOptimum:
     """What `optimise` ends with."""
 
     nodes: Floats
@@ -101,8 +101,8 @@ def _sizes(mesh: HexMesh, targets: Targets) -> Floats:
     total, count = np.zeros(len(mesh.nodes)), np.zeros(len(mesh.nodes))
     for block, wanted in zip(mesh.blocks, targets, strict=True):
         mean = cell_lengths(wanted).mean(axis=0)
-        for corner in np.ndindex(2, 2, 2):
-            at = block[tuple(slice(c, c + n) for c, n in zip(corner, mean.shape, strict=True))].ravel()
+        for corner in corners_of(block):
+            at = corner.ravel()
             total += np.bincount(at, mean.ravel(), len(total))
             count += np.bincount(at, minlength=len(total))
     return total / np.maximum(count, 1)
@@ -111,7 +111,7 @@ def _sizes(mesh: HexMesh, targets: Targets) -> Floats:
 def optimise(
     mesh: HexMesh, moves: Bools, targets: Targets, *, slides: Slides | None = None, iterations: int = 60,
     tolerance: float = 1e-5,
-) -> Optimum:  # fmt: skip
+) -> HexOptimum:  # fmt: skip
     """Return the nodes of `mesh`, of which `moves` (n,) are free, where the functional is least.
 
     It ends after so many `iterations`, not counting those of unfolding, or when two in a row gain less than
@@ -120,14 +120,14 @@ def optimise(
     problem = HexProblem(mesh, moves, targets, slides)
     low, value, done = unfold(problem)
     if low <= 0.0:
-        return Optimum(problem.result(), low, np.inf, done)
+        return HexOptimum(problem.result(), low, np.inf, done)
     descent = problem.descent
     for shape, most in RAMP if low < NEARLY else ():
         descent.weigh(shape, SMOOTHNESS)
         done += descent.run(1e-4, min(most, iterations), RENEWAL)[2]
     descent.weigh(SHAPE, SMOOTHNESS)
     value, low, more = descent.run(tolerance, iterations, RENEWAL)
-    return Optimum(problem.result(), low, value, done + more)
+    return HexOptimum(problem.result(), low, value, done + more)
 
 
 def unfold(problem: HexProblem) -> tuple[float, float, int]:

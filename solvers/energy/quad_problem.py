@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, cross2
 from meshonet.geometry.elementary import log, sin
+from meshonet.geometry.layout.lattice import corner_jacobians
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import QuadDescent, line_neighbours
@@ -51,9 +52,7 @@ def unknowns_of(mesh: QuadMesh, held: Bools | None) -> Unknowns:
 
 def smallest_jacobian(nodes: Floats, quads: Indices, areas: Floats | None = None) -> float:
     """Return the smallest corner Jacobian of `quads` (m, 4) of `nodes` (n, 2), over `areas` (m,) if given."""
-    z = nodes[quads]
-    u, v = np.roll(z, -1, axis=1) - z, np.roll(z, 1, axis=1) - z
-    least = (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]).min(axis=1, initial=np.inf)
+    least = corner_jacobians(nodes[quads]).min(axis=1, initial=np.inf)
     return float((least if areas is None else least / areas).min(initial=np.inf))
 
 
@@ -128,7 +127,7 @@ class Problem:
         """Return the areas (m,) that cells are held to while they unfold: near those they have."""
         z, n = self.nodes[self.quads], len(self.nodes)
         across, other = z[:, 2] - z[:, 0], z[:, 3] - z[:, 1]
-        signed = 0.5 * (across[:, 0] * other[:, 1] - across[:, 1] * other[:, 0])
+        signed = 0.5 * cross2(across, other)
         area = np.abs(signed)
         flat, count = self.quads.ravel(), np.maximum(np.bincount(self.quads.ravel(), minlength=n), 1)
         around = area

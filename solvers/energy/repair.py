@@ -45,7 +45,7 @@ FUTILE = 2.4e7  # nodes times iterations that may be spent on patches which stay
 
 
 @dataclass
-class Patience:
+class UnfoldingBudget:
     """Budget left for unfolding that fails, in nodes times iterations; unfolding that succeeds is free."""
 
     left: float = FUTILE
@@ -61,12 +61,12 @@ def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
     if min(nodes.shape[:2]) < 3 or len(bad) == 0:
         return len(bad)
     margins = (margin, *(wider for wider in MARGINS if wider > margin))
-    if _few(len(bad), nodes) and _repair_windows(nodes, periodic, Patience(), margins) == 0:
+    if _few(len(bad), nodes) and _repair_windows(nodes, periodic, UnfoldingBudget(), margins) == 0:
         _smooth_windows(nodes, periodic, bad, margin)
         return 0
-    patience = Patience()
-    left = _repair_nested(nodes, periodic, patience)
-    left = left and _repair_windows(nodes, periodic, patience, NESTED_MARGINS, nested=True)
+    budget = UnfoldingBudget()
+    left = _repair_nested(nodes, periodic, budget)
+    left = left and _repair_windows(nodes, periodic, budget, NESTED_MARGINS, nested=True)
     grid = Grid.from_nodes(nodes, "o" if periodic else "quad")
     poor = np.argwhere(per_cell(grid, "scaled_jacobian") < POOR)
     if left == 0 and _few(len(poor), nodes):
@@ -77,7 +77,7 @@ def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
 def _repair_windows(
     nodes: Floats,
     periodic: bool,
-    patience: Patience,
+    budget: UnfoldingBudget,
     margins: tuple[int, ...] = (MARGIN, *MARGINS),
     nested: bool = False,
 ) -> int:
@@ -90,7 +90,7 @@ def _repair_windows(
         for window in windows(folded_cells(nodes), cells, nodes.shape[:2], periodic, largest):
             patch = window.cut(nodes, periodic)
             before = count_folded(patch)
-            if before and (_repair_nested if nested else untangle)(patch, False, patience) < before:
+            if before and (_repair_nested if nested else untangle)(patch, False, budget) < before:
                 window.put(nodes, periodic, patch)
         left = count_folded(nodes)
     return left
@@ -104,9 +104,9 @@ def _smooth_windows(nodes: Floats, periodic: bool, cells: NDArray[np.int64], mar
         window.put(nodes, periodic, patch)
 
 
-def untangle(patch: Floats, periodic: bool, patience: Patience) -> int:
+def untangle(patch: Floats, periodic: bool, budget: UnfoldingBudget) -> int:
     """Unfold and smooth planar `patch` (m, n, 2) in place, all nodes at once, as `repair`."""
-    if patience.left <= 0 or min(patch.shape[:2]) < 3:
+    if budget.left <= 0 or min(patch.shape[:2]) < 3:
         return count_folded(patch)
     spent, valid, tried = 0, False, patch
     for weights, iterations in UNFOLDING:
@@ -119,7 +119,7 @@ def untangle(patch: Floats, periodic: bool, patience: Patience) -> int:
     if valid:
         _smooth(patch, periodic)
     else:
-        patience.left -= spent
+        budget.left -= spent
     return count_folded(patch)
 
 
@@ -129,32 +129,32 @@ def _smooth(patch: Floats, periodic: bool = False) -> None:
         Descent(patch, SMOOTHING, periodic).run(SMOOTHING_STILL, SMOOTHING_ITERATIONS)
 
 
-def _repair_nested(nodes: Floats, periodic: bool, patience: Patience) -> int:
+def _repair_nested(nodes: Floats, periodic: bool, budget: UnfoldingBudget) -> int:
     """Unfold coarser copies first and let this grid follow, as `repair`."""
     ni, nj = nodes.shape[:2]
     tangled = not _few(count_folded(nodes), nodes)
     small = ni * nj <= LARGEST_CELLS
     if ni * nj > LARGEST_CELLS // 2 and min(ni, nj) > 5:
-        _follow_coarser(nodes, periodic, patience)
+        _follow_coarser(nodes, periodic, budget)
     elif tangled:
-        untangle(nodes, periodic, patience)
-    left = _repair_windows(nodes, periodic, patience)
+        untangle(nodes, periodic, budget)
+    left = _repair_windows(nodes, periodic, budget)
     if left and small:
-        left = untangle(nodes, periodic, patience)
+        left = untangle(nodes, periodic, budget)
     if left == 0 and small and tangled:
         _smooth(nodes, periodic)
     return left
 
 
-def _follow_coarser(nodes: Floats, periodic: bool, patience: Patience) -> None:
-    """Unfold a coarser copy of planar `nodes` (ni, nj, 2); move them as it moved, or fill them from it."""
+def _follow_coarser(nodes: Floats, periodic: bool, budget: UnfoldingBudget) -> None:
+    """Unfold a coarser copy of planar `nodes` (ni, nj, 2); give them its displacements or its nodes."""
     ni, nj = nodes.shape[:2]
     i, j = _kept(nodes[:, 0], nodes[:, -1]), _kept(nodes[0], nodes[-1])
     coarse = as_planar(nodes[np.ix_(i, j)])
     if count_folded(coarse) == 0:
         return
     before = coarse.copy(order="K")
-    _repair_nested(coarse, periodic, patience)
+    _repair_nested(coarse, periodic, budget)
     moved = nodes + _between(coarse - before, i, j, ni, nj)
     filled = _between(coarse, i, j, ni, nj)
     filled[:, 0], filled[:, -1] = nodes[:, 0], nodes[:, -1]
@@ -164,7 +164,7 @@ def _follow_coarser(nodes: Floats, periodic: bool, patience: Patience) -> None:
 
 
 def _few(cells: int, nodes: Floats) -> bool:
-    """Return whether so few `cells` of `nodes` (ni, nj, 2) are meant that windows around them come first."""
+    """Return whether `cells` are so small a part of those of `nodes` (ni, nj, 2) that windows come first."""
     return cells <= max(FEW * nodes.shape[0] * nodes.shape[1], 50)
 
 

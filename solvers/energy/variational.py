@@ -1,11 +1,10 @@
-"""Boundary in, variational grid out: nested iteration from Winslow's solution on the coarsest copy.
+"""From a boundary to a variational grid: nested iteration from Winslow's solution on the coarsest level.
 
 Each level starts from the minimum of the next coarser one, evaluated by splines. A start with folded cells is
 unfolded first: by local repair, else as a whole. The Hessian of the coarsest level preconditions the smooth
 moves of finer ones.
 """
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +14,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
-from meshonet.solvers.algebraic.resample.grids import divided, evaluate, thinned
+from meshonet.solvers.algebraic.resample.grids import divided, refine_grid, thinned
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.kinks import sweep_kinks
 from meshonet.solvers.elliptic.multigrid import relax
@@ -24,7 +23,7 @@ from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, value
 from meshonet.solvers.energy.preconditioner import Descent
 from meshonet.solvers.energy.untangle import unfold
 from meshonet.solvers.iteration import check_settings, initial_nodes
-from meshonet.solvers.solution import Solution
+from meshonet.solvers.solution import Solution, timed
 
 COARSEST = 17  # a copy with this many nodes or fewer along a direction is the first one solved
 COARSEST_AROUND = 65  # the same around a body
@@ -63,6 +62,7 @@ RELAXED = 400  # cells up to which line relaxation alone is the quickest way to 
 SWEEPS = 30  # sweeps there; they leave some thousandths of the change from the transfinite interpolation
 
 
+@timed
 def solve(
     boundary: Boundary, *, tol: float | None = None, max_cycles: int = 200, initial: Grid | None = None,
     weights: Weights | None = None,
@@ -78,7 +78,6 @@ def solve(
     Raises InputError: `initial` of other node counts; `tol` or `max_cycles` not positive.
     """
     check_settings(boundary, tol, max_cycles, initial)
-    begun = time.perf_counter()
     weights = weights or WEIGHTS[boundary.topology]
     still = tol if tol is not None else STILL
     if initial is None:
@@ -95,8 +94,7 @@ def solve(
     notes = () if valid else ("no valid start was found; the grid is not the minimum",)
     facts = {"method": "variational", "shape": weights.shape, "smoothness": weights.smoothness}
     grid = boundary.grid(nodes, {**facts, "cycles": iterations})
-    spent = {"grid": time.perf_counter() - begun}
-    return Solution(grid, "variational", cycles=iterations, seconds=spent, notes=notes)
+    return Solution(grid, "variational", cycles=iterations, notes=notes)
 
 
 def _nested(
@@ -124,7 +122,7 @@ def _nested(
     stiffness = stiffness_of(nodes, weights) if valid and last > 0 and not periodic else None
     counts = nodes.shape[0], nodes.shape[1]
     for k in range(last - 1, -1, -1):
-        coarse, nodes = nodes, evaluate(nodes, levels[k])
+        coarse, nodes = nodes, refine_grid(nodes, levels[k])
         below, large = counts, max(nodes.shape) > NEXT
         counts = nodes.shape[0], nodes.shape[1]
         limit = limits[large] if k == 0 else MOST

@@ -16,7 +16,7 @@ from meshonet.geometry.polygon.corners import Indices
 
 LEAST_GAP = 0.05
 """Of the mean distance of wall nodes between two that stay: nodes out of order are put that far apart."""
-_SAMPLES = np.linspace(0.0, 1.0, 9)
+_SAMPLES = np.linspace(0.0, 1.0, 9)  # places in an interval between which a loop's turning is summed
 
 Bools = NDArray[np.bool_]
 

@@ -12,16 +12,16 @@ from typing import NamedTuple
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.elementary import exp, power, product
+from meshonet.geometry.elementary import exp, power
 from meshonet.geometry.polygon.corners import turning
-from meshonet.geometry.spacing.growth import growing_steps
+from meshonet.geometry.spacing.growth import growing_steps, growth_rate
 
 _LESS = 0.24  # part of the growth that is left out where lines off an edge without a wedge begin to spread
 _BEGIN, _FULL = 1.2, 3.0
 """Heights over the cell at the edge at which half of that is left out, and from which it fades."""
 _FADE = 0.45  # power of the height with which it fades
 _BEFORE = 0.04  # part of the growth left out nearer to the wall, where lines off a leading edge grow the most
-_LEAST_TURN = math.radians(60.0)
+_LEAST_TURN = math.radians(60.0)  # of an edge that counts as sharp
 
 
 class Edge(NamedTuple):
@@ -63,11 +63,5 @@ def level_steps(first: float, distance: float, cells: int, constant: int, edge: 
     share = 1.0 - edge.sharpness * less
     share[: constant - 1] = 0.0
     place = np.concatenate([[0.0], np.cumsum(share)])
-    rate = math.log(plain[-1] / plain[-2])
-    for _ in range(50):  # Newton's method: the sum is convex in the rate
-        steps = first * exp(rate * place)
-        change = (float(steps.sum()) - distance) / float(product(place, steps))
-        rate -= change
-        if abs(change) < 1e-14:
-            break
+    rate = growth_rate(place, first, distance, math.log(plain[-1] / plain[-2]))
     return np.asarray(first * exp(rate * place))

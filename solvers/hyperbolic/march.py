@@ -11,7 +11,6 @@ or a C, with the area of the far field of the boundary.
 """
 
 import math
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +21,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
+from meshonet.geometry.spacing.growth import cells_for_growth, check_growth, growth_ratio
 from meshonet.geometry.spacing.y_plus import first_cell_note
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import hyperbolic_march, redistribute
@@ -35,7 +34,7 @@ from meshonet.solvers.hyperbolic.settings import (
     SHARP_ATTEMPTS,
     MarchSettings,
 )
-from meshonet.solvers.solution import Solution
+from meshonet.solvers.solution import Solution, timed
 from meshonet.solvers.stages import filling
 
 FADE_ROWS = 12.0  # rows over which the correction of the first cell fades out
@@ -49,6 +48,7 @@ MOST_GROWTH = 1.5
 AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a level
 
 
+@timed
 def hyperbolic(
     boundary: Boundary, *, wall_spacing: float, growth: float | None = None, free_rows: bool = False,
     constant: int = 1,
@@ -64,7 +64,6 @@ def hyperbolic(
     Raises InputError: a four-sided boundary; a spacing or growth out of range; rows that do not suffice;
     SolverError: no attempt gave finite nodes.
     """
-    begun = time.perf_counter()
     check_layers(wall_spacing, growth)
     if boundary.topology == "quad":
         raise InputError(
@@ -86,7 +85,7 @@ def hyperbolic(
             break
     if best is None:
         raise SolverError("the march diverged from every start; use more nodes around the body or fewer rows")
-    return _solution(boundary, best, first, begun)
+    return _solution(boundary, best, first)
 
 
 def check_layers(wall_spacing: float, growth: float | None = None) -> None:
@@ -94,12 +93,7 @@ def check_layers(wall_spacing: float, growth: float | None = None) -> None:
     if not 1e-9 <= wall_spacing <= 0.1:
         problem = f"a first cell of {wall_spacing:g} chords"
         raise InputError(problem, "use 1e-9 to 0.1", parameter="first_cell")
-    if growth is not None and not 1.0 < growth <= MOST_GROWTH:
-        raise InputError(
-            f"a growth of {growth:g}",
-            f"give the ratio of neighbouring cells, such as 1.15, at most {MOST_GROWTH:g}",
-            parameter="growth",
-        )
+    check_growth(growth, MOST_GROWTH)
 
 
 def _rows(cells: int, first: float, distance: float, growth: float | None, free: bool, constant: int) -> int:
@@ -190,7 +184,7 @@ def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:
         nodes[:, 1:] += back[..., None] * step
 
 
-def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> Solution:
+def _solution(boundary: Boundary, nodes: Floats, first: float) -> Solution:
     """Return the solution of `nodes`, with the boundary that they have now."""
     parts = tuple(
         replace(part, stop=nodes.shape[1] - 1) if part.side in ("west", "east") else part
@@ -202,7 +196,7 @@ def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> 
     facts = {"method": "hyperbolic", "wall_spacing": first}
     return Solution(
         Grid.from_nodes(nodes, boundary.topology, parts, boundary.name, facts), "hyperbolic",
-        seconds={"grid": time.perf_counter() - begun}, notes=(_first_cell_note(boundary, nodes, first),),
+        notes=(_first_cell_note(boundary, nodes, first),),
         boundary=edges, first_cells={"south": first},
     )  # fmt: skip
 

@@ -9,7 +9,7 @@ from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.growth import LARGEST
+from meshonet.geometry.spacing.growth import LARGEST, check_growth
 from meshonet.kernels._native import layer_steps
 
 
@@ -38,12 +38,7 @@ class Heights:
             raise InputError(
                 f"{self.constant} constant layers", "give at least 1", parameter="constant_layers"
             )
-        if self.growth is not None and not 1.0 < self.growth <= LARGEST:
-            raise InputError(
-                f"a growth of {self.growth:g}",
-                f"give the ratio of neighbouring cells, such as 1.15, at most {LARGEST:g}",
-                parameter="growth",
-            )
+        check_growth(self.growth)
 
     @property
     def by_side(self) -> dict[str, float]:

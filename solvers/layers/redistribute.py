@@ -25,7 +25,7 @@ from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.growth import LARGEST
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import layer_lines, redistribute
-from meshonet.solvers.elliptic.wall_lines import first_heights, lines_off
+from meshonet.solvers.elliptic.wall_lines import first_heights, lines_from_side
 from meshonet.solvers.layers.first_cells import (
     Heights,
     arcs_in_layers,
@@ -170,7 +170,7 @@ def _make_exact(nodes: Floats, periodic: bool, heights: Heights) -> None:
 
 def _correct(nodes: Floats, side: str, height: float) -> None:
     """Make the first cells off one edge exact, moving nodes less and less away from it."""
-    view = lines_off(nodes, side)
+    view = lines_from_side(nodes, side)
     if side in ("west", "east"):
         view = view[1:-1]
     planes = np.ascontiguousarray(view[..., 0]), np.ascontiguousarray(view[..., 1])
@@ -192,4 +192,4 @@ def worst_first_cell(solution: Solution) -> float:
 
 def first_cell_error(nodes: Floats, side: str, height: float) -> float:
     """Return the largest relative error of the first cells off one edge."""
-    return float(np.abs(first_heights(lines_off(nodes, side)) / height - 1.0).max())
+    return float(np.abs(first_heights(lines_from_side(nodes, side)) / height - 1.0).max())

@@ -21,7 +21,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
-from meshonet.solvers.elliptic.wall_lines import leaning, lines_off
+from meshonet.solvers.elliptic.wall_lines import leaning, lines_from_side
 
 COUNTS = 129, 49  # nodes along and between the walls, at the most, on which places are sought
 ROUNDS = 60  # rounds at the most
@@ -129,7 +129,7 @@ def _leans(nodes: Floats, curves: tuple[Curve, Curve], arcs: list[Floats]) -> li
     """Return the sine (m,) of the angle to each wall's normal, less and less next to ends and kinks."""
     leans = []
     for curve, arc, side in zip(curves, arcs, ("south", "north"), strict=True):
-        lean = leaning(lines_off(nodes, side), curve.tangent(arc))
+        lean = leaning(lines_from_side(nodes, side), curve.tangent(arc))
         fixed = np.concatenate([[0.0], _inner_corners(curve), [curve.length]])
         away = np.abs(arc[:, None] - fixed).min(axis=1)
         leans.append(lean * np.clip(away / (RAMP * curve.length), 0.0, 1.0))

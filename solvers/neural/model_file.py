@@ -14,7 +14,7 @@ from meshonet.geometry.errors import InputError
 HEADER = "meshonet"  # the metadata entry that holds the header as JSON
 LARGEST_BYTES = 64 * 1024 * 1024  # a larger file is not one of ours
 
-OURS = "use a file made by meshonet train"
+OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
@@ -25,10 +25,12 @@ class Kind(NamedTuple):
     version: int
 
 
+# told apart by their headers; the version is that of what the arrays mean
 STRIP = Kind("meshonet strip operator", "encoding", 1)
 QUAD = Kind("meshonet quad operator", "encoding", 2)
 PAPER = Kind("meshonet operator", "version", 1)
 KINDS = {kind.text: kind for kind in (STRIP, QUAD, PAPER)}
+"""Kinds by their text; files of another version are refused."""
 
 
 def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]]]:

@@ -1,23 +1,19 @@
-"""Every model there is: those shipped or in files by `load`, those that can be trained by `MODELS`."""
+"""The trained models: those shipped or in files, by `load`."""
 
 from __future__ import annotations
 
 import dataclasses
-import importlib
-from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from pkgutil import resolve_name
+from typing import Any
 
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.errors import InputError, meant
 from meshonet.solvers.neural.model_file import OURS, PAPER, QUAD, STRIP, Kind, read_model
 from meshonet.solvers.neural.operator import Operator
 
-if TYPE_CHECKING:
-    from meshonet.solvers.neural.models.architecture import Architecture
-
-FOLDER = Path(__file__).parent / "pretrained"
+FOLDER = Path(__file__).parent / "pretrained"  # of the shipped files
 
 BASE = "base"  # the harmonic base with no network, where a strip operator can be named
 DEFAULTS: dict[Topology, str] = {"o": "airfoil-o", "quad": "quad-general"}  # where none is named
@@ -28,29 +24,12 @@ HEADS = {"quad-winslow": ("quad-general", 0), "hole-winslow": ("hole-o", 0)}
 NEVER = {"airfoil-c": "leave {model} out: {topology} c is marched from wall and wake, better than by a model"}
 """Models that one may look for and that are not made, and what serves instead."""
 
-OPERATORS: dict[Kind, tuple[str, str]] = {
-    STRIP: ("strip.operator", "StripOperator"),
-    QUAD: ("quad.operator", "QuadOperator"),
-    PAPER: ("models.operator", "PaperOperator"),
+OPERATORS: dict[Kind, str] = {
+    STRIP: "meshonet.solvers.neural.strip.operator:StripOperator",
+    QUAD: "meshonet.solvers.neural.quad.operator:QuadOperator",
+    PAPER: "meshonet.solvers.neural.models.operator:PaperOperator",
 }
-"""Module and class of each kind of file."""
-
-ARCHITECTURES: dict[str, tuple[str, str]] = {
-    "meshonet": ("branch_trunk", "MeshONet"),
-    "meshonet-hard": ("meshonet_hard", "MeshONetHard"),
-    "deeponet": ("branch_trunk", "DeepONet"),
-    "pod-deeponet": ("branch_trunk", "PODDeepONet"),
-    "fno1d": ("fourier", "FNO1D"),
-    "fno2d": ("fourier", "FNO2D"),
-    "mionet": ("branch_trunk", "MIONet"),
-    "mgnet": ("mgnet", "MGNet"),
-    "meshnet": ("mgnet", "MeshNet"),
-}
-"""Module and class of the models that are trained on solved grids, in the order of the help."""
-
-MODELS = ("strip", "quad", *ARCHITECTURES)
-"""What can be trained: the airfoil operator in the periodic strip, trained from boundaries; the operator for
-four-sided domains or bodies, from Winslow's and variational grids; the paper's, from solved grids."""
+"""Class of each kind of file."""
 
 
 def shipped() -> tuple[str, ...]:
@@ -101,8 +80,7 @@ def _load(path: Path, _modified: int) -> Operator:
     kind, header, arrays = read_model(path)
     own = header.get("name")
     name = own if isinstance(own, str) and own.isprintable() else path.stem
-    module, made = OPERATORS[kind]
-    cls: type[Operator] = getattr(importlib.import_module(f"{__package__}.{module}"), made)
+    cls: type[Operator] = resolve_name(OPERATORS[kind])
     try:
         return cls.of_file(name, header, arrays)
     except InputError as error:
@@ -119,47 +97,3 @@ def described(name: str) -> dict[str, Any]:
     facts: dict[str, Any] = {key: header[key] for key in ("topology", "recipe", "figures") if key in header}
     parameters = int(sum(array.size for array in arrays.values()))
     return {"name": name, **facts, "parameters": parameters, "file": str(path)}
-
-
-def architecture(name: str, topology: Topology, settings: Mapping[str, Any] | None = None) -> Architecture:
-    """Return the model `name` of the paper's with `settings` in place of its defaults.
-
-    Raises InputError: no such model or setting, or a value of another type than the setting's.
-
-    >>> architecture("meshonet", "quad", {"sensors": 80}).sensors
-    80
-    """
-    if name not in ARCHITECTURES:
-        raise InputError(
-            f"model {name!r} is not known", meant(name, MODELS) + "use one of " + ", ".join(MODELS)
-        )
-    module, made = ARCHITECTURES[name]
-    cls = getattr(importlib.import_module(f"{__package__}.models.{module}"), made)
-    defaults = {field.name: field.default for field in dataclasses.fields(cls)}
-    if "periodic" in defaults:
-        defaults["periodic"] = topology == "o"
-    changed = {key: _fitting(name, defaults, key, value) for key, value in (settings or {}).items()}
-    return cls(**{**defaults, **changed})
-
-
-def name_of(model: Architecture) -> str:
-    """Return the name of a model of the paper's."""
-    return next(name for name, (_, cls) in ARCHITECTURES.items() if cls == type(model).__name__)
-
-
-def settings_of(model: Architecture) -> dict[str, Any]:
-    """Return the settings of a model as JSON keeps them."""
-    return {key: list(v) if isinstance(v, tuple) else v for key, v in dataclasses.asdict(model).items()}
-
-
-def _fitting(name: str, defaults: Mapping[str, Any], key: str, value: Any) -> Any:
-    """Return a setting's value. Raises InputError unless it is like the setting's default."""
-    if key not in defaults:
-        raise InputError(f"{name} has no setting {key!r}", "use one of " + ", ".join(defaults))
-    default = defaults[key]
-    if isinstance(default, tuple) and isinstance(value, list | tuple) and value:
-        return tuple(_fitting(name, {key: default[0]}, key, item) for item in value)
-    right = type(value) is type(default) or (isinstance(default, float) and isinstance(value, int))
-    if not right or (isinstance(value, int) and not isinstance(value, bool) and not 0 <= value <= 4096):
-        raise InputError(f"{key}={value!r} does not suit {name}", f"use something like {key}={default!r}")
-    return value

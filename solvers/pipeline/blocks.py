@@ -8,12 +8,13 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError, NoValidGridError
-from meshonet.geometry.quality.measure import count_folded, worst_cells_of
+from meshonet.geometry.quality.measure import count_folded_in, worst_cells_of
 from meshonet.geometry.shapes.assembly import assembled, domain_of
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.blocking.request import BlockRequest
+from meshonet.solvers.pipeline.uses import MANY, SMOOTHED, refuse
 from meshonet.solvers.solution import Solution
 
 if TYPE_CHECKING:
@@ -25,12 +26,6 @@ SMOOTHERS = ("auto", "variational")
 """Methods that smooth the blocks of a given grid."""
 METHODS = ("best", *SMOOTHERS)
 """Methods under whose names blocks are made: their nodes come from one optimum of the variational energy."""
-_OF_ONE = ("spacing", "le_spacing", "te_spacing", "wake", "wake_nodes")
-_OF_SMOOTHING = ("slide", "max_cycles")
-_OF_GRIDS = (
-    "spacing_south", "spacing_north", "spacing_west", "spacing_east", "slide", "wall_angle", "initial",
-    "repair_margin",
-)  # fmt: skip
 
 
 def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
@@ -45,7 +40,7 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
     if not request.asks_for_blocks and request.method not in METHODS and getattr(shape, "one", None):
         return None  # a method of single blocks, as by the name
     domain = _domain(shape, request)
-    _check_use(request, smooths=smooths(domain, request))
+    _check_use(request, SMOOTHED if smooths(domain, request) else MANY)
     return domain
 
 
@@ -78,7 +73,7 @@ def smoothed(grid: Grid, request: GridRequest) -> Solution:
 def _refuse_folded(grid: Grid) -> None:
     worst = worst_cells_of(grid)
     if worst:
-        folded = sum(count_folded(block.nodes) for block in grid.blocks)
+        folded = count_folded_in(grid)
         cells = sum((block.counts[0] - 1) * (block.counts[1] - 1) for block in grid.blocks)
         problem = (
             f"{folded} of {cells} cells stay folded; find other blocks with {{cells}}, or {{allow_invalid}}"
@@ -153,16 +148,9 @@ def _for_one(request: GridRequest) -> dict[str, bool]:
     }
 
 
-def _check_use(request: GridRequest, *, smooths: bool = False) -> None:
-    """Raise InputError for the first parameter of no use to many blocks, or to smoothing given ones."""
+def _check_use(request: GridRequest, way: str = MANY) -> None:
+    """Raise InputError for the first option of no use to many blocks, or to smoothing given ones."""
     if request.method not in METHODS:
         problem = f"method {request.method} makes single blocks"
         raise InputError(problem, "drop {method}, or ask for {blocks} single")
-    plain, given = Sampling(), request.sampling
-    useless = [name for name in _OF_ONE if getattr(given, name) != getattr(plain, name)]
-    useless += [name for name in _OF_GRIDS if getattr(request, name)]
-    useless += [name for name in request.chosen if name != "refine"]
-    for name in useless:
-        if smooths and name in _OF_SMOOTHING:
-            continue
-        raise InputError(f"{{{name}}} is of no use to a domain of many blocks", f"drop {{{name}}}")
+    refuse(request.chosen, way)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.method import METHODS, method_named
+from meshonet.geometry.spacing.first_cell import check_height
+from meshonet.solvers.pipeline.methods import METHODS, method_named
 
 if TYPE_CHECKING:
     from meshonet.solvers.pipeline.request import GridRequest
@@ -47,24 +47,12 @@ def check_request(request: GridRequest) -> None:
 
 
 def _check_first_cells(request: GridRequest) -> None:
-    if request.first_cell is not None and request.y_plus is not None:
-        problem = "{first_cell} and {y_plus} both say how high the first cell is"
-        raise InputError(problem, "give one of them")
-    if (request.y_plus is None) != (request.reynolds is None):
-        needed, known = ("reynolds", "y_plus") if request.reynolds is None else ("y_plus", "reynolds")
-        raise InputError(f"{{{known}}} without {{{needed}}}", f"give {{{needed}}} as well")
-    if request.y_plus is None and request.chord_fraction != 0.5:
-        raise InputError("{chord_fraction} without {y_plus}", "give {y_plus} and {reynolds} as well")
-    heights = {
-        "first_cell": request.first_cell,
-        **{f"spacing_{side}": h for side, h in request.sides.items()},
-    }
-    for name, height in heights.items():
-        if height is not None and not 0 < height < math.inf:
-            raise InputError(f"a first cell of {height:g}", "give a positive height", parameter=name)
+    request.check_first_cell()
+    for side, height in request.sides.items():
+        check_height(height, f"spacing_{side}")
     if not request.at_walls and not request.sides:
-        for name, value in (("constant_layers", request.constant_layers), ("growth", request.growth)):
-            if value is not None:
+        for name in ("constant_layers", "growth"):
+            if getattr(request, name) is not None:
                 problem = f"{{{name}}} without a first cell"
                 raise InputError(problem, "give {first_cell} or {y_plus} as well")
     if request.constant_layers is not None and request.constant_layers < 1:
@@ -72,4 +60,3 @@ def _check_first_cells(request: GridRequest) -> None:
     if request.at_walls and request.growth is not None and not 1 < request.growth <= 10:
         remedy = "give the ratio of neighbouring cells, such as 1.15"
         raise InputError(f"a growth of {request.growth:g}", remedy, parameter="growth")
-    request.wall_height()  # which says what is out of range

@@ -12,8 +12,8 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
-from meshonet.solvers.method import METHODS, Wrapper
+from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
+from meshonet.solvers.pipeline.methods import METHODS, Wrapper
 from meshonet.solvers.solution import Solution
 
 LEAST_NODES = 9  # fewest coarse nodes along a direction that describe anything
@@ -47,7 +47,7 @@ def solve_coarse(
         return solve(boundary)
     begun = time.perf_counter()
     solution = solve(thinned(boundary, *counts))
-    nodes = evaluate(solution.grid.nodes, boundary)
+    nodes = refine_grid(solution.grid.nodes, boundary)
     if smooth:
         from meshonet.solvers.elliptic.kinks import sweep_kinks
 

@@ -12,7 +12,7 @@ from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.stages import reached
 
-_REMEDY = "go part of the way first, or make the grid of the new shape anew"
+_REMEDY = "go part of the way first, or make the grid of the new shape anew"  # where cells fold
 
 
 def make_deformed(

@@ -1,4 +1,4 @@
-"""No folded grid passes here in silence: it is repaired, or made by another method, or refused."""
+"""The guard: a folded grid is repaired, made again by another method, or refused."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -8,12 +8,12 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, NoValidGridError, SolverError
 from meshonet.geometry.quality.measure import count_folded, worst_cells
-from meshonet.solvers.method import Method, method_named
+from meshonet.solvers.pipeline.methods import Method, method_named
 from meshonet.solvers.solution import Outcome, Solution
 
 ORDER = ("winslow", "tfi")  # methods that follow where a grid cannot be repaired
 
-REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
+REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"  # where all ways fold
 
 
 def guard(

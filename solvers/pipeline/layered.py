@@ -8,7 +8,7 @@
     anything else ---------------- solve --------------------+
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import Any
@@ -18,14 +18,13 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.layers.first_cells import Heights
-from meshonet.solvers.method import Each, Method, Wrapper, method_named, solved
 from meshonet.solvers.pipeline.fallback import guard
+from meshonet.solvers.pipeline.methods import Each, Method, Wrapper, method_named, solved
+from meshonet.solvers.pipeline.uses import CHANNEL, MARCHED, refuse
 from meshonet.solvers.solution import Solution
 
 UPRIGHT_DEGREES = 0.3  # by which lines may lean at walls whose nodes have slid
 LEANING_DEGREES = 1.0  # by which they may lean when sources have turned them
-
-MARCHED = "a grid marched from the wall"
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ class Layered(Wrapper):
     channels: bool = False
     # move wall nodes of four-sided domains; None: in channels, when they were sampled here
     slide: bool | None = None
-    # settings that are not the defaults; they are refused where they are of no use
+    # options that are not the defaults; they are refused where they are of no use
     chosen: tuple[str, ...] = ()
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
@@ -94,7 +93,7 @@ class Layered(Wrapper):
         return self._in_layers(boundary, heights, start)
 
     def _march(self, boundary: Boundary, height: float) -> Solution:
-        _refuse((*self.chosen, *["slide"] * bool(self.slide)), MARCHED)
+        refuse(self.chosen, MARCHED)
         cells = self.cells
         settings = {"growth": cells.growth, "free_rows": cells.free_rows, "constant": cells.constant}
         solution = method_named("hyperbolic", wall_spacing=height, **settings).solve([boundary])[0]
@@ -125,8 +124,7 @@ class Layered(Wrapper):
                 return self._upright(solution, boundary, heights, start)
             return solution
         if channel:
-            networks = [each for each in ("model", "polish", "answer") if each in self.chosen]
-            _refuse(networks, "a channel with given wall nodes")
+            refuse((each for each in ("model", "polish", "answer") if each in self.chosen), CHANNEL)
         if self.full is not None and (channel or self.name == "steger-sorenson"):
             return self._turned(boundary, heights, start)
         return self.inner(boundary, start)
@@ -163,9 +161,3 @@ class Layered(Wrapper):
         return solved(
             method_named("steger-sorenson", **self.turning, heights=heights.by_side), boundary, start
         )
-
-
-def _refuse(settings: Iterable[str], what: str) -> None:
-    """Raise InputError for the first of the `settings`, which are of no use to `what`."""
-    for setting in settings:
-        raise InputError(f"{{{setting}}} is of no use to {what}", f"drop {{{setting}}}")

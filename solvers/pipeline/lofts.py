@@ -34,7 +34,7 @@ from meshonet.solvers.sweeping.butterfly import CORE, filled, ring_rows
 
 _FADE = 4.0
 """Distance from a blade, in chords, at which two thirds of its twist and scale are gone."""
-_GROWTH = 1.2
+_GROWTH = 1.2  # of layers where none is given, as of volumes that are marched
 
 
 def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:

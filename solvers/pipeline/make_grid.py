@@ -1,38 +1,36 @@
-"""Shapes in, valid grids out: sample, solve, check, measure; many at a time where that is faster."""
+"""From shapes to valid grids: sample, solve, check, measure; many at a time where that is faster."""
 
 from __future__ import annotations
 
-import contextlib
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import MeshonetError
-from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.threads import limited_to
-from meshonet.solvers.method import Method
 from meshonet.solvers.pipeline.choose_method import method_of
-from meshonet.solvers.pipeline.fallback import guard, refuse_folded
+from meshonet.solvers.pipeline.methods import Method
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.result import Result, judged, with_changes
 from meshonet.solvers.pipeline.sample_shape import sampled
-from meshonet.solvers.pipeline.volumes import make_volume
-from meshonet.solvers.progress import History, listening
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import reached
 
 if TYPE_CHECKING:
     from meshonet.geometry.shapes.domain_shape import DomainShape
+    from meshonet.solvers.progress import HistoryRow
 
+K = TypeVar("K")
 MOST_TOGETHER = 64  # shapes that are solved together at the most
 MOST_NODES = 1 << 22  # nodes of grids from which no more are solved together: some hundred MB
-_OTHER_METHODS = "try {method} variational, or {allow_invalid}"
+_OTHER_METHODS = "try {method} variational, or {allow_invalid}"  # where cells of a volume fold
 
 
 def make_grid(shape: Shape, request: GridRequest) -> Result:
@@ -58,6 +56,14 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
         Cells are folded, and that was not allowed.
     SolverError
         The method diverged.
+
+    Examples
+    --------
+    >>> from meshonet.geometry.shapes.airfoil.naca import naca
+    >>> from meshonet.solvers.pipeline.parameters import grid_request
+    >>> result = make_grid(naca("2412"), grid_request(res=(41, 17)))
+    >>> result.grid.nodes.shape, result.solution.method
+    ((41, 17, 2), 'conformal')
     """
     result = next(make_grids([shape], request))
     if isinstance(result, Exception):
@@ -87,14 +93,34 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     ------
     InputError
         The method does not have such settings.
+
+    Examples
+    --------
+    >>> from meshonet.geometry.shapes.airfoil.naca import naca
+    >>> from meshonet.solvers.pipeline.parameters import grid_request
+    >>> results = make_grids(map(naca, ("0012", "2412")), grid_request("tfi", res=(41, 17)))
+    >>> [result.grid.name for result in results]
+    ['NACA 0012', 'NACA 2412']
+    """
+    return (result for _, result in make_grids_of(((None, shape) for shape in shapes), request))
+
+
+def make_grids_of(
+    shapes: Iterable[tuple[K, Shape]], request: GridRequest
+) -> Iterator[tuple[K, Result | Exception]]:
+    """Yield what each of the shapes belongs to and its grid or error, as `make_grids` does.
+
+    Raises InputError: the method does not have such settings.
     """
     method = method_of(request)
     shapes = iter(shapes)
     while group := _group(shapes, request, MOST_TOGETHER if method.together else 1):
-        with limited_to(request.threads):
-            _solve_together(group, method)
+        if len(group) > 1:
+            with limited_to(request.threads):
+                _solve_together([member for _, member in group], method)
         while group:
-            yield _finished_or_error(group.popleft(), method, request)
+            key, member = group.popleft()
+            yield key, _finished_or_error(member, method, request)
 
 
 @dataclass
@@ -106,17 +132,17 @@ class _Member:
     solution: Solution | None = None
 
 
-def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> deque[_Member]:
-    group: deque[_Member] = deque()
+def _group(shapes: Iterator[tuple[K, Shape]], request: GridRequest, most: int) -> deque[tuple[K, _Member]]:
+    group: deque[tuple[K, _Member]] = deque()
     nodes = 0
-    for shape in islice(shapes, most):
+    for key, shape in islice(shapes, most):
         reached("boundary")
         begun = time.perf_counter()
         try:
             boundary: Boundary | DomainShape | SpatialShape | Exception = sampled(shape, request)
         except Exception as error:
             boundary = error
-        group.append(_Member(boundary, {"boundary": time.perf_counter() - begun}))
+        group.append((key, _Member(boundary, {"boundary": time.perf_counter() - begun})))
         nodes += boundary.ni * boundary.nj if isinstance(boundary, Boundary) else 0
         if nodes >= MOST_NODES:
             break
@@ -167,15 +193,18 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
         return _of_volume(boundary, request, seconds)
     if not isinstance(boundary, Boundary):
         return _of_blocks(boundary, request, seconds)
-    history = History()
+    rows: tuple[HistoryRow, ...] = ()
     if solution is None:
         reached("grid")
         begun = time.perf_counter()
         start = None if request.initial is None else [request.initial]
-        with listening(history) if request.history else contextlib.nullcontext():
+        if request.history:
+            solution, rows = _with_history(lambda: method.solve([boundary], start)[0])
+        else:
             solution = method.solve([boundary], start)[0]
         _add_times(seconds, solution, time.perf_counter() - begun)
-    rows = history.of(solution) if request.history else ()
+    elif request.history:
+        _, rows = _with_history(lambda: solution)
     reached("guard")
     begun = time.perf_counter()
     checked = _checked(solution, boundary, request)
@@ -187,6 +216,16 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     seconds["quality"] = time.perf_counter() - begun
     checked = replace(checked, grid=replace(checked.grid, origin=boundary.origin))
     return Result(with_changes(checked, notes), quality, seconds, notes, rows)
+
+
+def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[HistoryRow, ...]]:
+    """Return a solution and the cycles that lead to it."""
+    from meshonet.solvers.progress import History, listening
+
+    history = History()
+    with listening(history):
+        solution = solve()
+    return solution, history.of(solution)
 
 
 def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
@@ -210,6 +249,8 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
 
 def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, float]) -> Result:
     """Return the volume grid of a shape in space, measured."""
+    from meshonet.solvers.pipeline.volumes import make_volume
+
     reached("grid")
     begun = time.perf_counter()
     solution = make_volume(shape, request)
@@ -225,6 +266,10 @@ def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> N
 
 
 def _checked(solution: Solution, boundary: Boundary, request: GridRequest) -> Solution:
+    if not count_folded(solution.grid.nodes):
+        return solution
+    from meshonet.solvers.pipeline.fallback import guard, refuse_folded
+
     if request.repairs():
         return guard(solution, boundary, allow_invalid=request.allow_invalid, margin=request.repair_margin)
     if not request.allow_invalid:

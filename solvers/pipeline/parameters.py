@@ -7,9 +7,10 @@ from typing import Any, TypeAlias
 
 from meshonet.geometry.errors import meant
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.method import UnknownSettingError
 from meshonet.solvers.pipeline.choose_method import method_of
+from meshonet.solvers.pipeline.methods import UnknownSettingError
 from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.pipeline.uses import COUNTED
 
 Counts: TypeAlias = int | tuple[int, int] | tuple[int, int, int]
 """Nodes along every direction, or along each of them."""
@@ -67,8 +68,9 @@ def sampling_of(res: Counts | None, parameters: dict[str, Any]) -> Sampling:
     return Sampling(**counts, **{name: parameters.pop(name) for name in SAMPLED if name in parameters})
 
 
-COUNTED = ("ni", "nj", "nk")
 SAMPLED = tuple(each.name for each in fields(Sampling) if each.name not in (*COUNTED, "viscous"))
+"""Parameters of the sampling, without counts and without what follows from first cells."""
 REQUESTED = tuple(
     each.name for each in fields(GridRequest) if each.name not in ("sampling", "method", "settings")
 )
+"""Parameters of the request; all others are settings of the method."""

@@ -8,26 +8,116 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from meshonet.geometry.arrays import SIDES
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.spacing.first_cell import FirstCell
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.geometry.spacing.y_plus import first_cell
-from meshonet.solvers.method import METHODS
 from meshonet.solvers.pipeline.check_request import check_request
+from meshonet.solvers.pipeline.methods import METHODS
+from meshonet.solvers.pipeline.uses import FOR_MANY, chosen
 
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
 
-OF_VOLUMES = ("layers", "symmetry", "energy")
-"""Parameters that only grids in space have a use for."""
 
-OF_BLOCKS = ("cells", "cell_size", "walls", "pitch", "inlet", "outlet", "layout")
-"""Parameters any of which asks for many blocks."""
+@dataclass(frozen=True)
+class Request(FirstCell):
+    """What every way of making grids reads; `GridRequest` explains all fields."""
 
-DEFAULTS = {"coarse": "auto", "refine": 0, "polish": "auto", "answer": "valid", "blending": "arclength"}
-"""Values that say nothing; of other parameters None is one."""
+    sampling: Sampling = field(default_factory=Sampling)
+    method: str = "best"
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    growth: float | None = None
+    allow_invalid: bool = False
+    percentiles: bool = False
+    threads: int | None = None
+
+    @property
+    def chosen(self) -> tuple[str, ...]:
+        """Names of the options that are not what they are by default, settings at the end."""
+        return chosen(self)
 
 
 @dataclass(frozen=True)
-class GridRequest:
+class OneBlock(Request):
+    """What a grid of one block needs."""
+
+    constant_layers: int | None = None
+    spacing_south: float | None = None
+    spacing_north: float | None = None
+    spacing_west: float | None = None
+    spacing_east: float | None = None
+    slide: bool | None = None
+    wall_angle: float | None = None
+    coarse: int | Literal["auto"] | None = "auto"
+    refine: int = 0
+    initial: Grid | None = None
+    repair: bool | None = None
+    repair_margin: int | None = None
+    history: bool = False
+
+    @property
+    def sides(self) -> dict[str, float]:
+        """Heights of first cells off single sides, by the side."""
+        return {side: h for side in SIDES if (h := getattr(self, f"spacing_{side}")) is not None}
+
+    @property
+    def algebraic(self) -> bool:
+        """Whether the method solves no equations."""
+        return self.method in METHODS and METHODS[self.method].algebraic
+
+    @property
+    def by_network(self) -> bool:
+        """Whether the method is a neural operator by its name."""
+        return self.method.partition(":")[0] == "operator"
+
+    def shape_sampling(self) -> Sampling:
+        """Return the sampling of shapes: with thin first cells, wall nodes whose spacing changes slowly."""
+        if not self.at_walls or self.algebraic:
+            return self.sampling
+        spacing = "curvature" if self.sampling.spacing == "auto" else self.sampling.spacing
+        return replace(self.sampling, spacing=spacing, viscous=True)
+
+    def repairs(self) -> bool:
+        """Return whether folded grids are repaired."""
+        if self.repair is not None:
+            return self.repair
+        return not self.algebraic and self.settings.get("answer", "valid") == "valid"
+
+
+@dataclass(frozen=True)
+class ManyBlocks(Request):
+    """What a grid of many blocks needs."""
+
+    constant_layers: int | None = None
+    slide: bool | None = None
+    refine: int = 0
+    blocks: Literal["auto", "single"] = "auto"
+    cells: int | None = None
+    cell_size: float | None = None
+    walls: tuple[str, ...] = ()
+    pitch: tuple[float, float] | None = None
+    inlet: float | None = None
+    outlet: float | None = None
+    layout: Layout | None = None
+
+    @property
+    def asks_for_blocks(self) -> tuple[str, ...]:
+        """Names of the options that are given and that only many blocks have a use for."""
+        return tuple(name for name in FOR_MANY if getattr(self, name) not in (None, ()))
+
+
+@dataclass(frozen=True)
+class Volume(Request):
+    """What a grid in space needs."""
+
+    slide: bool | None = None
+    coarse: int | Literal["auto"] | None = "auto"
+    layers: int | None = None
+    symmetry: Literal["x", "y", "z", "none"] | None = None
+    energy: Literal["angles", "shape"] | None = None
+
+
+@dataclass(frozen=True)
+class GridRequest(OneBlock, ManyBlocks, Volume):
     """How to make grids from shapes; the values are checked when it is made.
 
     Parameters
@@ -105,91 +195,5 @@ class GridRequest:
         A value out of its range; parameters that need or exclude each other.
     """
 
-    sampling: Sampling = field(default_factory=Sampling)
-    method: str = "best"
-    settings: Mapping[str, Any] = field(default_factory=dict)
-    first_cell: float | None = None
-    y_plus: float | None = None
-    reynolds: float | None = None
-    chord_fraction: float = 0.5
-    growth: float | None = None
-    constant_layers: int | None = None
-    spacing_south: float | None = None
-    spacing_north: float | None = None
-    spacing_west: float | None = None
-    spacing_east: float | None = None
-    slide: bool | None = None
-    wall_angle: float | None = None
-    coarse: int | Literal["auto"] | None = "auto"
-    refine: int = 0
-    initial: Grid | None = None
-    repair: bool | None = None
-    repair_margin: int | None = None
-    allow_invalid: bool = False
-    percentiles: bool = False
-    history: bool = False
-    blocks: Literal["auto", "single"] = "auto"
-    cells: int | None = None
-    cell_size: float | None = None
-    walls: tuple[str, ...] = ()
-    pitch: tuple[float, float] | None = None
-    inlet: float | None = None
-    outlet: float | None = None
-    layout: Layout | None = None
-    layers: int | None = None
-    symmetry: Literal["x", "y", "z", "none"] | None = None
-    energy: Literal["angles", "shape"] | None = None
-    threads: int | None = None
-
     def __post_init__(self) -> None:
         check_request(self)
-
-    @property
-    def asks_for_blocks(self) -> tuple[str, ...]:
-        """Names of the parameters that are given and that only many blocks have a use for."""
-        return tuple(name for name in OF_BLOCKS if getattr(self, name) not in (None, ()))
-
-    @property
-    def at_walls(self) -> bool:
-        """Whether there is a first cell off walls, not only off single sides."""
-        return self.first_cell is not None or self.y_plus is not None
-
-    @property
-    def sides(self) -> dict[str, float]:
-        """Heights of first cells off single sides, by the side."""
-        return {side: h for side in SIDES if (h := getattr(self, f"spacing_{side}")) is not None}
-
-    def wall_height(self) -> float | None:
-        """Return the height of the first cell off walls, given or by its y+."""
-        if self.y_plus is None or self.reynolds is None:
-            return self.first_cell
-        return first_cell(self.y_plus, self.reynolds, self.chord_fraction)
-
-    @property
-    def algebraic(self) -> bool:
-        """Whether the method solves no equations."""
-        return self.method in METHODS and METHODS[self.method].algebraic
-
-    @property
-    def by_network(self) -> bool:
-        """Whether the method is a neural operator by its name."""
-        return self.method.partition(":")[0] == "operator"
-
-    @property
-    def chosen(self) -> tuple[str, ...]:
-        """What was given and is not so by default, in the order in which it is refused."""
-        values = {**self.settings, "initial": self.initial, "coarse": self.coarse, "refine": self.refine}
-        return tuple(name for name, value in values.items() if value != DEFAULTS.get(name))
-
-    def shape_sampling(self) -> Sampling:
-        """Return the sampling of shapes: with thin first cells, wall nodes whose spacing changes slowly."""
-        if not self.at_walls or self.algebraic:
-            return self.sampling
-        spacing = "curvature" if self.sampling.spacing == "auto" else self.sampling.spacing
-        return replace(self.sampling, spacing=spacing, viscous=True)
-
-    def repairs(self) -> bool:
-        """Return whether folded grids are repaired."""
-        if self.repair is not None:
-            return self.repair
-        return not self.algebraic and self.settings.get("answer", "valid") == "valid"

@@ -11,14 +11,14 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.notes import change_facts
 from meshonet.geometry.quality.measure import measure, worst_cells_of
-from meshonet.geometry.quality.summary import Quality
-from meshonet.solvers.progress import Row
+from meshonet.geometry.summary import Quality
 from meshonet.solvers.solution import Outcome, Solution
 from meshonet.solvers.stages import reached
 
 if TYPE_CHECKING:
     from meshonet.solvers.deformation.request import DeformRequest
     from meshonet.solvers.pipeline.request import GridRequest
+    from meshonet.solvers.progress import HistoryRow
     from meshonet.solvers.stacking.request import StackRequest
 
 
@@ -38,7 +38,7 @@ class Result:
     notes : tuple of str, optional
         Sentences a user should read, those of boundary and solution among them; names of parameters stand in
         braces, for `meshonet.geometry.errors.spelled`.
-    history : tuple of Row, optional
+    history : tuple of HistoryRow, optional
         Cycles of the method, when the request keeps them.
     """
 
@@ -46,7 +46,7 @@ class Result:
     quality: Quality
     seconds: Mapping[str, float]
     notes: tuple[str, ...] = ()
-    history: tuple[Row, ...] = ()
+    history: tuple[HistoryRow, ...] = ()
 
     @property
     def grid(self) -> Grid:

@@ -11,13 +11,11 @@ import numpy as np
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Advice
-from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
-from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.spacing.sampling import DEFAULT_FAR_FIELD, Sampling
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.volumes import check_plane
+from meshonet.solvers.pipeline.uses import IN_SPACE, ONE, refuse
 
 if TYPE_CHECKING:
     from meshonet.geometry.shapes.domain_shape import DomainShape
@@ -43,10 +41,18 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | DomainShape | Spat
     boundary = edges_of(shape, sampling)
     if request.refine:
         boundary = edges_of(shape, _finer(sampling, shape, boundary, 2**request.refine))
-    if boundary.topology == "quad" or not isinstance(shape, Airfoil | Outline):
+    unit = getattr(shape, "far_field_unit", "")
+    if boundary.topology == "quad" or not unit:
         return boundary
-    unit = "chords" if isinstance(shape, Airfoil) else "extents of the body"
     return replace(boundary, notes=(*boundary.notes, *_far_field_advice(request, unit)))
+
+
+def check_plane(request: GridRequest) -> None:
+    """Raise InputError for parameters that only grids in space have a use for."""
+    refuse((name for name in request.chosen if name in IN_SPACE), ONE)
+    if request.sampling.nk is not None:
+        problem = f"{request.sampling.nk} nodes along a third direction of a grid in the plane"
+        raise InputError(problem, "give NI x NJ", parameter="res")
 
 
 def _far_field_advice(request: GridRequest, unit: str) -> tuple[str, ...]:

@@ -19,9 +19,9 @@ from meshonet.geometry.shapes.circle import Circle
 from meshonet.geometry.shapes.domain_shape import DomainShape, four_sided
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.spacing.y_plus import first_cell, height_note
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.pipeline.uses import GIVEN_SECTION, refuse
 from meshonet.solvers.sweeping.butterfly import DEFAULT_CELLS, Disc, butterfly
 
 _SIDES = 65, 33
@@ -37,9 +37,7 @@ def section_grid(shape: Shape | Grid, request: GridRequest) -> tuple[Grid, tuple
     Raises InputError: parameters that do not fit the shape; as `make_grid`.
     """
     if isinstance(shape, Grid):
-        for name in ("cells", "cell_size", "first_cell", "y_plus", "layout"):
-            if getattr(request, name) is not None:
-                raise InputError(f"{{{name}}} is of no use to a section that is a grid", "leave it out")
+        refuse(request.chosen, GIVEN_SECTION)
         return shape, ()
     request, note = _with_height(shape, request)
     notes = (note,) if note else ()
@@ -80,11 +78,11 @@ def extent(shape: Shape | Grid) -> float:
 
 def _with_height(shape: Shape, request: GridRequest) -> tuple[GridRequest, str]:
     """Return the request with the height of a y+, by the extent of the section, and where it is from."""
-    if request.y_plus is None or request.reynolds is None:
+    if request.y_plus is None:
         return request, ""
     unit = extent(shape)
-    height = first_cell(request.y_plus, request.reynolds, request.chord_fraction) * unit
-    note = height_note(request.y_plus, request.reynolds, f"on a length of {unit:.6g}", f"{height:.6g}")
+    note = request.height_note(f"on a length of {unit:.6g}", unit)
+    height = request.height(unit)
     return replace(request, y_plus=None, reynolds=None, chord_fraction=0.5, first_cell=height), note
 
 

@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.transform import coarser_boundary
-from meshonet.solvers.algebraic.resample.grids import evaluate
-from meshonet.solvers.method import Wrapper
+from meshonet.solvers.algebraic.resample.grids import refine_grid
+from meshonet.solvers.pipeline.methods import Wrapper
 from meshonet.solvers.solution import Solution
 
 
@@ -43,7 +43,7 @@ def solve_refined(
     seconds, counts = dict(solution.seconds), [_counts(solution)]
     for k in range(levels - 1, -1, -1):
         finer = coarser_boundary(boundary, 2**k) if k else boundary
-        start = Grid.from_nodes(evaluate(solution.grid.nodes, finer), boundary.topology, finer.patches)
+        start = Grid.from_nodes(refine_grid(solution.grid.nodes, finer), boundary.topology, finer.patches)
         solution = solve(finer, initial=start)
         seconds = {stage: seconds.get(stage, 0.0) + spent for stage, spent in solution.seconds.items()}
         counts.append(_counts(solution))

@@ -15,7 +15,7 @@ from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.wing_surface import wing_surface
 from meshonet.solvers.stages import reached
 
-_REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"
+_REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"  # where cells fold
 
 
 def stack_surface(stack: Stack, request: StackRequest | None = None) -> tuple[Grid, tuple[str, ...]]:
@@ -51,7 +51,7 @@ def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
 
     grid, notes = (blade_volume if stack.kind == "blade" else duct_volume)(stack, request)
     seconds["grid"] = time.perf_counter() - begun
-    note = request.note(stack.chord)
+    note = request.height_note(f"on a chord of {stack.chord:.6g}", stack.chord)
     return Solution(grid, "loft", notes=(*notes, note) if note else notes)
 
 
@@ -76,5 +76,6 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
     begun = time.perf_counter()
     solution = march_surface(surface, settings)
     seconds["grid"] = time.perf_counter() - begun
-    notes = (*notes, *(note for note in (request.note(chord),) if note), *solution.notes)
+    note = request.height_note(f"on a chord of {chord:.6g}", chord)
+    notes = (*notes, *[note] * bool(note), *solution.notes)
     return replace(solution, grid=replace(solution.grid, name=stack.name), notes=notes)

@@ -15,7 +15,7 @@ from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import reached
 from meshonet.solvers.sweeping.sweep import Sweep, reach_of, self_crossing, sweep
 
-_REMEDY = "use a wider bend, a smaller section or more {planes}"
+_REMEDY = "use a wider bend, a smaller section or more {planes}"  # where cells fold
 
 
 def make_sweep(

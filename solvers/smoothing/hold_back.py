@@ -11,7 +11,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.layout.from_grid import with_nodes
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.quality.checkmesh import cells_beyond
-from meshonet.solvers.smoothing.judge import Measures, measures
+from meshonet.solvers.smoothing.judge import PlaneMeasures, measures
 
 _ROUNDS, _GENTLE = 30, 8
 """Tries at the most, and those after which nodes of bad cells stay where they were at once."""
@@ -21,7 +21,7 @@ _SMALL = 0.02
 """Part of the way below which a node stays where it was."""
 
 
-def held_back(grid: Grid, given: Layout, layout: Layout, before: Measures) -> Grid | None:
+def held_back(grid: Grid, given: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:
     """Return `grid`, of which `given` is the layout, moved towards `layout` without becoming worse.
 
     `before` are its measures. None where hardly anything would move.

@@ -55,7 +55,7 @@ def with_layers(mesh: QuadMesh, given: QuadMesh) -> tuple[QuadMesh, NDArray[np.b
 
 
 @dataclass(frozen=True)
-class _Lines:
+class _WallLines:
     """Lines that leave the boundary: nodes (n, m), the wall first, and whether they end a thin cell (n, m-1).
 
     A line that ends earlier repeats its last node. There is a step beyond the thin ones, if there is one.
@@ -65,7 +65,7 @@ class _Lines:
     thin: NDArray[np.bool_]
 
 
-def _lines(mesh: QuadMesh) -> _Lines:
+def _lines(mesh: QuadMesh) -> _WallLines:
     edge_of = np.ascontiguousarray(mesh.edge_of)
     numbers = np.arange(len(mesh.nodes)), np.arange(len(mesh.edges))
     beside, _ = line_neighbours(np.ascontiguousarray(mesh.quads), edge_of, *numbers)
@@ -88,7 +88,7 @@ def _lines(mesh: QuadMesh) -> _Lines:
         nodes.append(node)
         going = going & ~mesh.wall_nodes[node]
         flags.append(thin[edge] & going)
-    return _Lines(np.stack(nodes, axis=1), np.stack(flags, axis=1))
+    return _WallLines(np.stack(nodes, axis=1), np.stack(flags, axis=1))
 
 
 def _thin(mesh: QuadMesh) -> NDArray[np.bool_]:
@@ -100,11 +100,11 @@ def _thin(mesh: QuadMesh) -> NDArray[np.bool_]:
     return ~wide
 
 
-def _heights(nodes: Floats, lines: _Lines) -> Floats:
+def _heights(nodes: Floats, lines: _WallLines) -> Floats:
     return np.asarray(np.hypot(*np.moveaxis(np.diff(nodes[lines.nodes], axis=1), -1, 0)))
 
 
-def _at_new_places(heights: Floats, lines: _Lines, mesh: QuadMesh, given: QuadMesh) -> Floats:
+def _at_new_places(heights: Floats, lines: _WallLines, mesh: QuadMesh, given: QuadMesh) -> Floats:
     """Return heights (n, m) of lines whose wall nodes slid, between those at the places they came from."""
     wall = lines.nodes[:, 0]
     new = heights.copy()

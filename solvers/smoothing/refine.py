@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 from meshonet.geometry.blocks.block import Block, Range
+from meshonet.geometry.blocks.families import joins_whole_sides
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.from_grid import layout_of
-from meshonet.geometry.shapes.given_blocks import joins_whole_sides
-from meshonet.solvers.blocking.refine import multiplied
+from meshonet.solvers.blocking.sizes.refine import multiplied
 
 
 def refined(grid: Grid, times: int) -> Grid:
-    """Return `grid` with `times` as many cells along both directions; its nodes are among the new ones.
+    """Return `grid` with each cell divided into `times` x `times`; its nodes are kept.
 
     Raises InputError: as `layout_of`; a connection of a part of a side.
     """

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.blocks.block import face_of
+from meshonet.geometry.arrays import Floats, extent_of, norms
+from meshonet.geometry.blocks.block import face_of, part_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import symmetric_eigen
@@ -33,9 +33,8 @@ def slides_of(grid: Grid, mesh: HexMesh) -> tuple[Slides, Bools]:
     numbers = {name: k for k, name in enumerate(sorted({patch.name for patch in grid.patches}))}
     for patch in grid.patches:
         spans = patch.range(face_of(mesh.blocks[patch.block], patch.side).shape)
-        part = tuple(slice(a, b + 1) for a, b in spans)
         free = mesh.free_cells(patch.block, patch.side)[tuple(slice(a, b) for a, b in spans)]
-        nodes = np.unique(face_of(mesh.blocks[patch.block], patch.side)[part])
+        nodes = np.unique(part_of(face_of(mesh.blocks[patch.block], patch.side), spans))
         nodes = nodes[mesh.outer[nodes]]
         if not free.all():
             fixed[nodes], known[nodes], count[nodes] = True, True, 9
@@ -49,7 +48,7 @@ def slides_of(grid: Grid, mesh: HexMesh) -> tuple[Slides, Bools]:
 
 def _normal(points: Floats) -> Floats | None:
     """Return the unit normal (3,) of the plane of points (n, 3), None where they are in none."""
-    size = float(np.ptp(points, axis=0).max())
+    size = extent_of(points)
     centred = points - points.mean(axis=0)
     values, vectors = symmetric_eigen(product(centred.T, centred))
     normal = vectors[:, 0]

@@ -21,7 +21,7 @@ _GOOD, _PART = 0.7, 0.98
 
 
 @dataclass(frozen=True)
-class Measures:
+class VolumeMeasures:
     """Folded cells and what must not become worse."""
 
     folded: int
@@ -30,7 +30,7 @@ class Measures:
     least: float
     """Least scaled Jacobian of a corner."""
 
-    def no_worse(self, than: Measures) -> bool:
+    def no_worse(self, than: VolumeMeasures) -> bool:
         """Say whether no figure is worse."""
         if than.folded or self.folded:
             return self.folded < than.folded
@@ -42,11 +42,11 @@ class Measures:
         return min(_PART * self.least, _GOOD)
 
 
-def measures(mesh: HexMesh) -> Measures:
+def measures(mesh: HexMesh) -> VolumeMeasures:
     """Return the measures of a mesh."""
     quality = measure_volumes(_grid(mesh))
     metrics = quality.metrics
-    return Measures(quality.folded, metrics["deviation"].mean, metrics["scaled_jacobian"].min)
+    return VolumeMeasures(quality.folded, metrics["deviation"].mean, metrics["scaled_jacobian"].min)
 
 
 def cells_below(mesh: HexMesh, bound: float) -> list[NDArray[np.bool_]]:

@@ -30,7 +30,7 @@ _ROOM = 0.9
 
 
 @dataclass(frozen=True, eq=False)
-class Layers:
+class VolumeLayers:
     """Lines from outer sides inwards, of nodes (n,) each of which the first is on the side.
 
     `rows` (m,) of lines (m, n) are how many edges from the side on end thin cells, `heights` (m, n-1) those
@@ -41,12 +41,12 @@ class Layers:
     rows: Indices
     heights: Floats
 
-    def only_first(self) -> Layers:
+    def only_first(self) -> VolumeLayers:
         """Return layers of one row."""
         return replace(self, rows=np.minimum(self.rows, 1))
 
 
-def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[Layers]:
+def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[VolumeLayers]:
     """Return the layers at outer sides of a mesh of which nodes `moves` (n,) are free."""
     layers = []
     for number, (block, wanted) in enumerate(zip(mesh.blocks, targets, strict=True)):
@@ -65,7 +65,7 @@ def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[Layers]:
                 at = np.flatnonzero(rows)
                 lines = lattice.reshape(len(lattice), -1)[:, at].T
                 heights = _heights(mesh.nodes[lines], edges[0].reshape(len(lattice) - 1, -1)[:, at].T)
-                layers.append(Layers(lines, rows[at], heights))
+                layers.append(VolumeLayers(lines, rows[at], heights))
     return _of_one_foot(layers, len(mesh.nodes))
 
 
@@ -100,7 +100,7 @@ def _heights(points: Floats, logs: Floats) -> Floats:
     return np.where(np.abs(own - logs) < _UNLIKE, np.sqrt(squares), exp(logs))
 
 
-def _of_one_foot(layers: list[Layers], count: int) -> list[Layers]:
+def _of_one_foot(layers: list[VolumeLayers], count: int) -> list[VolumeLayers]:
     """Return layers whose rows end where nodes are over more than one node of outer sides."""
     low, high = np.full(count, count), np.full(count, -1)
     for each in layers:
@@ -113,7 +113,7 @@ def _of_one_foot(layers: list[Layers], count: int) -> list[Layers]:
     return [replace(each, rows=np.minimum(each.rows, most)) for each, most in zip(layers, rows, strict=True)]
 
 
-def with_layers(nodes: Floats, layers: list[Layers]) -> tuple[Floats, Bools]:
+def with_layers(nodes: Floats, layers: list[VolumeLayers]) -> tuple[Floats, Bools]:
     """Return `nodes` (n, 3) with layers as high as they should be, and which of them (n,) are in layers."""
     moved, held = nodes.copy(), np.zeros(len(nodes), dtype=bool)
     for each in layers:

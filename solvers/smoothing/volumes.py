@@ -9,7 +9,6 @@ the least scaled Jacobian nor the mean deviation from 90 degrees becomes worse
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from functools import partial
 
@@ -17,19 +16,19 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner, hex_mesh_of, with_nodes
+from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner, corners_of, hex_mesh_of, with_nodes
 from meshonet.solvers.energy.hex_bricks import Targets
 from meshonet.solvers.energy.hexes import HexProblem, Slides, optimise, unfold
 from meshonet.solvers.smoothing.slide_planes import slides_of
-from meshonet.solvers.smoothing.volume_judge import Measures, cells_below, measures
-from meshonet.solvers.smoothing.volume_layers import Layers, layers_of, with_first_heights, with_layers
+from meshonet.solvers.smoothing.volume_judge import VolumeMeasures, cells_below, measures
+from meshonet.solvers.smoothing.volume_layers import VolumeLayers, layers_of, with_first_heights, with_layers
 from meshonet.solvers.smoothing.volume_restart import harmonic
 from meshonet.solvers.smoothing.volume_spacing import wanted_edges
-from meshonet.solvers.solution import Outcome, Solution
+from meshonet.solvers.solution import Outcome, Solution, timed
 
 METHOD = "variational"
-ITERATIONS = 100
-TOLERANCE = 1e-5
+ITERATIONS = 100  # of the optimum, at the most
+TOLERANCE = 1e-5  # relative gain of the functional at which it ends before
 _AROUND = (2, 4)
 """Cells around folded ones that unfold with them, before all of them do."""
 _ROUNDS, _GENTLE = 12, 5
@@ -39,6 +38,7 @@ _SHARES = (0.5, 0.7, 0.85)
 _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 
 
+@timed
 def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = False) -> Solution:
     """Return `grid` with its nodes moved to the optimum of all blocks.
 
@@ -47,7 +47,6 @@ def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = Fa
 
     Raises InputError: blocks that are no volumes, or left-handed.
     """
-    begun = time.perf_counter()
     given = hex_mesh_of(grid)
     before = measures(given)
     slides, sliding = slides_of(grid, given) if slide else (Slides.none(), np.zeros(len(given.nodes), bool))
@@ -60,15 +59,14 @@ def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = Fa
     return Solution(
         result.with_provenance(method=METHOD, slide=slide),
         METHOD,
-        seconds={"grid": time.perf_counter() - begun},
         notes=notes,
         outcome=Outcome.FOLDED if after.folded else Outcome.DONE,
     )
 
 
 def _best(
-    given: HexMesh, before: Measures, moves: Bools, slides: Slides, iterations: int
-) -> tuple[HexMesh, Measures]:
+    given: HexMesh, before: VolumeMeasures, moves: Bools, slides: Slides, iterations: int
+) -> tuple[HexMesh, VolumeMeasures]:
     """Return the smoothed mesh and its measures, the given one where it is no better."""
     targets = wanted_edges(given, moves)
     layers = layers_of(given, moves, targets)
@@ -85,8 +83,8 @@ def _best(
 
 
 def _unfolded(
-    given: HexMesh, before: Measures, moves: Bools, targets: Targets, slides: Slides
-) -> tuple[HexMesh, Measures, Targets]:
+    given: HexMesh, before: VolumeMeasures, moves: Bools, targets: Targets, slides: Slides
+) -> tuple[HexMesh, VolumeMeasures, Targets]:
     """Return the mesh without folded cells, or with fewer, and the edges that are wanted.
 
     What is around folded cells is moved first, then all, then all from a new beginning.
@@ -104,8 +102,8 @@ def _unfolded(
 
 
 def _with_fewer(
-    mesh: HexMesh, start: HexMesh, measured: Measures, moves: Bools, targets: Targets, slides: Slides
-) -> tuple[HexMesh, Measures]:
+    mesh: HexMesh, start: HexMesh, measured: VolumeMeasures, moves: Bools, targets: Targets, slides: Slides
+) -> tuple[HexMesh, VolumeMeasures]:
     """Return `start` unfolded, and its measures, where it has fewer folded cells than `mesh`; else that."""
     problem = HexProblem(start, moves, targets, slides)
     unfold(problem)
@@ -115,7 +113,7 @@ def _with_fewer(
 
 
 def _around(mesh: HexMesh, reach: int) -> Bools:
-    """Return which nodes (n,) are within so many cells of folded ones."""
+    """Return which nodes (n,) are within a distance, in cells, of folded cells."""
     near = _nodes_of(mesh, cells_below(mesh, 0.0))
     for _ in range(reach):
         near = _dilated(near, mesh)
@@ -126,9 +124,8 @@ def _nodes_of(mesh: HexMesh, cells: list[Bools]) -> Bools:
     """Return which nodes (n,) are corners of some cells of each block."""
     nodes = np.zeros(len(mesh.nodes), dtype=bool)
     for block, some in zip(mesh.blocks, cells, strict=True):
-        for corner in np.ndindex(2, 2, 2):
-            at = tuple(slice(c, c + n) for c, n in zip(corner, some.shape, strict=True))
-            nodes[block[at][some]] = True
+        for corner in corners_of(block):
+            nodes[corner[some]] = True
     return nodes
 
 
@@ -138,7 +135,12 @@ def _dilated(nodes: Bools, mesh: HexMesh) -> Bools:
 
 
 def _optima(
-    start: HexMesh, moves: Bools, targets: Targets, layers: list[Layers], slides: Slides, iterations: int
+    start: HexMesh,
+    moves: Bools,
+    targets: Targets,
+    layers: list[VolumeLayers],
+    slides: Slides,
+    iterations: int,
 ) -> Iterator[tuple[HexMesh, bool]]:
     """Yield what there is of optima, the better first: all layers at their heights, or only first cells.
 
@@ -157,8 +159,8 @@ def _optima(
 
 
 def _held_back(
-    start: HexMesh, made: HexMesh, before: Measures, layers: list[Layers]
-) -> tuple[HexMesh, Measures] | None:
+    start: HexMesh, made: HexMesh, before: VolumeMeasures, layers: list[VolumeLayers]
+) -> tuple[HexMesh, VolumeMeasures] | None:
     """Return `made` moved back towards `start` until it is no worse, None where nothing would move."""
     part = np.ones(len(start.nodes))
     for number in range(_ROUNDS):
@@ -177,8 +179,8 @@ def _held_back(
     return None
 
 
-def _part_of_the_way(old: Floats, new: Floats, part: Floats, layers: list[Layers]) -> Floats:
-    """Return nodes at `part` (n,) of the way between two, first cells of layers as high as they were."""
+def _part_of_the_way(old: Floats, new: Floats, part: Floats, layers: list[VolumeLayers]) -> Floats:
+    """Return nodes at `part` (n,) of the way between two positions, with unchanged first cells of layers."""
     nodes = old + part[:, None] * (new - old)
     still = part == 0.0
     nodes[still], nodes[part == 1.0] = old[still], new[part == 1.0]

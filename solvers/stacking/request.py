@@ -6,16 +6,16 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.growth import LARGEST
-from meshonet.geometry.spacing.y_plus import first_cell, height_note
+from meshonet.geometry.spacing.first_cell import FirstCell
+from meshonet.geometry.spacing.growth import check_growth
 from meshonet.solvers.stacking.section_nodes import GAP
 from meshonet.solvers.stacking.wing_surface import DEFAULT_AROUND, DEFAULT_SPAN, WingSurface
 
-DEFAULT_FIRST_CELL, DEFAULT_FAR_FIELD = 1e-3, 15.0
+DEFAULT_FIRST_CELL, DEFAULT_FAR_FIELD = 1e-3, 15.0  # chords
 
 
 @dataclass(frozen=True)
-class StackRequest:
+class StackRequest(FirstCell):
     """How a stack becomes a surface or a volume; validates itself. Lengths are in longest chords.
 
     Parameters
@@ -53,10 +53,6 @@ class StackRequest:
     around: int = DEFAULT_AROUND
     span: int = DEFAULT_SPAN
     base: float = GAP
-    first_cell: float | None = None
-    y_plus: float | None = None
-    reynolds: float | None = None
-    chord_fraction: float = 0.5
     layers: int | None = None
     growth: float | None = None
     far_field: float = DEFAULT_FAR_FIELD
@@ -65,12 +61,7 @@ class StackRequest:
     allow_invalid: bool = False
 
     def __post_init__(self) -> None:
-        if self.first_cell is not None and self.y_plus is not None:
-            raise InputError("{first_cell} and {y_plus} both say how high it is", "give one of them")
-        if (self.y_plus is None) != (self.reynolds is None):
-            raise InputError("{y_plus} and {reynolds} belong together", "give both")
-        if self.chord_fraction != 0.5 and self.y_plus is None:
-            raise InputError("{chord_fraction} without {y_plus}", "give {y_plus} as well, or leave it out")
+        self.check_first_cell()
         if not 1.0 < self.far_field <= 1e6:
             problem = f"{self.far_field:g} chords"
             raise InputError(problem, "use more than 1 and at most 1e6", parameter="far_field")
@@ -79,9 +70,7 @@ class StackRequest:
             raise InputError(problem, "use 1e-12 to half of {far_field}", parameter="first_cell")
         if self.layers is not None and not 3 <= self.layers <= 100_000:
             raise InputError(f"{self.layers} nodes", "use 3 to 100000", parameter="layers")
-        if self.growth is not None and not 1.0 < self.growth <= LARGEST:
-            problem = f"{self.growth:g}"
-            raise InputError(problem, f"use more than 1 and at most {LARGEST:g}", parameter="growth")
+        check_growth(self.growth)
         if self.layers is not None and self.growth is not None:
             raise InputError("{layers} and {growth} both say how many there are", "give one of them")
         if self.threads is not None and self.threads < 1:
@@ -92,16 +81,10 @@ class StackRequest:
         """Its nodes on the surface."""
         return WingSurface(self.around, self.span, self.base)
 
-    def height(self) -> float:
-        """Return the height of the first cell in chords."""
-        if self.y_plus is not None and self.reynolds is not None:
-            return first_cell(self.y_plus, self.reynolds, self.chord_fraction)
-        return DEFAULT_FIRST_CELL if self.first_cell is None else self.first_cell
-
-    def note(self, chord: float) -> str:
-        """Return where the height comes from, when it was computed."""
-        where = f"on a chord of {chord:.6g}"
-        return height_note(self.y_plus, self.reynolds, where, f"{self.height() * chord:.6g}")
+    def height(self, unit: float = 1.0) -> float:
+        """Return the height of the first cell in chords, that of a y+ where a chord is `unit`."""
+        height = super().height(unit)
+        return DEFAULT_FIRST_CELL if height is None else height
 
 
 def stack_request(**parameters: Any) -> StackRequest:

@@ -28,14 +28,14 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.section_curve import farthest_arc
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.geometry.spacing.laws import TanhLaw
+from meshonet.geometry.spacing.tanh_law import TanhLaw
 
-BASE_CELLS = 8
+BASE_CELLS = 8  # across a base
 GAP = 0.005
 """Least height of a base in chords."""
-_NOSE_CELL = 0.35
-_EDGE_CELL = 1.2
-LEAST_AROUND, MOST_AROUND = 33, 10_001
+_NOSE_CELL = 0.35  # of the mean cell of a side
+_EDGE_CELL = 1.2  # of the mean cell of a base
+LEAST_AROUND, MOST_AROUND = 33, 10_001  # nodes
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,8 @@ from meshonet.geometry.elementary import cos, product, sin
 
 CORE = 0.5
 """Part of the thickness that the core reaches across."""
-_CLEAR = 1.3
-_NOSE, _EDGE = 0.35, 0.4
+_CLEAR = 1.3  # by which the core stays farther from nose and edge than the nodes that face its ends
+_NOSE, _EDGE = 0.35, 0.4  # and at least so many thicknesses of the section there
 
 
 @dataclass(frozen=True)

@@ -14,12 +14,12 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.spacing.along_curve import on_corners
-from meshonet.geometry.spacing.laws import TanhLaw
+from meshonet.geometry.spacing.tanh_law import TanhLaw
 from meshonet.solvers.stacking.section_nodes import BASE_CELLS, GAP, around, unit_nodes
 from meshonet.solvers.stacking.tip import Cap
 
-DEFAULT_AROUND, DEFAULT_SPAN = 129, 49
-LEAST_SPAN, MOST_SPAN = 5, 10_001
+DEFAULT_AROUND, DEFAULT_SPAN = 129, 49  # nodes
+LEAST_SPAN, MOST_SPAN = 5, 10_001  # nodes
 _ROOT_CELL = 1.4
 """Cell at the root, in mean cells along the span."""
 

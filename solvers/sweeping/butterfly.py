@@ -25,13 +25,14 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.elementary import cos, product, sin
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth, growing_steps
+from meshonet.geometry.spacing.growth import cells_for_growth, check_growth, growing_steps
 
-DEFAULT_CELLS = 320
+DEFAULT_CELLS = 320  # of a disc
 CORE, _BEND = 0.55, 0.25
 """Size of the core in sizes of the section, and how far its sides are bent from lines, 0, to arcs, 1."""
-_GROWTH = 1.2
-_LEAST = 2
+_GROWTH = 1.2  # ratio of cells from the wall inwards, where the first one is given and no ratio
+_LEAST = 2  # cells along a side of the core, and rows around it
+# quarter turns: east, north, west, south
 _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1, 0)))
 
 
@@ -62,9 +63,7 @@ class Disc:
         if self.first_cell is not None and not 1e-9 < self.first_cell / self.radius < 0.2:
             problem = f"{self.first_cell:g} in a circle of radius {self.radius:g}"
             raise InputError(problem, "use up to a fifth of the radius", parameter="first_cell")
-        if self.growth is not None and not 1.0 < self.growth <= LARGEST:
-            problem = f"{self.growth:g}"
-            raise InputError(problem, f"use more than 1 and at most {LARGEST:g}", parameter="growth")
+        check_growth(self.growth)
 
     def rows(self, side: int) -> int:
         """Return the rows of the ring when the core has `side` cells along each side."""

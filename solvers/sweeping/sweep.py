@@ -28,8 +28,8 @@ from meshonet.geometry.errors import InputError
 
 TURN_DEG = 4.0
 """Largest angle that the path turns by within a cell, unless the number of planes is given."""
-_LONG = 3.0
-_LOOKED_AT = 1025
+_LONG = 3.0  # mean edges of the section's cells that a cell is long along the path, at the most
+_LOOKED_AT = 1025  # places along the path where it is asked how much it bends
 _UNNAMED = (*SIDES, "outer")
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.threads import MANY_VISITS, threads_for
 from meshonet.kernels._native import VolumeDescent, volume_jacobians
-from meshonet.solvers.volumes.functional import OPENING, UNFOLDING, Weights, inverse_lengths
+from meshonet.solvers.volumes.functional import OPENING, UNFOLDING, VolumeWeights, inverse_lengths
 
 RENEWED = 10
 """Iterations after which the preconditioner follows the nodes."""
@@ -24,7 +24,7 @@ ROUNDS, ROUND = 14, 10
 NARROW = 8  # rounds after which ε is 0.3 of what it would be
 
 
-class Descent:
+class PlanesDescent:
     """Descents from planes of nodes (3, ni, nj, nk), which they change in place, at inner nodes only."""
 
     def __init__(self, planes: Floats) -> None:
@@ -43,7 +43,7 @@ class Descent:
         """The smallest corner Jacobian."""
         return float(self.jacobians().min())
 
-    def run(self, weights: Weights, most: int, epsilon: float = 0.0) -> float:
+    def run(self, weights: VolumeWeights, most: int, epsilon: float = 0.0) -> float:
         """Take `most` iterations, fewer where nothing moves any more; return the smallest Jacobian."""
         terms = weights.shape, weights.smoothness, weights.power
         over = (float(np.prod(self._over)) ** (1 / 3),) * 3 if weights.of_cubes else self._over

@@ -66,10 +66,10 @@ def _near(faces: SixFaces, place: tuple[int, int, int]) -> str:
 
 def _jacobians(faces: SixFaces, side: Side, second: Side) -> Floats:
     """Return the scaled corner Jacobians (n - 1, 2) at both ends of the segments of an edge."""
-    (axis, end), (other, far) = PLACES[side], PLACES[second]
+    axis, other = PLACES[side][0], PLACES[second][0]
     edge = faces.edge(side, second)
     # off the edge, in each of the two faces, along the direction that the other face is an end of
-    vectors = {other: _inwards(faces, side, other, far), axis: _inwards(faces, second, axis, end)}
+    vectors = {other: faces.steps_inwards(side, second), axis: faces.steps_inwards(second, side)}
     along = ({0, 1, 2} - {axis, other}).pop()
     step = np.diff(edge, axis=0)
     values = []
@@ -79,13 +79,6 @@ def _jacobians(faces: SixFaces, side: Side, second: Side) -> Floats:
         jacobian = (np.cross(three[0], three[1]) * three[2]).sum(axis=1)
         values.append(np.divide(jacobian, sizes, out=np.zeros_like(sizes), where=sizes > 0))
     return np.stack(values, axis=1)
-
-
-def _inwards(faces: SixFaces, side: Side, axis: int, end: int) -> Floats:
-    """Return the steps (n, 3), in the direction `axis`, between the first two rows of a face at one end."""
-    local = axis if axis < PLACES[side][0] else axis - 1
-    rows = np.moveaxis(getattr(faces, side), local, 0)
-    return np.asarray(rows[1] - rows[0] if end == 0 else rows[-1] - rows[-2])
 
 
 def _index(faces: SixFaces, side: Side, second: Side, at: int) -> list[int]:

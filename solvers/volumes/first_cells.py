@@ -30,7 +30,7 @@ def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, 
         for side in FACES:
             own, end = PLACES[side]
             if own == axis and steps[end] < CROWDED / len(steps) and len(steps) > 3:
-                heights[end] = _heights(faces, axis, end)
+                heights[end] = _heights(faces, side)
                 kept.append(side)
         low, high = heights
         if low is not None or high is not None:
@@ -38,10 +38,12 @@ def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, 
     return tuple(kept)
 
 
-def _heights(faces: SixFaces, axis: int, end: int) -> Floats:
+def _heights(faces: SixFaces, face: Side) -> Floats:
     """Return the lengths (n, m) of first steps at a face, blended between those of its edges; 0 on these."""
+    axis = PLACES[face][0]
     first, second = (each for each in range(3) if each != axis)
-    rims = {side: _steps(faces, side, axis, end) for side in FACES if PLACES[side][0] != axis}
+    beside = [side for side in FACES if PLACES[side][0] != axis]
+    rims = {side: log(norms(faces.steps_inwards(side, face))) for side in beside}
     west, east = (rims[side] for side in FACES if PLACES[side][0] == first)  # along the second direction
     south, north = (rims[side] for side in FACES if PLACES[side][0] == second)
     u = np.linspace(0.0, 1.0, faces.counts[first])[:, None]
@@ -51,11 +53,3 @@ def _heights(faces: SixFaces, axis: int, end: int) -> Floats:
     heights = exp(across - corners)
     heights[[0, -1]] = heights[:, [0, -1]] = 0.0
     return np.ascontiguousarray(heights)
-
-
-def _steps(faces: SixFaces, side: Side, axis: int, end: int) -> Floats:
-    """Return the logarithms (n,) of the steps of a face's nodes along `axis` at one end."""
-    own = PLACES[side][0]
-    rows = np.moveaxis(getattr(faces, side), axis if axis < own else axis - 1, 0)
-    step = rows[1] - rows[0] if end == 0 else rows[-1] - rows[-2]
-    return np.asarray(log(norms(step)))

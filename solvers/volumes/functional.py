@@ -34,7 +34,7 @@ from meshonet.geometry.arrays import Floats
 
 
 @dataclass(frozen=True)
-class Weights:
+class VolumeWeights:
     """Weights of the terms: `shape` q, `smoothness` β, `power` p (1 or 2).
 
     Power 0 stands for cells like cubes, with q = 1 and β = 0. A descent ends after two steps of which each
@@ -52,16 +52,16 @@ class Weights:
         return self.power == 0
 
 
-OPTIMAL = Weights()
+OPTIMAL = VolumeWeights()
 """What grids are made with."""
-CUBES = Weights(1.0, 0.0, power=0, gain=1e-6)
+CUBES = VolumeWeights(1.0, 0.0, power=0, gain=1e-6)
 """Cells like cubes."""
 Energy = Literal["angles", "shape"]
-ENERGIES: dict[Energy, Weights] = {"angles": OPTIMAL, "shape": CUBES}
+ENERGIES: dict[Energy, VolumeWeights] = {"angles": OPTIMAL, "shape": CUBES}
 """What may be minimised, by name."""
-UNFOLDING = Weights(0.02, power=1)
+UNFOLDING = VolumeWeights(0.02, power=1)
 """About Winslow's functional, which unfolds the most."""
-OPENING = Weights(0.3, power=1), Weights(0.9, power=1)
+OPENING = VolumeWeights(0.3, power=1), VolumeWeights(0.9, power=1)
 """The way from there to `OPTIMAL`: cells that are nearly flat get stuck otherwise."""
 
 

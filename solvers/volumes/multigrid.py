@@ -64,7 +64,7 @@ class Level:
         return float(np.sqrt(winslow_residual(x, right, self.residual, self.threads, self.room)))
 
 
-class Multigrid:
+class VolumeMultigrid:
     """Cycles over the levels of a volume inside `faces`, each relaxed `sweeps` times before and after."""
 
     def __init__(self, faces: SixFaces, sweeps: int = 1, factor: float = 1.0) -> None:

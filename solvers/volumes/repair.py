@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import folded_cells
-from meshonet.solvers.volumes.descent import Descent
+from meshonet.solvers.volumes.descent import PlanesDescent
 from meshonet.solvers.volumes.functional import OPENING, OPTIMAL, UNFOLDING
 from meshonet.solvers.volumes.windows import Window, windows
 
@@ -13,7 +13,7 @@ MARGINS = 5, 8, 11, 14
 """Nodes around a group of folded cells that windows reach, round by round while cells stay folded."""
 ROUNDS, ROUND = 20, 8
 """Rounds of unfolding in a window at the most, and iterations of each."""
-LIFT, OPEN, LAST = 15, 8, 10
+FIRST, OPEN, LAST = 15, 8, 10
 """Iterations of the stages that open what has been unfolded."""
 ENOUGH = 0.02
 """Smallest Jacobian from which on the whole functional is of use in a window."""
@@ -34,7 +34,7 @@ def repair(planes: Floats) -> int:
     return len(bad)
 
 
-def lift(planes: Floats, flat: NDArray[np.bool_]) -> None:
+def open_flat_cells(planes: Floats, flat: NDArray[np.bool_]) -> None:
     """Open the cells `flat` (ni-1, nj-1, nk-1) of planes (3, ni, nj, nk) on windows, in place."""
     for window in windows(np.argwhere(flat), MARGINS[0], planes.shape[1:]):
         _mend(planes, window)
@@ -49,9 +49,9 @@ def _mend(planes: Floats, window: Window) -> None:
 
 def _unfold(part: Floats) -> None:
     """Unfold a window and open its cells, in place."""
-    descent = Descent(part)
+    descent = PlanesDescent(part)
     if descent.unfold(descent.smallest, ROUNDS, ROUND) <= 0.0:
         return
-    descent.run(UNFOLDING, LIFT)
+    descent.run(UNFOLDING, FIRST)
     if descent.run(OPENING[0], OPEN) > ENOUGH:
         descent.run(OPTIMAL, LAST)

@@ -1,17 +1,17 @@
-"""Six faces in, transfinite interpolation out."""
+"""Transfinite interpolation of a volume from its six faces."""
 
-import time
 from typing import get_args
 
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.tfi import Blending
-from meshonet.solvers.solution import Solution
+from meshonet.solvers.solution import Solution, timed
 from meshonet.solvers.volumes.edge_corners import check_hand
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import arc_laws, uniform_laws
 
 
+@timed
 def tfi(faces: SixFaces, *, blending: Blending = "arclength") -> Solution:
     """Fill a volume between its faces, each a smooth weight of itself.
 
@@ -21,11 +21,10 @@ def tfi(faces: SixFaces, *, blending: Blending = "arclength") -> Solution:
 
     Raises InputError: an edge of no length; an unknown `blending`; a left-handed volume.
     """
-    begun = time.perf_counter()
     if blending not in get_args(Blending):
         remedy = "use " + "/".join(get_args(Blending))
         raise InputError(f"blending {blending!r} is not known", remedy, parameter="blending")
     check_hand(faces)
     laws = arc_laws(faces) if blending == "arclength" else uniform_laws(faces.counts)
     grid = faces.grid(interpolate(faces, laws), {"method": "tfi", "blending": blending})
-    return Solution(grid, "tfi", seconds={"grid": time.perf_counter() - begun})
+    return Solution(grid, "tfi")

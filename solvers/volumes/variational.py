@@ -1,4 +1,4 @@
-"""Six faces in, variational volume out: an optimum on few nodes, evaluated at all, and mended there."""
+"""Variational volumes from six faces: an optimum on few nodes, refined to all nodes and repaired there."""
 
 import time
 from typing import Literal
@@ -11,14 +11,14 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.iteration import check_tolerances
 from meshonet.solvers.solution import Outcome, Solution
 from meshonet.solvers.stages import reached
-from meshonet.solvers.volumes.descent import FLAT, Descent
+from meshonet.solvers.volumes.descent import FLAT, PlanesDescent
 from meshonet.solvers.volumes.edge_corners import check_corners
-from meshonet.solvers.volumes.evaluate import evaluate
 from meshonet.solvers.volumes.first_cells import keep_first_cells
-from meshonet.solvers.volumes.functional import ENERGIES, OPTIMAL, Energy, Weights
+from meshonet.solvers.volumes.functional import ENERGIES, OPTIMAL, Energy, VolumeWeights
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import Laws, arc_laws, mean_laws, uniform_laws
-from meshonet.solvers.volumes.repair import lift, repair
+from meshonet.solvers.volumes.refine import refine_volume
+from meshonet.solvers.volumes.repair import open_flat_cells, repair
 
 COARSE = 33
 """Nodes along a direction on which the optimum is found, unless chosen."""
@@ -31,7 +31,7 @@ ITERATIONS = 30, 20, 40
 """At the most: on coarser levels, on the last but one, on the last."""
 FEW = 20
 """Nodes a direction of levels up to which flat cells are opened first: finer ones start from open cells."""
-LEAST = 5
+LEAST = 5  # nodes along a direction of coarse faces
 
 
 def variational(
@@ -63,7 +63,7 @@ def variational(
     solved = time.perf_counter()
     if optimum_faces is not faces:
         reached("evaluation")
-        planes = np.ascontiguousarray(evaluate(planes, optimum_faces, faces, laws))
+        planes = np.ascontiguousarray(refine_volume(planes, optimum_faces, faces, laws))
         keep_first_cells(planes, faces, laws)
     evaluated = time.perf_counter()
     reached("repair")
@@ -77,13 +77,13 @@ def variational(
     return Solution(grid, "variational", cycles=iterations, seconds=spent, outcome=outcome)
 
 
-def _terms(weights: Weights) -> dict[str, float]:
+def _terms(weights: VolumeWeights) -> dict[str, float]:
     """Return the weights that a grid's provenance names."""
     return {} if weights.of_cubes else {"shape": weights.shape, "smoothness": weights.smoothness}
 
 
 def optimum(
-    faces: SixFaces, most: int | None = None, weights: Weights = OPTIMAL
+    faces: SixFaces, most: int | None = None, weights: VolumeWeights = OPTIMAL
 ) -> tuple[Floats, int]:  # fmt: skip
     """Return the optimum inside evenly spaced `faces`, (3, ni, nj, nk), and iterations on the finest level.
 
@@ -98,7 +98,7 @@ def optimum(
     for depth in range(len(levels) - 1, -1, -1):
         if levels[depth] is not last:
             finer = levels[depth]
-            planes = np.ascontiguousarray(evaluate(planes, last, finer, uniform_laws(finer.counts)))
+            planes = np.ascontiguousarray(refine_volume(planes, last, finer, uniform_laws(finer.counts)))
             last = finer
         limit = ITERATIONS[max(len(ITERATIONS) - 1 - depth, 0)]
         limit = most if depth == 0 and most is not None else limit
@@ -111,7 +111,7 @@ def _interpolated(faces: SixFaces) -> Floats:
     return np.ascontiguousarray(np.moveaxis(interpolate(faces, uniform_laws(faces.counts)), -1, 0))
 
 
-def _solved(planes: Floats, faces: SixFaces, most: int, weights: Weights) -> tuple[Floats, int]:
+def _solved(planes: Floats, faces: SixFaces, most: int, weights: VolumeWeights) -> tuple[Floats, int]:
     """Return the optimum from planes, which may change, and the iterations.
 
     Where these stay folded, as splines leave them that overshoot at kinks of faces, the interpolation is the
@@ -128,14 +128,14 @@ def _solved(planes: Floats, faces: SixFaces, most: int, weights: Weights) -> tup
 
 def _smallest(planes: Floats) -> float:
     """Return the smallest corner Jacobian, or infinity where there is no inner node."""
-    return Descent(planes).smallest if min(planes.shape[1:]) > 2 else np.inf
+    return PlanesDescent(planes).smallest if min(planes.shape[1:]) > 2 else np.inf
 
 
-def _settle(planes: Floats, most: int, weights: Weights) -> int:
+def _settle(planes: Floats, most: int, weights: VolumeWeights) -> int:
     """Minimise over planes in place, unfolded first; return the iterations."""
     if min(planes.shape[1:]) < 3:
         return 0
-    descent = Descent(planes)
+    descent = PlanesDescent(planes)
     smallest = descent.smallest
     folded = smallest <= 0.0
     if folded:
@@ -144,7 +144,7 @@ def _settle(planes: Floats, most: int, weights: Weights) -> int:
     if 0.0 < smallest < FLAT and (folded or max(planes.shape) <= FEW):
         descent.open()
     elif 0.0 < smallest < FLAT:
-        lift(planes, descent.jacobians() < FLAT)
+        open_flat_cells(planes, descent.jacobians() < FLAT)
     if smallest > 0.0:
         descent.run(weights, most)
     return descent.iterations

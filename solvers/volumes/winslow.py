@@ -1,6 +1,4 @@
-"""Six faces in, Winslow's grid out: cycles until the equations are solved as well as nodes resolve them."""
-
-import time
+"""Winslow's grid in a volume from its six faces, solved to the accuracy of the discretisation."""
 
 import numpy as np
 
@@ -8,10 +6,10 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import SolverError
 from meshonet.solvers.iteration import check_tolerances
-from meshonet.solvers.solution import Outcome, Solution
+from meshonet.solvers.solution import Outcome, Solution, timed
 from meshonet.solvers.stages import reached
 from meshonet.solvers.volumes.edge_corners import check_corners
-from meshonet.solvers.volumes.multigrid import Multigrid
+from meshonet.solvers.volumes.multigrid import VolumeMultigrid
 
 CYCLES = 100
 """Cycles on all nodes at the most."""
@@ -23,6 +21,7 @@ CAREFUL = ((1, 1.0), (2, 0.7))
 """Sweeps before and after coarser levels, and their relaxation factor: tried in turn while cycles diverge."""
 
 
+@timed
 def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None = None) -> Solution:
     """Solve Winslow's equations inside `faces`: the inverse map has harmonic coordinates.
 
@@ -34,21 +33,21 @@ def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None
     Raises InputError: faces that fold cells whatever is inside; settings not positive; SolverError: cycles
     diverge. Winslow, J. Comput. Phys. 1 (1966) 149-172.
     """
-    begun = time.perf_counter()
     check_tolerances(tol, max_cycles)
     check_corners(faces)
     most = CYCLES if max_cycles is None else max_cycles
     for sweeps, factor in CAREFUL:
-        x, cycles, residual, done = _solved(Multigrid(faces, sweeps, factor), tol, most)
+        x, cycles, residual, done = _solved(VolumeMultigrid(faces, sweeps, factor), tol, most)
         if np.isfinite(x).all():
             grid = faces.grid(np.moveaxis(x, 0, -1), {"method": "winslow", "cycles": cycles})
             outcome = Outcome.DONE if done else Outcome.UNCONVERGED
-            spent = {"grid": time.perf_counter() - begun}
-            return Solution(grid, "winslow", residual=residual, cycles=cycles, seconds=spent, outcome=outcome)
+            return Solution(grid, "winslow", residual=residual, cycles=cycles, outcome=outcome)
     raise SolverError("Winslow's equations have no solution that cycles reach: use {method} variational")
 
 
-def _solved(multigrid: Multigrid, tol: float | None, most: int) -> tuple[Floats, int, float | None, bool]:
+def _solved(
+    multigrid: VolumeMultigrid, tol: float | None, most: int
+) -> tuple[Floats, int, float | None, bool]:
     """Return the nodes, cycles on all of them, the residual if `tol` is given, and whether all is done."""
     x, apart, change = multigrid.nested()
     cycles = 1

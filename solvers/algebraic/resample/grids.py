@@ -10,8 +10,9 @@ from meshonet.geometry.arrays import Floats, Topology, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.elementary import product
 from meshonet.solvers.algebraic.resample import corner_damping, quad
-from meshonet.solvers.algebraic.resample.o_grid import evaluate_around
+from meshonet.solvers.algebraic.resample.o_grid import refine_around
 from meshonet.solvers.algebraic.resample.spline import between
+from meshonet.solvers.iteration import put_edges
 
 
 def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
@@ -25,18 +26,18 @@ def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
     return Boundary(south, north, west, east, topology, name=boundary.name)
 
 
-def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
+def refine_grid(coarse: Floats, boundary: Boundary) -> Floats:
     """Return planar nodes inside `boundary`, from a coarse grid (m, n, 2) inside its thinned edges."""
     if boundary.periodic:
-        return evaluate_around(coarse, boundary)
+        return refine_around(coarse, boundary)
     names = ("south", "north", "west", "east")
     south, north, west, east = (np.ascontiguousarray(getattr(boundary, side).T)[None] for side in names)
     planes = np.ascontiguousarray(np.moveaxis(coarse, -1, 0))[None]
-    return np.moveaxis(quad.evaluate(planes, (south, north, west, east))[0], 0, -1)
+    return np.moveaxis(quad.refine_quad(planes, (south, north, west, east))[0], 0, -1)
 
 
 def divided(coarse: Floats, boundary: Boundary) -> Floats:
-    """Return what `evaluate` does for a quad by straight lines between coarse nodes.
+    """Return what `refine_grid` does for a quad by straight lines between coarse nodes.
 
     They bend at these, but cells inside a valid coarse cell are valid: folds are left only beside edges that
     bend between coarse nodes.
@@ -48,8 +49,7 @@ def divided(coarse: Floats, boundary: Boundary) -> Floats:
     )
     for c in (0, 1):
         nodes[..., c] = product(product(along, coarse[..., c]), across.T)
-    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
-    nodes[0], nodes[-1] = boundary.west, boundary.east
+    put_edges(nodes, boundary)
     return nodes
 
 

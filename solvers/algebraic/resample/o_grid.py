@@ -20,6 +20,7 @@ from meshonet.geometry.elementary import functions_of, modulus, product
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import add_spline_rows
 from meshonet.solvers.algebraic.resample.spline import bending, places, spline_matrix
+from meshonet.solvers.iteration import put_edges
 
 STEEP, FLAT = 1.15, 0.5
 """Slopes of the rising cubic in harmonic means of both steps, between which they are those of a spline."""
@@ -27,7 +28,7 @@ STEEP, FLAT = 1.15, 0.5
 SQUARINGS = 3  # squarings that make the eighth power
 
 
-def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
+def refine_around(coarse: Floats, boundary: Boundary) -> Floats:
     """Return planar nodes inside the O `boundary` from a grid (m, n, 2) inside its thinned edges."""
     m, ni, nj = len(coarse), boundary.ni, boundary.nj
     threads = threads_for(ni * nj)
@@ -47,8 +48,7 @@ def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
         add_spline_rows(plane, first, weights, values, product(bending(m, True), values), True, threads)
         plane += (boundary.south[:, c] - product(around, values[:, 0]))[:, None] * near_south
         plane += (boundary.north[:, c] - product(around, values[:, -1]))[:, None] * near_north
-    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
-    nodes[-1] = nodes[0]
+    put_edges(nodes, boundary)
     return nodes
 
 

@@ -35,7 +35,7 @@ WIDER = (0, 1, 3)
 """Coarse cells beyond those with folds whose lines become straight, one try after another; at last all do."""
 
 
-def evaluate(coarse: Floats, sides: Sides) -> Floats:
+def refine_quad(coarse: Floats, sides: Sides) -> Floats:
     """Return the planes (batch, 2, ni, nj) inside the `sides` of grids `coarse` (batch, 2, m, n)."""
     nodes = _evaluated(coarse, sides, None)
     for k, one in enumerate(nodes):

@@ -12,7 +12,6 @@ The equations stand in ``kernels/surfaces/step.c``, what is tried while cells ar
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -37,14 +36,14 @@ from meshonet.solvers.hyperbolic.volume.symmetry import (
     planes_note,
     symmetry_planes,
 )
-from meshonet.solvers.solution import Solution
+from meshonet.solvers.solution import Solution, timed
 from meshonet.solvers.stages import filling
 
 __all__ = ["VolumeMarch", "march_surface"]
 
 FADE = 12.0  # cells over which what first cells needed fades away along a line
 SWEEPS = 10  # of the smoothing of steps along lines
-WORST = 10
+WORST = 10  # folded cells that a refusal names
 
 
 class _Volume(NamedTuple):
@@ -55,6 +54,7 @@ class _Volume(NamedTuple):
     folded: int
 
 
+@timed
 def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
     """Return the volume between a surface and a far field, a block a patch.
 
@@ -67,7 +67,6 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
     Raises InputError: settings that no march can meet; NoValidGridError with the worst cells: cells stay
     folded, by their corners or a Bezier coefficient of their Jacobian.
     """
-    begun = time.perf_counter()
     planes, inside = symmetry_planes(surface, settings.symmetry)
     nodes = in_planes(surface, planes, inside)
     steps = settings.steps(surface.size)
@@ -81,7 +80,6 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
     return Solution(
         grid,
         "hyperbolic",
-        seconds={"grid": time.perf_counter() - begun},
         notes=tuple(note for note in notes if note),
         first_cells={"bottom": settings.first_cell},
     )

@@ -16,7 +16,7 @@ GROWTH = 1.2
 """Of cells along a line, where neither layers nor growth are given."""
 FAR_FIELD = 15.0
 """Distance of the far field in lengths of the surface, where none is given."""
-FEWEST = 3
+FEWEST = 3  # layers of nodes: two cells
 
 
 @dataclass(frozen=True)

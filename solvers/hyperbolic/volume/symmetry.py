@@ -59,7 +59,7 @@ def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> F
 
 
 def free_edges_note(surface: Surface, inside: Indices) -> str:
-    """Return a sentence on open edges in no plane of symmetry, empty without such."""
+    """Return a note on open edges that lie in no plane of symmetry, an empty text if there are none."""
     edges = surface.open_edges
     free = ~inside.any(axis=0) if len(inside) else np.ones(len(edges), dtype=bool)
     if not free.any():
@@ -72,7 +72,7 @@ def free_edges_note(surface: Surface, inside: Indices) -> str:
 
 
 def planes_note(planes: tuple[Plane, ...], named: str | None) -> str:
-    """Return a sentence on the planes of symmetry that were taken for such, empty if they were named."""
+    """Return a note on the planes of symmetry that were detected, an empty text if they were named."""
     if not planes or named is not None:
         return ""
     return "open edges are in a plane of symmetry at " + " and ".join(str(plane) for plane in planes)

@@ -62,7 +62,7 @@ def _inside(wall: Tensor) -> Tensor:
 
 
 def _evaluated(coarse: Tensor, south: Tensor, north: Tensor, nj: int) -> Tensor:
-    """Return the nodes (batch, ni, nj) that `o_grid.evaluate_around` returns, except on the boundary."""
+    """Return the nodes (batch, ni, nj) that `o_grid.refine_around` returns, except on the boundary."""
     m, ni = coarse.shape[1], south.shape[1]
     lines, share = along_lines(coarse, nj, torch)
     shares = array_like(corner_damping.linear(m, ni), share, torch) @ share

@@ -15,12 +15,10 @@ from meshonet.geometry.polygon.mirror import farthest, handedness
 from meshonet.solvers.neural.differentiable.sides import as_numpy
 from meshonet.solvers.neural.quad.unrolled import middles
 
-PI = float(np.pi)
-
 
 @dataclass(frozen=True)
 class TorchWalls:
-    """A body's walls in the strip, F (n,) on the `wall` and on the `far` field, as `conformal.walls.Walls`.
+    """The two walls of a body in the strip: F (n,) on the `wall` and on the `far` field (`StripWalls`).
 
     `lift` holds tensors, `numpy` is the same of numbers.
     """
@@ -56,13 +54,13 @@ def torch_walls(z: Tensor, far: Tensor) -> TorchWalls:
     offset = zeta - pole
     psi, phi = torch.log(torch.abs(offset)), _unwrapped(torch.angle(offset))
     lift = Lift(centre + origin, quarter, tuple(removed), pole, phi[0])
-    theta = 2.0 * PI * torch.arange(len(z), dtype=psi.dtype, device=z.device) / len(z)
+    theta = 2.0 * np.pi * torch.arange(len(z), dtype=psi.dtype, device=z.device) / len(z)
     v = _joukowski(far, centre, quarter)
     for corner in removed:
         v = _remove(corner, v)
     above = _unwrapped(torch.angle(v - pole)) - phi[0]
-    turns = round(float((above.detach() - (phi - phi[0]).detach()).mean()) / (2.0 * PI))
-    away = torch.complex(torch.log(torch.abs(v - pole)), above - 2.0 * PI * turns - theta)
+    turns = round(float((above.detach() - (phi - phi[0]).detach()).mean()) / (2.0 * np.pi))
+    away = torch.complex(torch.log(torch.abs(v - pole)), above - 2.0 * np.pi * turns - theta)
     known = replace(known, centre=known.centre + complex(origin.detach()))
     return TorchWalls(lift, known, torch.complex(psi, phi - phi[0] - theta), away, nodes, corners, hand)
 
@@ -72,9 +70,9 @@ def _straightened(
 ) -> tuple[Tensor, list[Corner], Tensor]:
     """Return zeta with its trailing corners removed, their removals, and the pole inside."""
     turn = torch.angle((torch.roll(z, -1) - z) / (z - torch.roll(z, 1)))
-    ends = [(i, 1.0 + turn[i] / PI) for i in base]
+    ends = [(i, 1.0 + turn[i] / np.pi) for i in base]
     if sharp:
-        ends = [(0, 0.5 * (1.0 + turn[0] / PI))]
+        ends = [(0, 0.5 * (1.0 + turn[0] / np.pi))]
     removed, pole = [], middles(zeta[None], torch)[0]
     for i, k in ends:
         if removable(float(k.detach())):

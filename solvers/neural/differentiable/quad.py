@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.arrays import Topology
-from meshonet.solvers.neural.differentiable.resample import arrays, between, evaluated, folded
+from meshonet.solvers.neural.differentiable.resample import arrays, between, folded, refined
 from meshonet.solvers.neural.differentiable.sides import NetworkGrids, as_complex, check_sides
 from meshonet.solvers.neural.quad.coarse_grids import share
 from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features, frame
@@ -33,7 +33,7 @@ class QuadGrids(NetworkGrids):
         coarse = self._coarse(sides)
         if self._head == WINSLOW:
             coarse = _nearer(coarse, sides)
-        return evaluated(coarse, sides).movedim(1, -1)
+        return refined(coarse, sides).movedim(1, -1)
 
     def _coarse(self, sides: Sides) -> Tensor:
         thin = tuple(between(side, LATENT) for side in sides)
@@ -63,7 +63,7 @@ def _shares(near: Tensor, by: Tensor) -> Tensor:
 
 def _nearer(coarse: Tensor, sides: Sides) -> Tensor:
     """Return grids `coarse` on more nodes, nearer to Winslow's."""
-    planes = evaluated(coarse, tuple(between(side, nodes_after(side.shape[-1])) for side in sides))
+    planes = refined(coarse, tuple(between(side, nodes_after(side.shape[-1])) for side in sides))
     z, factor = _framed(planes)
     near, _ = approach(z, torch, steps=AFTER, harmonic=False)
     return _moved(planes, (near - z) / factor)

@@ -46,7 +46,7 @@ class GroupConvolution(nn.Module):
         return functional.conv2d(x, kernel, bias, stride=self.stride, padding=(along, self.padding))
 
 
-class Block(nn.Module):
+class ResidualBlock(nn.Module):
     """x + b(silu(a(silu(x))))."""
 
     def __init__(self, width: int, around: bool = False) -> None:
@@ -119,7 +119,7 @@ class QuadUNet(nn.Module):
 
 
 def _blocks(width: int, count: int, around: bool) -> nn.Sequential:
-    return nn.Sequential(*(Block(width, around) for _ in range(count)))
+    return nn.Sequential(*(ResidualBlock(width, around) for _ in range(count)))
 
 
 def _rise(n: int, like: Tensor) -> Tensor:

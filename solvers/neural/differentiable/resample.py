@@ -13,7 +13,7 @@ from meshonet.solvers.algebraic.resample.quad import mended
 from meshonet.solvers.algebraic.resample.spline import bending
 
 
-def evaluated(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
+def refined(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
     """Return the planes (batch, 2, ni, nj) inside `sides` of grids `coarse` (batch, 2, m, n).
 
     `sides`: south, north (batch, 2, ni), west, east (batch, 2, nj).

@@ -18,6 +18,7 @@ from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.stages import reached
 
 SLOWER = "resume from the last checkpoint with a smaller learning rate"
+"""Remedy for a run that diverged, by its loss or by its weights."""
 
 FREE = ("rate",)  # settings that may change when a run goes on: a smaller rate is that remedy
 

@@ -18,13 +18,13 @@ from meshonet.solvers.neural.fit.physics_task import PhysicsTask
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.models.architecture import Architecture
+from meshonet.solvers.neural.models.architectures import architecture, settings_of
 from meshonet.solvers.neural.models.mgnet import MGNet
-from meshonet.solvers.neural.registry import architecture, settings_of
 from meshonet.solvers.neural.samples import Samples
 
 PLAN = Plan(epochs=15_000, points=(1000, 200))  # the authors' published settings
 
-HELD_OUT = 0
+HELD_OUT = 0  # few shapes, as the paper has: all that are not for tests are trained on
 
 MACHINE = ("device", "compiled", "log_every", "validate_every", "checkpoint_every")
 """Settings that a resumed run may change without changing what it computes."""

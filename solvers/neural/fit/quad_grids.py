@@ -118,7 +118,7 @@ def _rim(nodes: Floats, sides: slice) -> bytes:
 def transfinite(z: Complexes) -> Complexes:
     """Return the transfinite grids (m, n, n) in the rims of the grids `z`."""
     edges = Edges(*(np.ascontiguousarray(side) for side in rims(np.stack([z.real, z.imag], axis=1))))
-    planes = edges.interpolated(edges.laws())
+    planes = edges.transfinite(*edges.counts)
     return np.asarray(planes[:, 0] + 1j * planes[:, 1])
 
 

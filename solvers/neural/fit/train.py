@@ -1,15 +1,18 @@
 """The trainer of every model: a task made of its data, the loop, held-out figures, and the model file."""
 
-import importlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.fit.loop import Progress, Run, beside, fit
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
-from meshonet.solvers.neural.registry import ARCHITECTURES, MODELS
+from meshonet.solvers.neural.models.architectures import MODELS
+
+TRAINERS = {"strip": "meshonet.solvers.neural.fit.strip", "quad": "meshonet.solvers.neural.fit.quad"}
+"""Modules of models that are not trained as the paper's are."""
 
 
 def train(
@@ -30,7 +33,7 @@ def train(
     Raises InputError: no such model; too few shapes; a checkpoint of another model, data or settings; choices
     that do not suit the model. Raises SolverError: as `meshonet.solvers.neural.fit.loop.fit`.
 
-    `model` is one of `registry.MODELS`; `data` are `strip.dataset.Strips` for ``strip``,
+    `model` is one of `models.architectures.MODELS`; `data` are `strip.dataset.Strips` for ``strip``,
     `fit.quad_grids.Quads` for ``quad``, else `samples.Samples`; `plan` as `standard`; `held_out` shapes are
     never trained on, None for the model's own number; `resume` goes on from a checkpoint beside `output`;
     `report` is called every `plan.log_every` epochs and at the end; `choices` are what ``run`` of
@@ -58,5 +61,4 @@ def standard(model: str) -> Plan:
 def _module(model: str) -> Any:
     if model not in MODELS:
         raise InputError(f"model {model!r} is not known", "use one of " + ", ".join(MODELS))
-    name = "operators" if model in ARCHITECTURES else model
-    return importlib.import_module(f"{__package__}.{name}")
+    return resolve_name(TRAINERS.get(model, "meshonet.solvers.neural.fit.operators"))

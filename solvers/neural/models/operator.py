@@ -15,10 +15,10 @@ from meshonet.solvers.conformal.chebyshev import barycentric, points, weights
 from meshonet.solvers.conformal.harmonic import extend
 from meshonet.solvers.conformal.solve import Polish
 from meshonet.solvers.neural.models.architecture import Architecture, Frame
+from meshonet.solvers.neural.models.architectures import architecture, name_of, settings_of
 from meshonet.solvers.neural.models.layers import Weights
 from meshonet.solvers.neural.models.sensors import square
 from meshonet.solvers.neural.operator import Operator
-from meshonet.solvers.neural.registry import architecture, name_of, settings_of
 from meshonet.solvers.solution import Solution
 
 DIRECT = 129 * 129  # nodes up to which a network is evaluated at each; more are interpolated if exact
@@ -28,7 +28,7 @@ CLOSE = 1e-6  # largest error of that interpolation, relative to the answer, at 
 
 @dataclass(frozen=True)
 class PaperOperator(Operator):
-    """A model of `registry.ARCHITECTURES` with its weights."""
+    """A model of `ARCHITECTURES` with its weights."""
 
     batched: ClassVar[bool] = False
 

@@ -28,7 +28,7 @@ STEP = 2.0**-30  # of the rounding, over the size of the edges up to the next po
 LEAST = 0.1  # mean side along xi over the size that still tells a direction; else a diagonal does
 Element = tuple[bool, bool, bool]  # xi runs the other way, eta does, both change places
 
-IDENTITY: Element = (False, False, False)
+IDENTITY: Element = (False, False, False)  # of a boundary that stays as it is
 
 
 @dataclass(frozen=True)

@@ -20,14 +20,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.kernels._native import (
-    add_answers,
-    frame_put_back,
-    frame_take_out,
-    grid_features,
-    tfi_batch,
-    tfi_coarse,
-)
+from meshonet.kernels._native import add_answers, frame_put_back, frame_take_out, grid_features, tfi_coarse
 from meshonet.solvers.algebraic.resample import quad as evaluation
 from meshonet.solvers.algebraic.resample.spline import between, places
 from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, SCALE, WINSLOW
@@ -74,30 +67,16 @@ class Edges:
         south, north = between(self.south, ni), between(self.north, ni)
         return Edges(south, north, between(self.west, nj), between(self.east, nj))
 
-    def laws(self) -> Sides:
-        """Return the length up to each node over the whole edge's, (batch, n) for each side, 0 to 1."""
-        south, north, west, east = (_fraction(side) for side in self.sides)
-        return south, north, west, east
-
-    def interpolated(self, laws: Sides) -> Floats:
-        """Return the planes (batch, 2, ni, nj) of transfinite interpolation with `laws` along the edges."""
-        nodes = np.empty((len(self), 2, *self.counts))
-        tfi_batch(nodes, tuple(map(np.ascontiguousarray, self.sides)), laws)
+    def transfinite(self, m: int, n: int) -> Floats:
+        """Return the planes (batch, 2, m, n) of transfinite interpolation between edges, by their lengths."""
+        nodes, (ni, nj) = np.empty((len(self), 2, m, n)), self.counts
+        tfi_coarse(self.sides, (places(ni, m), places(nj, n)), nodes)
         return nodes
 
 
 def rims(planes: Floats) -> Sides:
     """Return south, north, west and east of grids (batch, 2, m, n)."""
     return planes[..., 0], planes[..., -1], planes[:, :, 0], planes[:, :, -1]
-
-
-def _fraction(side: Floats) -> Floats:
-    steps = np.diff(side)
-    along = np.zeros((len(side), side.shape[-1]))
-    steps *= steps
-    np.cumsum(np.sqrt(steps[:, 0] + steps[:, 1]), axis=-1, out=along[:, 1:])
-    along /= along[:, -1:]
-    return along
 
 
 def _planes(edges: Sequence[Floats]) -> Floats:
@@ -110,9 +89,7 @@ def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
     Winslow's have up to 65 along a direction, where the edges have as many. `head`: index into
     `encoding.HEADS`.
     """
-    base = np.empty((len(edges), 2, LATENT, LATENT))
-    ni, nj = edges.counts
-    tfi_coarse(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
+    base = edges.transfinite(LATENT, LATENT)
     room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), network.dtype)
     for k in range(0, len(base), CHUNK):
         planes = base[k : k + CHUNK]
@@ -130,7 +107,7 @@ def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
 
 
 def _nearer(coarse: Floats, edges: Edges) -> Floats:
-    planes = evaluate(coarse, edges.thinned(*(nodes_after(n) for n in edges.counts)))
+    planes = refine_coarse(coarse, edges.thinned(*(nodes_after(n) for n in edges.counts)))
     unit, factors = _unit(planes)
     near = unit.copy()
     step_all(near, steps=AFTER, harmonic=False)
@@ -145,9 +122,9 @@ def _unit(planes: Floats) -> tuple[Floats, Floats]:
     return unit, factors
 
 
-def evaluate(coarse: Floats, edges: Edges) -> Floats:
+def refine_coarse(coarse: Floats, edges: Edges) -> Floats:
     """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
-    return evaluation.evaluate(coarse, edges.sides)
+    return evaluation.refine_quad(coarse, edges.sides)
 
 
 def share(start: Floats, answer: Floats) -> float:

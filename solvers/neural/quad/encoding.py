@@ -20,7 +20,7 @@ step of `approach` over its size (2), and the logarithm of that size (1)."""
 
 FLOOR = 1e-2  # added to lengths before their logarithm
 
-TINY = 1e-6
+TINY = 1e-6  # keeps quotients and slopes of lengths finite where nodes coincide
 
 STILL = 1e-3  # added to the size of the last step
 STRETCH = 30.0  # how far small steps are drawn out, by the inverse hyperbolic sine

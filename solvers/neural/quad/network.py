@@ -138,7 +138,7 @@ class Network:
 
     def _recorded(self, h: Reals) -> LayerProgram:
         """Return the layers for as many domains as `h` has or fewer, on arrays that no other program has."""
-        work = _Work(self._layers, self.around)
+        work = _ProgramRecorder(self._layers, self.around)
         h = work.layer("lift", h)
         skips: list[Reals] = []
         coarsest = len(self.blocks) - 1
@@ -154,7 +154,7 @@ class Network:
         return work.program
 
 
-class _Work:
+class _ProgramRecorder:
     """Records layers by name in a program, on arrays of `CHUNK` domains."""
 
     def __init__(self, layers: Mapping[str, tuple[Reals, Reals, int]], around: bool) -> None:

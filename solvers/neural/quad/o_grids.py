@@ -28,6 +28,7 @@ from meshonet.solvers.neural.quad.network import CHUNK, Network
 from meshonet.solvers.neural.quad.picard import AFTER, approached
 from meshonet.solvers.neural.quad.unrolled import AROUND, TURN, around_middles, even, factors, rolled
 
+# problem and remedy, the same for numpy and torch
 NOT_ROUND = "its walls do not go once round a middle of the body", "use meshonet solve-pde for this shape"
 
 COMPACT = 0.15  # least over largest distance of the wall from the middle, of bodies to train on
@@ -94,10 +95,10 @@ def compact(boundary: Boundary) -> bool:
     return bool(once[0] and reach.min() > COMPACT * reach.max())
 
 
-def evaluate(grids: Floats, boundaries: Sequence[Boundary]) -> Floats:
+def refine_o_grids(grids: Floats, boundaries: Sequence[Boundary]) -> Floats:
     """Return the planes (batch, 2, ni, nj) within `boundaries` of `grids` (batch, 2, m, n) on fewer nodes."""
     pairs = zip(grids, boundaries, strict=True)
-    nodes = [resample.evaluate(np.moveaxis(planes, 0, -1), boundary) for planes, boundary in pairs]
+    nodes = [resample.refine_grid(np.moveaxis(planes, 0, -1), boundary) for planes, boundary in pairs]
     return np.stack([np.moveaxis(grid, -1, 0) for grid in nodes])
 
 

@@ -29,7 +29,7 @@ FINER = 65  # most nodes along a direction that these are taken on: splines from
 SHARE = 0.75  # of the leading error of differences that is taken out
 GROWTH = 4.0  # a step whose square is so many times the last one's, in the mean, is not taken
 
-TINY = 1e-30
+TINY = 1e-30  # keeps quotients finite where nothing moves
 
 Tables = tuple[Floats, Floats, Floats]  # a transform, its transpose, minus the eigenvalues of differences
 

@@ -60,11 +60,13 @@ def _coarse(
     if topology == "quad":
         edges = Edges.of(boundaries)
         grids = coarse_grids.coarse_grids(edges, network, head)
-        return grids, lambda planes, counts: coarse_grids.evaluate(planes, edges.thinned(*counts))
+        return grids, lambda planes, counts: coarse_grids.refine_coarse(planes, edges.thinned(*counts))
 
     def around(planes: Floats, counts: Counts) -> Floats:
         own = counts == (boundaries[0].ni, boundaries[0].nj)
-        return o_grids.evaluate(planes, boundaries if own else [thinned(b, *counts) for b in boundaries])
+        return o_grids.refine_o_grids(
+            planes, boundaries if own else [thinned(b, *counts) for b in boundaries]
+        )
 
     return o_grids.coarse_grids(boundaries, network, head), around
 

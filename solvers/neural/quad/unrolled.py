@@ -17,7 +17,7 @@ from meshonet.geometry.elementary import functions_of, modulus, times
 
 AROUND = 65  # nodes along xi, the last a turn after the first, that the network sees around a body
 
-TURN = 2.0 * np.pi
+TURN = 2.0 * np.pi  # once around, the period of a strip
 
 
 def middles(walls: Any, xp: Any = np) -> Any:

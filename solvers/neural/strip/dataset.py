@@ -20,7 +20,7 @@ from meshonet.solvers.neural.strip.encoding import encode
 from meshonet.solvers.stages import reached
 
 HEIGHT = 4.0  # of a typical strip: brings derivatives across it to the scale of those along it
-MOST_STEPS = 30
+MOST_STEPS = 30  # of Picard's iteration for a shape
 CONVERGED = 2e-6  # change of w in a step (radians)
 ACCEPTED = 1e-4  # a slower one is still kept below this: the rest is in the highest modes
 
@@ -87,7 +87,7 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 
 
 @dataclass(frozen=True)
-class Targets:
+class StripTargets:
     """Inputs (n, CHANNELS, COLUMNS) and (n, SCALARS); wanted answers (n, 2 Q, COLUMNS) of unit mean square.
 
     An answer times `scale`, in the `basis` (Q, LEVELS - 2), is R / size^2.
@@ -100,7 +100,7 @@ class Targets:
     scale: float
 
 
-def make_targets(strips: Strips, count: int) -> Targets:
+def make_targets(strips: Strips, count: int) -> StripTargets:
     """Return the inputs and answers of `strips` and their mirror images, with `count` basis functions."""
     # the mirror image F(theta) -> conj F(-theta) turns mode c_k into conj c_k
     wall, far, residual = (np.concatenate([c, c.conj()]) for c in (strips.wall, strips.far, strips.residual))
@@ -116,7 +116,7 @@ def make_targets(strips: Strips, count: int) -> Targets:
     c = np.einsum("nxe,eq->nqx", inner, product @ basis.T)
     wanted = np.concatenate([c.real, c.imag], axis=1)
     scale = float(np.sqrt((wanted**2).sum(axis=1).mean()))
-    return Targets(channels, scalars, wanted / scale, basis, scale)
+    return StripTargets(channels, scalars, wanted / scale, basis, scale)
 
 
 def _h1_product() -> Floats:

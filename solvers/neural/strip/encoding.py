@@ -15,8 +15,8 @@ from meshonet.solvers.conformal.strip import decay, from_columns, to_columns, wa
 
 DEPTHS = np.array([0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0])  # eta at which the network sees the harmonic base
 
-CHANNELS = 4 * len(DEPTHS)
-SCALARS = 3
+CHANNELS = 4 * len(DEPTHS)  # real and imaginary parts of value and slope
+SCALARS = 3  # log size, height and shear of the strip
 
 SLOPE = 0.3  # factor of slopes, which are larger than values by about their wave number
 

@@ -17,8 +17,8 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import product, tanh
 
-TAPS = 5
-GATE = 0.3
+TAPS = 5  # columns that conv5 sees
+GATE = 0.3  # factor of b tanh(a)
 
 
 class StripNetwork:

@@ -1,4 +1,4 @@
-"""A volume grid at any resolution from a coarse one, by splines of what it differs from the interpolation.
+"""A volume grid refined to any resolution: splines of its difference from transfinite interpolation.
 
     x = T(fine faces) + S (x_c - T(coarse faces))
 
@@ -19,7 +19,7 @@ from meshonet.solvers.volumes.interpolate import Spline, interpolate
 from meshonet.solvers.volumes.laws import Laws, uniform_laws
 
 
-def evaluate(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws) -> Floats:
+def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws) -> Floats:
     """Return nodes (3, ni, nj, nk) inside `faces`, at the parameters `laws`, each law four times.
 
     `coarse` (3, mi, mj, mk) are those inside `coarse_faces`, of equal steps in the same parameters.

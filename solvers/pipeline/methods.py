@@ -1,9 +1,8 @@
-"""What a method is, and which there are.
+"""What a method is, and the table of those there are, from which choices, help and tests are made.
 
 A method is a name, frozen settings and one function: boundaries in, solutions out. A new one is a function
-``solve(boundary, *, settings...) -> Solution`` in a file of its own and a row of `METHODS`, from which the
-choices, the help and the tests of the command line are made. Rows name their functions by text, so that
-reading them loads nothing.
+``solve(boundary, *, settings...) -> Solution`` in a file of its own and a row of `METHODS`. Rows name their
+functions by text, so that reading them loads nothing.
 """
 
 from __future__ import annotations
@@ -11,9 +10,9 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from importlib import import_module
+from pkgutil import resolve_name
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Protocol
 
 from meshonet.geometry.errors import InputError
 
@@ -101,10 +100,10 @@ class Each(OneByOne):
     @property
     def function(self) -> Callable[..., Solution]:
         """The function."""
-        return _loaded(self.target) if isinstance(self.target, str) else self.target
+        return resolve_name(self.target) if isinstance(self.target, str) else self.target
 
     def takes(self, setting: str) -> bool:
-        """Return whether the function has such a keyword."""
+        """Return whether the function has this keyword."""
         return setting in inspect.signature(self.function).parameters
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
@@ -125,17 +124,35 @@ class UnknownSettingError(InputError):
         self.setting = setting
 
 
-class Row(NamedTuple):
+def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[str, Any]) -> None:
+    """Raise InputError for a setting of the method `name` that is no parameter of its `function`."""
+    known = inspect.signature(function).parameters
+    for setting in settings:
+        if setting not in known:
+            raise UnknownSettingError(name, setting)
+
+
+class MethodEntry(NamedTuple):
     """A method before it is loaded."""
 
     target: str  # ``module:name`` of the function of a boundary, or of the class of the method
     summary: str  # for help and documentation, behind the name
-    solves: bool = True  # whether ``solve-pde`` offers it
+    # ``solve-pde`` offers what is solved, ``tfi`` what is algebraic: grids that are formulas of the boundary,
+    # not repaired unless that is asked for, and inside boundaries that are sampled in the same way with first
+    # cells and without
+    kind: Literal["solved", "algebraic", "network"] = "solved"
     # whether relaxing Winslow's equations around kinks suits its grids: not where they have sources
     sweeps: bool = True
-    # whether its grids are formulas of the boundary, not repaired unless that is asked for, and inside
-    # boundaries that are sampled in the same way with first cells and without
-    algebraic: bool = False
+
+    @property
+    def solves(self) -> bool:
+        """Whether it solves equations, minimises or marches."""
+        return self.kind == "solved"
+
+    @property
+    def algebraic(self) -> bool:
+        """Whether its grids are formulas of the boundary."""
+        return self.kind == "algebraic"
 
     @property
     def is_class(self) -> bool:
@@ -143,35 +160,38 @@ class Row(NamedTuple):
         return self.target.partition(":")[2][0].isupper()
 
 
-METHODS: Mapping[str, Row] = MappingProxyType(
+METHODS: Mapping[str, MethodEntry] = MappingProxyType(
     {
-        "tfi": Row(
+        "tfi": MethodEntry(
             "meshonet.solvers.algebraic.tfi:solve",
             "interpolates between the edges",
-            solves=False,
-            algebraic=True,
+            kind="algebraic",
         ),
-        "winslow": Row("meshonet.solvers.elliptic.solve:solve", "elliptic, without control functions"),
-        "thomas-middlecoff": Row(
+        "winslow": MethodEntry(
+            "meshonet.solvers.elliptic.solve:solve", "elliptic, without control functions"
+        ),
+        "thomas-middlecoff": MethodEntry(
             "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
             "with control functions that carry the spacing of the edges into the interior",
             sweeps=False,
         ),
-        "steger-sorenson": Row(
+        "steger-sorenson": MethodEntry(
             "meshonet.solvers.elliptic.steger_sorenson:solve_steger_sorenson",
             "with sources at walls that turn grid lines to {wall_angle} there",
             sweeps=False,
         ),
-        "variational": Row(
+        "variational": MethodEntry(
             "meshonet.solvers.energy.variational:solve",
             "minimises a functional of angles and edge lengths; better angles, no folds",
         ),
-        "hyperbolic": Row("meshonet.solvers.hyperbolic.march:hyperbolic", "marches from the wall"),
-        "conformal": Row(
+        "hyperbolic": MethodEntry("meshonet.solvers.hyperbolic.march:hyperbolic", "marches from the wall"),
+        "conformal": MethodEntry(
             "meshonet.solvers.conformal.solve:Conformal",
             "Winslow's equations around a body, in the strip that a conformal map makes of its domain",
         ),
-        "operator": Row("meshonet.solvers.neural.inference:Operator", "a neural operator", solves=False),
+        "operator": MethodEntry(
+            "meshonet.solvers.neural.inference:OperatorMethod", "a neural operator", kind="network"
+        ),
     }
 )
 """Methods by name; ``operator:NAME`` is the operator of that name."""
@@ -192,20 +212,8 @@ def method_named(name: str, **settings: Any) -> Method:
     row = METHODS[base]
     if not row.is_class:
         return Each(base, row.target, settings)
-    target = _loaded(row.target)
+    target = resolve_name(row.target)
     settings |= {"model": model} if model else {}
     _check_settings(base, target, settings)
     method: Method = target(**settings)
     return method
-
-
-def _loaded(target: str) -> Any:
-    module, _, name = target.partition(":")
-    return getattr(import_module(module), name)
-
-
-def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[str, Any]) -> None:
-    known = inspect.signature(function).parameters
-    for setting in settings:
-        if setting not in known:
-            raise UnknownSettingError(name, setting)

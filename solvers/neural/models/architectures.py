@@ -1,0 +1,73 @@
+"""The architectures of the paper and of its references, by name; `MODELS` is all that can be trained."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from pkgutil import resolve_name
+from typing import Any
+
+from meshonet.geometry.arrays import Topology
+from meshonet.geometry.errors import InputError, meant
+from meshonet.solvers.neural.models.architecture import Architecture
+
+ARCHITECTURES: dict[str, str] = {
+    "meshonet": "meshonet.solvers.neural.models.branch_trunk:MeshONet",
+    "meshonet-hard": "meshonet.solvers.neural.models.meshonet_hard:MeshONetHard",
+    "deeponet": "meshonet.solvers.neural.models.branch_trunk:DeepONet",
+    "pod-deeponet": "meshonet.solvers.neural.models.branch_trunk:PODDeepONet",
+    "fno1d": "meshonet.solvers.neural.models.fourier:FNO1D",
+    "fno2d": "meshonet.solvers.neural.models.fourier:FNO2D",
+    "mionet": "meshonet.solvers.neural.models.branch_trunk:MIONet",
+    "mgnet": "meshonet.solvers.neural.models.mgnet:MGNet",
+    "meshnet": "meshonet.solvers.neural.models.mgnet:MeshNet",
+}
+"""Class of each model that is trained on solved grids, in the order of the help."""
+
+MODELS = ("strip", "quad", *ARCHITECTURES)
+"""What can be trained: the airfoil operator in the periodic strip, trained from boundaries; the operator for
+four-sided domains or bodies, from Winslow's and variational grids; the paper's, from solved grids."""
+
+
+def architecture(name: str, topology: Topology, settings: Mapping[str, Any] | None = None) -> Architecture:
+    """Return the model `name` of the paper's with `settings` in place of its defaults.
+
+    Raises InputError: no such model or setting, or a value of another type than the setting's.
+
+    >>> architecture("meshonet", "quad", {"sensors": 80}).sensors
+    80
+    """
+    if name not in ARCHITECTURES:
+        raise InputError(
+            f"model {name!r} is not known", meant(name, MODELS) + "use one of " + ", ".join(MODELS)
+        )
+    cls: type[Architecture] = resolve_name(ARCHITECTURES[name])
+    defaults = {field.name: field.default for field in dataclasses.fields(cls)}
+    if "periodic" in defaults:
+        defaults["periodic"] = topology == "o"
+    changed = {key: _fitting(name, defaults, key, value) for key, value in (settings or {}).items()}
+    return cls(**{**defaults, **changed})
+
+
+def name_of(model: Architecture) -> str:
+    """Return the name of a model of the paper's."""
+    own = f":{type(model).__name__}"
+    return next(name for name, path in ARCHITECTURES.items() if path.endswith(own))
+
+
+def settings_of(model: Architecture) -> dict[str, Any]:
+    """Return the settings of a model as JSON keeps them."""
+    return {key: list(v) if isinstance(v, tuple) else v for key, v in dataclasses.asdict(model).items()}
+
+
+def _fitting(name: str, defaults: Mapping[str, Any], key: str, value: Any) -> Any:
+    """Return a setting's value. Raises InputError unless it is like the setting's default."""
+    if key not in defaults:
+        raise InputError(f"{name} has no setting {key!r}", "use one of " + ", ".join(defaults))
+    default = defaults[key]
+    if isinstance(default, tuple) and isinstance(value, list | tuple) and value:
+        return tuple(_fitting(name, {key: default[0]}, key, item) for item in value)
+    right = type(value) is type(default) or (isinstance(default, float) and isinstance(value, int))
+    if not right or (isinstance(value, int) and not isinstance(value, bool) and not 0 <= value <= 4096):
+        raise InputError(f"{key}={value!r} does not suit {name}", f"use something like {key}={default!r}")
+    return value

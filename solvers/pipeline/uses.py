@@ -1,0 +1,88 @@
+"""What applies to what: the one table of options and of the ways of making grids that have a use for them.
+
+An option is a field of `GridRequest` or `Sampling`, whose counts are ``res``, or a setting of a method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import fields
+from typing import TYPE_CHECKING
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.sampling import Sampling
+
+if TYPE_CHECKING:
+    from meshonet.solvers.pipeline.request import Request
+
+
+def _row(*options: str) -> frozenset[str]:
+    return frozenset(" ".join(options).split())
+
+
+COUNTED = ("ni", "nj", "nk")
+"""Fields of `Sampling` that are ``res``."""
+ALWAYS = _row("sampling method settings repair allow_invalid percentiles history threads")
+"""Fields of `GridRequest` that are none of the table: what is made, how it is measured and where."""
+SETTINGS = {"polish": "auto", "answer": "valid", "blending": "arclength"}
+"""Values of settings that say nothing; of others None is one."""
+
+
+_SHAPE = "topology spacing le_spacing te_spacing far_field corners normalise te wake wake_nodes"
+_SIDES = "spacing_south spacing_north spacing_west spacing_east"
+_FIRST = "first_cell y_plus reynolds chord_fraction growth"
+
+MARCHED = "a grid marched from the wall"
+ONE = "a grid in the plane"
+CHANNEL = "a channel with given wall nodes"
+MANY = "a domain of many blocks"
+SMOOTHED = "a domain of many blocks that are there already"
+OFF_SURFACE = "marching from a surface"
+INSIDE = "six faces"
+JOINED = "blocks that are there already"
+GIVEN_SECTION = "a section that is a grid"
+
+_OF_MARCHED = _row("res", _SHAPE, _FIRST, "constant_layers repair_margin blocks", _SIDES)
+_OF_ONE = _OF_MARCHED | _row("slide wall_angle coarse refine initial")
+_OF_MANY = _row("res far_field te normalise", _FIRST, "constant_layers refine") | _row(
+    "cells cell_size walls pitch inlet outlet layout"
+)
+USES: dict[str, frozenset[str]] = {
+    MARCHED: _OF_MARCHED,
+    ONE: _OF_ONE,  # and the settings of the method, which refuses others itself
+    CHANNEL: _OF_ONE,  # with those of methods that are no networks
+    MANY: _OF_MANY,
+    SMOOTHED: _OF_MANY | _row("slide max_cycles"),
+    OFF_SURFACE: _row(_FIRST, "far_field layers symmetry"),
+    INSIDE: _row("res coarse blending tol max_cycles energy"),
+    "variational in space": _row("res coarse max_cycles energy"),
+    "winslow in space": _row("res tol max_cycles"),
+    "tfi in space": _row("res blending"),
+    JOINED: _row("slide max_cycles"),
+    GIVEN_SECTION: frozenset(),
+}
+"""Options by the way that has a use for them."""
+
+FOR_MANY = tuple(sorted(USES[MANY] - USES[ONE]))
+"""Options any of which asks for many blocks."""
+IN_SPACE = _row("layers symmetry energy")
+"""Options that no grid in the plane has a use for."""
+
+
+def chosen(request: Request) -> tuple[str, ...]:
+    """Return names of the options that are not what they are by default, settings at the end."""
+    given, plain = vars(request.sampling), vars(Sampling())
+    names = ["res" if name in COUNTED else name for name in plain if given[name] != plain[name]]
+    for each in fields(request):
+        value = getattr(request, each.name)
+        if each.name not in ALWAYS and value != each.default and value is not False:
+            names.append(each.name)
+    names += [name for name, value in request.settings.items() if value != SETTINGS.get(name)]
+    return tuple(dict.fromkeys(names))
+
+
+def refuse(options: Iterable[str], way: str) -> None:
+    """Raise InputError for the first of the options that are of no use to a `way`, as the table has it."""
+    for name in options:
+        if name not in USES[way]:
+            raise InputError(f"{{{name}}} is of no use to {way}", f"drop {{{name}}}")

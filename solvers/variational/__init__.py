@@ -1,1 +1,0 @@
-"""Grids that minimise a functional of angles and edge lengths."""
