@@ -1,4 +1,4 @@
-"""Names for the arrays that everything passes around."""
+"""Types of the arrays that modules pass to each other."""
 
 from collections.abc import Sequence
 from typing import Any, Literal, TypeAlias, TypeVar
@@ -36,6 +36,16 @@ def norms(vectors: Floats) -> Floats:
     if vectors.shape[-1] == 2:
         return np.hypot(vectors[..., 0], vectors[..., 1])
     return np.sqrt((vectors**2).sum(axis=-1))
+
+
+def extent_of(points: Floats) -> float:
+    """Return the longest extent of `points` (n, d) along an axis."""
+    return float(np.ptp(points, axis=0).max())
+
+
+def cross2(u: Floats, v: Floats) -> Floats:
+    """Return the products u x v (...) of plane vectors (..., 2)."""
+    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
 
 
 def complex_of(points: Floats) -> Complexes:

@@ -21,7 +21,7 @@ class MeshonetError(Exception):
 
 
 class InputError(MeshonetError):
-    """Input that cannot be used, said as: place: what is wrong; what to do.
+    """Input that cannot be used; its message reads ``place: problem; remedy``.
 
     `problem` has the offending value, `remedy` is what the user can do, `source` a file (which a caller may
     set later), `place` one in it, ``line 12``, and `parameter` the Python name of the parameter concerned.
@@ -51,7 +51,7 @@ class InputError(MeshonetError):
 
 
 def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
-    """Return a question for whoever wrote `word` and may have meant one of `known`; nothing if none is near.
+    """Return ``did you mean ...?`` with the most similar word of `known`, or an empty text.
 
     `likeness` is the part of their letters that is alike at the least, unless the word begins with one.
 

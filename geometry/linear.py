@@ -142,7 +142,7 @@ def singular_values(matrix: Any) -> tuple[Floats, Floats, Floats]:
 
 
 def least_squares(matrix: Any, right: Any) -> Floats:
-    """Return x (m,) or (m, k) with the least ``matrix @ x - right``, of a matrix (n, m); the least such x."""
+    """Return the least-squares solution x (m,) or (m, k) of ``matrix @ x = right``, of minimum norm."""
     u, s, v = singular_values(matrix)
     seen = s > np.finfo(float).eps * len(u) * s[:1]
     share = np.where(seen, 1.0 / np.where(seen, s, 1.0), 0.0)

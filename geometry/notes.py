@@ -1,4 +1,4 @@
-"""Notes of which a user of many grids must hear too, not only one who looks at a single one."""
+"""Notes that are reported for batches of many grids too, not only for a single grid."""
 
 from collections.abc import Iterable
 

@@ -30,18 +30,18 @@ def cores() -> int:
 
 
 def thread_count() -> int:
-    """Return the number of threads to work with: as many as there are cores, unless limited."""
+    """Return the number of threads to use: that of the cores, unless limited."""
     return min(_limit.get() or cores(), MOST)
 
 
 def threads_for(nodes: int, visits: int = 1) -> int:
-    """Return the number of threads to work with on so many nodes, each visited so often: one for few."""
+    """Return the number of threads for so much work, in nodes times visits: one where it is little."""
     return max(min(thread_count(), visits * nodes // NODES_EACH), 1)
 
 
 @contextmanager
 def limited_to(threads: int | None) -> Iterator[None]:
-    """Have kernels work with so many threads inside; None leaves the number as it is.
+    """Limit the threads of kernels inside the block; None keeps the number.
 
     Python threads that are started inside do not inherit it.
 

@@ -1,4 +1,4 @@
-"""Grid lines that run on over a connection: the nodes next to it on both sides, in one order.
+"""Grid lines across a connection: the nodes next to it on both sides, in one order.
 
 ::
 
@@ -9,9 +9,10 @@
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import PLACES, Range
+from meshonet.geometry.blocks.block import PLACES, Range, face_counts
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 
@@ -21,8 +22,7 @@ def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floa
     They are (depth, n, d), of volumes (depth, n, m, 3). The first nodes are carried to the second by the
     motion of a periodic connection; there are fewer rows where a block has no more.
     """
-    own = rows_beside(grid, connection.block, connection.side, connection.range, depth)
-    donor = rows_beside(grid, connection.donor, connection.donor_side, connection.donor_range, depth)
+    own, donor = (rows_beside(grid, *end, depth) for end in connection.ends)
     if connection.transform:
         own = connection.transform(own)
     axes = (0, *(abs(way) for way in connection.orientation), donor.ndim - 1)
@@ -37,6 +37,12 @@ def planar(grid: Grid) -> None:
             sizes = " x ".join(map(str, block.counts))
             problem = f"block {number} of {sizes} nodes is not in the plane"
             raise InputError(problem, "give blocks of two directions with x and y")
+
+
+def rows_at(grid: Grid, patch: Patch, depth: int) -> Floats:
+    """Return rows (depth, n, d) or (depth, n, m, 3) of nodes from a patch inwards."""
+    counts = face_counts(grid.blocks[patch.block].counts, patch.side)
+    return rows_beside(grid, patch.block, patch.side, patch.range(counts), depth)
 
 
 def rows_beside(grid: Grid, block: int, side: Side, span: Range, depth: int) -> Floats:

@@ -32,7 +32,7 @@ PLACES: dict[Side, tuple[int, int]] = {
 
 Form: TypeAlias = Literal["plane", "surface", "volume"]
 
-_KINDS = {(2, 2), (2, 3), (3, 3)}
+_KINDS = {(2, 2), (2, 3), (3, 3)}  # directions of a block and coordinates of its nodes
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +76,11 @@ def face_of(values: AnyArray, side: Side) -> AnyArray:
     """Return a view of what `values` (ni, nj, ...) are on a side of the block."""
     axis, end = PLACES[side]
     return values[(slice(None),) * axis + (end,)]  # type: ignore[return-value]
+
+
+def part_of(values: AnyArray, span: Range) -> AnyArray:
+    """Return a view of `values` (n, m, ...) at the nodes of `span`, both ends included."""
+    return values[tuple(slice(first, last + 1) for first, last in span)]  # type: ignore[return-value]
 
 
 def face_counts(counts: tuple[int, ...], side: Side) -> tuple[int, ...]:

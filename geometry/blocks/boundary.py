@@ -26,7 +26,6 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connected, Connection, connections_of
 from meshonet.geometry.blocks.grid import UNKNOWN, Grid, Origin
 from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches
-from meshonet.geometry.blocks.resample import resample_edges, resample_patches
 from meshonet.geometry.blocks.validate import check_edges
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
@@ -34,7 +33,7 @@ from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import Indices, find_corners
 from meshonet.geometry.spacing.sampling import Sampling
 
-_CORNERS = (
+_CORNERS = (  # side and end, twice: where neighbouring sides meet
     ("south", 0, "west", 0),
     ("south", -1, "east", 0),
     ("north", 0, "west", -1),
@@ -167,6 +166,8 @@ class Boundary(Connected):
         ni, nj = sampling.ni or self.ni, sampling.nj or self.nj
         if (ni, nj) == (self.ni, self.nj):
             return self
+        from meshonet.geometry.blocks.resample import resample_edges, resample_patches
+
         sides: dict[Side, Floats] = {side: getattr(self, side) for side in SIDES}
         edges: Any = resample_edges(sides, ni, nj, closed=self.periodic, wake=self.wake)
         patches = resample_patches(self.patches, (self.ni, self.nj), (ni, nj), self.wake)

@@ -1,4 +1,4 @@
-"""Where blocks meet node by node: another block's side, or their own.
+"""Connections: parts of two sides, of different blocks or of one, whose nodes coincide.
 
 ::
 
@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, Side, Topology
-from meshonet.geometry.blocks.block import Range, face_counts, sides_of
+from meshonet.geometry.blocks.block import Range, face_counts, face_of, part_of, sides_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.linear import solve
 
@@ -96,10 +96,22 @@ class Connection:
     transform: Motion | None = None
     """What carries the nodes of the side to the donor's, when they are periodic."""
 
+    @property
+    def ends(self) -> tuple[tuple[int, Side, Range], tuple[int, Side, Range]]:
+        """Block, side and nodes of both sides."""
+        return (self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range)
+
+    def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Return views of what `values` (of each block) are at both sides, in one order, (n, m, 1)."""
+
+        def face(block: int, side: Side) -> NDArray[Any]:
+            return np.asarray(face_of(values[block], side)[..., None])
+
+        return replace(self, transform=None).nodes(face)
+
     def nodes(self, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the nodes of both sides in one order (n, d) or (n, m, d), the first moved by `transform`."""
-        own, donor = _part(face(self.block, self.side), self.range), face(self.donor, self.donor_side)
-        donor = _part(donor, self.donor_range)
+        own, donor = (part_of(face(block, side), span) for block, side, span in self.ends)
         if len(self.orientation) != own.ndim - 1:
             raise InputError(f"{self} has {len(self.orientation)} directions", f"give {own.ndim - 1}")
         axes = [abs(direction) - 1 for direction in self.orientation]
@@ -127,8 +139,8 @@ class Connection:
         ways = [0] * len(self.orientation)
         for k, way in enumerate(self.orientation, start=1):
             ways[abs(way) - 1] = k if way > 0 else -k
-        ends = self.donor, self.donor_side, self.donor_range, self.block, self.side, self.range
-        return Connection(*ends, tuple(ways), self.transform.inverse() if self.transform else None)
+        own, donor = self.ends
+        return Connection(*donor, *own, tuple(ways), self.transform.inverse() if self.transform else None)
 
     def __str__(self) -> str:
         own, donor = (
@@ -138,8 +150,7 @@ class Connection:
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
         """Return side, first and last node of the parts of a planar block's boundary that it connects."""
-        ends = ((self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range))
-        return [(side, *nodes[0]) for number, side, nodes in ends if number == block]
+        return [(side, *nodes[0]) for number, side, nodes in self.ends if number == block]
 
 
 def cells_at(connection: Connection, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
@@ -157,8 +168,7 @@ def check_connections(connections: Sequence[Connection], counts: Sequence[tuple[
     `counts` are the nodes of every block along each direction.
     """
     for each in connections:
-        ends = (each.block, each.side, each.range), (each.donor, each.donor_side, each.donor_range)
-        for block, side, span in ends:
+        for block, side, span in each.ends:
             known = 0 <= block < len(counts) and side in sides_of(counts[block])
             most = face_counts(counts[block], side) if known else ()
             if len(span) != len(most) or any(
@@ -169,10 +179,6 @@ def check_connections(connections: Sequence[Connection], counts: Sequence[tuple[
             raise InputError(f"{each} has {len(each.orientation)} directions", f"give {len(each.range)}")
         if sorted(abs(way) for way in each.orientation) != list(range(1, len(each.range) + 1)):
             raise InputError(f"{each} has directions {each.orientation}", "give each direction once")
-
-
-def _part(nodes: NDArray[Any], span: Range) -> NDArray[Any]:
-    return nodes[tuple(slice(start, stop + 1) for start, stop in span)]
 
 
 def o_seam(nj: int) -> Connection:

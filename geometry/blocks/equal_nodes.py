@@ -1,16 +1,15 @@
-"""Nodes of connected sides made equal to the last bit, as a grid has to have them."""
+"""Nodes of connected sides made bitwise equal, as a grid requires."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import Block, face_of
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
-from meshonet.geometry.blocks.shared_nodes import joined_labels
+from meshonet.geometry.blocks.shared_nodes import joined_labels, numbered, places_among
 from meshonet.geometry.polygon.corners import Indices
 
 _PASSES = 9
@@ -24,8 +23,8 @@ def with_equal_nodes(blocks: Sequence[Block], connections: Sequence[Connection])
     """
     if not connections:
         return tuple(blocks)
-    ends = np.cumsum([0, *(int(np.prod(block.counts)) for block in blocks)])
-    used, pairs = _pairs(blocks, connections, ends)
+    ends, numbers = numbered([block.counts for block in blocks])
+    used, pairs = places_among([each.pairs(numbers) for each in connections])
     shared = np.empty((len(used), blocks[0].nodes.shape[-1]))
     places = []
     for block, first, last in zip(blocks, ends, ends[1:], strict=False):
@@ -42,23 +41,6 @@ def with_equal_nodes(blocks: Sequence[Block], connections: Sequence[Connection])
         nodes[at] = equal[rows]
         result.append(Block(nodes, finite=True))
     return tuple(result)
-
-
-def _pairs(
-    blocks: Sequence[Block], connections: Sequence[Connection], ends: Indices
-) -> tuple[Indices, list[tuple[Indices, Indices]]]:
-    """Return the joined nodes, counted through all blocks, and of each connection pairs of places in them."""
-    counts = [block.counts for block in blocks]
-    numbers = [np.arange(a, b).reshape(n) for a, b, n in zip(ends, ends[1:], counts, strict=False)]
-
-    def face(block: int, side: Side) -> Indices:
-        return np.asarray(face_of(numbers[block], side)[..., None])
-
-    plain = [replace(each, transform=None).nodes(face) for each in connections]
-    flat = [nodes.ravel() for pair in plain for nodes in pair]
-    used, where = np.unique(np.concatenate(flat), return_inverse=True)
-    parts = np.split(where.ravel(), np.cumsum([len(nodes) for nodes in flat])[:-1])
-    return used, list(zip(parts[0::2], parts[1::2], strict=True))
 
 
 def _equal(

@@ -10,6 +10,7 @@
 from dataclasses import dataclass
 
 from meshonet.geometry.blocks.block import PLACES, face_counts
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 
 
@@ -27,6 +28,14 @@ class Member:
     aligned: bool
 
 
+def joins_whole_sides(grid: Grid, connection: Connection) -> bool:
+    """Say whether a connection joins all of a side to all of another."""
+    return all(
+        span == tuple((0, count - 1) for count in face_counts(grid.blocks[block].counts, side))
+        for block, side, span in connection.ends
+    )
+
+
 def families(grid: Grid) -> list[list[Member]]:
     """Return the families of the lines of a grid, each (block, direction) in one of them.
 
@@ -35,13 +44,7 @@ def families(grid: Grid) -> list[list[Member]]:
     beyond: dict[tuple[int, int], list[tuple[tuple[int, int], bool, bool]]] = {}
     for each in grid.connections:
         own, donor = (each.block, PLACES[each.side][0]), (each.donor, PLACES[each.donor_side][0])
-        whole = all(
-            span == tuple((0, count - 1) for count in face_counts(grid.blocks[block].counts, side))
-            for block, side, span in (
-                (each.block, each.side, each.range),
-                (each.donor, each.donor_side, each.donor_range),
-            )
-        )
+        whole = joins_whole_sides(grid, each)
         flip = each.orientation[0] < 0
         beyond.setdefault(own, []).append((donor, flip, whole))
         beyond.setdefault(donor, []).append((own, flip, whole))

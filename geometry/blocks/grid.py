@@ -15,12 +15,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from meshonet.above import ABOVE
 from meshonet.geometry.arrays import Floats, Side, Topology
 from meshonet.geometry.blocks.block import Block, Form, Range, check_alike, form_of
 from meshonet.geometry.blocks.connection import (
@@ -31,12 +31,11 @@ from meshonet.geometry.blocks.connection import (
     topology_of,
     wake_cells,
 )
-from meshonet.geometry.blocks.outer_patches import outer_patches
 from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
-    from meshonet.geometry.quality.summary import Quality
+    from meshonet.geometry.summary import Quality
 
 
 @dataclass(frozen=True)
@@ -122,6 +121,8 @@ class Grid(Connected):
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]
         if form_of(block.nodes) == "volume":
+            from meshonet.geometry.blocks.outer_patches import outer_patches
+
             named = tuple(patches) or tuple(outer_patches((), block.counts, ()))
             return cls((block,), named, (), name, provenance or {}, origin)
         if topology == "o" and not np.array_equal(block.nodes[0], block.nodes[-1]):
@@ -183,6 +184,8 @@ class Grid(Connected):
 
     def outer_patches(self) -> list[Patch]:
         """Return the outer boundary, each cell at it in one patch (`outer_patches`)."""
+        from meshonet.geometry.blocks.outer_patches import outer_patches
+
         named: list[list[Patch]] = [[] for _ in self.blocks]
         for patch in self.patches:
             named[patch.block].append(patch)
@@ -196,8 +199,8 @@ class Grid(Connected):
         """Return for every block the sides and ranges of nodes that are connected."""
         inside: list[list[tuple[Side, Range]]] = [[] for _ in self.blocks]
         for each in self.connections:
-            inside[each.block].append((each.side, each.range))
-            inside[each.donor].append((each.donor_side, each.donor_range))
+            for block, side, span in each.ends:
+                inside[block].append((side, span))
         return inside
 
     def walls(self) -> list[Patch]:
@@ -213,7 +216,7 @@ class Grid(Connected):
         return [patch for patch in outer if patch.side in ("south", "north") and patch.kind == "other"]
 
     def with_nodes(self, nodes: Floats, *, finite: bool = False) -> Grid:
-        """Return the same grid with other nodes (ni, nj, 2), as many."""
+        """Return the same grid with other nodes (ni, nj, 2) of the same counts."""
         return replace(self, blocks=(Block(nodes, finite),))
 
     def with_provenance(self, **facts: Any) -> Grid:
@@ -228,13 +231,12 @@ class Grid(Connected):
         Quality
             The summaries of all metrics (`meshonet.geometry.quality.measure.measure`).
         """
-        # by name: what is measured needs grids
-        return import_module("meshonet.geometry.quality.measure").measure(self, percentiles=True)
+        quality: Quality = ABOVE["measure"](self)
+        return quality
 
     def write(self, path: str | Path, *, to_format: str | None = None) -> None:
         """Write the grid to a file, whole or not at all; the ending says the format (`meshonet.write`)."""
-        # by name: this room knows no formats
-        import_module("meshonet").write(self, path, to_format=to_format)
+        ABOVE["write"](self, path, to_format=to_format)
 
     def to_pyvista(self) -> Any:
         """Return the grid as a `pyvista.StructuredGrid`, many blocks as a `pyvista.MultiBlock` of these.

@@ -1,4 +1,4 @@
-"""On which side of each other the directions of a volume block run, by the sign of its volume."""
+"""The handedness of a volume block, by the sign of its volume."""
 
 from collections.abc import Sequence
 
@@ -22,11 +22,11 @@ def signed_volume(coordinates: Sequence[Floats]) -> float:
                 [values[at].astype(np.float64) - x for values, x in zip(coordinates, centre, strict=True)]
             )
             # the directions of a face follow its own: (j, k), (k, i), (i, j)
-            total += sign * _through(face if axis != 1 else face.swapaxes(1, 2))
+            total += sign * flux_through(face if axis != 1 else face.swapaxes(1, 2))
     return total / 3.0
 
 
-def _through(face: Floats) -> float:
+def flux_through(face: Floats) -> float:
     """Return ∮ r·n dA over a face (3, n, m) of nodes."""
     a, b, c, d = face[:, :-1, :-1], face[:, 1:, :-1], face[:, 1:, 1:], face[:, :-1, 1:]
     (x, y, z), (u, v, w) = c - a, d - b

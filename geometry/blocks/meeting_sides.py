@@ -1,21 +1,22 @@
-"""Where blocks in space touch each other or themselves, found by the places of their nodes.
+"""Where blocks touch each other or themselves, found by the places of their nodes.
 
 ::
 
-    +-------+-------+      Cells of sides, quadrilaterals of volumes and edges of surface patches, are the
-    same |   0   |   1   |      where their corners are, in one of the eight (or two) ways in which one
-    lattice lies on +---+---+-------+      another. Those that follow each other in both lattices make a
-    connection, a part of a
-        | 2 |              side as well as a whole one.
-        +---+
+    +-------+-------+      A cell of a side (a quadrilateral of a volume, an edge of a surface patch) meets a
+    |   0   |   1   |      cell of another side where their corners coincide, in one of the eight (or two)
+    +---+---+-------+      orientations in which one lattice can lie on the other. Neighbouring cells that
+        | 2 |              meet in the same orientation make a connection, of whole sides or, as that of
+        +---+              blocks 0 and 2, of parts of them.
 
-Volumes that touch lie on different sides of their common face, so copies of a block are not joined to it. A
-side that is a line, or an edge that is a point, joins nothing.
+Volumes that touch lie on different sides of their common face, and planar blocks, each on the left of its
+boundary, run along their common side in opposite directions: copies of a block are not joined to it. A side
+that is a line, or an edge that is a point, joins nothing. A side may be joined to itself, as the wake of a C
+grid is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations, product
 
@@ -28,9 +29,10 @@ from meshonet.geometry.blocks.block import PLACES, Block, Range, form_of, sides_
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.outer_patches import JOINED, rectangles
 from meshonet.geometry.blocks.rounding import rounding
-from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 
+AROUND: Mapping[Side, int] = {"west": -1, "east": 1, "south": 1, "north": -1}
+"""Whether the nodes of a side of a planar block run counter-clockwise around it."""
 _DIRECTION = np.array([0.5403023, 0.6710117, 0.5076571])
 """Cells are sorted along this direction, along which few grids have many of equal place."""
 _MOST = 0.25
@@ -42,22 +44,14 @@ _FLAT = 1e-12
 def meeting_sides(
     blocks: Sequence[Block], tolerance: float, without: Iterable[tuple[int, Side, Range]]
 ) -> list[Connection]:
-    """Return the connections of volumes with volumes and of surface patches, as `find_connections` does.
-
-    Raises InputError: a block in the plane.
-    """
+    """Return the connections of planar blocks, surface patches and volumes, as `find_connections` does."""
     known = list(without)
     joined: list[Connection] = []
-    for form in ("volume", "surface"):
+    for form in ("plane", "volume", "surface"):
         numbers = [number for number, block in enumerate(blocks) if form_of(block.nodes) == form]
         own = [(numbers.index(part[0]), *part[1:]) for part in known if part[0] in numbers]
         for each in _meeting([blocks[number] for number in numbers], tolerance, own) if numbers else ():
             joined.append(replace(each, block=numbers[each.block], donor=numbers[each.donor]))
-    for number, block in enumerate(blocks):
-        if form_of(block.nodes) == "plane":
-            raise InputError(
-                f"block {number} has no z, others have", "give all of them two coordinates, or three"
-            )
     return joined
 
 
@@ -80,11 +74,11 @@ def _meeting(
 
 
 @dataclass(frozen=True)
-class _Cells:
+class _SideCells:
     """Cells (n) of the sides of all blocks."""
 
     corners: Floats
-    """(n, 2, 3) of edges, (n, 2, 2, 3) of quadrilaterals."""
+    """(n, 2, 2 or 3) of edges, (n, 2, 2, 3) of quadrilaterals."""
     block: Indices
     side: Indices
     """Number of the side in `PLACES`."""
@@ -97,8 +91,8 @@ class _Cells:
 
     @property
     def flat(self) -> Floats:
-        """(n, 2 or 4, 3) corners."""
-        return self.corners.reshape(len(self.block), -1, 3)
+        """(n, 2 or 4, 2 or 3) corners."""
+        return self.corners.reshape(len(self.block), -1, self.corners.shape[-1])
 
     def reach(self, tolerance: float) -> Floats:
         """Return how far nodes that are the same may be apart, (n,)."""
@@ -107,7 +101,7 @@ class _Cells:
         return np.minimum(np.maximum(tolerance * length, self.slack), _MOST * length)
 
 
-def _cells(blocks: Sequence[Block], known: Sequence[tuple[int, Side, Range]]) -> _Cells:
+def _cells(blocks: Sequence[Block], known: Sequence[tuple[int, Side, Range]]) -> _SideCells:
     corners, numbers, sides, places, inwards = [], [], [], [], []
     for number, block in enumerate(blocks):
         for turn, side in enumerate(sides_of(block.counts)):
@@ -130,7 +124,7 @@ def _cells(blocks: Sequence[Block], known: Sequence[tuple[int, Side, Range]]) ->
         np.abs(every).max(axis=tuple(range(1, every.ndim)), initial=0.0)
     )
     place, away = np.concatenate(places), np.concatenate(inwards) if inwards else None
-    return _Cells(every, np.concatenate(numbers), np.concatenate(sides), place, away, slack)
+    return _SideCells(every, np.concatenate(numbers), np.concatenate(sides), place, away, slack)
 
 
 def _corners(face: Floats) -> Floats:
@@ -143,7 +137,7 @@ def _corners(face: Floats) -> Floats:
 
 def _edges(corners: Floats) -> Floats:
     """Return the lengths (n, 1 or 4) of the edges of cells."""
-    ring = corners.reshape(len(corners), -1, 3)
+    ring = corners.reshape(len(corners), -1, corners.shape[-1])
     ring = ring[:, [0, 2, 3, 1]] if ring.shape[1] == 4 else ring
     steps = (np.roll(ring, -1, axis=1) - ring)[:, : 1 if ring.shape[1] == 2 else 4]
     return np.asarray(np.sqrt((steps**2).sum(axis=-1)))
@@ -161,10 +155,10 @@ def _extended(corners: Floats) -> NDArray[np.bool_]:
     return np.asarray(area > _FLAT * longest**2).reshape(shape)
 
 
-def _near(cells: _Cells, tolerance: float) -> tuple[Indices, Indices]:
+def _near(cells: _SideCells, tolerance: float) -> tuple[Indices, Indices]:
     """Return pairs of cells, the first of the lower number, whose centres are in one place."""
     reach, centre = cells.reach(tolerance), cells.flat.mean(axis=1)
-    place = elementary.product(centre, _DIRECTION)
+    place = elementary.product(centre, _DIRECTION[: centre.shape[1]])
     row = np.argsort(place, kind="stable")
     ordered = place[row]
     stop = np.searchsorted(ordered, ordered + reach[row], side="right")
@@ -189,23 +183,26 @@ class _Group:
     donor: Indices
     orientation: tuple[int, ...]
 
-    def rank(self, cells: _Cells) -> tuple[bool, int, int, int]:
+    def rank(self, cells: _SideCells) -> tuple[bool, int, int, int]:
         """Return what decides between groups that claim the same cells: a block is joined to itself first."""
         a, b = self.own[0], self.donor[0]
         return bool(cells.block[a] != cells.block[b]), -len(self.own), int(a), int(b)
 
 
-def _groups(cells: _Cells, own: Indices, donor: Indices, tolerance: float) -> Iterator[_Group]:
+def _groups(cells: _SideCells, own: Indices, donor: Indices, tolerance: float) -> Iterator[_Group]:
     """Yield the pairs whose corners are the same, by sides, orientation and offset."""
     reach = cells.reach(tolerance)
     near = np.minimum(reach[own], reach[donor])
-    directions = cells.place.shape[1]
+    directions, turns = cells.place.shape[1], np.array(list(AROUND.values()))
     for axes in permutations(range(directions)):
         for ways in product((1, -1), repeat=directions):
             turned = cells.corners[donor].transpose(0, *(axis + 1 for axis in axes), directions + 1)
             turned = turned[(slice(None), *(slice(None, None, way) for way in ways))]
             away = np.sqrt(((turned - cells.corners[own]) ** 2).sum(axis=-1))
-            pairs = np.flatnonzero(away.max(axis=tuple(range(1, away.ndim))) <= near)
+            same = away.max(axis=tuple(range(1, away.ndim))) <= near
+            if cells.corners.shape[-1] == 2:  # planar blocks
+                same &= turns[cells.side[own]] * turns[cells.side[donor]] == -ways[0]
+            pairs = np.flatnonzero(same)
             a, b = own[pairs], donor[pairs]
             offset = cells.place[b][:, list(axes)] - cells.place[a] * ways
             sides = [cells.block[a], cells.side[a], cells.block[b], cells.side[b]]
@@ -218,7 +215,7 @@ def _groups(cells: _Cells, own: Indices, donor: Indices, tolerance: float) -> It
                 yield _Group(a[inside], b[inside], orientation)
 
 
-def _rectangles(cells: _Cells, group: _Group, open_: NDArray[np.bool_]) -> Iterator[Indices]:
+def _rectangles(cells: _SideCells, group: _Group, open_: NDArray[np.bool_]) -> Iterator[Indices]:
     """Yield the pairs of a group that make a rectangle each, of those that are `open_`."""
     if not open_.any():
         return
@@ -230,7 +227,7 @@ def _rectangles(cells: _Cells, group: _Group, open_: NDArray[np.bool_]) -> Itera
         yield number[tuple(slice(*span) for span in spans)].ravel()
 
 
-def _connection(cells: _Cells, group: _Group, part: Indices) -> Connection:
+def _connection(cells: _SideCells, group: _Group, part: Indices) -> Connection:
     """Return the connection of pairs of cells, the side that comes first in `PLACES` of a block as own."""
     ends = []
     for numbers in (group.own[part], group.donor[part]):

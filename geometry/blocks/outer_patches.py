@@ -1,4 +1,4 @@
-"""The outer boundary of blocks, cell by cell: which patch has each of them, and stretches of these.
+"""The outer boundary of a grid of blocks: the patch of each boundary cell, and the ranges of patches.
 
 ::
 

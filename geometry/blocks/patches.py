@@ -64,7 +64,7 @@ class Patch:
 
 
 def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tuple[Patch, ...]:
-    """Return the patches of a block of `topology` when nobody named any.
+    """Return the default patches of a block of `topology`.
 
     ``quad`` has its four sides, ``o`` a wall and a far field (west and east are the seam), ``c`` a wake of
     `wake` cells on both sides of a wall, and a far field around them.

@@ -82,7 +82,7 @@ def _in_pieces(side: Floats, ends: tuple[int, ...], places: tuple[int, ...], clo
 def resample_patches(
     patches: tuple[Patch, ...], had: tuple[int, int], has: tuple[int, int], wake: int
 ) -> tuple[Patch, ...]:
-    """Return the patches of a boundary that `had` so many nodes along xi and eta and now `has` so many."""
+    """Return the patches of a boundary whose counts of nodes along xi and eta change from `had` to `has`."""
     along_xi, along_eta = _marks(had[0], has[0], wake), _marks(had[1], has[1], 0)
 
     def moved(patch: Patch) -> Patch:

@@ -1,4 +1,4 @@
-"""How far coordinates are from what was meant, told by the digits that they were written with.
+"""The rounding error of coordinates, estimated from the digits that they were written with.
 
 Files have numbers in single precision, with so many digits, or with so many decimals. The same point of two
 blocks, computed twice and rounded then, differs by a unit of the last digit, which next to walls can be a
@@ -11,8 +11,8 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 
-_DECIMALS = range(3, 13)
-_DIGITS = range(5, 14)
+_DECIMALS = range(3, 13)  # places behind the point that numbers may have been written with
+_DIGITS = range(5, 14)  # significant digits that numbers may have been written with
 _MOST = 400
 """Values of which digits are counted, one after the other."""
 

@@ -1,4 +1,4 @@
-"""A rigid motion in space as the ways in which solvers want periodic sides to be described."""
+"""A rigid motion in space by axis, centre, angle and shift, as flow solvers describe periodic sides."""
 
 from __future__ import annotations
 

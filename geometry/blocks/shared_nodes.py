@@ -14,8 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Side
-from meshonet.geometry.blocks.block import PLACES, face_of
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import PLACES, Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.polygon.corners import Indices
 
@@ -29,21 +29,12 @@ def shared_nodes(
     which nodes first appear, block after block, the last index fastest. Both sides of a periodic connection
     have numbers of their own unless `periodic` says that they are one.
     """
-    ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
-    numbers = [
-        np.arange(first, last).reshape(count)
-        for first, last, count in zip(ends, ends[1:], counts, strict=False)
-    ]
-
-    def face(block: int, side: Side) -> Indices:
-        return np.asarray(face_of(numbers[block], side)[..., None])
-
-    joined = [replace(each, transform=None) for each in connections if periodic or each.transform is None]
+    ends, numbers = numbered(counts)
+    joined = [each.pairs(numbers) for each in connections if periodic or each.transform is None]
     changed = True
     while changed:  # as often as blocks meet in one node
         changed = False
-        for connection in joined:
-            own, donor = connection.nodes(face)
+        for own, donor in joined:
             least = np.minimum(own, donor)
             changed = changed or bool((own != donor).any())
             own[...], donor[...] = least, least
@@ -54,6 +45,26 @@ def shared_nodes(
         kept[number.ravel()] = True
     rank = np.cumsum(kept) - 1
     return tuple(rank[number] for number in numbers)
+
+
+def numbered(counts: Sequence[tuple[int, ...]]) -> tuple[Indices, list[Indices]]:
+    """Return where the nodes of each block begin, and end, among all of them, and their numbers."""
+    ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
+    numbers = [np.arange(a, b).reshape(n) for a, b, n in zip(ends, ends[1:], counts, strict=False)]
+    return ends, numbers
+
+
+def node_table(
+    blocks: Sequence[Block], connections: Sequence[Connection]
+) -> tuple[Floats, tuple[Indices, ...]]:
+    """Return all nodes (n, d) of `blocks`, those that `connections` join once, and their `shared_nodes`."""
+    numbers = shared_nodes([block.counts for block in blocks], connections)
+    if len(blocks) == 1 and not connections:
+        return np.ascontiguousarray(blocks[0].nodes.reshape(-1, blocks[0].nodes.shape[-1])), numbers
+    nodes = np.empty((1 + max(int(number.max()) for number in numbers), blocks[0].nodes.shape[-1]))
+    for number, block in zip(numbers, blocks, strict=True):
+        nodes[number] = block.nodes
+    return nodes, numbers
 
 
 def node_count(counts: Sequence[tuple[int, ...]], connections: Sequence[Connection]) -> int:
@@ -72,12 +83,19 @@ def node_count(counts: Sequence[tuple[int, ...]], connections: Sequence[Connecti
     pairs = [replace(each, transform=None).nodes(face) for each in connections]
     if not pairs:
         return int(ends[-1])
-    used, where = np.unique(
-        np.concatenate([nodes.ravel() for pair in pairs for nodes in pair]), return_inverse=True
-    )
-    parts = np.split(where.ravel(), np.cumsum([nodes.size for pair in pairs for nodes in pair])[:-1])
-    label = joined_labels(len(used), list(zip(parts[0::2], parts[1::2], strict=True)))
+    used, places = places_among(pairs)
+    label = joined_labels(len(used), places)
     return int(ends[-1]) - len(used) + len(np.unique(label))
+
+
+def places_among(
+    pairs: Sequence[tuple[Indices, Indices]],
+) -> tuple[Indices, list[tuple[Indices, Indices]]]:
+    """Return the distinct numbers in `pairs`, ascending, and the pairs as places (n,) among these."""
+    flat = [nodes.ravel() for pair in pairs for nodes in pair]
+    used, where = np.unique(np.concatenate(flat), return_inverse=True)
+    parts = np.split(where.ravel(), np.cumsum([len(nodes) for nodes in flat])[:-1])
+    return used, list(zip(parts[0::2], parts[1::2], strict=True))
 
 
 def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indices:

@@ -88,10 +88,13 @@ class SixFaces:
 
     def edge(self, side: Side, second: Side) -> Floats:
         """Return the nodes (n, 3) of a face where it meets a second one, a view."""
+        return edge_of(getattr(self, side), side, second)
+
+    def steps_inwards(self, side: Side, second: Side) -> Floats:
+        """Return the steps (n, 3) of a face from where it meets a second one, along that one's direction."""
         axis, end = PLACES[second]
-        own = PLACES[side][0]
-        along = axis if axis < own else axis - 1
-        return np.asarray(getattr(self, side)[(slice(None),) * along + (end,)])
+        rows = np.moveaxis(getattr(self, side), axis - (axis > PLACES[side][0]), 0)
+        return np.asarray(rows[1] - rows[0] if end == 0 else rows[-1] - rows[-2])
 
     @cached_property
     def size(self) -> float:
@@ -164,20 +167,18 @@ def edges() -> Iterator[tuple[Side, Side]]:
             yield side, second
 
 
+def edge_of(face: Floats, side: Side, second: Side) -> Floats:
+    """Return the nodes (n, 3) of the face at a side where it meets a second one, a view."""
+    axis, end = PLACES[second]
+    return np.asarray(np.moveaxis(face, axis - (axis > PLACES[side][0]), 0)[end])
+
+
 def share_edges(faces: dict[Side, Floats]) -> None:
     """Give nodes of shared edges the same bits, those of the face that comes first."""
     for side in FACES:
         faces[side] = np.array(faces[side])
     for side, second in edges():
-        own, axis = PLACES[second][0], PLACES[side][0]
-        source = face_of(faces[side], _local(side, own, PLACES[second][1]))
-        face_of(faces[second], _local(second, axis, PLACES[side][1]))[...] = source
-
-
-def _local(side: Side, axis: int, end: int) -> Side:
-    """Return the side of a face, itself a patch of two directions, at an end of a direction of the block."""
-    along = axis if axis < PLACES[side][0] else axis - 1
-    return next(name for name, place in PLACES.items() if place == (along, end))
+        edge_of(faces[second], second, side)[...] = edge_of(faces[side], side, second)
 
 
 def place_of(node: Floats) -> str:

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats, Side, norms
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.six_faces import FACES, SixFaces, edges, place_of, share_edges
+from meshonet.geometry.blocks.handedness import flux_through
+from meshonet.geometry.blocks.six_faces import FACES, SixFaces, edge_of, edges, place_of, share_edges
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.corners import Indices
@@ -144,11 +145,9 @@ def _volume(faces: dict[Side, Floats]) -> float:
     """Return the volume inside: negative where the directions are left-handed."""
     total, centre = 0.0, np.mean([face.mean(axis=(0, 1)) for face in faces.values()], axis=0)
     for side, (axis, end) in PLACES.items():
-        x = faces[side] - centre
-        first, second = x[1:, 1:] - x[:-1, :-1], x[:-1, 1:] - x[1:, :-1]
+        x = np.moveaxis(faces[side] - centre, -1, 0)
         outwards = (-1.0 if end == 0 else 1.0) * (-1.0 if axis == 1 else 1.0)
-        middle = 0.25 * (x[1:, 1:] + x[:-1, :-1] + x[:-1, 1:] + x[1:, :-1])
-        total += outwards * float((middle * np.cross(first, second)).sum()) / 6.0
+        total += outwards * flux_through(x)
     return total
 
 
@@ -160,7 +159,7 @@ def _closed(faces: dict[Side, Floats], order: dict[Side, int]) -> tuple[str, ...
     size = math.hypot(*np.ptp(np.concatenate([face.reshape(-1, 3) for face in faces.values()]), axis=0))
     widest, where = 0.0, ""
     for side, second in edges():
-        own, donor = (_edge(faces, *pair) for pair in ((side, second), (second, side)))
+        own, donor = (edge_of(faces[a], a, b) for a, b in ((side, second), (second, side)))
         pair = f"patches {order[side]} and {order[second]} ({side} and {second})"
         if len(own) != len(donor):
             problem = f"{pair} have {len(own)} and {len(donor)} nodes along their common edge"
@@ -178,10 +177,3 @@ def _closed(faces: dict[Side, Floats], order: dict[Side, int]) -> tuple[str, ...
         if widest
         else ()
     )
-
-
-def _edge(faces: dict[Side, Floats], side: Side, second: Side) -> Floats:
-    """Return the nodes (n, 3) of a face where it meets a second one."""
-    axis, end = PLACES[second]
-    along = axis if axis < PLACES[side][0] else axis - 1
-    return faces[side][(slice(None),) * along + (end,)]

@@ -1,4 +1,4 @@
-"""Grids made of another's nodes: every k-th of them, at unit size, or turned by a quarter.
+"""Grids coarsened to every k-th node, scaled to unit size, or with xi and eta exchanged.
 
 ::
 
@@ -38,19 +38,10 @@ def coarser_grid(grid: Grid, k: int) -> Grid:
     Raises InputError: `k` does not divide the cells along a direction, or a patch or connection would lose
     an end.
     """
-    if grid.topology == "blocks":
-        return _coarser_blocks(grid, k)
-    _check((grid.ni, grid.nj), k)
-    facts = {**grid.provenance, "coarsened": k * int(grid.provenance.get("coarsened", 1))}
-    patches = _coarser_patches(grid.patches, k)
-    nodes = grid.nodes[::k, ::k]
-    return Grid.from_nodes(nodes, grid.topology, patches, grid.name, facts, grid.origin, finite=True)
-
-
-def _coarser_blocks(grid: Grid, k: int) -> Grid:
     for number, block in enumerate(grid.blocks):
-        with in_place(f"block {number}"):
+        with in_place(f"block {number}" if grid.topology == "blocks" else ""):
             _check(block.counts, k)
+    patches = _coarser_patches(grid.patches, k)
     connections = []
     for each in grid.connections:
         for first, last in (*each.range, *each.donor_range):
@@ -62,7 +53,6 @@ def _coarser_blocks(grid: Grid, k: int) -> Grid:
     facts = {**grid.provenance, "coarsened": k * int(grid.provenance.get("coarsened", 1))}
     every = slice(None, None, k)
     blocks = tuple(Block(block.nodes[(every,) * len(block.counts)], finite=True) for block in grid.blocks)
-    patches = _coarser_patches(grid.patches, k)
     return replace(grid, blocks=blocks, patches=patches, connections=tuple(connections), provenance=facts)
 
 
@@ -114,11 +104,8 @@ def normalised(grid: Grid) -> Grid:
 
     Raises InputError: the body has no length.
     """
-    if grid.topology == "blocks":
-        return _normalised_blocks(grid)
     if not grid.around_body:
-        corner = grid.nodes.min(axis=(0, 1))
-        return grid.with_nodes((grid.nodes - corner) / np.ptp(grid.nodes, axis=(0, 1)).max())
+        return _normalised_blocks(grid)
     body = grid.nodes[grid.wake : grid.ni - grid.wake, 0]
     trailing = body[0]
     leading = body[np.hypot(*(body - trailing).T).argmax()]

@@ -1,4 +1,4 @@
-"""Do the edges of a boundary cross or touch, and where: no grid can be made inside those.
+"""Checks that the edges of a boundary neither cross nor touch: no grid can be made inside those that do.
 
 ::
 
@@ -19,13 +19,14 @@ from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.connection import wake_nodes
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import contains
 from meshonet.geometry.polygon.self_intersection import Crossing, find_crossings
 
 if TYPE_CHECKING:
     from meshonet.geometry.blocks.boundary import Boundary
 
 REMEDY = "correct these points: no grid can be made inside edges that cross"
-_MOST = 4096
+_MOST = 4096  # crossings looked at: those where lines are joined come among them and do not count
 _SEAM = 1e-6
 """Opposite sides are one line when they are no farther apart than this, in lengths of their shortest cell."""
 
@@ -43,7 +44,7 @@ def check_edges(boundary: Boundary) -> None:
         if crossing.first in joints or crossing.second in joints or _shares_end(path, crossing, ends):
             continue
         raise InputError(_where(boundary, path, crossing), REMEDY)
-    if len(lines) > 1 and boundary.around_body and not _inside(lines[0][0], lines[-1]):
+    if len(lines) > 1 and boundary.around_body and not contains(lines[-1], lines[0][0]):
         x, y = lines[0][0]
         outside = f"the body, at ({x:.6g}, {y:.6g}), lies outside its far field"
         raise InputError(outside, "use a far field around the body")
@@ -97,11 +98,3 @@ def _place(boundary: Boundary, segment: Floats) -> tuple[str, int]:
             if begins.any():
                 return side, int(np.argmax(begins))
     return "the boundary", 0  # lines consist of sides: not reached
-
-
-def _inside(point: Floats, ring: Floats) -> bool:
-    """Return whether a ray from `point` (2,) meets a closed line (n, 2) an odd number of times."""
-    (x, y), (u, v) = point, ring.T
-    over = np.flatnonzero((v[:-1] > y) != (v[1:] > y))
-    at = u[over] + (y - v[over]) / (v[over + 1] - v[over]) * (u[over + 1] - u[over])
-    return bool(np.count_nonzero(at > x) % 2)

@@ -1,4 +1,4 @@
-r"""How many cells meet at the nodes of a grid of blocks, and where that is not as inside a block.
+r"""How many cells meet at each node of a grid of blocks, and its irregular vertices.
 
 ::
 

@@ -23,9 +23,9 @@ from meshonet.geometry.curves.monotone import inner_slopes
 from meshonet.geometry.elementary import cos, exp, power, times
 from meshonet.geometry.errors import InputError
 
-ANGLES = 1024
-ITERATIONS = 40
-RELAXATION = 0.7
+ANGLES = 1024  # points on the circle at which the angle is sought
+ITERATIONS = 40  # of that, at the most
+RELAXATION = 0.7  # part of its change that each makes
 DENSE = 640  # points along the whole wall that stand for the curve
 
 

@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, distinct, read_only
-from meshonet.geometry.curves.spline import spline_slopes
+from meshonet.geometry.curves.spline import checked_points, cubics, spline_slopes
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices, find_corners
 from meshonet.kernels._native import curve_locate, curve_points, curve_slopes, curve_speeds
 
 _STEPS = 8  # parts of an interval in the table of arc length
-_GAUSS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])
+_GAUSS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])  # quadrature of three points in each part
 _WEIGHTS = np.array([5.0, 8.0, 5.0]) / (18.0 * _STEPS)
 _INNER = ((np.arange(_STEPS)[:, None] + _GAUSS) / _STEPS).ravel()
 _EDGES = np.arange(_STEPS + 1) / _STEPS
@@ -57,7 +57,8 @@ class Curve:
         corners: Sequence[int] | Indices | None = None,
         straight: NDArray[np.bool_] | None = None,
     ) -> None:
-        self.points, self.closed = read_only(_checked(points, closed)), closed
+        self.points = read_only(checked_points(points, "curve", "curve point {}", 2, closed=closed))
+        self.closed = closed
         n = len(self.points)
         if corners is None:
             self.corner_index = read_only(find_corners(self.points, closed=closed))
@@ -74,7 +75,7 @@ class Curve:
         first, last = h * start, h * stop
         if straight is not None:
             first, last = (np.where(straight[:, None], chord, slope) for slope in (first, last))
-        self._cubic = np.stack([ends[:-1], first, 3 * chord - 2 * first - last, first + last - 2 * chord])
+        self._cubic = cubics(ends[:-1], chord, first, last)
         self._measure(len(h))
 
     def _measure(self, intervals: int) -> None:
@@ -131,24 +132,3 @@ class Curve:
         a, b, c, d = self._cubic[:, i]
         points = np.asarray((a + t * (b + t * (c + t * d))).reshape(-1, 2))
         return points if self.closed else np.concatenate([points, self.points[-1:]])
-
-
-def _checked(points: Floats, closed: bool) -> Floats:
-    nodes = np.array(points, dtype=np.float64)
-    if nodes.ndim != 2 or nodes.shape[1] != 2:
-        raise InputError(f"curve points have shape {nodes.shape}", "give (n, 2)")
-    bad = np.flatnonzero(~np.isfinite(nodes).all(axis=1))
-    if bad.size:
-        raise InputError(f"curve point {bad[0]} is not finite", "check the input for NaN or infinity")
-    if closed and len(nodes) > 1 and np.array_equal(nodes[0], nodes[-1]):
-        nodes = nodes[:-1]
-    least = 3 if closed else 2
-    if len(nodes) < least:
-        kind = "closed curve" if closed else "curve"
-        raise InputError(f"{len(nodes)} points make no {kind}", f"give at least {least}")
-    step = np.diff(nodes, axis=0, append=nodes[:1]) if closed else np.diff(nodes, axis=0)
-    same = np.flatnonzero((step == 0).all(axis=1))
-    if same.size:
-        x, y = nodes[same[0]]
-        raise InputError(f"curve point {same[0]} and the next are the same, ({x:.6g}, {y:.6g})", "remove one")
-    return nodes

@@ -13,13 +13,13 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.curves.spline import open_slopes, periodic_slopes
+from meshonet.geometry.curves.spline import checked_points, cubics, open_slopes, periodic_slopes
 from meshonet.geometry.elementary import cos, product, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.linear import gauss_legendre
 
 
-class Places(NamedTuple):
+class PathPoints(NamedTuple):
     """Points, unit tangents and curvature vectors, (n, 3) each."""
 
     points: Floats
@@ -33,12 +33,12 @@ class Path(Protocol):
     length: float
     closed: bool
 
-    def at(self, s: Floats) -> Places:
+    def at(self, s: Floats) -> PathPoints:
         """Return the places at arc lengths `s` (n,), 0 to the length."""
         ...
 
 
-_GAUSS, _WEIGHTS = gauss_legendre(5)
+_GAUSS, _WEIGHTS = gauss_legendre(5)  # of speed, in each part of an interval
 _PARTS = 16  # of an interval in the table of arc length
 
 
@@ -57,7 +57,7 @@ class SplinePath:
     closed: bool
 
     def __init__(self, points: Floats) -> None:
-        self._points = nodes = _checked(points)
+        self._points = nodes = checked_points(points, "path", "point {} of the path", 3)
         self.closed = bool(len(nodes) > 3 and np.array_equal(nodes[0], nodes[-1]))
         chord = np.diff(nodes, axis=0)
         h = norms(chord)
@@ -67,7 +67,7 @@ class SplinePath:
         else:
             start, stop = open_slopes(chord, h, np.array([0, len(h)]))
         a, b = h[:, None] * start, h[:, None] * stop
-        self._cubic = np.stack([nodes[:-1], a, 3 * chord - 2 * a - b, a + b - 2 * chord])
+        self._cubic = cubics(nodes[:-1], chord, a, b)
         edges = np.arange(_PARTS) / _PARTS
         t = (edges[:, None] + (0.5 + 0.5 * _GAUSS) / _PARTS).ravel()
         speed = norms(self._derivative(np.arange(len(h))[:, None], t[None, :]))
@@ -75,7 +75,7 @@ class SplinePath:
         self._table = np.concatenate([[0.0], np.cumsum(pieces)])
         self.length = float(self._table[-1])
 
-    def at(self, s: Floats) -> Places:
+    def at(self, s: Floats) -> PathPoints:
         """Return the places at arc lengths `s` (n,), 0 to the length."""
         i, t = self._locate(np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length))
         a, b, c, d = self._cubic[:, i]
@@ -86,7 +86,7 @@ class SplinePath:
         speed = norms(first)[:, None]
         tangents = first / speed
         bend = second - (second * tangents).sum(axis=1, keepdims=True) * tangents
-        return Places(points, tangents, bend / speed**2)
+        return PathPoints(points, tangents, bend / speed**2)
 
     def _locate(self, s: Floats) -> tuple[np.ndarray[tuple[int], np.dtype[np.intp]], Floats]:
         """Return the interval and the parameter in it at arc lengths: by table and Newton's method."""
@@ -157,7 +157,7 @@ class PiecedPath:
         self.length = float(self._ends[-1])
         self._start, self._tangent, self._normal = np.array(starts), np.array(tangents), np.array(normals)
 
-    def at(self, s: Floats) -> Places:
+    def at(self, s: Floats) -> PathPoints:
         """Return the places at arc lengths `s` (n,), 0 to the length; at joints of the piece behind."""
         s = np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length)
         k = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._radius) - 1)
@@ -170,21 +170,16 @@ class PiecedPath:
             )  # fmt: skip
             for whole, part in zip(places, made, strict=True):
                 whole[own] = part
-        return Places(*places)
-
-    @property
-    def joints(self) -> Floats:
-        """Arc lengths (m,) between pieces."""
-        return self._ends[1:-1]
+        return PathPoints(*places)
 
 
-def _on_piece(start: Floats, tangent: Floats, normal: Floats, radius: float, s: Floats) -> Places:
+def _on_piece(start: Floats, tangent: Floats, normal: Floats, radius: float, s: Floats) -> PathPoints:
     if radius == 0:
         straight = np.broadcast_to(tangent, (len(s), 3))
-        return Places(start + s[:, None] * tangent, straight, np.zeros((len(s), 3)))
+        return PathPoints(start + s[:, None] * tangent, straight, np.zeros((len(s), 3)))
     c, d = cos(s / radius)[:, None], sin(s / radius)[:, None]
     inwards = c * normal - d * tangent
-    return Places(
+    return PathPoints(
         start + radius * (d * tangent + (1 - c) * normal), c * tangent + d * normal, inwards / radius
     )
 
@@ -194,20 +189,3 @@ def _unit(vector: Floats, what: str) -> Floats:
     if not 1e-9 < length < 1e150:
         raise InputError(f"{what} has no direction", "give three numbers, not along the path, not all 0")
     return vector / length
-
-
-def _checked(points: Floats) -> Floats:
-    nodes = np.array(points, dtype=np.float64)
-    if nodes.ndim != 2 or nodes.shape[1] != 3:
-        raise InputError(f"points of a path have shape {nodes.shape}", "give (n, 3)")
-    if len(nodes) < 2:
-        raise InputError(f"a path of {len(nodes)} points", "give at least 2")
-    bad = np.flatnonzero(~np.isfinite(nodes).all(axis=1))
-    if bad.size:
-        raise InputError(f"point {bad[0]} of the path is not finite", "check the input for NaN or infinity")
-    same = np.flatnonzero((np.diff(nodes, axis=0) == 0).all(axis=1))
-    if same.size:
-        x, y, z = nodes[same[0]]
-        where = f"({x:.6g}, {y:.6g}, {z:.6g})"
-        raise InputError(f"point {same[0]} of the path and the next are the same, {where}", "remove one")
-    return nodes

@@ -13,12 +13,13 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.elementary import cos, sin
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices, angle_between, turning
 from meshonet.kernels._native import solve_tridiagonal
 
 SLACK = 0.25
 """How far a tangent may leave the angle between its two chords, as a part of the turns around it."""
-LEAST_SLACK = np.radians(0.5)
+LEAST_SLACK = np.radians(0.5)  # where chords hardly turn
 LONGEST = 2.0
 """Largest size of a slope: a longer one makes a loop or a cusp."""
 
@@ -43,6 +44,35 @@ def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Fl
         stops = distinct(np.concatenate([[0], corners, [len(points) - 1]]))
         start, stop = open_slopes(*_chords(points, closed=False), stops)
     return limited(points, start, stop, closed=closed, corners=corners)
+
+
+def cubics(start: Floats, chord: Floats, first: Floats, last: Floats) -> Floats:
+    """Return the coefficients (4, n, d) of cubics in t from 0 to 1, whose slopes are `first` and `last`."""
+    return np.stack([start, first, 3 * chord - 2 * first - last, first + last - 2 * chord])
+
+
+def checked_points(points: Floats, what: str, point: str, dimension: int, *, closed: bool = False) -> Floats:
+    """Return the points (n, d) of `what`, each called `point` with its number; a `closed` one's first once.
+
+    Raises InputError: too few of them, one that is not finite or equals its neighbour.
+    """
+    nodes = np.array(points, dtype=np.float64)
+    if nodes.ndim != 2 or nodes.shape[1] != dimension:
+        raise InputError(f"points of a {what} have shape {nodes.shape}", f"give (n, {dimension})")
+    bad = np.flatnonzero(~np.isfinite(nodes).all(axis=1))
+    if bad.size:
+        raise InputError(f"{point.format(bad[0])} is not finite", "check the input for NaN or infinity")
+    if closed and len(nodes) > 1 and np.array_equal(nodes[0], nodes[-1]):
+        nodes = nodes[:-1]
+    least, kind = (3, f"closed {what}") if closed else (2, what)
+    if len(nodes) < least:
+        raise InputError(f"a {kind} of {len(nodes)} points", f"give at least {least}")
+    step = np.diff(nodes, axis=0, append=nodes[:1]) if closed else np.diff(nodes, axis=0)
+    same = np.flatnonzero((step == 0).all(axis=1))
+    if same.size:
+        where = ", ".join(f"{value:.6g}" for value in nodes[same[0]])
+        raise InputError(f"{point.format(same[0])} and the next are the same, ({where})", "remove one")
+    return nodes
 
 
 def _chords(points: Floats, *, closed: bool) -> tuple[Floats, Floats]:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.area import check_extent, polygon_area
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.polygon.area import check_extent, contains, polygon_area
 from meshonet.geometry.polygon.self_intersection import Crossing, shared_point, sweep_spans
 from meshonet.kernels._native import crossing_segments
 
@@ -69,7 +68,7 @@ def _check_points(domain: Domain, number: int, loop: Loop) -> None:
     from_first = points - points[0]
     farthest = from_first[np.abs(from_first).max(axis=1).argmax()]
     width = np.abs(from_first[:, 0] * farthest[1] - from_first[:, 1] * farthest[0]).max()
-    if width <= _NO_AREA * float(np.ptp(points, axis=0).max()) ** 2:
+    if width <= _NO_AREA * extent_of(points) ** 2:
         what = f"{describe(domain, number)} from {_at(points[0])} on is a line, which encloses no area"
         raise InputError(what, "correct its points")
 
@@ -128,7 +127,7 @@ def _check_nesting(domain: Domain) -> None:
     """Raise where a loop, none of which meet, has its first point in the wrong place."""
     starts = np.array([loop.curve.points[0] for loop in domain.loops])
     for number, loop in enumerate(domain.loops):
-        inside = _contains(loop.curve.points, starts)
+        inside = contains(loop.curve.points, starts)
         inside[number] = number == 0
         wrong = np.flatnonzero(~inside if number == 0 else inside)
         if wrong.size:
@@ -138,13 +137,3 @@ def _check_nesting(domain: Domain) -> None:
                 raise InputError(f"{hole} lies outside of {describe(domain, 0)}", remedy)
             remedy = "leave one of them out, or make two domains"
             raise InputError(f"{hole} lies inside of {describe(domain, number)}", remedy)
-
-
-def _contains(polygon: Floats, points: Floats) -> Indices:
-    """Return whether each of the points (m, 2) lies inside of a polygon (n, 2): rays to the right crossed."""
-    (x, y), (x1, y1) = polygon.T, np.roll(polygon, -1, axis=0).T
-    px, py = points[:, :1], points[:, 1:]
-    spans = (y > py) != (y1 > py)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        right = x + (py - y) * (x1 - x) / (y1 - y) > px
-    return np.asarray((spans & right).sum(axis=1) % 2 == 1)

@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.ring import ring_loop
 from meshonet.geometry.errors import InputError
@@ -70,6 +68,7 @@ class Domain:
 
         Examples
         --------
+        >>> import numpy as np
         >>> box = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]])
         >>> sides = ["floor", "outlet", "ceiling", "inlet"]
         >>> Domain.of_polygons([box], "channel", [sides]).loops[0].names
@@ -92,7 +91,7 @@ class Domain:
     @cached_property
     def extent(self) -> float:
         """Larger side of the box around the domain."""
-        return float(np.ptp(self.loops[0].curve.points, axis=0).max())
+        return extent_of(self.loops[0].curve.points)
 
 
 def _named(polygons: Sequence[Floats], names: Sequence[str | Sequence[str]]) -> tuple[Loop, ...]:

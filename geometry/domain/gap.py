@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 
@@ -17,7 +17,7 @@ _BEYOND = 1.0 + 1e-9
 _SAME = 1e-9
 """Distance over the extent of the walls up to which a point of a wall is the place itself, and no gap."""
 _SAMPLES = 2000  # of all walls together
-_ROWS = 256
+_ROWS = 256  # places compared with all walls at a time, which bounds the memory
 
 
 def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
@@ -39,7 +39,7 @@ def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:
 
     `along` (n, 2) are unit directions; in front is within `IN_FRONT` of their normals.
     """
-    gaps, same = np.empty(len(points)), _SAME * float(np.ptp(walls, axis=0).max())
+    gaps, same = np.empty(len(points)), _SAME * extent_of(walls)
     for start in range(0, len(points), _ROWS):
         rows = slice(start, start + _ROWS)
         dx = walls[:, 0] - points[rows, :1]

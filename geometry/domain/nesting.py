@@ -7,16 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.polygon.area import polygon_area
-
-
-def contains(polygon: Floats, point: Floats) -> bool:
-    """Say whether a point (2,) lies inside a polygon (n, 2), by the crossings of a ray to the right."""
-    x, y = polygon[:, 0] - point[0], polygon[:, 1] - point[1]
-    u, v = np.roll(x, -1), np.roll(y, -1)
-    spans = (y > 0) != (v > 0)
-    at = x[spans] - y[spans] * (u[spans] - x[spans]) / (v[spans] - y[spans])
-    return bool(np.count_nonzero(at > 0) % 2)
+from meshonet.geometry.polygon.area import contains, polygon_area
 
 
 def nested(polygons: Sequence[Floats]) -> list[tuple[int, list[int]]]:
@@ -54,4 +45,4 @@ def _box_within(inner: tuple[Floats, Floats], outer: tuple[Floats, Floats]) -> b
 def _inside(polygon: Floats, around: Floats) -> bool:
     """Say whether most of three points of a polygon lie inside another."""
     places = np.linspace(0, len(polygon), 3, endpoint=False).astype(int)
-    return sum(contains(around, polygon[place]) for place in places) >= 2
+    return int(contains(around, polygon[places]).sum()) >= 2

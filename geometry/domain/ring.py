@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
@@ -37,9 +37,9 @@ def ring_loop(
     are no points, names for another number of stretches.
     """
     points, number, places = _distinct(points, places)
-    check_extent(float(np.ptp(points, axis=0).max()))
+    check_extent(extent_of(points))
     check_outline(points, places)
-    area, extent = polygon_area(points), float(np.ptp(points, axis=0).max())
+    area, extent = polygon_area(points), extent_of(points)
     if abs(area) < 1e-12 * extent**2:
         raise InputError("a ring has no area", "give the points around a domain or a hole")
     if corners is None:

@@ -1,4 +1,4 @@
-"""Bodies in far fields that nobody drew, to train and test operators on O grids that are no airfoils'.
+"""Random bodies in far fields, to train and test operators on O grids around shapes other than airfoils.
 
 Ellipses, polygons, rounded ones, stars, rounded rectangles and bullets, anywhere inside circles, ellipses,
 rectangles, polygons and rounded rectangles 1.6 to 25 times their size, turned by any angle.
@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, pairs_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.elementary import angle, cos, exp, modulus, power, product, sin, times
+from meshonet.geometry.polygon.area import contains
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.along_curve import on_corners
@@ -27,7 +28,7 @@ BEND = np.radians(25.0)
 """A turn at a point of a curve that makes it a corner."""
 
 
-class Ring(NamedTuple):
+class BodyCurve(NamedTuple):
     """A closed curve counter-clockwise around 0, its first point not repeated, and its corners' indices."""
 
     points: Complexes
@@ -41,7 +42,7 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
         placed = _placed_within(body, far, rng)
         if placed is None:
             continue
-        far = Ring(far.points - placed, far.corners)
+        far = BodyCurve(far.points - placed, far.corners)
         if not np.all(np.diff(np.unwrap(angle(far.points))) > 0.0):
             continue  # the far field is seen whole from the body
         laws = _law(rng), _law(rng) if rng.random() < 0.3 else _even
@@ -53,27 +54,22 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
     north = times(
         _nodes(far, _facing(far.points, float(angle(body.points[first])) + twist), laws[1], ni), turn
     )
-    walls = as_nodes(south), as_nodes(north)
+    walls = pairs_of(south), pairs_of(north)
     cut = straight(walls[0][0], walls[1][0], nj)
     return Boundary(walls[0], walls[1], cut, cut, topology="o")
 
 
-def _placed_within(body: Ring, far: Ring, rng: np.random.Generator) -> complex | None:
+def _placed_within(body: BodyCurve, far: BodyCurve, rng: np.random.Generator) -> complex | None:
     """Return a place for the body inside `far`, or None when it does not fit there."""
-    if find_crossing(as_nodes(body.points)) is not None or not _around(body.points, 0.0):
+    if find_crossing(pairs_of(body.points)) is not None or not contains(pairs_of(body.points), np.zeros(2)):
         return None
     where = complex(0.75 * rng.random() * far.points[rng.integers(len(far.points))])
     if rng.random() < 0.2:
         where = 0.0
     moved = body.points + where
     gap = modulus(moved[::4, None] - far.points[None, ::2]).min()
-    inside = all(_around(far.points, point) for point in moved[:: FINE // 24])
+    inside = contains(pairs_of(far.points), pairs_of(moved[:: FINE // 24])).all()
     return where if inside and gap > CLEARANCE else None
-
-
-def _around(ring: Complexes, point: complex) -> bool:
-    off = ring - point
-    return bool(abs(angle(np.roll(off, -1) / off).sum()) > np.pi)
 
 
 def _even(q: Floats) -> Floats:
@@ -97,7 +93,7 @@ def _facing(ring: Complexes, direction: float) -> int:
     return int(near[np.argmax(modulus(ring[near]))])
 
 
-def _nodes(ring: Ring, first: int, law: Callable[[Floats], Floats], n: int) -> Complexes:
+def _nodes(ring: BodyCurve, first: int, law: Callable[[Floats], Floats], n: int) -> Complexes:
     """Return n nodes clockwise from the point `first`, which ends them too, with the corners among them."""
     m = len(ring.points)
     points = np.roll(ring.points, -first)[::-1]
@@ -110,7 +106,7 @@ def _nodes(ring: Ring, first: int, law: Callable[[Floats], Floats], n: int) -> C
     return nodes
 
 
-def _body(rng: np.random.Generator) -> Ring:
+def _body(rng: np.random.Generator) -> BodyCurve:
     """Return a body whose centroid is 0 and whose mean radius is 1."""
     kinds = _ellipse, _polygon, _rounded, _star, _superellipse, _bullet
     ring = kinds[rng.choice(len(kinds), p=(0.22, 0.24, 0.14, 0.16, 0.14, 0.1))](rng)
@@ -118,14 +114,14 @@ def _body(rng: np.random.Generator) -> Ring:
     ahead = np.roll(z, -1)
     cross = times(np.conj(z), ahead).imag
     z = z - (cross * (z + ahead)).sum() / (3.0 * cross.sum())
-    return Ring(z / modulus(z).mean(), ring.corners)
+    return BodyCurve(z / modulus(z).mean(), ring.corners)
 
 
-def _far(rng: np.random.Generator) -> Ring:
+def _far(rng: np.random.Generator) -> BodyCurve:
     kinds = _ellipse, _rectangle, _polygon, _superellipse
     ring = kinds[rng.choice(len(kinds), p=(0.45, 0.35, 0.08, 0.12))](rng)
     size = math.exp(rng.uniform(math.log(1.6), math.log(25.0)))
-    return Ring(size * ring.points / modulus(ring.points).mean(), ring.corners)
+    return BodyCurve(size * ring.points / modulus(ring.points).mean(), ring.corners)
 
 
 def _stretched(z: Complexes, most: float, rng: np.random.Generator) -> Complexes:
@@ -138,25 +134,25 @@ def _angles() -> Floats:
     return 2 * np.pi * np.arange(FINE) / FINE
 
 
-def _ellipse(rng: np.random.Generator) -> Ring:
-    return Ring(_stretched(exp(1j * _angles()), 4.0, rng))
+def _ellipse(rng: np.random.Generator) -> BodyCurve:
+    return BodyCurve(_stretched(exp(1j * _angles()), 4.0, rng))
 
 
-def _superellipse(rng: np.random.Generator) -> Ring:
+def _superellipse(rng: np.random.Generator) -> BodyCurve:
     t, exponent = _angles(), 2.0 / math.exp(rng.uniform(math.log(2.5), math.log(8.0)))
     x, y = cos(t), sin(t)
     z = np.sign(x) * power(np.abs(x), exponent) + 1j * np.sign(y) * power(np.abs(y), exponent)
-    return Ring(_stretched(_even_steps(z), 3.0, rng))
+    return BodyCurve(_stretched(_even_steps(z), 3.0, rng))
 
 
-def _star(rng: np.random.Generator) -> Ring:
+def _star(rng: np.random.Generator) -> BodyCurve:
     t, k = _angles(), np.arange(2, 8)
     heights = rng.normal(size=6) / power(k, rng.uniform(1.0, 2.0)) * rng.uniform(0.1, 0.9)
     radius = exp(product(cos(np.outer(t, k) + rng.uniform(0, 2 * np.pi, 6)), heights) * 0.7)
-    return Ring(_stretched(_even_steps(radius * exp(1j * t)), 1.5, rng))
+    return BodyCurve(_stretched(_even_steps(radius * exp(1j * t)), 1.5, rng))
 
 
-def _bullet(rng: np.random.Generator) -> Ring:
+def _bullet(rng: np.random.Generator) -> BodyCurve:
     """Return an arc of a circle closed by straight pieces: a D, or a bullet with a flat base."""
     reach = rng.uniform(0.35, 0.6) * np.pi
     arc = exp(1j * np.linspace(-reach, reach, 60))
@@ -165,13 +161,13 @@ def _bullet(rng: np.random.Generator) -> Ring:
     return _through(_stretched(np.append(arc, tail), 1.5, rng))
 
 
-def _rectangle(rng: np.random.Generator) -> Ring:
+def _rectangle(rng: np.random.Generator) -> BodyCurve:
     ratio = math.exp(0.5 * rng.uniform(0.0, math.log(4.0))) if rng.random() < 0.6 else 1.0
     corners = np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j])
     return _through(corners.real * ratio + 1j * corners.imag / ratio)
 
 
-def _polygon(rng: np.random.Generator) -> Ring:
+def _polygon(rng: np.random.Generator) -> BodyCurve:
     draw = rng.random()
     if draw < 0.35:
         return _rectangle(rng)
@@ -183,7 +179,7 @@ def _polygon(rng: np.random.Generator) -> Ring:
     return _through(_stretched(rng.uniform(0.6, 1.2, count) * exp(1j * t), 2.0, rng))
 
 
-def _rounded(rng: np.random.Generator) -> Ring:
+def _rounded(rng: np.random.Generator) -> BodyCurve:
     """Return a polygon whose corners are cut again and again (Chaikin, CGIP 3 (1974) 346)."""
     ring = _polygon(rng)
     z, share = ring.points[list(ring.corners)], rng.uniform(0.06, 0.25)
@@ -192,17 +188,17 @@ def _rounded(rng: np.random.Generator) -> Ring:
         z = np.stack(
             [(1 - cut) * z + cut * np.roll(z, -1), cut * z + (1 - cut) * np.roll(z, -1)], axis=1
         ).ravel()
-    return Ring(_even_steps(z))
+    return BodyCurve(_even_steps(z))
 
 
-def _through(corners: Complexes) -> Ring:
+def _through(corners: Complexes) -> BodyCurve:
     """Return a ring through `corners` (k,), its own corners those that turn by more than `BEND`."""
     edges = np.roll(corners, -1) - corners
     share = np.maximum(np.round(FINE * modulus(edges) / modulus(edges).sum()).astype(int), 1)
     z = np.concatenate([a + e * np.arange(n) / n for a, e, n in zip(corners, edges, share, strict=True)])
     turn = np.abs(angle(edges / np.roll(edges, 1)))
     first = np.concatenate([[0], np.cumsum(share)[:-1]])
-    return Ring(z, tuple(int(k) for k in first[turn > BEND]))
+    return BodyCurve(z, tuple(int(k) for k in first[turn > BEND]))
 
 
 def _even_steps(z: Complexes) -> Complexes:
@@ -219,8 +215,3 @@ def arc_lengths(z: Complexes) -> Floats:
 def at_lengths(z: Complexes, length: Floats, at: Floats) -> Complexes:
     """Return points (m,) of a polygon (n,), whose points lie at `length`, at arc lengths `at` (m,)."""
     return np.interp(at, length, z.real) + 1j * np.interp(at, length, z.imag)
-
-
-def as_nodes(z: Complexes) -> Floats:
-    """Return (n, 2) nodes for complex ones (n,)."""
-    return np.stack([z.real, z.imag], axis=-1)

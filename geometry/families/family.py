@@ -21,7 +21,7 @@ Corners = list[tuple[float, float]]
 
 @dataclass(frozen=True)
 class Family:
-    """A shape that one number varies, drawn from `low` to `high` unless said otherwise."""
+    """A shape with one parameter, which is drawn from `low` to `high` by default."""
 
     name: str
     parameter: str

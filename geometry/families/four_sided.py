@@ -1,4 +1,4 @@
-"""Four-sided domains nobody drew, to train and test operators on.
+"""Random four-sided domains, to train and test operators on.
 
 Between moved corners run sides that are straight, wavy, bowed, kinked, bumped or bulged by an arc of a
 circle; some domains are drawn out to a tail, bent around a centre or warped as a whole. Nodes are spaced
@@ -10,10 +10,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, pairs_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.elementary import angle, exp, expm1, power, product, sin, tanh, times
-from meshonet.geometry.families.bodies import arc_lengths, as_nodes, at_lengths
+from meshonet.geometry.families.bodies import arc_lengths, at_lengths
 from meshonet.geometry.polygon.self_intersection import find_crossing
 
 FINE = 601
@@ -25,9 +25,9 @@ CHECKED = 65
 LEAST, MOST = np.radians(3.0), np.radians(178.0)
 """Angles of the four corners."""
 
-LEAST_AREA = 0.05
+LEAST_AREA = 0.05  # of the unit square's: an outline of less is drawn again
 
-CORNERS = np.array([0.0, 1.0, 1.0 + 1.0j, 1.0j])
+CORNERS = np.array([0.0, 1.0, 1.0 + 1.0j, 1.0j])  # of the square whose sides are deflected
 ENDS = ((0, 1), (3, 2), (0, 3), (1, 2))
 """Corners where south, north, west and east begin and end."""
 
@@ -40,7 +40,7 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
         if _usable([_placed(side, law, CHECKED) for side, law in zip(sides, laws, strict=True)]):
             break
     counts = ni, ni, nj, nj
-    nodes = [as_nodes(_placed(*each)) for each in zip(sides, laws, counts, strict=True)]
+    nodes = [pairs_of(_placed(*each)) for each in zip(sides, laws, counts, strict=True)]
     south, north, west, east = nodes
     west[[0, -1]], east[[0, -1]] = (south[0], north[0]), (south[-1], north[-1])
     return Boundary(south, north, west, east, "quad")
@@ -84,7 +84,7 @@ def _wave(t: Floats, rng: np.random.Generator) -> Floats:
     return np.asarray(product(heights, sin(np.pi * np.outer(k, t))))
 
 
-def _bow(t: Floats, rng: np.random.Generator) -> Floats:
+def _parabola(t: Floats, rng: np.random.Generator) -> Floats:
     return np.asarray(rng.uniform(-1.3, 1.4) * t * (1 - t))
 
 
@@ -108,9 +108,9 @@ def _arc(t: Floats, rng: np.random.Generator) -> Floats:
 
 
 DEFLECTIONS: tuple[Callable[[Floats, np.random.Generator], Floats], ...] = (
-    _straight, _wave, _bow, _kinks, _bump, _arc,
+    _straight, _wave, _parabola, _kinks, _bump, _arc,
 )  # fmt: skip
-SHARES = (0.12, 0.26, 0.16, 0.2, 0.16, 0.1)
+SHARES = (0.12, 0.26, 0.16, 0.2, 0.16, 0.1)  # how often each of these is drawn
 
 
 def _bent(sides: list[Complexes], rng: np.random.Generator) -> list[Complexes]:
@@ -162,4 +162,4 @@ def _usable(sides: list[Complexes]) -> bool:
     )
     if not all(LEAST < angle(v / u) < MOST for u, v in corners):
         return False
-    return find_crossing(as_nodes(outline)) is None
+    return find_crossing(pairs_of(outline)) is None

@@ -1,4 +1,4 @@
-"""Airfoils nobody drew: random sections with random wall spacing, to train and test operators on.
+"""Random airfoils with random wall spacing, to train and test operators on.
 
 Three generators between them reach from thin reflexed plates to thick, strongly cambered and blunt sections:
 NACA four-digit formulas, class-shape transformation (CST) with Bernstein polynomials, and Karman-Trefftz

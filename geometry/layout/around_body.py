@@ -8,7 +8,7 @@ from meshonet.geometry.layout.layout import Layout
 
 
 def around_body(layout: Layout) -> Layout:
-    """Return a layout of one block that is a ring with i around the hole, j away from it; any other as it is.
+    """Return a layout of one ring-shaped block with i around the hole, j away from it; others unchanged.
 
     The block stays right-handed: i runs clockwise.
     """

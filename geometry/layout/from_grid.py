@@ -11,23 +11,22 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.block import Block, face_of
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.meeting_sides import AROUND
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.blocks.shared_nodes import shared_nodes
+from meshonet.geometry.blocks.shared_nodes import node_table
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain, Periodic
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import Indices, find_corners
-
-AROUND = {"south": 1, "east": 1, "north": -1, "west": -1}
-"""The way along each side that has a right-handed block on its left."""
 
 
 def layout_of(grid: Grid) -> Layout:
@@ -37,11 +36,8 @@ def layout_of(grid: Grid) -> Layout:
     blocks that overlap; sides that are periodic by a rotation.
     """
     planar(grid)
-    numbers = shared_nodes([block.counts for block in grid.blocks], grid.connections)
-    nodes = np.empty((1 + max(int(number.max()) for number in numbers), 2))
-    for number, block in zip(numbers, grid.blocks, strict=True):
-        nodes[number] = block.nodes
-    quads = np.concatenate([_quads(number) for number in numbers])
+    nodes, numbers = node_table(grid.blocks, grid.connections)
+    quads = lattice_quads(numbers)
     valence = np.bincount(quads.ravel(), minlength=len(nodes))
     rings = _rings(_boundary(grid, numbers), nodes)
     loops = tuple(_loop(ring, nodes, valence) for ring in rings)
@@ -55,11 +51,6 @@ def with_nodes(grid: Grid, layout: Layout) -> Grid:
     """Return `grid` with the nodes of a layout of it, moved."""
     nodes = layout.mesh.nodes
     return replace(grid, blocks=tuple(Block(nodes[block]) for block in layout.blocks))
-
-
-def _quads(number: Indices) -> Indices:
-    corners = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
-    return np.stack([corner.ravel() for corner in corners], axis=1)
 
 
 @dataclass(frozen=True)
@@ -144,10 +135,6 @@ def _pairs(grid: Grid, numbers: tuple[Indices, ...]) -> tuple[Floats, Indices, I
 
     Raises InputError: sides that turn, or are shifted in more than one way.
     """
-
-    def face(block: int, side: Side) -> Indices:
-        return np.asarray(face_of(numbers[block], side)[..., None])
-
     shift = np.zeros(2)
     first: list[Indices] = []
     second: list[Indices] = []
@@ -157,7 +144,7 @@ def _pairs(grid: Grid, numbers: tuple[Indices, ...]) -> tuple[Floats, Indices, I
         if each.transform.turn and not np.array_equal(each.transform.turn, np.eye(2)):
             problem = f"{each} is periodic by a rotation"
             raise InputError(problem, "give sides that are periodic by a shift")
-        own, donor = replace(each, transform=None).nodes(face)
+        own, donor = each.pairs(numbers)
         way = np.array(each.transform.shift)
         if not first:
             shift = way

@@ -4,13 +4,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from meshonet.geometry.arrays import AnyArray, Floats, cross2
 from meshonet.geometry.polygon.corners import Indices
+
+
+def ring_of(nodes: AnyArray) -> AnyArray:
+    """Return the corners (4, ni-1, nj-1, ...) of the cells of `nodes` (ni, nj, ...), counter-clockwise."""
+    return np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]])  # type: ignore[return-value]
+
+
+def corner_jacobians(corners: Floats) -> Floats:
+    """Return the Jacobians (m, 4) at the corners (m, 4, 2) of quadrilaterals in the plane."""
+    return cross2(np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners)
 
 
 def lattice_quads(blocks: Sequence[Indices]) -> Indices:
     """Return the quads (m, 4), counter-clockwise, of blocks (ni, nj) of node numbers, j fastest in each."""
-    quads = [
-        np.stack([block[:-1, :-1], block[1:, :-1], block[1:, 1:], block[:-1, 1:]], axis=-1).reshape(-1, 4)
-        for block in blocks
-    ]
-    return np.concatenate(quads)
+    return np.concatenate([ring_of(block).reshape(4, -1).T for block in blocks])

@@ -68,6 +68,11 @@ class QuadMesh:
         """(e, 2) nodes of each edge, the lower first; edges ascend."""
         return self._sides[2]
 
+    def edges_between(self, first: Indices, second: Indices) -> Indices:
+        """Return the numbers of the edges that join pairs of nodes, two arrays of one shape."""
+        low, high, n = np.minimum(first, second), np.maximum(first, second), len(self.nodes)
+        return np.asarray(np.searchsorted(self.edges[:, 0] * n + self.edges[:, 1], low * n + high))
+
     @property
     def edge_of(self) -> Indices:
         """(m, 4) edge from each node of a quad to its next."""
@@ -104,23 +109,6 @@ class QuadMesh:
     def irregular(self) -> NDArray[np.bool_]:
         """(n,) nodes where other than four quads meet, or on the boundary other than two."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
-
-    @cached_property
-    def closed(self) -> QuadMesh:
-        """The mesh with each node that has a partner replaced by it: sides of a period are no walls then.
-
-        Cells wanted at such nodes are those of both; itself where there is no period.
-        """
-        partner = self.places.partner
-        double = np.flatnonzero(partner >= 0)
-        if not double.size:
-            return self
-        own = np.arange(len(partner))
-        own[double] = partner[double]
-        cells = self.places.cells.copy()
-        cells[partner[double]] += cells[double]
-        places = Places(self.places.loop, self.places.arc, cells, np.full(len(own), -1))
-        return QuadMesh(self.domain, self.nodes, own[self.quads], places)
 
     def aspects(self, lengths: Floats) -> Floats:
         """Return the ratios (m,) of sides 1-2 and 0-3 to 0-1 and 3-2, were edges of `lengths` (e,)."""

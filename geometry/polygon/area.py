@@ -1,4 +1,7 @@
-"""The area of a polygon, and the sizes whose areas can be computed."""
+"""The area of a polygon, what lies in it, and the sizes whose areas can be computed."""
+
+import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import product
@@ -21,3 +24,12 @@ def check_extent(extent: float) -> None:
     if not 1e-60 < extent < 1e60:
         what = "no extent" if extent == 0 else f"an extent of {extent:.3g}"
         raise InputError(f"the points have {what}", "give coordinates in a unit that suits the shape")
+
+
+def contains(polygon: Floats, points: Floats) -> NDArray[np.bool_]:
+    """Say whether points (..., 2) lie inside a polygon (n, 2), by the crossings of rays to the right."""
+    x, y = (polygon[:, axis] - points[..., axis, None] for axis in (0, 1))
+    u, v = np.roll(x, -1, axis=-1), np.roll(y, -1, axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        right = x - y * (u - x) / (v - y) > 0
+    return np.asarray((((y > 0) != (v > 0)) & right).sum(axis=-1) % 2 == 1)

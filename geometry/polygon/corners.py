@@ -6,7 +6,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, along_and_across
+from meshonet.geometry.arrays import Floats, along_and_across, cross2, norms
 from meshonet.geometry.elementary import arctan2
 
 Indices: TypeAlias = NDArray[np.intp]
@@ -21,15 +21,16 @@ HAIRPIN = np.radians(100.0)
 """A turn that may be the round end of a thin body with few points (`SHARP` beside small turns)."""
 WIDENS = 0.75
 """A body widens behind an oblique base at this part or more of its first rate, behind a nose at half."""
-ALONE = np.radians(50.0)
+ALONE = np.radians(50.0)  # turning beside a corner below which a sharp one may be a coarsely given round end
 FEW = 12
 """A closed polygon of at most so many points is meant as one."""
 
 
 def angle_between(a: Floats, b: Floats) -> Floats:
-    """Return the angles (n,) in radians from vectors `a` to `b`, both (n, 2), left positive."""
-    (ax, ay), (bx, by) = a.T, b.T
-    return np.asarray(arctan2(ax * by - ay * bx, ax * bx + ay * by))
+    """Return the angles (...) in radians from vectors `a` to `b`, in the plane (..., 2) left positive."""
+    if a.shape[-1] == 3:
+        return np.asarray(arctan2(norms(np.cross(a, b)), (a * b).sum(axis=-1)))
+    return np.asarray(arctan2(cross2(a, b), a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]))
 
 
 def turning(points: Floats, *, closed: bool = False) -> Floats:
@@ -98,7 +99,7 @@ def _oblique_bases(points: Floats, angle: Floats) -> NDArray[np.bool_]:
 
 
 def _widens_on(points: Floats, k: int) -> bool:
-    """Say whether a body goes on widening behind points k and k + 1 as it does up to the next two.
+    """Say whether a body widens behind points k and k + 1 at the rate at which it widens up to the next two.
 
     Widths are measured across the way to the third two; behind a nose they grow like the root of it.
     """

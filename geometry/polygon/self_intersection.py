@@ -1,4 +1,4 @@
-"""Does a polygon cross itself, and where."""
+"""Self-intersections of polygons."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from meshonet.kernels._native import crossing_segments
 _BUDGET = 50_000_000  # comparisons, a quarter of a second, before an index tree replaces the sweep
 _SWEEP = np.array([0.846, 0.533])
 """Direction of the sweep. Along an axis, every segment of a straight side across it would meet all others."""
-_ROUNDING = 1e-15
+_ROUNDING = 1e-15  # of products with it, relative
 _CHUNK = 256  # segments queried at once, so that the crossings of a tangle do not fill the memory
 
 

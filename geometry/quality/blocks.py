@@ -1,4 +1,4 @@
-"""What there is to say of a grid of many blocks beside the metrics of its cells."""
+"""Figures of a grid of many blocks beside the metrics of its cells."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -9,7 +9,7 @@ from meshonet.geometry.blocks.vertices import Vertices, vertices
 from meshonet.geometry.quality.deviation import Deviation, deviation, solid_deviation
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.lines import Lines, lines
-from meshonet.geometry.quality.summary import Quality
+from meshonet.geometry.summary import Quality
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What OpenFOAM's checkMesh says of volumes: non-orthogonality, skewness, aspect ratio.
+"""OpenFOAM's checkMesh measures of volumes: non-orthogonality, skewness of faces, aspect ratio.
 
 Faces and cells are those of its mesh: a face's area vector and centre come from triangles around the mean of
 its corners, a cell's centre and volume from pyramids over its faces. Definitions of the measures are those of
@@ -29,16 +29,16 @@ from meshonet.geometry.blocks.connection import cells_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import arctan2, cbrt
 
-_TINY = 1e-300
+_TINY = 1e-300  # in place of 0 in divisors
 
 
-class Measures(NamedTuple):
+class SolidFaceMeasures(NamedTuple):
     """Place (block, i, j, k) of the first of faces (n, m), their angles, None at the boundary, skewness."""
 
     place: tuple[int, ...]
     axis: int
     angle: Floats | None
-    skewness: Floats
+    face_skewness: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,7 @@ class Cells:
     aspect: Floats
 
 
-def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Measures]:
+def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[SolidFaceMeasures]:
     """Yield the measures of the faces of blocks of volume with those `cells`, a layer at a time."""
     for number, (block, own) in enumerate(zip(grid.blocks, cells, strict=True)):
         nodes = np.moveaxis(block.nodes, -1, 0)
@@ -57,7 +57,7 @@ def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Measures]:
             layers, centres = (np.moveaxis(values, axis + 1, 0) for values in (nodes, own.centres))
             for m in range(1, len(layers) - 1):
                 angle, skew = _between(layers[m], centres[m - 1], centres[m], _turn(axis))
-                yield Measures(_place(number, axis, m - 1, (0, 0)), axis, angle, skew)
+                yield SolidFaceMeasures(_place(number, axis, m - 1, (0, 0)), axis, angle, skew)
     yield from _across(grid, cells)
     for patch in grid.outer_patches():
         axis, end = patch.place
@@ -67,12 +67,10 @@ def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[Measures]:
         at = (slice(None), *(slice(first, last) for first, last in spans))
         skew = _at_boundary(np.moveaxis(nodes, -1, 0), np.take(cells[patch.block].centres, end, axis + 1)[at])
         first = (spans[0][0], spans[1][0])
-        yield Measures(
-            _place(patch.block, axis, 0 if end == 0 else counts[axis] - 2, first), axis, None, skew
-        )
+        yield SolidFaceMeasures(cell_at(grid, patch.block, patch.side, first), axis, None, skew)
 
 
-def _across(grid: Grid, cells: Sequence[Cells]) -> Iterator[Measures]:
+def _across(grid: Grid, cells: Sequence[Cells]) -> Iterator[SolidFaceMeasures]:
     def face(block: int, side: Side) -> Floats:
         axis, end = PLACES[side]
         return np.moveaxis(np.take(cells[block].centres, end, axis + 1), 0, -1)
@@ -85,9 +83,8 @@ def _across(grid: Grid, cells: Sequence[Cells]) -> Iterator[Measures]:
         axis, end = PLACES[each.side]
         planes = [np.moveaxis(values, -1, 0) for values in (nodes, own, donor)]
         angle, skew = _between(planes[0], planes[1], planes[2], _turn(axis) * (1 if end else -1))
-        index = 0 if end == 0 else grid.blocks[each.block].counts[axis] - 2
         first = (each.range[0][0], each.range[1][0])
-        yield Measures(_place(each.block, axis, index, first), axis, angle, skew)
+        yield SolidFaceMeasures(cell_at(grid, each.block, each.side, first), axis, angle, skew)
 
 
 def cells_of(nodes: Floats) -> Cells:
@@ -162,7 +159,7 @@ def _between(nodes: Floats, own: Floats, neighbour: Floats, turn: int) -> tuple[
     angle = np.degrees(arctan2(np.sqrt(_dot(across, across)), along))
     middle = centre - own
     part = _dot(area, middle) / np.where(along == 0, _TINY, along)
-    return angle, _skewness(middle - part * way, nodes, centre, 0.2 * np.sqrt(_dot(way, way)))
+    return angle, _face_skewness(middle - part * way, nodes, centre, 0.2 * np.sqrt(_dot(way, way)))
 
 
 def _at_boundary(nodes: Floats, own: Floats) -> Floats:
@@ -171,10 +168,10 @@ def _at_boundary(nodes: Floats, own: Floats) -> Floats:
     unit = area / np.maximum(np.sqrt(_dot(area, area)), _TINY)
     middle = centre - own
     height = _dot(unit, middle)
-    return _skewness(middle - height * unit, nodes, centre, 0.4 * np.abs(height))
+    return _face_skewness(middle - height * unit, nodes, centre, 0.4 * np.abs(height))
 
 
-def _skewness(off: Floats, nodes: Floats, centre: Floats, least: Floats) -> Floats:
+def _face_skewness(off: Floats, nodes: Floats, centre: Floats, least: Floats) -> Floats:
     """Return abs(off) over the larger of `least` and the face's reach from its centre along it."""
     size = np.sqrt(_dot(off, off))
     unit = off / np.maximum(size, _TINY)
@@ -196,7 +193,13 @@ def _cross(u: Floats, v: Floats) -> Floats:
     return result
 
 
-def _place(block: int, axis: int, index: int, first: tuple[int, int]) -> tuple[int, ...]:
+def cell_at(grid: Grid, block: int, side: Side, first: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the cell (block, i, j, ...) at a side, with the index or indices `first` along it."""
+    axis, end = PLACES[side]
+    return _place(block, axis, 0 if end == 0 else grid.blocks[block].counts[axis] - 2, first)
+
+
+def _place(block: int, axis: int, index: int, first: tuple[int, ...]) -> tuple[int, ...]:
     at = list(first)
     at.insert(axis, index)
     return (block, *at)

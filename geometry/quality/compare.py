@@ -34,54 +34,45 @@ def compare(grid: Grid, reference: Grid) -> Difference:
 
     Raises InputError: their node counts differ.
     """
-    if "blocks" in (grid.topology, reference.topology):
-        return _compare_blocks(grid, reference)
-    if grid.nodes.shape != reference.nodes.shape:
-        counts = f"{grid.ni}x{grid.nj} nodes are not comparable with {reference.ni}x{reference.nj}"
-        raise InputError(counts, "compare grids of one size")
-    away = np.hypot(grid.x - reference.x, grid.y - reference.y)
-    i, j = np.unravel_index(int(away.argmax()), away.shape)
-    extent = _spread(reference.nodes.reshape(-1, 2))
-    rows = max(1, round(NEAR * grid.nj))
-    sides = [away[:, 0], away[:, -1]]
-    if not grid.periodic:  # the cut of an O grid is no boundary
-        sides += [away[0], away[-1]]
-    return Difference(
-        max=float(away.max()),
-        mean=float(away.mean()),
-        at=(int(i), int(j)),
-        relative_l2=_root_mean_square(away) / extent,
-        near_wall=_root_mean_square(away[:, :rows]) / extent,
-        boundary=max(float(side.max()) for side in sides),
-    )
-
-
-def _compare_blocks(grid: Grid, reference: Grid) -> Difference:
-    sizes, others = ([block.nodes.shape for block in each.blocks] for each in (grid, reference))
-    if sizes != others:
-        k = next((k for k, pair in enumerate(zip(sizes, others, strict=False)) if pair[0] != pair[1]), None)
-        counts = f"{len(sizes)} blocks are not comparable with {len(others)}"
-        if len(sizes) == len(others) and k is not None:
-            own, other = ("x".join(map(str, size[k][:-1])) for size in (sizes, others))
-            counts = f"block {k} of {own} nodes is not comparable with one of {other}"
-        raise InputError(counts, "compare grids of the same blocks")
+    many = "blocks" in (grid.topology, reference.topology)
+    _check_sizes(grid, reference, many=many)
     pairs = zip(grid.blocks, reference.blocks, strict=True)
     away = [norms(own.nodes - other.nodes) for own, other in pairs]
+    if many:
+        near = [_beside(away[wall.block], wall, NEAR) for wall in grid.walls()] or [a.ravel() for a in away]
+        outer = [_beside(away[patch.block], patch, 0.0) for patch in grid.outer_patches()]
+    else:
+        near = [away[0][:, : max(1, round(NEAR * grid.nj))].ravel()]
+        outer = [away[0][:, 0], away[0][:, -1]]
+        if not grid.periodic:  # the cut of an O grid is no boundary
+            outer += [away[0][0], away[0][-1]]
     worst = int(np.argmax([distances.max() for distances in away]))
-    at = np.unravel_index(int(away[worst].argmax()), away[worst].shape)
-    every = np.concatenate([block.nodes.reshape(-1, block.nodes.shape[-1]) for block in reference.blocks])
-    extent = _spread(every)
-    near = [_beside(away[wall.block], wall, NEAR) for wall in grid.walls()] or [a.ravel() for a in away]
-    outer = [_beside(away[patch.block], patch, 0.0).max() for patch in grid.outer_patches()]
-    all_away = np.concatenate([distances.ravel() for distances in away])
+    at = tuple(int(k) for k in np.unravel_index(int(away[worst].argmax()), away[worst].shape))
+    extent = _spread(np.concatenate([b.nodes.reshape(-1, b.nodes.shape[-1]) for b in reference.blocks]))
+    every = np.concatenate([distances.ravel() for distances in away])
     return Difference(
-        max=float(all_away.max()),
-        mean=float(all_away.mean()),
-        at=(worst, *map(int, at)),
-        relative_l2=_root_mean_square(all_away) / extent,
+        max=float(every.max()),
+        mean=float(every.mean()),
+        at=(worst, *at) if many else at,
+        relative_l2=_root_mean_square(every) / extent,
         near_wall=_root_mean_square(np.concatenate(near)) / extent,
-        boundary=float(max(outer, default=0.0)),
+        boundary=max((float(side.max()) for side in outer), default=0.0),
     )
+
+
+def _check_sizes(grid: Grid, reference: Grid, *, many: bool) -> None:
+    sizes, others = ([block.counts for block in each.blocks] for each in (grid, reference))
+    if [b.nodes.shape for b in grid.blocks] == [b.nodes.shape for b in reference.blocks]:
+        return
+    if not many:
+        counts = f"{grid.ni}x{grid.nj} nodes are not comparable with {reference.ni}x{reference.nj}"
+        raise InputError(counts, "compare grids of one size")
+    counts = f"{len(sizes)} blocks are not comparable with {len(others)}"
+    k = next((k for k, pair in enumerate(zip(sizes, others, strict=False)) if pair[0] != pair[1]), None)
+    if len(sizes) == len(others) and k is not None:
+        own, other = ("x".join(map(str, size[k])) for size in (sizes, others))
+        counts = f"block {k} of {own} nodes is not comparable with one of {other}"
+    raise InputError(counts, "compare grids of the same blocks")
 
 
 def _beside(values: Floats, patch: Patch, part: float) -> Floats:

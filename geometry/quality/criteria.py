@@ -1,10 +1,14 @@
 """What a user accepts of a grid: gates, and the limits of profiles."""
 
-from dataclasses import dataclass
+from __future__ import annotations
 
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.gates import Gate, Judgement, need_percentiles
-from meshonet.geometry.quality.summary import Quality
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from meshonet.geometry.blocks.grid import Grid
+    from meshonet.geometry.quality.gates import Gate, Judgement
+    from meshonet.geometry.summary import Quality
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,10 @@ class Criteria:
     @property
     def percentiles(self) -> bool:
         """Whether a gate looks at a percentile, which `judge` must then be given."""
+        if not self.gates:
+            return False
+        from meshonet.geometry.quality.gates import need_percentiles
+
         return need_percentiles(self.gates)
 
     def judge(self, grid: Grid, quality: Quality) -> Judgement:

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms, percentiles_of
+from meshonet.geometry.arrays import Floats, percentiles_of
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.elementary import arctan2
+from meshonet.geometry.layout.lattice import ring_of
 from meshonet.geometry.polygon.corners import angle_between
-from meshonet.geometry.quality.summary import Quality
+from meshonet.geometry.summary import Quality
 
 
 @dataclass(frozen=True)
@@ -49,11 +49,7 @@ def solid_deviation(quality: Quality) -> Deviation:
 
 def corner_deviations(nodes: Floats) -> Floats:
     """Return the deviations (4, ni-1, nj-1) of the corners of the cells of `nodes` (ni, nj, 2 or 3)."""
-    ring = np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]])
+    ring = ring_of(nodes)
     ahead = np.roll(ring, -1, axis=0) - ring
-    if nodes.shape[-1] == 3:
-        back = -np.roll(ahead, 1, axis=0)
-        angle = arctan2(norms(np.cross(ahead, back)), (ahead * back).sum(axis=-1))
-        return np.asarray(np.abs(np.degrees(angle) - 90.0))
-    angle = angle_between(ahead.reshape(-1, 2), -np.roll(ahead, 1, axis=0).reshape(-1, 2))
-    return np.asarray(np.abs(np.degrees(angle) % 360.0 - 90.0).reshape(ring.shape[:-1]))
+    angle = angle_between(ahead, -np.roll(ahead, 1, axis=0))
+    return np.asarray(np.abs(np.degrees(angle) % 360.0 - 90.0))

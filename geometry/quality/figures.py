@@ -7,15 +7,16 @@ from functools import cached_property
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.blocks.across import rows_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.blocks import BlockFigures, block_figures
-from meshonet.geometry.quality.checkmesh import FACES, Faces, faces
+from meshonet.geometry.quality.checkmesh import FACES, FaceMeasures, faces
 from meshonet.geometry.quality.figure import COUNTS, FIGURES, Figure
 from meshonet.geometry.quality.growth import Extreme, Growth, growth
 from meshonet.geometry.quality.metrics import metrics_of
-from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.quality.walls import WallRow, wall_rows
+from meshonet.geometry.summary import Quality
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +28,7 @@ class Figures:
     walls: Sequence[Patch]
 
     @cached_property
-    def faces(self) -> Faces:
+    def faces(self) -> FaceMeasures:
         """What checkMesh says of its faces."""
         return faces(self.grid)
 
@@ -115,6 +116,5 @@ def _greatest(extremes: Iterable[Extreme]) -> Figure | None:
 
 
 def _nodes(grid: Grid, patch: Patch) -> Floats:
-    face = grid.face(patch.block, patch.side)
-    spans = patch.range(face.shape[:-1])
-    return face[tuple(slice(first, last + 1) for first, last in spans)].reshape(-1, face.shape[-1])
+    (nodes,) = rows_at(grid, patch, 1)
+    return nodes.reshape(-1, nodes.shape[-1])

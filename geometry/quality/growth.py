@@ -1,4 +1,4 @@
-"""How fast the cells grow along grid lines, from one to the next.
+"""Growth ratios of neighbouring cells along grid lines.
 
 The growth at a node is the ratio of the two steps of a grid line that meet there, the larger over the
 smaller: 1 for equal steps. Lines run on over the seam of an O grid and over the wake of a C grid.
@@ -64,12 +64,8 @@ class Tally:
         self._along: str | None = None
         self._values: list[Floats | Singles] | None = [] if kept else None
 
-    def add(self, i: int, j: int, values: Floats, block: int | None = None, along: str | None = None) -> None:
-        """Add values (m, n) of the nodes or cells from (i, j) on."""
-        self.add_from((i, j) if block is None else (block, i, j), values, along)
-
-    def add_from(self, place: tuple[int, ...], values: Floats, along: str | None = None) -> None:
-        """Add values (m, n) or (m, n, l) of the nodes or cells from `place` on, (block, i, j) say."""
+    def add(self, place: tuple[int, ...], values: Floats, along: str | None = None) -> None:
+        """Add values (m, n) or (m, n, l) of the nodes or cells from `place` on, (i, j) say."""
         if values.size == 0:
             return
         here = np.unravel_index(int(values.argmax()), values.shape)
@@ -113,15 +109,15 @@ def growth(grid: Grid) -> Growth:
     """Return the growth of the steps of `grid` along xi and eta."""
     xi, eta = Tally(), Tally()
     for i, block in strips(beyond_seam(grid), 2):
-        xi.add(i + 1, 0, ratios(block), along="xi")
+        xi.add((i + 1, 0), ratios(block), "xi")
     for i, block in strips(grid.nodes, 0):
-        eta.add(i, 1, ratios(block.swapaxes(0, 1)).T, along="eta")
-    eta.add(0, 0, ratios(across_wake(grid).swapaxes(0, 1)).T, along="eta")
+        eta.add((i, 1), ratios(block.swapaxes(0, 1)).T, "eta")
+    eta.add((0, 0), ratios(across_wake(grid).swapaxes(0, 1)).T, "eta")
     return Growth(xi.extreme, eta.extreme)
 
 
 def beyond_seam(grid: Grid) -> Floats:
-    """Return the nodes (ni + 1, nj, 2) of an O grid with column 1 again at the end; others as they are."""
+    """Return the nodes (ni + 1, nj, 2) of an O grid, column 1 repeated at its end; others unchanged."""
     return np.concatenate([grid.nodes, grid.nodes[1:2]]) if grid.periodic else grid.nodes
 
 

@@ -1,22 +1,21 @@
-"""How grid lines run through blocks of two directions: how they grow and bend, inside and across sides.
+"""Growth and bending of the grid lines of planar blocks and surface patches, also across connections.
 
 The growth at a node is that of `meshonet.geometry.quality.growth`; the bend is the angle in degrees by which
 a line turns there, 0 where it is straight. Across a side both are taken at its nodes, but for irregular ones,
 through which no line runs.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.blocks.families import families
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.vertices import Vertices
-from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.quality.growth import DIRECTIONS, Extreme, Growth, Tally, ratios
 
@@ -40,57 +39,75 @@ class Lines:
 
 
 @dataclass(frozen=True)
-class _Part:
-    """Lines along a direction of a block, inside it or across a side: (m, n) nodes from (i, j) on."""
+class BlockLines:
+    """Growth and bend of the lines along a direction of a block, inside it or across a side."""
 
     block: int
     axis: int
     inside: bool
-    i: int
-    j: int
-    growth: Floats
-    bend: Floats
+    growth: Tally
+    bend: Tally
 
 
 def lines(grid: Grid, nodes: Vertices) -> Lines:
     """Return growth and bend of the lines of planar blocks or surface patches with vertices `nodes`."""
-    parts = [*_inside(grid), *_across(grid, nodes)]
+    return lines_of(grid, [*_inside(grid), *_across(grid, nodes)])
+
+
+def lines_of(grid: Grid, parts: list[BlockLines], *, along: bool = True, places: bool = True) -> Lines:
+    """Return growth and bend of the lines of blocks in `parts`.
+
+    With percentiles `along` directions and walls, and at `places`, inside blocks and across sides.
+    """
     family = {(m.block, m.axis): k for k, members in enumerate(families(grid)) for m in members}
     walls = [(patch.name, family[patch.block, patch.place[0]]) for patch in grid.walls()]
-    xi, eta = ([part for part in parts if part.axis == axis] for axis in (0, 1))
 
     def leaving(names: set[str]) -> Extreme | None:
         own = {number for name, number in walls if name in names}
-        return _of([part for part in parts if family[part.block, part.axis] in own], "growth")
+        return _of((part.growth for part in parts if family[part.block, part.axis] in own), kept=along)
 
-    within, beyond = ([part for part in parts if part.inside == inside] for inside in (True, False))
+    def where(what: str, inside: bool) -> Extreme | None:
+        return _of((getattr(part, what) for part in parts if part.inside is inside), kept=places)
+
+    axes = range(len(grid.blocks[0].counts))
+    directions = (_of((p.growth for p in parts if p.axis == axis), kept=along) for axis in axes)
     return Lines(
-        Growth(_of(xi, "growth"), _of(eta, "growth")),
+        Growth(*directions),
         leaving({name for name, _ in walls}),
-        _of(within, "growth"),
-        _of(beyond, "growth"),
-        _of(within, "bend"),
-        _of(beyond, "bend"),
+        where("growth", True),
+        where("growth", False),
+        where("bend", True),
+        where("bend", False),
         {name: growth for name, _ in walls if (growth := leaving({name}))},
     )
 
 
-def _of(parts: list[_Part], what: str) -> Extreme | None:
-    tally = Tally(kept=True)
-    for part in parts:
-        tally.add(part.i, part.j, getattr(part, what), part.block, DIRECTIONS[part.axis])
-    return tally.extreme
+def _of(tallies: Iterable[Tally], *, kept: bool) -> Extreme | None:
+    every = Tally(kept=kept)
+    for tally in tallies:
+        every.add_all(tally)
+    return every.extreme
 
 
-def _inside(grid: Grid) -> Iterator[_Part]:
+def part_of_values(
+    place: tuple[int, ...], axis: int, inside: bool, values: Iterable[Floats], *, kept: bool = True
+) -> BlockLines:
+    """Return the part with growth and bend (m, n[, l]) of the nodes from `place`, (block, i, j[, k]), on."""
+    tallies = Tally(kept=kept), Tally(kept=kept)
+    for tally, each in zip(tallies, values, strict=True):
+        tally.add(place, each, DIRECTIONS[axis])
+    return BlockLines(place[0], axis, inside, *tallies)
+
+
+def _inside(grid: Grid) -> Iterator[BlockLines]:
     for number, block in enumerate(grid.blocks):
         for axis in (0, 1):
             nodes = np.moveaxis(block.nodes, axis, 0)
             values = (np.moveaxis(each(nodes), 0, axis) for each in (ratios, bends))
-            yield _Part(number, axis, True, 1 - axis, axis, *values)
+            yield part_of_values((number, 1 - axis, axis), axis, True, values)
 
 
-def _across(grid: Grid, nodes: Vertices) -> Iterator[_Part]:
+def _across(grid: Grid, nodes: Vertices) -> Iterator[BlockLines]:
     """Yield the lines across each connection, an unbroken stretch of regular nodes at a time."""
     for each in grid.connections:
         own, donor = across(grid, each, 2)
@@ -103,7 +120,7 @@ def _across(grid: Grid, nodes: Vertices) -> Iterator[_Part]:
             at = [start + first] * 2
             at[axis] = 0 if end == 0 else grid.blocks[each.block].counts[axis] - 1
             values = (np.expand_dims(value[first:last], axis) for value in (growth, bend))
-            yield _Part(each.block, axis, False, at[0], at[1], *values)
+            yield part_of_values((each.block, *at), axis, False, values)
 
 
 def _runs(true: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Iterator[tuple[int, int]]:
@@ -115,9 +132,4 @@ def _runs(true: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Iterator[tuple[in
 def bends(nodes: Floats) -> Floats:
     """Return the angles (m-2, ...) in degrees by which lines along the first axis (m, ..., d) turn."""
     step = np.diff(nodes, axis=0)
-    before, after = step[:-1], step[1:]
-    if nodes.shape[-1] == 2:
-        angle = np.abs(angle_between(before.reshape(-1, 2), after.reshape(-1, 2))).reshape(before.shape[:-1])
-    else:
-        angle = arctan2(norms(np.cross(before, after)), (before * after).sum(axis=-1))
-    return np.degrees(angle)
+    return np.degrees(np.abs(angle_between(step[:-1], step[1:])))

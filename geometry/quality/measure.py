@@ -11,13 +11,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, as_planar, percentiles_of
+from meshonet.geometry.arrays import Floats, as_planar, norms, percentiles_of
 from meshonet.geometry.blocks.block import form_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
-from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric, metric_of
+from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS, metric_of, metrics_of
 from meshonet.geometry.quality.percentiles import FEW, PERCENTS, no_run, prepared
-from meshonet.geometry.quality.summary import Quality, Summary
+from meshonet.geometry.summary import Quality, Summary
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
 
@@ -36,6 +36,11 @@ def count_folded(nodes: Floats) -> int:
         return len(folded_cells(nodes))
     x, y = _planes(nodes)
     return _native.count_folded(x, y, threads_for(x.size))
+
+
+def count_folded_in(grid: Grid) -> int:
+    """Return how many cells of all blocks of `grid` are folded (`count_folded`)."""
+    return sum(count_folded(block.nodes) for block in grid.blocks)
 
 
 def folded_cells(nodes: Floats) -> NDArray[np.int64]:
@@ -65,23 +70,18 @@ def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
         from meshonet.geometry.quality.volumes import worst_solids
 
         return worst_solids(nodes, limit)
-    if form == "surface":
-        from meshonet.geometry.quality.surfaces import worst_quads
+    from meshonet.geometry.layout.lattice import corner_jacobians
+    from meshonet.geometry.quality.surfaces import bad_cell, worst_quads
 
+    if form == "surface":
         return worst_quads(nodes, limit)
-    x, y = _planes(nodes)
-    i, j = folded_cells(nodes).T
-    corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
-    points = np.stack([np.stack([x[at], y[at]], axis=-1) for at in corners])
-    edges = np.roll(points, -1, axis=0) - points
-    before = np.roll(edges, 1, axis=0)
-    jacobian = before[..., 0] * edges[..., 1] - before[..., 1] * edges[..., 0]
-    lengths = np.hypot(*np.moveaxis(edges, -1, 0)) * np.hypot(*np.moveaxis(before, -1, 0))
-    scaled = np.divide(jacobian, lengths, out=np.zeros_like(jacobian), where=lengths > 0)
-    scaled = scaled.min(axis=0, initial=1.0)
-    centre = points.mean(axis=0)
-    order = np.argsort(scaled, kind="stable")[:limit]
-    return [BadCell(int(i[k]), int(j[k]), float(centre[k, 0]), float(centre[k, 1])) for k in order]
+    places = folded_cells(nodes)
+    corners = np.stack([nodes[tuple((places + step).T)] for step in ((0, 0), (1, 0), (1, 1), (0, 1))], axis=1)
+    lengths = norms(np.roll(corners, -1, axis=1) - corners)
+    sizes = lengths * np.roll(lengths, 1, axis=1)
+    scaled = np.divide(corner_jacobians(corners), sizes, out=np.zeros_like(sizes), where=sizes > 0)
+    order = np.argsort(scaled.min(axis=1), kind="stable")[:limit]
+    return [bad_cell(places[k], corners[k].mean(axis=0)) for k in order]
 
 
 def worst_cells_of(grid: Grid, limit: int = 10) -> list[BadCell]:
@@ -97,9 +97,26 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     """Return the quality of `grid`; neighbours across the seam of ``o`` and the wake of ``c`` count.
 
     The 1st and 99th `percentiles` of every metric, by linear interpolation between cells, take about a third
-    of the time of the rest (`meshonet.geometry.quality.percentiles`). All cells of several
-    blocks count together (`meshonet.geometry.quality.measure_blocks`), as do volumes and surface patches.
+    of the time of the rest (`meshonet.geometry.quality.percentiles`). All cells of several blocks count
+    together, as do volumes and surface patches; cells across connections are neighbours.
     """
+    quality = _compiled(grid, percentiles)
+    more = [metric for metric in metrics_of(grid) if metric.cells]
+    if not more:
+        return quality
+    from meshonet.geometry.quality.measure_blocks import summary_of
+
+    metrics = dict(quality.metrics)
+    for metric in more:
+        summary = summary_of(metric, per_cell_of_blocks(grid, metric.name), percentiles)
+        metrics[metric.name] = (
+            summary if grid.topology == "blocks" else replace(summary, worst=summary.worst[1:])
+        )
+    return replace(quality, metrics=metrics)
+
+
+def _compiled(grid: Grid, percentiles: bool) -> Quality:
+    """Return the folded cells and the metrics of the compiled kernels."""
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
 
@@ -107,14 +124,14 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     if grid.topology == "blocks":
         from meshonet.geometry.quality.measure_blocks import measure_blocks
 
-        return measure_blocks(grid, percentiles=percentiles)
+        return measure_blocks(grid, count_folded_in(grid), percentiles=percentiles)
     x, y = grid.x, grid.y
     cells = (grid.ni - 1) * (grid.nj - 1)
     run = prepared(x, y, PERCENTS) if percentiles and cells > FEW else no_run()
-    values = np.empty((len(COMPILED) if percentiles and cells <= FEW else 0, grid.ni - 1, grid.nj - 1))
+    values = np.empty((len(QUAD_METRICS) if percentiles and cells <= FEW else 0, grid.ni - 1, grid.nj - 1))
     table, where = run.over(x, y, values, grid.periodic, grid.wake)
     metrics = {}
-    for k, metric in enumerate(COMPILED):
+    for k, metric in enumerate(QUAD_METRICS):
         low, mean, high = (float(value) for value in table[k])
         i, j = where[k, 0 if metric.worst == "min" else 1]
         ends: list[float | None] = [None, None]
@@ -124,15 +141,7 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
             all_values = values[k] if len(values) else per_cell(grid, metric.name)
             ends = [*percentiles_of(all_values, PERCENTS)]
         metrics[metric.name] = Summary(low, mean, high, (int(i), int(j)), *ends)
-    metrics |= {m.name: _summary(m, m.cells(grid), percentiles) for m in METRICS if m.cells}
     return Quality(cells, count_folded(grid.nodes), metrics)
-
-
-def _summary(metric: Metric, values: Floats, percentiles: bool) -> Summary:
-    worst = np.argmin(values) if metric.worst == "min" else np.argmax(values)
-    i, j = divmod(int(worst), values.shape[1])
-    ends = percentiles_of(values, PERCENTS) if percentiles else [None, None]
-    return Summary(float(values.min()), float(values.mean()), float(values.max()), (i, j), *ends)
 
 
 def angles(nodes: Floats) -> tuple[float, float]:
@@ -161,7 +170,7 @@ def per_cell(grid: Grid, name: str) -> Floats:
     """Return the metric `name` of every cell, (ni-1, nj-1); raise InputError when there is none."""
     metric = metric_of(grid, name)
     if metric.cells:
-        return metric.cells(grid)
+        return metric.cells(grid.nodes)
     cells = np.empty((1, grid.ni - 1, grid.nj - 1))
     no_run().over(grid.x, grid.y, cells, grid.periodic, grid.wake, NAMES.index(name))
     return np.asarray(cells[0])
@@ -172,7 +181,9 @@ def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
 
     Raises InputError: no such metric of these cells.
     """
-    metric_of(grid, name)
+    metric = metric_of(grid, name)
+    if metric.cells:
+        return [metric.cells(block.nodes) for block in grid.blocks]
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import solid_metric
 

@@ -11,41 +11,38 @@ from meshonet.geometry.arrays import Floats, percentiles_of
 from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric
+from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS, Metric
 from meshonet.geometry.quality.percentiles import PERCENTS, no_run
-from meshonet.geometry.quality.summary import Quality, Summary
-from meshonet.geometry.quality.surfaces import areas, folded_quads, quad_metrics
-from meshonet.geometry.threads import threads_for
-from meshonet.kernels import _native
+from meshonet.geometry.quality.surfaces import areas, quad_metrics
+from meshonet.geometry.summary import Quality, Summary
 
 _TINY, _LARGE = 1e-300, 1e30
 """A cell without area has a neighbour of ratio `_LARGE`, as in the compiled metrics."""
 
 
-def measure_blocks(grid: Grid, *, percentiles: bool = False) -> Quality:
-    """Return the quality of all cells of planar blocks or surface patches; worst cells are (block, i, j)."""
+def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Quality:
+    """Return the quality of all cells of planar blocks or surface patches, `folded` of them folded.
+
+    Worst cells are (block, i, j).
+    """
     values = metrics_of_blocks(grid)
-    folded = sum(_folded(block.nodes) for block in grid.blocks)
     metrics = {
-        metric.name: _summary(metric, [cells[k] for cells in values], percentiles)
-        for k, metric in enumerate(METRICS)
+        metric.name: summary_of(metric, [cells[k] for cells in values], percentiles)
+        for k, metric in enumerate(QUAD_METRICS)
     }
     return Quality(sum(cells[0].size for cells in values), folded, metrics)
 
 
 def metrics_of_blocks(grid: Grid) -> list[Floats]:
-    """Return every metric of `METRICS` of every cell, (metrics, ni-1, nj-1) for each block."""
+    """Return every metric of `QUAD_METRICS` of every cell, (metrics, ni-1, nj-1) for each block."""
     values = []
     for block in grid.blocks:
         if grid.form == "surface":
             values.append(quad_metrics(block.nodes))
             continue
         ni, nj = block.counts
-        cells = np.empty((len(METRICS), ni - 1, nj - 1))
-        no_run().over(block.nodes[..., 0], block.nodes[..., 1], cells[: len(COMPILED)])
-        for k, metric in enumerate(METRICS):
-            if metric.cells:
-                cells[k] = metric.cells(Grid((block,)))
+        cells = np.empty((len(QUAD_METRICS), ni - 1, nj - 1))
+        no_run().over(block.nodes[..., 0], block.nodes[..., 1], cells)
         values.append(cells)
     _area_ratios_across(grid, [cells[NAMES.index("area_ratio")] for cells in values])
     return values
@@ -57,27 +54,19 @@ def _area_ratios_across(grid: Grid, ratios: Sequence[Floats]) -> None:
         own, donor = (areas(rows)[0] for rows in across(grid, each, 2))
         large, small = np.maximum(own, donor), np.maximum(np.minimum(own, donor), _TINY)
         ratio = np.minimum(large / small, _LARGE)
-        for block, side, span, values in (
-            (each.block, each.side, each.range, ratio),
-            (each.donor, each.donor_side, each.donor_range, ratio[:: each.orientation[0]]),
-        ):
+        for (block, side, span), way in zip(each.ends, (1, each.orientation[0]), strict=True):
             axis, end = PLACES[side]
             beside = np.moveaxis(ratios[block], axis, 0)[end, span[0][0] : span[0][1]]
-            np.maximum(beside, values, out=beside)
+            np.maximum(beside, ratio[::way], out=beside)
 
 
-def _folded(nodes: Floats) -> int:
-    if nodes.shape[-1] == 2:
-        return _native.count_folded(nodes[..., 0], nodes[..., 1], threads_for(nodes[..., 0].size))
-    return len(folded_quads(nodes))
-
-
-def _summary(metric: Metric, blocks: Sequence[Floats], percentiles: bool) -> Summary:
+def summary_of(metric: Metric, blocks: Sequence[Floats], percentiles: bool) -> Summary:
+    """Return the summary of a metric from its values (ni-1, nj-1[, nk-1]) in the cells of each block."""
     ends = [cells.min() if metric.worst == "min" else -cells.max() for cells in blocks]
     block = int(np.argmin(ends))
     cells = blocks[block]
-    at = int(np.argmin(cells) if metric.worst == "min" else np.argmax(cells))
+    at = np.argmin(cells) if metric.worst == "min" else np.argmax(cells)
     every = np.concatenate([cells.ravel() for cells in blocks])
     low, mean, high = float(every.min()), float(every.mean()), float(every.max())
     part = percentiles_of(every, PERCENTS) if percentiles else [None, None]
-    return Summary(low, mean, high, (block, *divmod(at, cells.shape[1])), *part)
+    return Summary(low, mean, high, (block, *map(int, np.unravel_index(at, cells.shape))), *part)

@@ -68,12 +68,16 @@ class Metric:
     unit: str
     worst: Literal["min", "max"]
     short: str
-    cells: Callable[[Grid], Floats] | None = None
-    """Gives its value (ni-1, nj-1) for every cell of a grid; None for those of the compiled kernel."""
+    cells: Callable[[Floats], Floats] | None = None
+    """From nodes (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3) of a block to values (ni-1, nj-1[, nk-1]) of its
+    cells; None for metrics of the compiled kernels."""
 
 
-# first those of the compiled kernel, in its order (kernels/geometry/cells.h), then those with a function
-METRICS: tuple[Metric, ...] = (
+METRICS: tuple[Metric, ...] = ()
+"""Metrics of all cells, in the plane, on surfaces and in volumes, each with its function."""
+
+# those of kernels/geometry/cells.h, in its order
+QUAD_METRICS: tuple[Metric, ...] = (
     Metric("max_angle", "deg", "max", "greatest included angle"),
     Metric("min_angle", "deg", "min", "least included angle"),
     Metric("skewness", "", "max", "equiangle skewness, 0 to 1 unless folded"),
@@ -83,8 +87,7 @@ METRICS: tuple[Metric, ...] = (
     Metric("area_ratio", "", "max", "area against the neighbours'"),
 )
 
-NAMES: tuple[str, ...] = tuple(metric.name for metric in METRICS)
-COMPILED = tuple(metric for metric in METRICS if metric.cells is None)
+NAMES: tuple[str, ...] = tuple(metric.name for metric in QUAD_METRICS)
 
 # those of kernels/solids/solids.h, in its order
 SOLID_METRICS: tuple[Metric, ...] = (
@@ -101,13 +104,13 @@ SOLID_METRICS: tuple[Metric, ...] = (
 )
 
 SOLID_NAMES: tuple[str, ...] = tuple(metric.name for metric in SOLID_METRICS)
-ALL_NAMES = tuple(dict.fromkeys((*NAMES, *SOLID_NAMES)))
+ALL_NAMES = tuple(dict.fromkeys((*NAMES, *SOLID_NAMES, *(metric.name for metric in METRICS))))
 """Names of the metrics of planes, surfaces and volumes."""
 
 
 def metrics_of(grid: Grid) -> tuple[Metric, ...]:
-    """Return the metrics that cells of `grid` have: those of volumes, or those of quadrilaterals."""
-    return SOLID_METRICS if grid.form == "volume" else METRICS
+    """Return the metrics that cells of `grid` have: of quadrilaterals or of volumes, and of both."""
+    return (*(SOLID_METRICS if grid.form == "volume" else QUAD_METRICS), *METRICS)
 
 
 def metric_of(grid: Grid, name: str) -> Metric:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.quality.metrics import COMPILED
+from meshonet.geometry.quality.metrics import QUAD_METRICS
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import measure_cells
 
@@ -34,7 +34,7 @@ ROOM = 0.03
 
 
 @dataclass(frozen=True)
-class Run:
+class CellPass:
     """What one run over all cells needs beforehand and leaves behind, see `kernels.measure_cells`.
 
     (metrics, percentiles, 2), (metrics, percentiles, 4) and (metrics, percentiles, room) numbers.
@@ -51,7 +51,7 @@ class Run:
 
         `values` (n, ni-1, nj-1) is filled with n metrics from the `first` on.
         """
-        table, where = np.empty((len(COMPILED), 3)), np.empty((len(COMPILED), 2, 2), dtype=np.int64)
+        table, where = np.empty((len(QUAD_METRICS), 3)), np.empty((len(QUAD_METRICS), 2, 2), dtype=np.int64)
         tallies = self.brackets, self.counts, self.caught
         measure_cells(x, y, periodic, wake, table, where, first, values, *tallies, threads_for(x.size))
         return table, where
@@ -81,21 +81,27 @@ class Run:
         return float(np.partition(held, rank - up_to)[rank - up_to])
 
 
-def no_run() -> Run:
+def no_run() -> CellPass:
     """Return a run that looks for nothing."""
-    n = len(COMPILED)
-    return Run(np.empty((n, 0, 2)), np.zeros((n, 0, 4), dtype=np.int64), np.empty((n, 0, 1)))
+    n = len(QUAD_METRICS)
+    return CellPass(np.empty((n, 0, 2)), np.zeros((n, 0, 4), dtype=np.int64), np.empty((n, 0, 1)))
 
 
-def prepared(x: Floats, y: Floats, percents: tuple[float, ...]) -> Run:
+def prepared(x: Floats, y: Floats, percents: tuple[float, ...]) -> CellPass:
     """Return a run that brackets the percentiles `percents` of every metric of the grid (ni, nj)."""
-    sample = _sample(x, y)
-    ends = [(max(0.0, p - MARGIN), min(100.0, p + MARGIN)) for p in percents]
-    values_at_ends = np.percentile(sample, np.ravel(ends), axis=1, method="nearest", overwrite_input=True)
-    n = len(COMPILED)
-    brackets = np.ascontiguousarray(values_at_ends.T).reshape(n, len(percents), 2)
+    brackets = brackets_of(_sample(x, y), percents, MARGIN)
+    n = len(QUAD_METRICS)
     room = int(ROOM * (x.shape[0] - 1) * (x.shape[1] - 1)) + 1
-    return Run(brackets, np.zeros((n, len(percents), 4), dtype=np.int64), np.empty((n, len(percents), room)))
+    return CellPass(
+        brackets, np.zeros((n, len(percents), 4), dtype=np.int64), np.empty((n, len(percents), room))
+    )
+
+
+def brackets_of(sample: Floats, percents: tuple[float, ...], margin: float) -> Floats:
+    """Return the values (metrics, percents, 2) of a `sample` (metrics, n) `margin` percent to each side."""
+    ends = [(max(0.0, p - margin), min(100.0, p + margin)) for p in percents]
+    values = np.percentile(sample, np.ravel(ends), axis=1, method="nearest", overwrite_input=True)
+    return np.ascontiguousarray(values.T).reshape(len(sample), len(percents), 2)
 
 
 def _sample(x: Floats, y: Floats) -> Floats:
@@ -105,7 +111,7 @@ def _sample(x: Floats, y: Floats) -> Floats:
     fills about a hundredth of the tiles. Those at the sides reach beyond the grid, or its outermost cells
     would be in fewer tiles than the others. All of them side by side make one grid to run over.
     """
-    n = len(COMPILED)
+    n = len(QUAD_METRICS)
     i, inside_i = _tiles(np.linspace(0, 1, TILES), x.shape[0] - 1)
     j, inside_j = _tiles(np.arange(TILES) * 0.6180339887498949 % 1.0, x.shape[1] - 1)
     tiles = (np.swapaxes(plane[i[:, :, None], j[:, None, :]], 0, 1) for plane in (x, y))

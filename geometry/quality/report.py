@@ -13,8 +13,8 @@ from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import Gate, Judgement
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.profiles import CheckResult, ProfileReport, profile_report
-from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.quality.walls import Spread, WallRow
+from meshonet.geometry.summary import Quality
 
 COMPARED = (
     "relative_l2", "near_wall", "max", "boundary", "folded_other", "max_angle_ratio", "mean_angle_ratio",
@@ -109,7 +109,7 @@ class QualityReport:
             **(self.figures.blocks.as_dict() if many else {}),
             "form": grid.form,
             **_folded(self.quality),
-            "worst_cells": [_cell(cell) for cell in self.worst],
+            "worst_cells": [_given(cell) for cell in self.worst],
             "quality": quality_dict(self.quality),
             "walls": [_wall(row) for row in self.figures.wall_rows],
         }
@@ -168,16 +168,12 @@ def _comparison(grid: Grid, quality: Quality, reference: Grid) -> Comparison:
     return Comparison(difference, other.folded, own.max / angle.max, own.mean / angle.mean)
 
 
-def _cell(cell: BadCell) -> dict[str, Any]:
-    return {name: value for name, value in vars(cell).items() if value is not None}
-
-
-def _spread(spread: Spread) -> dict[str, float]:
-    return {name: value for name, value in vars(spread).items() if value is not None}
+def _given(of: BadCell | Spread) -> dict[str, Any]:
+    return {name: value for name, value in vars(of).items() if value is not None}
 
 
 def _wall(row: WallRow) -> dict[str, Any]:
-    sizes = {"first_cell": _spread(row.height), "off_square": _spread(row.off_square)}
+    sizes = {"first_cell": _given(row.height), "off_square": _given(row.off_square)}
     growth = {} if row.growth is None else {"growth": extreme_dict(row.growth)}
     return {"name": row.name, "side": row.side, **sizes, "equal_cells": row.equal_cells, **growth}
 

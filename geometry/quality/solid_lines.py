@@ -1,33 +1,20 @@
-"""How grid lines run through volumes: how they grow and bend, inside blocks and across faces.
+"""Growth and bending of the grid lines of volumes, also across connections.
 
 Across a face both are taken at the nodes inside it: its edges may be irregular, and no line runs through
 these.
 """
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 import numpy as np
 
 from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES
-from meshonet.geometry.blocks.families import families
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.growth import DIRECTIONS, Extreme, Growth, Tally, ratios
-from meshonet.geometry.quality.lines import Lines, bends
+from meshonet.geometry.quality.growth import DIRECTIONS, Tally, ratios
+from meshonet.geometry.quality.lines import BlockLines, Lines, bends, lines_of, part_of_values
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
-
-
-@dataclass(frozen=True)
-class _Part:
-    """Growth and bend along a direction of a block, inside it or across a face."""
-
-    block: int
-    axis: int
-    inside: bool
-    growth: Tally
-    bend: Tally
 
 
 def solid_lines(grid: Grid, *, percentiles: bool = True) -> Lines:
@@ -36,36 +23,10 @@ def solid_lines(grid: Grid, *, percentiles: bool = True) -> Lines:
     The `percentiles`, inside blocks and across faces, are of values in single precision.
     """
     parts = [*_inside(grid, percentiles), *_across(grid, percentiles)]
-    family = {(m.block, m.axis): k for k, members in enumerate(families(grid)) for m in members}
-    walls = [(patch.name, family[patch.block, patch.place[0]]) for patch in grid.walls()]
-
-    def leaving(names: set[str]) -> Extreme | None:
-        own = {number for name, number in walls if name in names}
-        return _of(part.growth for part in parts if family[part.block, part.axis] in own)
-
-    def where(what: str, inside: bool) -> Extreme | None:
-        return _of((getattr(part, what) for part in parts if part.inside is inside), kept=percentiles)
-
-    along = (_of(part.growth for part in parts if part.axis == axis) for axis in range(3))
-    return Lines(
-        Growth(*along),
-        leaving({name for name, _ in walls}),
-        where("growth", True),
-        where("growth", False),
-        where("bend", True),
-        where("bend", False),
-        {name: growth for name, _ in walls if (growth := leaving({name}))},
-    )
+    return lines_of(grid, parts, along=False, places=percentiles)
 
 
-def _of(tallies: Iterable[Tally], *, kept: bool = False) -> Extreme | None:
-    every = Tally(kept=kept)
-    for tally in tallies:
-        every.add_all(tally)
-    return every.extreme
-
-
-def _inside(grid: Grid, kept: bool) -> Iterator[_Part]:
+def _inside(grid: Grid, kept: bool) -> Iterator[BlockLines]:
     for number, block in enumerate(grid.blocks):
         ni = block.counts[0]
         summary, where = np.empty((ni, 3, 2, 2)), np.empty((ni, 3, 2, 3), dtype=np.int64)
@@ -83,10 +44,10 @@ def _inside(grid: Grid, kept: bool) -> Iterator[_Part]:
                     tally.add_summed(high, total, size, at, DIRECTIONS[axis])
                     if values is not None:
                         tally.keep(values[axis, m][inner])
-            yield _Part(number, axis, True, *measures)
+            yield BlockLines(number, axis, True, *measures)
 
 
-def _across(grid: Grid, kept: bool) -> Iterator[_Part]:
+def _across(grid: Grid, kept: bool) -> Iterator[BlockLines]:
     for each in grid.connections:
         own, donor = across(grid, each, 2)
         line = np.stack([own[1], own[0], donor[1]])
@@ -95,10 +56,5 @@ def _across(grid: Grid, kept: bool) -> Iterator[_Part]:
         axis, end = PLACES[each.side]
         at = [first + (part.start or 0) for (first, _), part in zip(each.range, inner, strict=True)]
         at.insert(axis, 0 if end == 0 else grid.blocks[each.block].counts[axis] - 1)
-        measures = []
-        for measure in (ratios, bends):
-            tally = Tally(kept=kept)
-            values = np.expand_dims(measure(line)[0], axis)
-            tally.add_from((each.block, *at), values, DIRECTIONS[axis])
-            measures.append(tally)
-        yield _Part(each.block, axis, False, *measures)
+        values = (np.expand_dims(measure(line)[0], axis) for measure in (ratios, bends))
+        yield part_of_values((each.block, *at), axis, False, values, kept=kept)

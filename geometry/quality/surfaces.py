@@ -10,17 +10,18 @@ So a cell does not change with the side of the surface it is looked at from. A c
 length, at a pole for instance, is left out. Definitions: `meshonet.geometry.quality.metrics`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, cross2, norms
 from meshonet.geometry.elementary import arccos
 from meshonet.geometry.errors import BadCell
+from meshonet.geometry.layout.lattice import ring_of
 from meshonet.geometry.quality.metrics import NAMES
 
-_TINY, _LARGE = 1e-300, 1e30
+_TINY, _LARGE = 1e-300, 1e30  # in place of 0 in divisors; the most a ratio is, as in the compiled metrics
 
 
 def quad_metrics(nodes: Floats) -> Floats:
@@ -28,21 +29,21 @@ def quad_metrics(nodes: Floats) -> Floats:
 
     `area_ratio` is that with the cells beside in the patch.
     """
-    ring = _ring(nodes)
+    ring = ring_of(nodes)
     edges = np.roll(ring, -1, axis=0) - ring
     before = np.roll(edges, 1, axis=0)
-    lengths = _length(edges)
+    lengths = norms(edges)
     product = lengths * np.roll(lengths, 1, axis=0)
     scaled = _scaled_jacobians(ring)
-    cosine = np.divide(-_dot(before, edges), product, out=np.zeros_like(product), where=product > 0)
+    cosine = np.divide(-(before * edges).sum(axis=-1), product, out=np.zeros_like(product), where=product > 0)
     angle = np.degrees(arccos(np.clip(cosine, -1.0, 1.0)))
     widest = np.where(scaled.min(axis=0) < 0, 360.0 - angle.max(axis=0), angle.max(axis=0))
     narrowest = angle.min(axis=0)
     along, across = edges[0] - edges[2], edges[1] - edges[3]
     normal = np.cross(along, across)
-    area = 0.25 * _length(normal)  # as Verdict's for a flat cell
-    size = np.maximum(_length(along) * _length(across), _TINY)
-    crossing = np.degrees(arccos(np.clip(np.abs(_dot(along, across)) / size, 0.0, 1.0)))
+    area = 0.25 * norms(normal)  # as Verdict's for a flat cell
+    size = np.maximum(norms(along) * norms(across), _TINY)
+    crossing = np.degrees(arccos(np.clip(np.abs((along * across).sum(axis=-1)) / size, 0.0, 1.0)))
     aspect = lengths.max(axis=0) * lengths.sum(axis=0) / np.maximum(4.0 * area, _TINY)
     values = {
         "max_angle": widest,
@@ -58,32 +59,30 @@ def quad_metrics(nodes: Floats) -> Floats:
 
 def folded_quads(nodes: Floats) -> NDArray[np.int64]:
     """Return (n, 2) indices of the cells of `nodes` (ni, nj, 3) with a corner turned against the cell."""
-    return np.argwhere(~(_scaled_jacobians(_ring(nodes)).min(axis=0) > 0)).astype(np.int64)
+    return np.argwhere(~(_scaled_jacobians(ring_of(nodes)).min(axis=0) > 0)).astype(np.int64)
 
 
 def worst_quads(nodes: Floats, limit: int = 10) -> list[BadCell]:
     """Return the folded cells of `nodes` (ni, nj, 3), `limit` at the most, least scaled Jacobian first."""
-    ring = _ring(nodes)
+    ring = ring_of(nodes)
     least, centre = _scaled_jacobians(ring).min(axis=0), ring.mean(axis=0)
     places = folded_quads(nodes)
     order = np.argsort(least[tuple(places.T)], kind="stable")[:limit]
-    cells = []
-    for i, j in places[order].tolist():
-        x, y, z = centre[i, j].tolist()
-        cells.append(BadCell(i, j, x, y, z=z))
-    return cells
+    return [bad_cell(place, centre[tuple(place)]) for place in places[order]]
+
+
+def bad_cell(place: Iterable[int], centre: Iterable[float]) -> BadCell:
+    """Return the folded cell (i, j) or (i, j, k) with its centre (2 or 3,)."""
+    (i, j, *k), (x, y, *z) = map(int, place), map(float, centre)
+    return BadCell(i, j, x, y, k=k[0] if k else None, z=z[0] if z else None)
 
 
 def areas(rows: Floats) -> Floats:
     """Return the areas (m-1, n-1) of the cells of a patch in the plane or in space, nodes (m, n, 2 or 3)."""
     first, second = rows[1:, 1:] - rows[:-1, :-1], rows[1:, :-1] - rows[:-1, 1:]
     if rows.shape[-1] == 2:
-        return np.asarray(0.5 * np.abs(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]))
-    return 0.5 * _length(np.cross(first, second))
-
-
-def _ring(nodes: Floats) -> Floats:
-    return np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]])
+        return 0.5 * np.abs(cross2(first, second))
+    return 0.5 * norms(np.cross(first, second))
 
 
 def _scaled_jacobians(ring: Floats) -> Floats:
@@ -91,9 +90,9 @@ def _scaled_jacobians(ring: Floats) -> Floats:
     edges = np.roll(ring, -1, axis=0) - ring
     before = np.roll(edges, 1, axis=0)
     normal = np.cross(edges[0] - edges[2], edges[1] - edges[3])
-    normal /= np.maximum(_length(normal), _TINY)[..., None]
-    jacobian = _dot(np.cross(before, edges), normal)
-    size = _length(before) * _length(edges)
+    normal /= np.maximum(norms(normal), _TINY)[..., None]
+    jacobian = (np.cross(before, edges) * normal).sum(axis=-1)
+    size = norms(before) * norms(edges)
     least = np.divide(jacobian, size, out=np.ones_like(size), where=size > 0)
     least[:, (size > 0).sum(axis=0) == 0] = 0.0
     return least
@@ -105,11 +104,3 @@ def _area_ratios(area: Floats) -> Floats:
     high, low = np.maximum.reduce(beside), np.minimum.reduce(beside)
     own = np.maximum(area, _TINY)
     return np.minimum(np.maximum(high / own, area / np.maximum(low, _TINY)).clip(1.0), _LARGE)
-
-
-def _dot(u: Floats, v: Floats) -> Floats:
-    return np.asarray((u * v).sum(axis=-1))
-
-
-def _length(u: Floats) -> Floats:
-    return np.asarray(np.sqrt(_dot(u, u)))

@@ -19,8 +19,9 @@ from meshonet.geometry.blocks.connection import cells_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.metrics import SOLID_METRICS, SOLID_NAMES
-from meshonet.geometry.quality.percentiles import FEW, PERCENTS, Run
-from meshonet.geometry.quality.summary import Quality, Summary
+from meshonet.geometry.quality.percentiles import FEW, PERCENTS, CellPass, brackets_of
+from meshonet.geometry.quality.surfaces import bad_cell
+from meshonet.geometry.summary import Quality, Summary
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
 
@@ -78,11 +79,7 @@ def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[Ba
         least = np.minimum(least, scaled)
     centre = np.asarray(sum(points.values())) / len(points)
     order = np.argsort(least, kind="stable")[:limit]
-    cells = []
-    for n in order.tolist():
-        x, y, z = centre[n].tolist()
-        cells.append(BadCell(int(i[n]), int(j[n]), x, y, k=int(k[n]), z=z))
-    return cells
+    return [bad_cell((i[n], j[n], k[n]), centre[n]) for n in order]
 
 
 def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
@@ -149,7 +146,7 @@ def padded_volumes(grid: Grid) -> list[Floats]:
 
 
 @dataclass(frozen=True)
-class _Part:
+class _BlockRange:
     """What one run over a block leaves, for each metric: ends, sum, place of the ends (2, 3), kept values."""
 
     low: Floats
@@ -172,7 +169,7 @@ class _Cells:
         self._held = np.zeros(size, dtype=np.int64)
         self._counts = np.zeros((*size, 4), dtype=np.int64)
 
-    def over(self, number: int, kept: slice = slice(0)) -> _Part:
+    def over(self, number: int, kept: slice = slice(0)) -> _BlockRange:
         """Run over a block and keep the values of some metrics, (n, ni-1, nj-1, nk-1)."""
         nodes = self._grid.blocks[number].nodes
         chunks, metrics = _native.solids_chunks(nodes), len(SOLID_METRICS)
@@ -190,12 +187,12 @@ class _Cells:
         every = np.arange(metrics)
         places = np.stack([where[low, every, 0], where[high, every, 1]], axis=1)
         ends = summary[low, every, 0], summary[..., 1].sum(axis=0), summary[high, every, 2]
-        return _Part(*ends, places, values)
+        return _BlockRange(*ends, places, values)
 
     def percentiles(self, k: int, cells: int, values: Sequence[Floats] | None) -> list[float | None]:
         """Return the percentiles of metric `k`, from all of its values where these are known."""
         if values is None:
-            run = Run(self._brackets, self._counts, self._caught)
+            run = CellPass(self._brackets, self._counts, self._caught)
             ends = [run.percentile(k, m, cells, percent) for m, percent in enumerate(PERCENTS)]
             if None not in ends:
                 return ends
@@ -216,10 +213,7 @@ def _brackets(grid: Grid, volumes: Sequence[Floats], cells: int) -> Floats:
         values = np.empty((len(SOLID_METRICS), n, nk))
         _native.solids_rows(block.nodes, sizes, np.stack([i, j], axis=1), values)
         samples.append(values.reshape(len(SOLID_METRICS), -1))
-    ends = [(max(0.0, p - _MARGIN), min(100.0, p + _MARGIN)) for p in PERCENTS]
-    sample = np.concatenate(samples, axis=1)
-    values = np.percentile(sample, np.ravel(ends), axis=1, method="nearest", overwrite_input=True)
-    return np.ascontiguousarray(values.T).reshape(len(SOLID_METRICS), len(PERCENTS), 2)
+    return brackets_of(np.concatenate(samples, axis=1), PERCENTS, _MARGIN)
 
 
 def _cells(nodes: Floats) -> int:

@@ -6,9 +6,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms, percentiles_of
-from meshonet.geometry.blocks.across import rows_beside
-from meshonet.geometry.blocks.block import face_counts
+from meshonet.geometry.arrays import Floats, cross2, norms, percentiles_of
+from meshonet.geometry.blocks.across import rows_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.elementary import arctan2
@@ -57,7 +56,7 @@ class WallRow:
 
 def wall_row(grid: Grid, patch: Patch) -> WallRow:
     """Return the figures of the cells at `patch` of the boundary of `grid`."""
-    return _row(patch.name, patch.side, [_at(grid, patch)])
+    return _row(patch.name, patch.side, [_wall_part(grid, patch)])
 
 
 def wall_rows(
@@ -75,13 +74,13 @@ def wall_rows(
         parts = [wall for wall in walls if wall.name == name]
         sides = {wall.side for wall in parts}
         side = sides.pop() if len(sides) == 1 else None
-        row = _row(name, side, [_at(grid, wall) for wall in parts], percentile=True)
+        row = _row(name, side, [_wall_part(grid, wall) for wall in parts], percentile=True)
         rows.append(replace(row, growth=growth.get(name)))
     return tuple(rows)
 
 
 @dataclass(frozen=True)
-class _At:
+class _WallPart:
     """Heights and angles at one stretch of wall, and the fewest equal cells on a line."""
 
     heights: Floats
@@ -89,9 +88,9 @@ class _At:
     equal: int
 
 
-def _at(grid: Grid, patch: Patch) -> _At:
+def _wall_part(grid: Grid, patch: Patch) -> _WallPart:
     if grid.form == "volume":
-        return _at_solid(grid, patch)
+        return _solid_wall_part(grid, patch)
     lines = leaving(grid, patch)
     steps = np.diff(lines, axis=1)
     heights = norms(steps)
@@ -99,12 +98,11 @@ def _at(grid: Grid, patch: Patch) -> _At:
     alike = np.where(equal.all(axis=1), equal.shape[1], np.argmin(equal, axis=1))
     along = np.diff(lines[:, 0], axis=0)
     off = [_off_square(along, steps[:-1, 0]), _off_square(along, steps[1:, 0])]
-    return _At(heights[:, 0], np.stack(off), int(alike.min()))
+    return _WallPart(heights[:, 0], np.stack(off), int(alike.min()))
 
 
-def _at_solid(grid: Grid, patch: Patch) -> _At:
-    counts = face_counts(grid.blocks[patch.block].counts, patch.side)
-    layers = rows_beside(grid, patch.block, patch.side, patch.range(counts), DEPTH)
+def _solid_wall_part(grid: Grid, patch: Patch) -> _WallPart:
+    layers = rows_at(grid, patch, DEPTH)
     steps = np.diff(layers, axis=0)
     heights = norms(steps)
     equal = np.abs(heights - heights[0]) <= SAME * heights[0]
@@ -117,10 +115,10 @@ def _at_solid(grid: Grid, patch: Patch) -> _At:
             w = steps[0, a : len(across) - 1 + a, b : along.shape[1] - 1 + b]
             normal = np.cross(u, v)
             off.append(np.degrees(arctan2(norms(np.cross(normal, w)), np.abs((normal * w).sum(axis=-1)))))
-    return _At(heights[0].ravel(), np.stack(off), int(alike.min()))
+    return _WallPart(heights[0].ravel(), np.stack(off), int(alike.min()))
 
 
-def _row(name: str, side: str | None, parts: Sequence[_At], *, percentile: bool = False) -> WallRow:
+def _row(name: str, side: str | None, parts: Sequence[_WallPart], *, percentile: bool = False) -> WallRow:
     heights = _spread([part.heights for part in parts], percentile=percentile)
     off = _spread([part.off for part in parts], percentile=percentile)
     return WallRow(name, side, heights, off, min(part.equal for part in parts))
@@ -136,10 +134,7 @@ def leaving(grid: Grid, patch: Patch) -> Floats:
 
 def _off_square(along: Floats, away: Floats) -> Floats:
     """Return how far the angles between two families of vectors (n, d) are from 90 degrees."""
-    if along.shape[1] == 3:
-        sine = norms(np.cross(along, away))
-    else:
-        sine = np.abs(along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0])
+    sine = norms(np.cross(along, away)) if along.shape[1] == 3 else np.abs(cross2(along, away))
     return np.degrees(arctan2(np.abs((along * away).sum(axis=1)), sine))
 
 

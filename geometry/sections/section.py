@@ -70,7 +70,7 @@ class Section:
 
     @property
     def frame(self) -> tuple[Floats, float]:
-        """Leading edge (2,) and length of the shape as it was drawn, which become the origin and 1.
+        """Leading edge (2,) and length of the shape in its file, which become the origin and 1.
 
         A section that was drawn from about 0 to 1, as airfoil files are, is taken as it is; none is turned.
         """

@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.curves.monotone import monotone_through
+from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.section import Fade, Section, placed
 
@@ -64,7 +64,7 @@ class Stack:
                 raise InputError(problem, "give sections in order of z", place=f"sections[{k + 1}].z")
 
     def with_tip(self, tip: Tip | None) -> Stack:
-        """Return the same stack with another tip; None leaves it as it is.
+        """Return the same stack with another tip; None keeps its own.
 
         Raises InputError: no wing, or a tip that is not known.
         """
@@ -99,4 +99,5 @@ class Stack:
 
     def between_sections(self, values: Floats, z: Floats) -> Floats:
         """Return `values` (sections, ...) of the sections interpolated at the heights `z` (m,)."""
-        return monotone_through(self.z, values, z, linear=self.between == "linear")
+        straight = self.between == "linear" or len(self.sections) == 2
+        return monotone_cubic(self.z, values, z, linear=straight)

@@ -22,7 +22,7 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.annulus import Annulus
-from meshonet.geometry.shapes.domain_shape import DomainShape, extent_of, itself
+from meshonet.geometry.shapes.domain_shape import DomainShape, itself, loops_extent
 from meshonet.geometry.shapes.named_edges import Labelled
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape
@@ -55,14 +55,14 @@ def assembled(
         if sampling.far_field is not None:
             raise InputError(f"{bodies[outer].names[0]} encloses the others", "leave {far_field} out")
         loops = tuple(_facing(body, hole=k != outer) for k, body in _outer_first(bodies, outer))
-        return DomainShape(Domain(loops, name, notes), unit=extent_of(loops[1:]))
+        return DomainShape(Domain(loops, name, notes), unit=loops_extent(loops[1:]))
     if any(holes for _, holes in groups):
         raise InputError("some bodies lie within others", "give one loop that encloses the others, or none")
     loops = tuple(_facing(body, hole=True) for body in bodies)
-    unit = shapes[0].unit if len(shapes) == 1 and isinstance(shapes[0], Airfoil) else extent_of(loops)
+    unit = shapes[0].unit if len(shapes) == 1 and isinstance(shapes[0], Airfoil) else loops_extent(loops)
     points = np.concatenate([loop.curve.points for loop in loops])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    circle = far_loop(middle, sampling.radius * extent_of(loops))
+    circle = far_loop(middle, sampling.radius * loops_extent(loops))
     return DomainShape(Domain((circle, *loops), name, notes), unit=unit, far_field=True)
 
 

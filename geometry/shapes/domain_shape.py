@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
@@ -33,7 +33,7 @@ _SAMPLES = 512  # points of each loop whose distances are looked at
 
 @dataclass(frozen=True, eq=False)
 class DomainShape:
-    """A domain, and what it is as a single block.
+    """A domain, and the shape that it is as a single block, if it can be one.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class DomainShape:
 
     def __post_init__(self) -> None:
         if not self.unit:
-            object.__setattr__(self, "unit", extent_of(self.domain.loops[1:] or self.domain.loops))
+            object.__setattr__(self, "unit", loops_extent(self.domain.loops[1:] or self.domain.loops))
 
     @property
     def name(self) -> str:
@@ -100,10 +100,10 @@ def described(domain: Domain) -> str:
     return f"a domain of {corners} corner{'' if corners == 1 else 's'}"
 
 
-def extent_of(loops: tuple[Loop, ...]) -> float:
+def loops_extent(loops: tuple[Loop, ...]) -> float:
     """Return the larger side of the box around loops."""
     points = np.concatenate([loop.curve.points for loop in loops])
-    return float(np.ptp(points, axis=0).max())
+    return extent_of(points)
 
 
 def four_sided(domain: Domain) -> bool:
@@ -119,7 +119,7 @@ def in_far_field(domain: Domain) -> bool:
         return False
     outer, hole = (_some(loop.curve.points) for loop in domain.loops)
     gap = np.hypot(*np.moveaxis(outer[:, None] - hole, -1, 0)).min()
-    return bool(gap >= FAR * extent_of(domain.loops[1:]))
+    return bool(gap >= FAR * loops_extent(domain.loops[1:]))
 
 
 def _some(points: Floats) -> Floats:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from meshonet.geometry.blocks.block import face_counts
-from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.families import joins_whole_sides
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.layout.from_grid import layout_of
 from meshonet.geometry.shapes.domain_shape import DomainShape
@@ -17,14 +16,3 @@ def given_blocks(grid: Grid) -> DomainShape:
     layout = layout_of(grid)
     whole = all(joins_whole_sides(grid, each) for each in grid.connections)
     return DomainShape(layout.mesh.domain, layout=layout if whole else None, given=grid)
-
-
-def joins_whole_sides(grid: Grid, connection: Connection) -> bool:
-    """Say whether a connection of planar blocks joins all of a side to all of another."""
-    ends = (
-        (connection.block, connection.side, connection.range),
-        (connection.donor, connection.donor_side, connection.donor_range),
-    )
-    return all(
-        span[0] == (0, face_counts(grid.blocks[block].counts, side)[0] - 1) for block, side, span in ends
-    )

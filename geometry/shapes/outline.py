@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.arrays import Floats, Topology, extent_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import product
@@ -38,6 +38,8 @@ class Outline:
     Raises InputError: too few points, repeated ones, an outline that crosses itself or has no area.
     """
 
+    far_field_unit = "extents of the body"
+    """What the distance of a far field is measured in."""
     notes: tuple[str, ...] = ()
     """What a reader passed over in its file, for those who sample it."""
 
@@ -49,12 +51,12 @@ class Outline:
         places: Sequence[str] = (),
     ) -> None:
         self.name, self.corners = name, corners
-        check_extent(float(np.ptp(points, axis=0).max()) if len(points) else 0.0)
+        check_extent(extent_of(points) if len(points) else 0.0)
         self.curve = Curve(points, closed=True)
         p = self.curve.points
         if corners is not None:
             self.curve = Curve(p, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners)))
-        area, extent = polygon_area(p), float(np.ptp(p, axis=0).max())
+        area, extent = polygon_area(p), extent_of(p)
         if not _on_a_line(p, extent):  # such points run back on themselves, which says less
             check_outline(p, places)
         if abs(area) < 1e-9 * extent**2:
@@ -180,7 +182,7 @@ class Outline:
         wall = curve.at(arcs)
         wall[-1] = wall[0]
         box = np.stack([curve.points.min(axis=0), curve.points.max(axis=0)])
-        extent = float(np.ptp(box, axis=0).max())
+        extent = extent_of(box)
         radius = sampling.radius * extent
         return o_boundary(wall, nj, box.mean(axis=0), radius, curve, self.name, extent, notes=notes)
 

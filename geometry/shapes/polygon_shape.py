@@ -12,7 +12,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.ring import ring_loop
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import in_place
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.annulus import Annulus
 from meshonet.geometry.shapes.closed_curve import closed_curve
@@ -23,7 +23,7 @@ from meshonet.geometry.shapes.shape import Shape
 
 
 @dataclass(frozen=True)
-class Ring:
+class PolygonRing:
     """A closed line of a file: points (n, 2), corners (None: found), names (none: default) and places."""
 
     points: Floats
@@ -32,7 +32,7 @@ class Ring:
     places: Sequence[str] = ()
 
 
-def polygon_shape(rings: Sequence[Ring], name: str = "", notes: tuple[str, ...] = ()) -> DomainShape:
+def polygon_shape(rings: Sequence[PolygonRing], name: str = "", notes: tuple[str, ...] = ()) -> DomainShape:
     """Return the domain inside the first of the `rings` and outside of the others.
 
     Raises InputError: as `ring_loop`; its place says which ring, where there are several.
@@ -40,14 +40,10 @@ def polygon_shape(rings: Sequence[Ring], name: str = "", notes: tuple[str, ...] 
     loops = []
     for number, ring in enumerate(rings):
         names = ring.names or (default_name(number),)
-        try:
+        with in_place(f"ring {number + 1}" if len(rings) > 1 else ""):
             loops.append(
                 ring_loop(ring.points, hole=number > 0, corners=ring.corners, names=names, places=ring.places)
             )
-        except InputError as error:
-            if len(rings) > 1:
-                error.place = error.place or f"ring {number + 1}"
-            raise
     domain = Domain(tuple(loops), name, notes)
     named = any(ring.names for ring in rings)
     if len(loops) == 1:
@@ -61,7 +57,7 @@ def polygon_shape(rings: Sequence[Ring], name: str = "", notes: tuple[str, ...] 
 
 
 def domain_or_body(shape: Outline | Airfoil) -> Shape:
-    """Return a closed line as it is, or where it has corners, but not four, as the domain in it."""
+    """Return a closed line unchanged, or the domain inside it if it has corners, but not four."""
     if isinstance(shape, Airfoil) or shape.topology != "quad":
         return shape
     points = shape.curve.points
@@ -70,7 +66,7 @@ def domain_or_body(shape: Outline | Airfoil) -> Shape:
 
 
 def default_name(number: int) -> str:
-    """Return what a loop is called that nobody named.
+    """Return the default name of a loop.
 
     >>> [default_name(number) for number in range(3)]
     ['outer', 'body', 'body2']

@@ -24,8 +24,8 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import cos, exp, expm1, product, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.far_field import straight
-from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth, growth_ratio
-from meshonet.geometry.spacing.laws import TanhLaw
+from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth, growth_rate, growth_ratio
+from meshonet.geometry.spacing.tanh_law import TanhLaw
 
 C_EDGE = 1.6
 """Cell at the trailing edge of a C grid: this over the nodes along xi, in chords. With smaller ones the rest
@@ -35,7 +35,7 @@ _SHARES = 0.2, 0.23  # smallest and largest part of all cells that one side of t
 _RAMP = 3.0  # cells of a wake over which growth sets in: the lines that leave its first ones converge
 _LATE = 0.05  # part by which cells at the outlet grow faster than on average, and those at the edge slower
 _STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
-_LEAST_WALL = 5
+_LEAST_WALL = 5  # nodes of a wall, its trailing edge counted twice
 
 
 def cells_of_wake(ni: int, nodes_wanted: int | None, first: float, length: float) -> int:
@@ -68,7 +68,7 @@ def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
 
 
 @dataclass(frozen=True)
-class Wake:
+class WakeLine:
     """The line that a wake follows: from a trailing edge along the bisector of its wedge, then the axis.
 
     In coordinates x along the axis and y to its left, y = tan(b) l (1 - exp(-x/l)), with b the angle of the
@@ -86,7 +86,7 @@ class Wake:
     """Of the wake along the axis."""
 
     @classmethod
-    def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> Wake:
+    def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> WakeLine:
         """Return the wake behind a closed wall (n, 2) which begins and ends at its sharp trailing edge."""
         upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
         along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
@@ -107,8 +107,7 @@ class Wake:
 def _growing(first: float, length: float, cells: int) -> Floats:
     """Return distances (cells + 1,) in units of `first`, of growing cells that fill `length`.
 
-    The logarithm of a cell's size grows by g (1 - exp(-k/m)) (1 + b (2k/n - 1)) at cell k of n; g is found by
-    Newton's method, from above.
+    The logarithm of a cell's size grows by g (1 - exp(-k/m)) (1 + b (2k/n - 1)) at cell k of n.
     """
     if first * cells >= length or cells < 2:
         return np.arange(cells + 1.0)
@@ -122,13 +121,7 @@ def _growing(first: float, length: float, cells: int) -> Floats:
         ) from None
     k = np.arange(1.0, cells)
     shape = np.append(0.0, np.cumsum(-expm1(-k / _RAMP) * (1.0 + _LATE * (2.0 * k / cells - 1.0))))
-    g = math.log(length / first) / shape[-1]
-    for _ in range(100):
-        sizes = exp(g * shape)
-        change = (float(sizes.sum()) - length / first) / float(product(shape, sizes))
-        g -= change
-        if change < 1e-14:
-            break
+    g = growth_rate(shape, 1.0, length / first, math.log(length / first) / shape[-1])
     return np.concatenate([[0.0], np.cumsum(exp(g * shape))])
 
 

@@ -8,8 +8,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.laws import LAWS, Spacing, spacing_tanh
-from meshonet.geometry.spacing.size_field import distances_by_curvature
+from meshonet.geometry.spacing.laws import LAWS, Spacing
 
 MANY = 64
 """More corners than this, and than a quarter of the cells, are facets of a drawn curve: they get no nodes."""
@@ -27,8 +26,12 @@ def stretch_arcs(
     length = (sign * (end - begin)) % curve.length or curve.length
     q, place = np.linspace(0.0, 1.0, cells + 1), LAWS[spacing].place
     if spacing == "curvature":
+        from meshonet.geometry.spacing.size_field import distances_by_curvature
+
         distance = distances_by_curvature(curve, begin, sign * length, cells)
     elif spacing == "tanh" and cells > 3:
+        from meshonet.geometry.spacing.tanh_law import spacing_tanh
+
         distance = length * spacing_tanh(cells + 1, 0.25 / cells, 0.25 / cells)
     else:
         distance = length * (place(q) if place else q)

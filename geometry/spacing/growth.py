@@ -5,11 +5,18 @@ import math
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.elementary import power
+from meshonet.geometry.elementary import exp, power, product
 from meshonet.geometry.errors import InputError
 
 LARGEST = 10.0
 """A ratio beyond this between neighbouring cells is refused."""
+
+
+def check_growth(growth: float | None, most: float = LARGEST) -> None:
+    """Raise InputError for a ratio of neighbouring cells that is not above 1, or above `most`."""
+    if growth is not None and not 1.0 < growth <= most:
+        remedy = f"give the ratio of neighbouring cells, such as 1.15, at most {most:g}"
+        raise InputError(f"a growth of {growth:g}", remedy, parameter="growth")
 
 
 def growth_ratio(first: float, length: float, cells: int) -> float:
@@ -66,6 +73,20 @@ def growing_steps(first: float, length: float, cells: int, constant: int = 1) ->
     equal = min(constant, cells) - 1
     ratio = growth_ratio(first, length - equal * first, cells - equal)
     return np.asarray(first * power(ratio, np.maximum(np.arange(cells) - equal, 0)))
+
+
+def growth_rate(place: Floats, first: float, length: float, rate: float) -> float:
+    """Return g with which cells of sizes first exp(g place), `place` (n,) rising from 0, fill `length`.
+
+    By Newton's method from a `rate` above it: their sum is convex in g.
+    """
+    for _ in range(100):
+        sizes = first * exp(rate * place)
+        change = (float(sizes.sum()) - length) / float(product(place, sizes))
+        rate -= change
+        if abs(change) < 1e-14:
+            break
+    return rate
 
 
 def _sum(log_ratio: float, cells: int) -> float:

@@ -11,10 +11,10 @@ from meshonet.geometry.spacing.laws import SPACINGS, Spacing
 TrailingEdge: TypeAlias = Literal["auto", "exact", "round", "wedge"]
 TRAILING_EDGES: tuple[TrailingEdge, ...] = get_args(TrailingEdge)
 
-DEFAULT_NI = 200
+DEFAULT_NI = 200  # nodes where none are asked for
 DEFAULT_NJ = 100
-DEFAULT_FAR_FIELD = 15.0
-MOST_NODES = 100_000
+DEFAULT_FAR_FIELD = 15.0  # chords
+MOST_NODES = 100_000  # along a direction: more are taken for a slip of the pen
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ _EDGE = 0.025  # part of the wall at either end where curvature sets no cell bel
 TURN = math.radians(3.0)
 """How much of the curve's turning one cell may take."""
 _WINDOW = 2e-3  # chords over which curvature is averaged, against noise of the last digit of the points
-_SAMPLES = 1600
+_SAMPLES = 1600  # places on the curve at which sizes are known, about
 _SCARCEST = math.log(64.0)  # logarithm of the largest coarsening of curvature and leading edge
 _REACH = 8.0  # cells over which the sizes are adjusted to meet a prescribed step
 

@@ -15,7 +15,7 @@ _SIDES = ("west", "east", "south", "north")
 
 
 def place_of(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
-    """Return where a node is: patch, i, j, x, y, z, the first such place."""
+    """Return the place of a node as text: its first patch, i, j, x, y, z."""
     for number, lattice in enumerate(lattices):
         at = np.argwhere(lattice == node)
         if len(at):

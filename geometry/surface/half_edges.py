@@ -1,4 +1,4 @@
-"""Edges of quadrilaterals over one table of nodes, each as its quadrilaterals go along it.
+"""Half-edges of quadrilaterals over one table of nodes.
 
 ::
 

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.elementary import product
 from meshonet.geometry.polygon.corners import Indices
 
@@ -12,11 +13,6 @@ TOLERANCE = 1e-8
 """Part of the size of a surface within which edge nodes are one node."""
 
 _SLANT = np.array([0.5257311, 0.6513887, 0.5470973])  # along no axis, diagonal or face of a regular solid
-
-
-def size_of(nodes: Floats) -> float:
-    """Return the longest extent of `nodes` (n, 3) along an axis."""
-    return float(np.ptp(nodes, axis=0).max())
 
 
 def near_pairs(points: Floats, distance: float) -> Indices:
@@ -48,15 +44,8 @@ def merged(patches: Sequence[Floats], tolerance: float = TOLERANCE) -> tuple[Flo
     points = np.concatenate([np.ascontiguousarray(patch).reshape(-1, 3) for patch in patches])
     edge = np.concatenate([_edge(patch.shape[:2]).ravel() for patch in patches])
     on_edge = np.flatnonzero(edge)
-    first = np.arange(len(points))
-    pairs = on_edge[near_pairs(points[on_edge], tolerance * size_of(points))]
-    changed = len(pairs) > 0
-    while changed:  # as often as chains of close nodes are long
-        least = np.minimum(first[pairs[:, 0]], first[pairs[:, 1]])
-        before = first[pairs]
-        np.minimum.at(first, pairs[:, 0], least)
-        np.minimum.at(first, pairs[:, 1], least)
-        changed = not np.array_equal(before, first[pairs])
+    pairs = on_edge[near_pairs(points[on_edge], tolerance * extent_of(points))]
+    first = joined_labels(len(points), [(pairs[:, 0], pairs[:, 1])])
     kept = first == np.arange(len(points))
     numbers = (np.cumsum(kept) - 1)[first]
     ends = np.cumsum([0, *(patch.shape[0] * patch.shape[1] for patch in patches)])

@@ -1,4 +1,4 @@
-"""Which way is out: patches turned alike across their shared edges, and away from what they enclose."""
+"""Orientation of surfaces: alike across shared edges, with normals that point out of what they enclose."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -59,7 +59,7 @@ def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | No
     if len(flat) > 1:
         return None
     a, b, c, d = (nodes[quads[:, k]] for k in range(4))
-    area = 0.5 * _cross(c - a, d - b)
+    area = 0.5 * np.cross(c - a, d - b)
     area[:, list(flat)] = 0.0  # planes close what faces along their axis
     total = area.sum(axis=0)
     if np.sqrt((total**2).sum()) > NEARLY_CLOSED * np.sqrt((area**2).sum(axis=1)).sum():
@@ -67,7 +67,3 @@ def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | No
     centre = nodes[quads.ravel()].mean(axis=0)
     volume = float((area * (0.25 * (a + b + c + d) - centre)).sum())
     return -1 if volume < 0.0 else 1
-
-
-def _cross(u: Floats, v: Floats) -> Floats:
-    return np.stack([u[:, k - 2] * v[:, k - 1] - u[:, k - 1] * v[:, k - 2] for k in range(3)], axis=1)

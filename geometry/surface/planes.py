@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.surface.merge import size_of
 
 FLAT = 1e-6
 """Part of the size of a surface by which nodes may be off a plane of symmetry."""
@@ -33,7 +32,7 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
     """
     if not len(sides):
         return ()
-    size = size_of(nodes)
+    size = extent_of(nodes)
     left = np.ones(len(sides), dtype=bool)
     ends = [
         Plane(axis, float(end)) for axis in range(3) for end in (nodes[:, axis].min(), nodes[:, axis].max())

@@ -14,9 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.checks import (
     check_gaps,
@@ -26,7 +27,7 @@ from meshonet.geometry.surface.checks import (
     place_of,
 )
 from meshonet.geometry.surface.half_edges import ends_of, open_sides, paired, rings
-from meshonet.geometry.surface.merge import merged, size_of
+from meshonet.geometry.surface.merge import merged
 from meshonet.geometry.surface.orient import outward_sign, turned_alike
 from meshonet.geometry.surface.planes import Plane, planes_of
 
@@ -58,12 +59,12 @@ class Surface:
     @property
     def size(self) -> float:
         """Its longest extent along an axis."""
-        return size_of(self.nodes)
+        return extent_of(self.nodes)
 
     @property
     def quads(self) -> Indices:
         """(m, 4) nodes of its quadrilaterals, patch after patch, i first, counter-clockwise from outside."""
-        return quads_of(self.lattices)
+        return lattice_quads(self.lattices)
 
     @property
     def open_sides(self) -> Indices:
@@ -80,12 +81,6 @@ class Surface:
         return place_of(self.nodes, self.lattices, node)
 
 
-def quads_of(lattices: tuple[Indices, ...]) -> Indices:
-    """Return the quadrilaterals (m, 4) of lattices, patch after patch."""
-    corners = ((k[:-1, :-1], k[1:, :-1], k[1:, 1:], k[:-1, 1:]) for k in lattices)
-    return np.concatenate([np.stack(each, axis=-1).reshape(-1, 4) for each in corners])
-
-
 def surface_of(grid: Grid) -> Surface:
     """Return the surface that the patches (ni, nj, 3) of a grid make together.
 
@@ -99,7 +94,7 @@ def surface_of(grid: Grid) -> Surface:
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"
         raise InputError(problem, "give patches of a surface in space")
     nodes, lattices = merged([block.nodes for block in grid.blocks])
-    quads = quads_of(lattices)
+    quads = lattice_quads(lattices)
     check_quads(nodes, lattices, quads)
     twin, crowded = paired(quads, len(nodes))
     check_manifold(nodes, lattices, ends_of(quads)[0][crowded])
@@ -149,7 +144,7 @@ def _turned(
     turned = [str(k) for k, sign in enumerate(final) if sign < 0]
     if turned:
         notes.append(_turned_note(turned, len(lattices)))
-    return lattices, quads_of(lattices), tuple(planes), tuple(notes)
+    return lattices, lattice_quads(lattices), tuple(planes), tuple(notes)
 
 
 def _turned_note(turned: list[str], count: int) -> str:

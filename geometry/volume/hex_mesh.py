@@ -14,7 +14,7 @@ in one place along a whole line of a side, as at the pole of a sphere, are one n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -22,12 +22,12 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import AnyArray, Floats, Side
+from meshonet.geometry.arrays import AnyArray, Floats, Side, extent_of
 from meshonet.geometry.blocks.block import PLACES, Block, face_of
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.handedness import signed_volume
-from meshonet.geometry.blocks.shared_nodes import shared_nodes
+from meshonet.geometry.blocks.shared_nodes import joined_labels, node_table
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 
@@ -78,8 +78,7 @@ class HexMesh:
         face = face_of(self.blocks[number], side)
         free = np.ones((face.shape[0] - 1, face.shape[1] - 1), dtype=bool)
         for each in self.connections:
-            ends = (each.block, each.side, each.range), (each.donor, each.donor_side, each.donor_range)
-            for block, joined, ((a, b), (c, d)) in ends:
+            for block, joined, ((a, b), (c, d)) in each.ends:
                 if (block, joined) == (number, side):
                     free[a:b, c:d] = False
         return free
@@ -103,6 +102,12 @@ class HexMesh:
     def with_nodes(self, nodes: Floats) -> HexMesh:
         """Return the mesh with its nodes (n, 3) elsewhere."""
         return replace(self, nodes=nodes)
+
+
+def corners_of(values: AnyArray) -> Iterator[AnyArray]:
+    """Yield views (ni-1, nj-1, nk-1) of what `values` (ni, nj, nk) are at each corner of the cells."""
+    for corner in np.ndindex(2, 2, 2):
+        yield values[tuple(slice(c, c + n - 1) for c, n in zip(corner, values.shape, strict=True))]  # type: ignore[misc]
 
 
 def any_corner(nodes: Bools) -> Bools:
@@ -145,11 +150,7 @@ def hex_mesh_of(grid: Grid) -> HexMesh:
             remedy = "reverse one of its directions"
             raise InputError("the block is left-handed", remedy, place=f"block {number}")
     joined = tuple(each for each in grid.connections if each.transform is None)
-    numbers = shared_nodes([block.counts for block in grid.blocks], joined)
-    nodes = np.empty((1 + max(int(lattice.max()) for lattice in numbers), 3))
-    for lattice, block in zip(numbers, grid.blocks, strict=True):
-        nodes[lattice] = block.nodes
-    return HexMesh(*_with_poles(nodes, numbers), joined)
+    return HexMesh(*_with_poles(*node_table(grid.blocks, joined)), joined)
 
 
 def _left_handed(nodes: Floats) -> bool:
@@ -164,18 +165,14 @@ def _left_handed(nodes: Floats) -> bool:
 
 def _with_poles(nodes: Floats, numbers: tuple[Indices, ...]) -> tuple[Floats, tuple[Indices, ...]]:
     """Return nodes and blocks of node numbers, those of lines of sides that are in one place made one."""
-    near = POLE * float(np.ptp(nodes, axis=0).max())
+    near = POLE * extent_of(nodes)
     pairs = [
         pair for number in numbers for side in PLACES for pair in _poles(face_of(number, side), nodes, near)
     ]
     if not pairs:
         return nodes, numbers
     first, second = (np.concatenate(ends) for ends in zip(*pairs, strict=True))
-    label, before = np.arange(len(nodes)), None
-    while before is None or not np.array_equal(label, before):  # as often as lines meet
-        before = label.copy()
-        np.minimum.at(label, first, label[second])
-        np.minimum.at(label, second, label[first])
+    label = joined_labels(len(nodes), [(first, second)])
     kept, rank = np.unique(label, return_inverse=True)
     return nodes[kept], tuple(rank.reshape(-1)[number] for number in numbers)
 

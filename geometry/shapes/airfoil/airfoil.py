@@ -25,7 +25,6 @@ from meshonet.geometry.shapes.airfoil.section_curve import (
     section_curve,
     shape_notes,
 )
-from meshonet.geometry.shapes.airfoil.trailing_edge import rounded_base, wedged_base
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling, TrailingEdge
 
@@ -70,6 +69,9 @@ class Airfoil:
     """Distance between the ends of the two surfaces."""
     blunt: bool
     """The trailing edge is a straight base; a gap below `SHARP_GAP` chords has been closed at its middle."""
+
+    far_field_unit = "chords"
+    """What the distance of a far field is measured in."""
 
     notes: tuple[str, ...]
     """What was changed of the given points: one sentence each."""
@@ -141,6 +143,8 @@ class Airfoil:
         """Return the same airfoil with the corners of its blunt base rounded off."""
         if not self.blunt:
             return self
+        from meshonet.geometry.shapes.airfoil.trailing_edge import rounded_base
+
         body = copy(self)
         body.__dict__.pop("wedge", None)
         body.curve, end = rounded_base(self.curve, self.chord)
@@ -204,6 +208,8 @@ class Airfoil:
         """Return the same airfoil with its blunt base closed by a wedge."""
         if not self.blunt:
             return self
+        from meshonet.geometry.shapes.airfoil.trailing_edge import wedged_base
+
         first, _, last = self._arcs
         step = 0.01 * self.chord
         a, b, c, d = self.curve.at(np.array([first, first + step, last - step, last]))
@@ -254,7 +260,7 @@ class Airfoil:
 
     def _c_boundary(self, sampling: Sampling, original: Airfoil, notes: tuple[str, ...]) -> Boundary:
         """Return the C boundary around this body, which was `given` once, with its units."""
-        from meshonet.geometry.shapes.wake import C_EDGE, Wake, c_boundary, cells_of_wake, wake_axis
+        from meshonet.geometry.shapes.wake import C_EDGE, WakeLine, c_boundary, cells_of_wake, wake_axis
 
         if self.blunt or self._round:
             remedy = "close it with {te} wedge, or use {topology} o"
@@ -267,7 +273,7 @@ class Airfoil:
         te = sampling.te_spacing if law in ("uniform", "cosine", "conformal") else step / self.chord
         wall = self.wall(ni - 2 * cells, replace(sampling, spacing=law, te_spacing=te))
         axis = wake_axis(original.leading_edge, original.trailing_edge)
-        line = Wake.behind(wall, axis, chord, length)
+        line = WakeLine.behind(wall, axis, chord, length)
         first = 0.5 * float(np.hypot(*(wall[[1, -2]] - wall[0]).T).sum())
         wake = line.nodes(first, cells)
         centre = 0.5 * (original.leading_edge + original.trailing_edge)

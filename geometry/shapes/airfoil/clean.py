@@ -10,11 +10,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, along_and_across, distinct
+from meshonet.geometry.arrays import Floats, along_and_across, distinct, norms
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import Indices, find_corners, turning
-from meshonet.geometry.shapes.airfoil.separate_surfaces import moved_apart
 
 SHARP_GAP = 2e-4
 """Gap in chords below which a trailing edge counts as sharp: with less, grids of more real files fold."""
@@ -24,13 +23,13 @@ ON_BASE = 5e-5
 """How far, in chords, a point may lie off the straight base and still be dropped as a point of it."""
 MOST_CORNERS = 12
 """More corners than this, the trailing edge's among them, are noise of the points and count as none."""
-_CORNER = np.radians(35.0)
-_EDGE = np.radians(120.0)
-_REACH = 8
+_CORNER = np.radians(35.0)  # turn of a point from which on it is a corner of the trailing edge
+_EDGE = np.radians(120.0)  # turn from which on one corner is a sharp edge by itself
+_REACH = 8  # points from the first and the last among which the corners of a base are sought
 
 
 @dataclass(frozen=True, eq=False)
-class Section:
+class CleanSection:
     """A clean ring of points (n, 2), clockwise, closed by its trailing edge.
 
     A sharp section begins with its trailing edge; a blunt one begins with the lower corner of its base and
@@ -48,13 +47,15 @@ class Section:
     swapped: tuple[int, ...] = ()
     """Given points that stood in the wrong order among their neighbours."""
 
-    def moved_apart(self) -> Section:
+    def moved_apart(self) -> CleanSection:
         """Return the section with surfaces that nearly touch moved apart (`separate_surfaces`)."""
+        from meshonet.geometry.shapes.airfoil.separate_surfaces import moved_apart
+
         edge = 0.5 * (self.points[0] + self.points[-1]) if self.blunt else self.points[0]
-        return replace(self, points=moved_apart(self.points, int(np.argmax(_distance(self.points, edge)))))
+        return replace(self, points=moved_apart(self.points, int(np.argmax(norms(self.points - edge)))))
 
 
-def clean_section(points: Floats) -> Section:
+def clean_section(points: Floats) -> CleanSection:
     """Return the section that `points` (n, 2) describe, whichever way they run around it.
 
     They are taken to start at the trailing edge unless the other end is clearly the sharper one. Repeated
@@ -108,8 +109,8 @@ def _in_order(points: Floats, index: Indices) -> Indices:
     order = index.copy()
     for _ in range(50):
         p = points[order]
-        gain = _distance(p[:-3], p[1:-2]) + _distance(p[2:-1], p[3:])
-        gain -= _distance(p[:-3], p[2:-1]) + _distance(p[1:-2], p[3:]) + _distance(p[1:-2], p[2:-1])
+        gain = norms(p[:-3] - p[1:-2]) + norms(p[2:-1] - p[3:])
+        gain -= norms(p[:-3] - p[2:-1]) + norms(p[1:-2] - p[3:]) + norms(p[1:-2] - p[2:-1])
         if len(gain) == 0 or gain.max() <= 0:
             break
         k = int(np.argmax(gain))
@@ -129,19 +130,19 @@ def _thinned(points: Floats, tolerance: float) -> Indices:
     return np.array(keep, dtype=np.intp)
 
 
-def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> Section:
+def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> CleanSection:
     """Return the section of a clockwise ring whose points start, or whose gap lies, where the file starts."""
     seam = 0.5 * (ring[0] + ring[-1]) if open_gap else ring[0]
-    nose = int(np.argmax(_distance(ring, seam)))
-    chord = float(_distance(ring[nose], seam))
-    gap = float(_distance(ring[0], ring[-1])) if open_gap else 0.0
-    if gap > 0.5 * chord and gap > 3 * np.median(_distance(ring[1:], ring[:-1])):
+    nose = int(np.argmax(norms(ring - seam)))
+    chord = float(norms(ring[nose] - seam))
+    gap = float(norms(ring[0] - ring[-1])) if open_gap else 0.0
+    if gap > 0.5 * chord and gap > 3 * np.median(norms(ring[1:] - ring[:-1])):
         apart = f"the first and the last point lie {gap / chord:.2g} chords apart"
         raise InputError(apart, "give both surfaces of an airfoil")
-    tail = int(np.argmax(_distance(ring, ring[nose])))
+    tail = int(np.argmax(norms(ring - ring[nose])))
     start = tail if open_gap else 0
     turn = -turning(ring, closed=True)
-    if _distance(ring[tail], seam) > max(0.15 * chord, gap):
+    if norms(ring[tail] - seam) > max(0.15 * chord, gap):
         edge = max((nose, tail), key=lambda k: _sharpness(ring, k, tail if k == nose else nose)[0])
     elif _starts_at_nose(ring, start, nose, open_gap):
         edge = nose
@@ -151,7 +152,7 @@ def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> Section:
         edge = -1
     if edge >= 0:
         ring, index, open_gap = np.roll(ring, -edge, axis=0), np.roll(index, -edge), False
-        chord = float(_distance(ring, ring[0]).max())
+        chord = float(norms(ring - ring[0]).max())
     return _based(ring, index, open_gap, chord)
 
 
@@ -193,9 +194,9 @@ def _sharpness(ring: Floats, end: int, far_end: int) -> tuple[float, float]:
     return math.log(thick[1] / thick[0]) / math.log(4.0), thick[0]
 
 
-def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> Section:
+def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> CleanSection:
     """Return the section of a ring that starts at its trailing edge: find out whether that is a base."""
-    gap = float(_distance(ring[0], ring[-1])) if open_gap else 0.0
+    gap = float(norms(ring[0] - ring[-1])) if open_gap else 0.0
     if open_gap and gap < SHARP_GAP * chord:
         ring = ring.copy()
         ring[0] = 0.5 * (ring[0] + ring[-1])
@@ -213,7 +214,7 @@ def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> Sectio
         base = ring[_stretch(upper, lower, len(ring))]
         if turn[upper] + turn[lower] > np.radians(100.0) and _off_line(base) <= ON_BASE * chord:
             keep = _stretch(lower, upper, len(ring))
-            gap = float(_distance(ring[upper], ring[lower]))
+            gap = float(norms(ring[upper] - ring[lower]))
             ring, index = ring[keep], index[keep]
             if gap >= SHARP_GAP * chord:
                 return _section(ring, index, True, gap)
@@ -224,10 +225,10 @@ def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> Sectio
     return _section(ring, index, open_gap, gap)
 
 
-def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> Section:
+def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> CleanSection:
     """Return the section with its corners; a coarsely given round leading edge is none, a sharp one is."""
     edge = 0.5 * (ring[0] + ring[-1]) if blunt else ring[0]
-    distance = _distance(ring, edge)
+    distance = norms(ring - edge)
     nose = int(np.argmax(distance))
     turn = np.abs(turning(ring, closed=True))
     n = len(ring)
@@ -235,7 +236,7 @@ def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> Section:
         raise InputError("the base is wider than the section is long", "give both surfaces of an airfoil")
     candidates = find_corners(ring, closed=True, few=0)
     apart = np.minimum((candidates - nose) % n, (nose - candidates) % n)
-    near_nose = (apart <= 1) | (_distance(ring[candidates], ring[nose]) < 0.03 * distance[nose])
+    near_nose = (apart <= 1) | (norms(ring[candidates] - ring[nose]) < 0.03 * distance[nose])
     far = candidates[~near_nose]
     corners = set(far.tolist() if len(far) <= MOST_CORNERS else [])
     if turn[nose] > np.radians(60.0) and _sharpness(ring, nose, 0)[0] > 0.7:
@@ -248,7 +249,7 @@ def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> Section:
         corners |= {0, n - 1}
     elif turn[0] > np.radians(60.0):
         corners.add(0)
-    return Section(ring, index, blunt, gap, np.array(sorted(corners), dtype=np.intp))
+    return CleanSection(ring, index, blunt, gap, np.array(sorted(corners), dtype=np.intp))
 
 
 def _stretch(start: int, stop: int, n: int) -> Indices:
@@ -264,7 +265,3 @@ def _off_line(points: Floats) -> float:
         return 0.0
     off = points[1:-1] - points[0]
     return float(np.abs(along[0] * off[:, 1] - along[1] * off[:, 0]).max() / length)
-
-
-def _distance(points: Floats, point: Floats) -> Floats:
-    return np.asarray(np.hypot(points[..., 0] - point[..., 0], points[..., 1] - point[..., 1]))

@@ -108,15 +108,15 @@ def _mean_line(digits: str, x: Floats) -> tuple[Floats, Floats]:
             return np.zeros_like(x), np.zeros_like(x)
         scale = np.where(x < p, m / p**2, m / (1 - p) ** 2)
         return scale * (np.where(x < p, 0.0, 1 - 2 * p) + 2 * p * x - x * x), scale * 2 * (p - x)
-    lift, place = int(digits[0]) / 2, int(digits[1])
+    design_lift, place = int(digits[0]) / 2, int(digits[1])
     if digits[2] == "0":
         r, k = _SIMPLE[place]
-        k *= lift / 6
+        k *= design_lift / 6
         front = x < r
         camber = k * np.where(front, _cube(x) - 3 * r * x**2 + r**2 * (3 - r) * x, _cube(r) * (1 - x))
         return camber, k * np.where(front, 3 * x**2 - 6 * r * x + r**2 * (3 - r), -_cube(r))
     r, k, ratio = _REFLEX[place]
-    k *= lift / 6
+    k *= design_lift / 6
     scale = np.where(x < r, 1.0, ratio)
     constant = -ratio * _cube(1 - r) - _cube(r)
     return k * (scale * _cube(x - r) + constant * x + _cube(r)), k * (3 * scale * (x - r) ** 2 + constant)

@@ -11,7 +11,7 @@ from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing, find_crossings
-from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, Section
+from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, CleanSection
 
 _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31 / 32])
 """Where an interval of the curve is cut into straight pieces to be searched for crossings."""
@@ -22,7 +22,7 @@ MOST_BASE = 0.25  # chords; a wider last piece of a surface is none
 _PARTS = 128  # parts into which a stretch is cut to find the place farthest from the trailing edge
 
 
-def section_curve(section: Section, places: Sequence[str]) -> tuple[Curve, list[str]]:
+def section_curve(section: CleanSection, places: Sequence[str]) -> tuple[Curve, list[str]]:
     """Return the curve through a section's points, straight where it would otherwise cross itself, and notes.
 
     Points whose surfaces touch or cross by rounding are moved apart first
@@ -57,7 +57,7 @@ def section_curve(section: Section, places: Sequence[str]) -> tuple[Curve, list[
     return curve, notes
 
 
-def moved_note(before: Section, section: Section) -> str:
+def moved_note(before: CleanSection, section: CleanSection) -> str:
     """Return a note of how far the surfaces of `section` were moved apart."""
     off = section.points - before.points
     edge = before.points[0]
@@ -71,7 +71,7 @@ def moved_note(before: Section, section: Section) -> str:
     )
 
 
-def shape_notes(section: Section, curve: Curve, chord: float) -> tuple[str, ...]:
+def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str, ...]:
     """Return notes of an oblique base, and of a curve that leaves the straight lines between its points."""
     notes = _oblique_base(section, chord)
     off = departure(curve) / chord
@@ -84,7 +84,7 @@ def shape_notes(section: Section, curve: Curve, chord: float) -> tuple[str, ...]
     return notes
 
 
-def _oblique_base(section: Section, chord: float) -> tuple[str, ...]:
+def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
     """Return a note where the base is far from square to the chord; a sharp section may end in one piece."""
     points, last = section.points, len(section.points) - 1
     others = [(last, "")] if section.blunt else [(1, "lower"), (last, "upper")]
@@ -114,7 +114,7 @@ def departure(curve: Curve) -> float:
     return float((np.abs(across) / np.hypot(ways[..., 0], ways[..., 1])).max())
 
 
-def _crossed(section: Section, crossing: Crossing, places: Sequence[str]) -> InputError:
+def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -> InputError:
     """Return the error for surfaces that cross, naming the place and the points on both sides of it."""
     n = len(section.points)
     ends = [section.index[k % n] for c in (crossing.first, crossing.second) for k in (c, c + 1)]

@@ -23,11 +23,11 @@ from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import arctan2, power, product
 from meshonet.geometry.spacing.size_field import GROWTH, limited_size
 
-_ACROSS = 0.9
-_ALONG = 2.0
+_ACROSS = 0.9  # part of half the base that a fillet takes
+_ALONG = 2.0  # its length along the surface, in that along the base
 _CAP = 5e-3  # largest part of the base that a fillet takes, in chords
 _PULL = 0.6  # where the control points of the fillet are between its ends (0) and the corner (1)
-_POINTS = 24
+_POINTS = 24  # on a fillet
 _TURN = 0.5
 """Nodes of half a base that turns by 90 degrees that follow its turning, for each that follows its length."""
 _MORE = 1.3  # factor up to which cells are added so that neither half has fewer than wanted
@@ -36,7 +36,7 @@ REACH = 4.0
 """Largest length of the wedge in widths of the base: 14 degrees at the tip between parallel surfaces."""
 LEAST = 1.0
 """The same at least: surfaces that would meet before are bent outwards, with a corner each."""
-_WEDGE_POINTS = 9
+_WEDGE_POINTS = 9  # on each side of a wedge
 
 
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:

@@ -19,18 +19,16 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.conformal.spacing import conformal_knots
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.shapes.airfoil.trailing_edge import half_rounds
 from meshonet.geometry.spacing.along_curve import on_corners
-from meshonet.geometry.spacing.laws import LAWS, TanhLaw
+from meshonet.geometry.spacing.laws import LAWS
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.geometry.spacing.size_field import arcs_by_curvature
 
 _EDGE_STEP = 20.0
 """Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
 grids: with smaller cells they are less orthogonal, with larger ones more of them fold at the edge."""
 _EDGE_PART = 0.24
 """The same cell, in mean cells, where spacing follows curvature, the law of marched grids."""
-_BASE_GROWTH = 1.15
+_BASE_GROWTH = 1.15  # ratio of neighbouring cells on a base up to which it needs no more of them
 _BASE_JUMP = 4.0
 """Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
 _ROUND_CELLS = 14  # fewest cells on half a rounded base, when there are 16 times as many in all
@@ -53,7 +51,7 @@ class Stations:
 
 
 @dataclass(frozen=True)
-class Plan:
+class WallCells:
     """Cells of half the base and of a side, and the steps at the trailing and at the leading edge."""
 
     half: int
@@ -91,6 +89,8 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
         return _on_inner_corners(conformal_knots(stations.curve, corners, ni), stations)
     plan = _plan(stations, ni - 1, sampling)
     if sampling.spacing == "curvature":
+        from meshonet.geometry.spacing.size_field import arcs_by_curvature
+
         sides = arcs_by_curvature(
             stations.curve,
             (stations.half_base, stations.nose, stations.upper),
@@ -122,20 +122,22 @@ def _on_inner_corners(arcs: Floats, stations: Stations) -> Floats:
     return on_corners(arcs, inside, fixed=(int(ends[0]), int(ends[1])))
 
 
-def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
+def _plan(stations: Stations, cells: int, sampling: Sampling) -> WallCells:
     """Return how the cells are shared out and which steps they start from."""
     wanted_te = sampling.te_spacing and sampling.te_spacing * stations.chord
     wanted_le = sampling.le_spacing and sampling.le_spacing * stations.chord
-    plan = _natural(stations, Plan(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
+    plan = _natural(stations, WallCells(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
     if stations.half_base:
         fixed = bool(wanted_te) or not LAWS[sampling.spacing].sets_ends
         half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, fixed=fixed)
         if stations.rounded and not wanted_te and half < min(_ROUND_CELLS, cells // 16):
             half = min(_ROUND_CELLS, cells // 16)
             step = stations.half_base / half
-        plan = _natural(stations, Plan(half, 0.5 * cells - half, step, 0.0, 0.0), sampling)
+        plan = _natural(stations, WallCells(half, 0.5 * cells - half, step, 0.0, 0.0), sampling)
         plan = replace(plan, te=step)
         if stations.rounded and half > 2 and not wanted_te:
+            from meshonet.geometry.shapes.airfoil.trailing_edge import half_rounds
+
             base = half_rounds(stations.curve, stations.half_base, half)
             te = 0.5 * sum(float(part[-1] - part[-2]) for part in base)
             left = cells - sum(len(part) - 1 for part in base)
@@ -150,7 +152,7 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
     return plan
 
 
-def _natural(stations: Stations, plan: Plan, sampling: Sampling) -> Plan:
+def _natural(stations: Stations, plan: WallCells, sampling: Sampling) -> WallCells:
     """Return the plan with the steps that the program chooses.
 
     At the nose that of equal angles on the circle which a conformal map makes of the section,
@@ -187,6 +189,8 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
     if half_base <= 6 * step:
         half = min(max(least, round(half_base / step)), most)
         return half, half_base / half
+    from meshonet.geometry.spacing.tanh_law import TanhLaw
+
     for half in range(4, most):
         # steps go like sech², whose ratio is largest at the corner
         d = TanhLaw(2 * half * 0.5 * step / half_base, 2 * half * 0.5 * step / half_base).stretch
@@ -195,18 +199,20 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
     return most, step
 
 
-def _half_base(plan: Plan, half_base: float) -> Floats:
+def _half_base(plan: WallCells, half_base: float) -> Floats:
     """Return distances (half + 1,) from the middle of the base to its corner."""
     part = plan.base_step / (2 * half_base)
     if abs(part * 2 * plan.half - 1.0) < 1e-9:
         return np.linspace(0.0, half_base, plan.half + 1)
+    from meshonet.geometry.spacing.tanh_law import TanhLaw
+
     law = TanhLaw.fitted(2 * plan.half, part, part)
     out = half_base - 2 * half_base * law(np.arange(plan.half + 1) / (2 * plan.half))[::-1]
     out[0], out[-1] = 0.0, half_base
     return np.asarray(out)
 
 
-def _side(length: float, plan: Plan, sampling: Sampling, q: Floats) -> Floats:
+def _side(length: float, plan: WallCells, sampling: Sampling, q: Floats) -> Floats:
     """Return distances along a side from its trailing edge at the places `q` of 0 to 1."""
     ends_set = sampling.te_spacing is not None or sampling.le_spacing is not None
     if plan.cells < 4 and not ends_set:
@@ -214,5 +220,7 @@ def _side(length: float, plan: Plan, sampling: Sampling, q: Floats) -> Floats:
     law = LAWS[sampling.spacing]
     if law.place and not (law.sets_ends and (ends_set or plan.half)):
         return np.asarray(length * law.place(q))
+    from meshonet.geometry.spacing.tanh_law import TanhLaw
+
     part = 1.0 if float(plan.cells).is_integer() else 0.5
     return np.asarray(length * TanhLaw.fitted(plan.cells, plan.te / length, plan.le / length, part)(q))
