@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 LARGEST_MEMBER = 1 << 28
 """Bytes of a member, unpacked."""
 _IN_ARCHIVE = re.compile(r"\.zip/", re.IGNORECASE)
+"""Where the name of an archive ends and that of a member begins."""
 
 
 def is_archive(path: str) -> bool:

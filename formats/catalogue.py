@@ -4,6 +4,7 @@ from meshonet.formats.format import Format
 from meshonet.formats.registry import formats
 
 _HEAD = ("format", "endings", "reads", "writes", "names", "3D", "blocks", "many", "what it is", "options")
+"""Headings of the table's columns."""
 
 
 def rows() -> list[dict[str, str]]:

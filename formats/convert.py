@@ -45,7 +45,7 @@ class Conversion:
         return tuple(self.extrude * k / (planes - 1) for k in range(planes))
 
     def __call__(self, grid: Grid | Boundary) -> Grid | Boundary:
-        """Return a grid coarsened, swapped and normalised; a boundary is sampled so already."""
+        """Return a grid coarsened, swapped and normalised; a boundary as it is, normalised by `read`."""
         if isinstance(grid, Boundary):
             return grid
         grid = coarser_grid(grid, self.coarsen) if self.coarsen > 1 else grid

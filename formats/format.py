@@ -86,6 +86,8 @@ class Format:
 
         Raises InputError for a word that is not known, or two that exclude each other.
         """
+        if not text.strip(":"):
+            return self
         words: Options = frozenset()
         for group in text.split(":"):
             new = self._options(group)
@@ -138,7 +140,7 @@ def only_one(grids: Iterable[Grid], what: str) -> Grid:
 
 
 def at_least_one(grids: Iterator[Grid]) -> Grid:
-    """Return the next of `grids`; InputError where there is none."""
+    """Return the next of `grids`; raise InputError if there is none."""
     first = next(grids, None)
     if first is None:
         raise InputError("there is no grid to write", "check the input")
@@ -147,6 +149,8 @@ def at_least_one(grids: Iterator[Grid]) -> Grid:
 
 def kinds_in_space(grid: Grid) -> tuple[Space, ...]:
     """Return what a grid in space is made of, nothing for one in the plane."""
+    if grid.form == "plane":
+        return ()
     directions = {len(block.counts) for block in grid.blocks if block.nodes.shape[-1] == 3}
     kinds: dict[int, Space] = {3: "volumes", 2: "surfaces"}
     return tuple(kind for count, kind in kinds.items() if count in directions)

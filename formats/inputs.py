@@ -1,4 +1,4 @@
-"""What inputs stand for: files of folders, members of zip archives, lines of lists; found as they are needed.
+"""Inputs expanded to files: those of folders, members of zip archives, lines of lists; one after the other.
 
 =============  =====================================================================================
 input          stands for
@@ -19,13 +19,12 @@ import os
 import re
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import closing
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cached_property
 from itertools import islice
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from meshonet.formats.archive import is_archive, member_names
 from meshonet.formats.registry import formats, is_designation
@@ -33,7 +32,7 @@ from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError, in_source
 
 if TYPE_CHECKING:
-    from meshonet.formats.hdf5.samples import Samples
+    from meshonet.formats.hdf5.read import DatasetSamples
 
 MOST_NESTED = 8
 """Lists that may name each other."""
@@ -67,7 +66,7 @@ class Numbered(NamedTuple):
 
 @dataclass(frozen=True)
 class Inputs:
-    """Inputs as they are named; iterating gives what they stand for, and an error where that is nothing.
+    """Inputs as the user named them; iterating yields the files that they stand for, or errors.
 
     Parameters
     ----------
@@ -115,9 +114,7 @@ class Inputs:
             yield from map(Numbered, self)
             return
         number = 0
-        for entry in self:
-            samples = samples_in(entry)
-            count = 1 if samples is None else len(samples)
+        for entry, samples, count in self._counted():
             first = (k - 1 - number) % n
             if first < count and samples is None:
                 yield Numbered(entry, number, 0)
@@ -134,9 +131,7 @@ class Inputs:
         entries: list[str | InputError] = []
         k, n = self.shard
 
-        for entry in self:
-            samples = samples_in(entry)
-            count = 1 if samples is None else len(samples)
+        for entry, samples, count in self._counted():
             start = 0
             while start < count:
                 stop = min(start + left, count)
@@ -150,7 +145,7 @@ class Inputs:
             yield number, tuple(entries)
 
     def more_than(self, count: int) -> bool:
-        """Return whether there are more than so many inputs; no more are looked for."""
+        """Return whether there are more than `count` inputs; the search stops there."""
         return (self._begun if count < _BEGINNING else sum(1 for _ in islice(self, count + 1))) > count
 
     @cached_property
@@ -162,8 +157,13 @@ class Inputs:
         """Return how many members the shard has, files that hold several counted once; None from a pipe."""
         if any(word in ("-", "@-") for word in self.words):
             return None
-        samples = (samples_in(entry) for entry in self)
-        return -(-sum(1 if each is None else len(each) for each in samples) // self.shard[1])
+        return -(-sum(count for _, _, count in self._counted()) // self.shard[1])
+
+    def _counted(self) -> Iterator[tuple[str | InputError, DatasetSamples | None, int]]:
+        """Yield each input with its samples, if it is a dataset, and how many members it has."""
+        for entry in self:
+            samples = samples_in(entry)
+            yield entry, samples, 1 if samples is None else len(samples)
 
     def first(self) -> str:
         """Return the first input; InputError where there is none."""
@@ -182,7 +182,7 @@ class Inputs:
             yield from _lines(self._stdin.splitlines(keepends=True), name)
             return
         try:
-            with closing(_opened(name)) as stream:
+            with Path(name).open("rb") as stream:
                 yield from _lines(iter(lambda: stream.readline(LONGEST_LINE), b""), name)
         except OSError as error:
             raise _unreadable(name, error, "check the path of the list") from error
@@ -237,7 +237,7 @@ class _Walk:
             raise self._without_files(folder)
 
     def _below(self, folder: str, inside: str) -> Iterator[str | InputError]:
-        """Yield the files of `folder`, which is `inside` of the one that was named, and of its folders."""
+        """Yield the files of `folder` and its folders; `inside` is its path below the one that was named."""
         try:
             entries = self._entries(folder, inside)
         except OSError as error:
@@ -297,11 +297,11 @@ class _Walk:
         return taken
 
 
-def samples_in(entry: str | InputError) -> Samples | None:
+def samples_in(entry: str | InputError) -> DatasetSamples | None:
     """Return the samples of an input that is a dataset, None for any other and one that cannot be read."""
     if isinstance(entry, InputError) or not _IS_DATASET.search(entry):
         return None
-    from meshonet.formats.hdf5.samples import samples_of
+    from meshonet.formats.hdf5.read import samples_of
 
     try:
         return samples_of(entry)
@@ -321,10 +321,6 @@ def _is_hidden(name: str) -> bool:
 
 def _stands_for_many(word: str) -> bool:
     return word.startswith("@") or is_archive(word) or (not is_designation(word) and Path(word).is_dir())
-
-
-def _opened(name: str) -> BinaryIO:
-    return Path(name).open("rb")
 
 
 def _lines(lines: Iterable[bytes], name: str) -> Iterator[str]:

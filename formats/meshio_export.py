@@ -14,15 +14,17 @@ from meshonet.formats.mesh.unstructured import Indices, Unstructured, unstructur
 from meshonet.geometry.blocks.grid import Grid
 
 _TRIANGLES = {"stl", "off"}
+"""Formats that have no quadrilaterals."""
 _SETTINGS: dict[str, dict[str, object]] = {
     "stl": {"binary": True}, "ply": {"binary": True}, "abaqus": {"float_fmt": ".16e"},
     "medit": {"float_fmt": ".16e"},
     "xdmf": {"data_format": "XML"},
 }  # fmt: skip
+"""What meshio's writers are told so that no digit is lost."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the one grid of `grids` as `options`, one of meshio's names, says."""
+    """Write the only grid of `grids` in the format of meshio that `options` names."""
     import meshio
 
     (kind,) = options or {"stl"}

@@ -19,8 +19,10 @@ PART_SUFFIX = ".meshonet-part"
 _PART = re.compile(
     rf"\.(?P<final>.*)\.(?P<machine>[0-9a-f]*-\d*)-(?P<process>\d+)-[0-9a-f]{{8}}{re.escape(PART_SUFFIX)}"
 )
+"""Name of an unfinished file: that of the finished one, its machine and process."""
 _swept: set[Path] = set()
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
+"""Errors of a disc that is full or may not be written to."""
 
 
 @contextlib.contextmanager

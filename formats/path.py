@@ -30,6 +30,7 @@ from meshonet.geometry.curves.path import Bend, Path, PiecedPath, SplinePath
 from meshonet.geometry.errors import InputError, in_source
 
 MOST_POINTS = 100_000
+"""A path of more points is a mistake."""
 
 
 def path_of(text: str) -> Path:

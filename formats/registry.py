@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Literal, TypeVar
 
 from meshonet.formats.format import Format, later
-from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.source import Source, nearest, open_source, printable
 from meshonet.formats.table import TABLE
 from meshonet.geometry.blocks.grid import Grid
@@ -104,6 +103,17 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
     raise InputError(problem, f"write one of {able}", source=printable(path_text))
 
 
+def picture_format(output: str, to_format: str | None = None) -> Format:
+    """Return the format of a picture by the ending of `output`; standard output (``-``) is a ``png``.
+
+    Raises InputError: `output` is no picture.
+    """
+    record = format_for_output(output, to_format or ("png" if output == "-" else None))
+    if record.name not in ("png", "svg", "pdf", "html"):
+        raise InputError(f"{record.name} is no picture", "use .png, .svg, .pdf or .html", source=output)
+    return record
+
+
 def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
     """Return what can be sampled into boundaries: from a path, from ``-``, or a designation ``naca:2412``.
 
@@ -123,6 +133,8 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
     if record.read_shapes is not None:
         return _Records(source, partial(record.read_shapes, source))
     if record.read_grids is not None:
+        from meshonet.formats.mesh.recover_topology import boundary_of
+
         read = record.read_grids
         return _Records(source, lambda: map(boundary_of, read(source)))
     raise _unreadable(record, source.name)

@@ -18,11 +18,13 @@ HEAD_BYTES = 65536
 _SELECTION = re.compile(
     r"(?P<split>train|test)|(?:(?P<kind>train|test),)?(?:(?P<number>\d{1,15})|(?P<range>\d{0,15}:\d{0,15}(?::[1-9]\d{0,14})?))"
 )
+"""What may stand behind ``#``: a split, a number, a range, or a split and one of these."""
 _MOST_NAMES = 10_000
 """Names of files that are looked at for the nearest."""
 _LIKENESS = 0.75
 """Of names of files, which share their endings."""
 _MAPPED = 1 << 24
+"""Bytes from which a file is mapped into memory instead of read."""
 LARGEST = 1e150
 """Coordinates in files must be below this, so that areas and their sums are finite."""
 
@@ -149,7 +151,7 @@ def _missing(text: str) -> InputError:
 
 
 def nearest(path: Path) -> str:
-    """Return a question whether the file of the nearest name in the folder was meant, if one is near."""
+    """Return ``did you mean ...?`` with the most similar file name in the folder, or an empty text."""
     try:
         names = [entry.name for entry in itertools.islice(path.parent.iterdir(), _MOST_NAMES)]
     except (OSError, ValueError):

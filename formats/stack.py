@@ -36,6 +36,7 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.outline import Outline
 
 _STEEPEST = 85.0
+"""Degrees of sweep and dihedral; at 90 the next section would be infinitely far away."""
 
 
 def stack_of(text: str) -> Stack:

@@ -15,7 +15,7 @@ import numpy as np
 from meshonet.formats.format import only_one
 from meshonet.formats.mesh.collapsed import refuse_collapsed
 from meshonet.formats.mesh.names import words
-from meshonet.formats.mesh.surface import Surface, shapes_of
+from meshonet.formats.mesh.surface import MeshBoundary, shapes_of
 from meshonet.formats.mesh.unstructured import Indices, Unstructured, unstructured
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.number_table import parsed, write_rows
@@ -30,10 +30,11 @@ _KINDS = {2: "3", 4: "9", 8: "12"}
 _NODES = {b"3": 2, b"5": 3, b"9": 4}
 """Nodes of the kinds of cells that a plane mesh has, by VTK's numbers: lines, triangles, quadrilaterals."""
 _CUT = "the file is cut short: write it again"
+"""Remedy for a file that ends too soon."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the one grid of `grids`: quadrilaterals and lines under the names of its patches.
+    """Write the only grid of `grids`: quadrilaterals and lines under the names of its patches.
 
     Of a volume, hexahedra and quadrilaterals.
     """
@@ -93,7 +94,7 @@ class _Reader:
         self._edges: dict[str, Indices] = {}
         self._tag = ""
 
-    def surface(self) -> Surface:
+    def surface(self) -> MeshBoundary:
         while self._at < len(self._lines):
             word = self._lines[self._at].split(b"%", 1)[0].strip()
             self._at += 1
@@ -106,7 +107,7 @@ class _Reader:
         if self._points is None:
             raise InputError("has no points", _CUT)
         cells = [self._cells[nodes] for nodes in sorted(self._cells) if nodes != 2]
-        return Surface(self._points, self._edges, cells)
+        return MeshBoundary(self._points, self._edges, cells)
 
     def _take(self, key: bytes, value: bytes) -> None:
         if key == b"NDIME" and self._count(value) != 2:

@@ -63,7 +63,7 @@ def is_geojson(head: bytes) -> bool:
 def _format(name: str, endings: str, description: str, functions: str, **more: Any) -> Format:
     """Return a record; `functions`, ``module:field``, are loaded when they are called."""
     for function in functions.split():
-        more[function.partition(":")[2]] = later(f"meshonet.formats.{function}")
+        more[function.partition(":")[2]] = later(__package__ + f".{function}")
     if "write_grids" in more:
         more["write_grids"] = partial(_write, more["write_grids"], name)
     return Format(name, tuple(endings.split()), description, **more)
@@ -104,7 +104,7 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "vtm", ".vtm", "VTK multi-block file: an index and a folder of .vts, one a block",
-        "vtk.vtm_read:read_grids vtk.vtm:write_grids",
+        "vtk.vtm:read_grids vtk.vtm:write_grids",
         sniff=partial(holds, (b"<VTKFile", b"vtkMultiBlockDataSet")),
         names_patches=True, blocks="kept", many=True, beside=True, space=_BOTH,
     ),
@@ -147,7 +147,7 @@ _FORMATS: tuple[Format, ...] = (
     _format(
         "plot3d", ".p3d .xyz .fmt .x .dat .bin .ufmt .unf",
         "Plot3D: text, C binary (.bin) or Fortran records (.ufmt), with the .nmf beside it",
-        "plot3d.read:read_grids plot3d.write:write_grids plot3d.read:sniff",
+        "plot3d.read:read_grids plot3d.write:write_grids plot3d:sniff",
         blocks="kept", many=True, choices=CHOICES, reads_options=True, space=_BOTH,
         suffix_options={".bin": "binary", ".ufmt": "fortran", ".unf": "fortran"},
     ),

@@ -1,4 +1,4 @@
-"""Tables of TOML, their values looked at before they are used."""
+"""Tables of TOML, whose values are checked before they are used."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from meshonet.formats.source import Source, printable
 from meshonet.geometry.errors import InputError
 
 _SHOWN = 40
+"""Characters of a value that an error shows."""
 
 
 @dataclass(frozen=True)

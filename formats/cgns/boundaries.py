@@ -1,4 +1,4 @@
-"""What a CGNS zone of others says of its faces: boundary conditions by family, one-to-one interfaces.
+"""Boundary conditions and one-to-one interfaces of CGNS zones that other programs wrote.
 
 Ranges may run either way and count nodes or, where the location says so, faces; a condition may list its
 points instead, and then is what rectangles these points fill. Signs of a transform follow from the ranges.
@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.cgns.nodes import Node, array, children, text
-from meshonet.formats.mesh.windows import Face, Triple, Window
+from meshonet.formats.mesh.names import kind_said
+from meshonet.formats.mesh.windows import Face, FaceWindow, Triple
 from meshonet.formats.source import printable
 from meshonet.geometry.blocks.outer_patches import JOINED, UNNAMED, rectangles
-from meshonet.geometry.blocks.patches import Kind, kind_of
+from meshonet.geometry.blocks.patches import Kind
 from meshonet.geometry.errors import InputError
 
 Points = NDArray[np.int64]
@@ -22,15 +23,17 @@ _KINDS: tuple[tuple[str, Kind], ...] = (
     ("BCWall", "wall"), ("BCFarfield", "farfield"), ("BCInflow", "inlet"), ("BCTunnelInflow", "inlet"),
     ("BCOutflow", "outlet"), ("BCTunnelOutflow", "outlet"), ("BCSymmetry", "symmetry"),
 )  # fmt: skip
-_OTHER: Kind = "other"
+"""Kinds of boundary by the start of CGNS's name of the condition (SIDS, BCType_t)."""
 _NOTHING = ("Null", "BCTypeNull")
+"""Conditions that say nothing of a face."""
 _FACES = ("FaceCenter", "IFaceCenter", "JFaceCenter", "KFaceCenter", "EdgeCenter", "CellCenter")
+"""Locations at which a range counts faces, not nodes (SIDS, GridLocation_t)."""
 
 
 def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[Face]:
     """Yield the boundary conditions on faces of block number `block`, called by their family.
 
-    `counts` are the zone's nodes along its three indices, 1 along one that it has not.
+    `counts` are the zone's nodes along its three indices, 1 along the third of a plane zone.
     """
     for _, group in children(zone, "ZoneBC_t"):
         for title, condition in children(group, "BC_t"):
@@ -41,17 +44,13 @@ def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[F
             if kind == "FamilySpecified":
                 kind = _family_kind(base, family)
             name = printable(family.rpartition("/")[2] or title).strip() or "part"
-            known = next((k for sign, k in _KINDS if kind.startswith(sign)), _OTHER)
-            kind_by_name = kind_of(name)
             for first, last in _covered(condition, counts):
-                yield Face(
-                    Window(block, first, last), name, known if kind_by_name == _OTHER else kind_by_name
-                )
+                yield Face(FaceWindow(block, first, last), name, kind_said(name, kind, _KINDS))
 
 
 def interfaces(
     base: Node, zone: Node, counts: Triple, block: int
-) -> Iterator[tuple[str, Window, str, Points, Triple]]:
+) -> Iterator[tuple[str, FaceWindow, str, Points, Triple]]:
     """Yield of each one-to-one interface name, own window, the donor's path, its range (2, 3), partners."""
     for _, group in children(zone, "ZoneGridConnectivity_t"):
         for name, joint in children(group, "GridConnectivity1to1_t"):
@@ -67,14 +66,14 @@ def interfaces(
             yield printable(name), _window(block, own), path, donor_range, _partners(joint, printable(name))
 
 
-def window_of(block: int, points: Points, counts: Triple) -> Window | None:
+def window_of(block: int, points: Points, counts: Triple) -> FaceWindow | None:
     """Return the window from the first of two points to the last, None outside a block of `counts` nodes."""
     return _window(block, points) if _inside(points, counts) else None
 
 
-def _window(block: int, points: Points) -> Window:
+def _window(block: int, points: Points) -> FaceWindow:
     first, last = (tuple(row) for row in points[[0, -1]].tolist())
-    return Window(block, first, last)
+    return FaceWindow(block, first, last)
 
 
 def _inside(points: Points, counts: Triple) -> bool:

@@ -1,6 +1,7 @@
 """One-to-one interfaces of CGNS zones as they are written: ranges, transforms, periodic properties.
 
-The transform says which index of the donor each index of the zone runs along. Along the interface that is
+Ranges count nodes from 1 and give the first and the last of every index. The transform says which index of
+the donor each index of the zone runs along. Along the interface that is
 what the connection says; across it, a step out of the zone is one into the donor.
 https://cgns.github.io/standard/SIDS/multizone_interface.html
 """
@@ -8,14 +9,26 @@ https://cgns.github.io/standard/SIDS/multizone_interface.html
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.formats.cgns.nodes import NAME_LENGTH, Node, child
-from meshonet.formats.cgns.ranges import donor_range, range_of, transform_of
 from meshonet.formats.mesh.names import words
-from meshonet.formats.mesh.periodic import patch_on
+from meshonet.formats.mesh.periodic import donor_range, patch_on
+from meshonet.geometry.arrays import Side
+from meshonet.geometry.blocks.block import PLACES, Range
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.screw import screw_of
+
+Integers = NDArray[np.int32]
+
+
+def range_of(side: Side, span: Range, counts: tuple[int, ...]) -> Integers:
+    """Return the first and the last node (2, d) of a part of a side of a zone of `counts` nodes."""
+    axis, end = PLACES[side]
+    place = [0 if end == 0 else counts[axis] - 1] * 2
+    rows = [*span[:axis], tuple(place), *span[axis:]]
+    return np.array(rows, np.int32).T + np.int32(1)
 
 
 def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid) -> None:
@@ -35,10 +48,28 @@ def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid) -
             joint = child(group, word, "GridConnectivity1to1_t", names[way.donor])
             own = range_of(way.side, way.range, counts[way.block])
             child(joint, "PointRange", "IndexRange_t", own)
-            child(joint, "PointRangeDonor", "IndexRange_t", donor_range(way, counts[way.donor]))
-            child(joint, "Transform", '"int[IndexDimension]"', transform_of(way))
+            child(
+                joint,
+                "PointRangeDonor",
+                "IndexRange_t",
+                range_of(way.donor_side, donor_range(way), counts[way.donor]),
+            )
+            child(joint, "Transform", '"int[IndexDimension]"', _transform(way))
             if way.transform is not None:
                 _write_motion(joint, way.transform, grid.blocks[way.block].nodes.shape[-1])
+
+
+def _transform(each: Connection) -> Integers:
+    """Return the donor's index along each index of the zone, counted from 1, negative where opposed."""
+    (axis, end), (other, donor_end) = PLACES[each.side], PLACES[each.donor_side]
+    dimension = len(each.orientation) + 1
+    donor_axes = [index for index in range(dimension) if index != other]
+    transform = np.zeros(dimension, np.int32)
+    transform[axis] = (1 + other) * (-1 if end == donor_end else 1)
+    own_axes = [index for index in range(dimension) if index != axis]
+    for index, way in zip(own_axes, each.orientation, strict=True):
+        transform[index] = (1 + donor_axes[abs(way) - 1]) * (1 if way > 0 else -1)
+    return transform
 
 
 def _title(grid: Grid, connection: Connection, names: Sequence[str]) -> str:

@@ -1,4 +1,4 @@
-"""CGNS's tree of nodes in an HDF5 file: labels, types and data as its library wants them.
+"""CGNS's tree of nodes in an HDF5 file: labels, types and data as the CGNS library expects them.
 
 A node is a group with the attributes name, label and type, texts of fixed length, and flags; its data is
 the dataset ``" data"``, whose axes run the other way round than in Fortran's terms of the standard.
@@ -28,12 +28,9 @@ VERSIONS = "earliest", "v108"
 """Least and greatest versions of HDF5 that the objects of a file are for."""
 
 _TYPES = {"int8": "C1", "int32": "I4", "int64": "I8", "float32": "R4", "float64": "R8"}
+"""CGNS's names of number types by those of NumPy."""
 _DATA = " data"
-
-
-def is_adf(head: bytes) -> bool:
-    """Say whether `head` is of the container that CGNS used before HDF5."""
-    return b"ADF Database Version" in head[:32]
+"""Name of the dataset of a node's data, with the blank that the standard wants."""
 
 
 def root(file: h5py.File) -> Node:
@@ -109,7 +106,7 @@ def _set(node: Node, name: bytes, value: NDArray[Any]) -> None:
 
 @cache
 def _blank(label: str, kind: str) -> Node:
-    """Return a node without name and data, in a file in memory that is there for the copies of such nodes."""
+    """Return a template of nodes, without name and data, in a file in memory, from which nodes are copied."""
     node = _blanks().create_group(f"{label} {kind}", track_order=True)
     _label(node, "", label, kind)
     return node

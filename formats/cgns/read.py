@@ -10,18 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from meshonet.formats.cgns.boundaries import conditions, interfaces, window_of
-from meshonet.formats.cgns.nodes import Node, array, children, is_adf, text
+from meshonet.formats.cgns.nodes import Node, array, children, text
 from meshonet.formats.hdf5.check import opened
-from meshonet.formats.mesh.axis_order import nodes_of
-from meshonet.formats.mesh.metadata import (
-    Facts,
-    grid_of_blocks,
-    grid_with,
-    number_of_grid,
-    says_in_space,
-)
-from meshonet.formats.mesh.slices import planar
-from meshonet.formats.mesh.structured import FileBlock, grids_of_file
+from meshonet.formats.mesh.metadata import Facts
+from meshonet.formats.mesh.metadata_read import number_of_grid
+from meshonet.formats.mesh.structured import FileBlock, described_grids, grids_of_file
 from meshonet.formats.mesh.windows import Face, Pair, Triple
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
@@ -29,34 +22,23 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, in_place
 
 _FACTS = ("topology", "name", "parts", "kinds", "provenance", "block", "connections", "across", "coordinates")
+"""Descriptors of a zone that this package writes (`meshonet.formats.mesh.metadata.facts_of`)."""
 _MOST_NODES = 1 << 40
+"""A zone that claims more is damaged: its nodes would take 24 TB."""
 
 
 class _Zone(NamedTuple):
-    """A structured zone: base, node, name, what this package wrote of it, and x, y[, z] (ni, nj, nk) each."""
+    """A structured zone: the node of its base, its own, its name."""
 
     base: Node
     node: Node
     title: str
-    facts: Facts
-    coordinates: list[Floats]
 
-    @property
-    def path(self) -> str:
-        return str(self.node.name)
-
-    @property
-    def counts(self) -> Triple:
-        """Nodes along the three indices, 1 along one that the zone has not."""
-        ni, nj, nk = self.coordinates[0].shape
-        return ni, nj, nk
-
-    @property
-    def nodes(self) -> Floats:
-        """Nodes of a zone of this package's, in the plane or in space."""
-        if not says_in_space(self.facts):
-            return planar(self.coordinates)
-        return nodes_of([np.squeeze(values) for values in self.coordinates])
+    def block(self, name: str) -> FileBlock:
+        """Return coordinates and facts of the zone as a block called `name`."""
+        place = f"zone {self.title!r}"
+        with in_place(place):
+            return FileBlock(_coordinates(self.node), name, place, facts=_facts(self.node))
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
@@ -66,63 +48,54 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
     Raises InputError: a container of the old kind, no HDF5, no structured zone, a zone that is not right.
     """
-    if is_adf(source.head(64)):
+    if b"ADF Database Version" in source.head(32):
         raise InputError("is CGNS in an ADF container", "turn it into HDF5: adf2hdf OLD.cgns NEW.cgns")
     with opened(source) as file:
         zones = [
-            (base, name, zone)
+            _Zone(base, node, printable(name))
             for _, base in children(file, "CGNSBase_t")
-            for name, zone in children(base, "Zone_t")
+            for name, node in children(base, "Zone_t")
         ]
-        structured = [item for item in zones if _kind(item[2]) == "Structured"]
+        structured = [zone for zone in zones if _kind(zone.node) == "Structured"]
         if not structured:
             problem = "its zones are unstructured" if zones else "holds no CGNS zone"
             raise InputError(problem, "give a CGNS file with a structured zone")
-        if any("topology" not in _facts(zone) for _, _, zone in structured):
-            yield from _foreign([_zone(*item) for item in structured], source.stem)
-        else:
-            yield from _own(structured, source.stem)
-
-
-def _own(structured: Sequence[tuple[Node, str, Node]], stem: str) -> Iterator[Grid]:
-    """Yield the grids of zones that this package wrote; those of one block as they come."""
-    groups: dict[object, list[tuple[Node, str, Node]]] = {}
-    for item in structured:
-        number = number_of_grid(_facts(item[2]))
-        groups.setdefault(item[1] if number is None else number, []).append(item)
-    for items in groups.values():
-        read = [_zone(*item) for item in items]
-        if number_of_grid(read[0].facts) is not None:
-            yield grid_of_blocks([(zone.nodes, zone.facts) for zone in read], stem)
-            continue
-        for zone in read:
-            with in_place(f"zone {zone.title!r}"):
-                yield grid_with(zone.nodes, zone.facts, zone.title if len(structured) > 1 else stem)
+        if any("topology" not in _facts(zone.node) for zone in structured):
+            yield from _foreign(structured, source.stem)
+            return
+        groups: dict[object, list[_Zone]] = {}
+        for zone in structured:
+            number = number_of_grid(_facts(zone.node))
+            groups.setdefault(zone.title if number is None else number, []).append(zone)
+        ordered = (zone for group in groups.values() for zone in group)
+        blocks = (zone.block(zone.title if len(structured) > 1 else source.stem) for zone in ordered)
+        yield from described_grids(blocks, source.stem)
 
 
 def _foreign(zones: Sequence[_Zone], stem: str) -> Iterator[Grid]:
     """Yield the grids of zones that others wrote."""
-    blocks, faces, pairs = [], list[Face](), list[Pair]()
-    numbers = {zone.path: k for k, zone in enumerate(zones)}
-    for k, zone in enumerate(zones):
-        place = f"zone {zone.title!r}"
-        with in_place(place):
-            blocks.append(FileBlock(zone.coordinates, zone.title, place))
-            faces += conditions(zone.base, zone.node, zone.counts, k)
-            for title, own, path, points, partner in interfaces(zone.base, zone.node, zone.counts, k):
+    faces, pairs = list[Face](), list[Pair]()
+    blocks = [zone.block(zone.title) for zone in zones]
+    counts = [_counts(block) for block in blocks]
+    numbers = {str(zone.node.name): k for k, zone in enumerate(zones)}
+    for k, (zone, block) in enumerate(zip(zones, blocks, strict=True)):
+        with in_place(block.place):
+            faces += conditions(zone.base, zone.node, counts[k], k)
+            for title, own, path, points, partner in interfaces(zone.base, zone.node, counts[k], k):
                 donor = numbers.get(path)
                 if donor is None:
                     continue
-                end = window_of(donor, points, zones[donor].counts)
+                end = window_of(donor, points, counts[donor])
                 if end is None:
                     raise InputError(f"interface {title!r} leaves its donor", "correct its PointRangeDonor")
                 pairs.append(Pair(own, end, partner, title))
     yield from grids_of_file(blocks, faces, pairs, stem)
 
 
-def _zone(base: Node, name: str, node: Node) -> _Zone:
-    with in_place(f"zone {printable(name)!r}"):
-        return _Zone(base, node, printable(name), _facts(node), _coordinates(node))
+def _counts(block: FileBlock) -> Triple:
+    """Return the counts of nodes along the three indices, 1 along the third of a plane zone."""
+    ni, nj, nk = block.coordinates[0].shape
+    return ni, nj, nk
 
 
 def _facts(zone: Node) -> Facts:

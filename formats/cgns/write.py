@@ -12,9 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from meshonet.formats.cgns.joints import write_connections
+from meshonet.formats.cgns.joints import range_of, write_connections
 from meshonet.formats.cgns.nodes import NAME_LENGTH, VERSIONS, Node, child, root
-from meshonet.formats.cgns.ranges import range_of
 from meshonet.formats.format import at_least_one
 from meshonet.formats.hdf5.file import created
 from meshonet.formats.mesh.axis_order import first_fastest
@@ -29,6 +28,7 @@ _CONDITIONS: dict[Kind, str] = {
     "wall": "BCWall", "farfield": "BCFarfield", "inlet": "BCInflow", "outlet": "BCOutflow",
     "symmetry": "BCSymmetryPlane",
 }  # fmt: skip
+"""CGNS's names of boundary conditions; kinds that are not here are general ones."""
 _IN_MEMORY = 1 << 24
 """Numbers up to which a grid of many blocks, thousands of small objects, is put together in memory."""
 _METRE = np.array([0, 1, 0, 0, 0], np.float64)
@@ -66,7 +66,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def _base(top: Node, dimensions: tuple[int, int], number: int) -> Node:
-    """Add a base of zones with so many indices, whose nodes have so many coordinates."""
+    """Add a base of zones of these `dimensions`: counts of indices and of coordinates."""
     base = child(top, f"Base{number + 1}" if number else "Base", "CGNSBase_t", np.array(dimensions, np.int32))
     child(base, "DataClass", "DataClass_t", "NormalizedByUnknownDimensional")
     return base

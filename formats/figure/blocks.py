@@ -1,4 +1,4 @@
-"""What a picture of many blocks has besides: their outlines, irregular vertices, lines that run on."""
+"""What is drawn of grids of many blocks: outlines, irregular vertices, grid lines across connections."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshonet.formats.figure.layers import INK, Part, line_gaps, line_step
+from meshonet.formats.figure.layers import INK, CellsInView, line_gaps, line_step
 from meshonet.geometry.arrays import SIDES
 from meshonet.geometry.blocks.families import families
 from meshonet.geometry.blocks.grid import Grid
@@ -24,7 +24,7 @@ Lines = tuple[tuple[int, int], tuple[bool, bool]]
 
 
 def lines_of_blocks(
-    grid: Grid, singles: Sequence[Grid], parts: Sequence[Part | None], pixels: float, every: int | None
+    grid: Grid, singles: Sequence[Grid], parts: Sequence[CellsInView | None], pixels: float, every: int | None
 ) -> list[Lines]:
     """Return the lines to draw of each block, chosen alike where they run on from block to block.
 

@@ -6,12 +6,13 @@ pixel, each with the worst value in it, and only every k-th grid line is drawn.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.formats.figure.blocks import (
-    Lines,
     lines_of_blocks,
     mark_vertices,
     outline_blocks,
@@ -21,12 +22,11 @@ from meshonet.formats.figure.layers import (
     DOTS,
     INK,
     Box,
+    CellsInView,
     Colouring,
-    Part,
     body,
     in_view,
-    line_gaps,
-    line_step,
+    limits_of,
     outline,
     paint,
     rule,
@@ -37,6 +37,7 @@ from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
 _NAME = 48
@@ -54,28 +55,25 @@ def draw(
     singles = _singles(grid)
     views = [zoom] if zoom else _views(grid)
     parts = [_visible(grid, singles, view) for view in views]
-    figure, axes, bar = frame([_ratio(view) for view in views], colouring is not None)
+    figure, axes, bar = frame(views, colouring is not None)
     mesh = None
     # near a body one block has the colours of what matters there; many blocks have those of the whole
     ruling = parts[-1] if grid.topology == "blocks" else parts[0]
-    limits = _limits(colouring, ruling) if colouring else (0.0, 1.0)
+    limits = limits_of(colouring, _shown(colouring, ruling))
     for ax, view, seen in zip(axes, views, parts, strict=True):
         pixels = ax.get_window_extent().width / (view[1] - view[0])
-        lines = _lines(grid, singles, seen, pixels, every)
+        lines = lines_of_blocks(grid, singles, seen, pixels, every)
         for k, (single, part, (steps, flipped)) in enumerate(zip(singles, seen, lines, strict=True)):
             if not part:
                 continue
             if colouring:
-                values, low = colouring.parts[k], colouring.worst_is_low
-                mesh = paint(ax, single, values, part, pixels, limits, low=low)
+                mesh = paint(ax, single, colouring.parts[k], part, pixels, limits, colouring)
             rule(ax, single, part, steps, faint=colouring is not None, flipped=flipped)
         _outlines(ax, grid)
         ax.set(xlim=view[:2], ylim=view[2:])
         _note_lines(ax, [steps for steps, _ in lines])
     if bar is not None and mesh is not None and colouring:
-        scale = figure.colorbar(mesh, cax=bar, extend=_beyond(colouring, limits))
-        scale.set_label(colouring.label, color=INK, size=9)
-        bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
+        colour_bar(bar, mesh, colouring.label, _beyond(colouring, limits))
     name = grid.name if len(grid.name) <= _NAME else grid.name[: _NAME - 1] + "…"
     size = shown_counts(grid) if grid.topology == "blocks" else f"{grid.ni} × {grid.nj} nodes"
     title = f"{name}   {size}".strip()
@@ -91,16 +89,6 @@ def _singles(grid: Grid) -> list[Grid]:
     return [Grid((block,)) for block in grid.blocks]
 
 
-def _lines(
-    grid: Grid, singles: list[Grid], seen: list[Part | None], pixels: float, every: int | None
-) -> list[Lines]:
-    if grid.topology == "blocks":
-        return lines_of_blocks(grid, singles, seen, pixels, every)
-    part = seen[0]
-    steps = (1, 1) if part is None else tuple(line_step(*gap, pixels) for gap in line_gaps(grid, part))
-    return [((every or steps[0], every or steps[1]), (False, False))]
-
-
 def _outlines(ax: Axes, grid: Grid) -> None:
     if grid.topology == "blocks":
         outline_blocks(ax, grid)
@@ -109,7 +97,7 @@ def _outlines(ax: Axes, grid: Grid) -> None:
         outline(ax, grid)
 
 
-def _visible(grid: Grid, singles: list[Grid], view: Box) -> list[Part | None]:
+def _visible(grid: Grid, singles: list[Grid], view: Box) -> list[CellsInView | None]:
     parts = [in_view(single, view) for single in singles]
     if not any(parts):
         spans = "x {:.4g} to {:.4g}, y {:.4g} to {:.4g}".format(*_whole(grid))
@@ -143,22 +131,21 @@ def _whole(grid: Grid) -> Box:
     return float(low[0]), float(high[0]), float(low[1]), float(high[1])
 
 
-def _ratio(box: Box) -> float:
-    return min(max((box[1] - box[0]) / (box[3] - box[2]), 0.02), 50.0)
-
-
-def _limits(colouring: Colouring, parts: list[Part | None]) -> tuple[float, float]:
-    if colouring.limits:
-        return colouring.limits
-    seen = [
+def _shown(colouring: Colouring | None, parts: list[CellsInView | None]) -> list[NDArray[Any]]:
+    """Return the values of cells in view."""
+    if colouring is None:
+        return []
+    return [
         values[part.i0 : part.i1, part.j0 : part.j1][part.mask]
         for values, part in zip(colouring.parts, parts, strict=True)
         if part
     ]
-    values = np.concatenate(seen)
-    finite = values[np.isfinite(values)]
-    low, high = np.percentile(finite, (1, 99)) if finite.size else (0.0, 1.0)
-    return float(low), float(max(high, low + 1e-9 * abs(low) + 1e-30))
+
+
+def colour_bar(bar: Axes, colours: ScalarMappable, label: str, extend: str = "neither") -> None:
+    """Draw the scale of colours."""
+    bar.figure.colorbar(colours, cax=bar, extend=extend).set_label(label, color=INK, size=9)
+    bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
 
 
 def _beyond(colouring: Colouring, limits: tuple[float, float]) -> str:
@@ -168,11 +155,12 @@ def _beyond(colouring: Colouring, limits: tuple[float, float]) -> str:
     return ("neither", "min", "max", "both")[below + 2 * above]
 
 
-def frame(ratios: list[float], bar: bool) -> tuple[Figure, list[Axes], Axes | None]:
+def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | None]:
     """Return a figure with one axes a view, equally high side by side, and one for the colour bar."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    ratios = [min(max((box[1] - box[0]) / (box[3] - box[2]), 0.02), 50.0) for box in views]
     left, right, low, top, gap = 0.5, 0.15, 0.35, 0.32, 0.5
     side = 0.95 if bar else 0.0
     room = 11.0 - left - right - side - gap * (len(ratios) - 1)

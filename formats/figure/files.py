@@ -14,6 +14,7 @@ from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
 
 _WHOLE = View()
+"""A view of the whole grid."""
 
 
 def write(
@@ -41,5 +42,5 @@ def write(
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, kind: str) -> None:
-    """Draw the one grid of `grids`, lines only."""
+    """Draw the only grid of `grids`, lines only."""
     write(path, only_one(grids, f"a .{kind} file"), kind)

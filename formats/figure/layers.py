@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -51,8 +52,30 @@ class Colouring:
         """Values of each block."""
         return self.values if isinstance(self.values, tuple) else (self.values,)
 
+    @property
+    def scale(self) -> str:
+        """Matplotlib's name of the colours."""
+        return "YlGnBu_r" if self.worst_is_low else "YlGnBu"
 
-class Part(NamedTuple):
+    @property
+    def worst(self) -> np.ufunc:
+        """What makes one value of those of several cells."""
+        return np.minimum if self.worst_is_low else np.maximum
+
+
+def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tuple[float, float]:
+    """Return the values at both ends of the colours, for the values that are `shown`."""
+    if colouring is None:
+        return 0.0, 1.0
+    if colouring.limits:
+        return colouring.limits
+    values = np.concatenate([np.empty(0), *map(np.ravel, shown)])
+    finite = values[np.isfinite(values)]
+    low, high = np.percentile(finite, (1, 99)) if finite.size else (0.0, 1.0)
+    return float(low), float(max(high, low + 1e-9 * abs(low) + 1e-30))
+
+
+class CellsInView(NamedTuple):
     """The index ranges of cells in view, and which of them are: mask (i1-i0, j1-j0)."""
 
     i0: int
@@ -62,45 +85,44 @@ class Part(NamedTuple):
     mask: NDArray[np.bool_]
 
 
-def in_view(grid: Grid, box: Box) -> Part | None:
+def in_view(grid: Grid, box: Box) -> CellsInView | None:
     """Return the cells whose bounding box meets `box`, or None when none does."""
     meets = _meets(grid.x, box[0], box[1]) & _meets(grid.y, box[2], box[3])
     columns, rows = np.flatnonzero(meets.any(axis=1)), np.flatnonzero(meets.any(axis=0))
     if not len(columns):
         return None
     i0, i1, j0, j1 = int(columns[0]), int(columns[-1]) + 1, int(rows[0]), int(rows[-1]) + 1
-    return Part(i0, i1, j0, j1, meets[i0:i1, j0:j1])
+    return CellsInView(i0, i1, j0, j1, meets[i0:i1, j0:j1])
 
 
 def paint(
     ax: Axes,
     grid: Grid,
     values: NDArray[Any],
-    part: Part,
+    part: CellsInView,
     pixels: float,
     limits: tuple[float, float],
-    *,
-    low: bool,
+    colouring: Colouring,
 ) -> QuadMesh:
     """Colour the cells of `part`, a block of cells where they are below a pixel, by the worst value in it.
 
-    `values` (ni-1, nj-1) are those of all cells; the worst are the low ones if `low`.
+    `values` (ni-1, nj-1) are those of all cells.
     """
     nodes = grid.nodes[part.i0 : part.i1 + 1, part.j0 : part.j1 + 1]
     shown = values[part.i0 : part.i1, part.j0 : part.j1]
     columns = _blocks(_extents(nodes, part.mask, 0) * pixels)
     rows = _blocks(_extents(nodes, part.mask, 1) * pixels)
-    shown = _reduced(np.minimum if low else np.maximum, shown, columns, rows)
-    shown = np.ma.masked_array(shown, ~_reduced(np.logical_or, part.mask, columns, rows))
+    shown = reduced(colouring.worst, shown, columns, rows)
+    shown = np.ma.masked_array(shown, ~reduced(np.logical_or, part.mask, columns, rows))
     corners = nodes[np.ix_(columns, rows)]
-    scale: dict[str, Any] = {"cmap": "YlGnBu_r" if low else "YlGnBu", "vmin": limits[0], "vmax": limits[1]}
+    scale: dict[str, Any] = {"cmap": colouring.scale, "vmin": limits[0], "vmax": limits[1]}
     return ax.pcolormesh(corners[..., 0], corners[..., 1], shown, rasterized=True, zorder=1, **scale)
 
 
 def rule(
     ax: Axes,
     grid: Grid,
-    part: Part,
+    part: CellsInView,
     steps: tuple[int, int],
     *,
     faint: bool,
@@ -139,7 +161,7 @@ def body(grid: Grid) -> Floats:
     return grid.nodes[:, 0]
 
 
-def _reduced(
+def reduced(
     by: np.ufunc, values: NDArray[Any], columns: NDArray[np.intp], rows: NDArray[np.intp]
 ) -> NDArray[Any]:
     """Return `values` joined over blocks that start at `columns` and `rows` (last entries: the ends)."""
@@ -173,7 +195,7 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
     return np.concatenate([[0], np.flatnonzero(new) + 1, [len(sizes)]])
 
 
-def line_gaps(grid: Grid, part: Part) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
     """Return distances (n,) of neighbouring lines i = const and j = const, each with the areas there."""
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.figure.layers import INK, Colouring
-from meshonet.formats.figure.slices import Sheet
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.formats.figure.layers import INK, Colouring, reduced
+from meshonet.formats.figure.slices import CellSheet
+from meshonet.geometry.arrays import Floats, extent_of, norms
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,7 +26,7 @@ _FORWARD = 0.004
 """How far outlines are moved towards the viewer, in sizes of the picture, to be seen on their blocks."""
 
 
-def steps_of(sheet: Sheet, axes: Floats, pixels: float, every: int | None) -> tuple[int, int]:
+def steps_of(sheet: CellSheet, axes: Floats, pixels: float, every: int | None) -> tuple[int, int]:
     """Return how many cells along both directions are drawn as one."""
     if every:
         return every, every
@@ -51,7 +51,7 @@ class Painted:
 
 
 def painted(
-    sheet: Sheet, mask: Mask, steps: tuple[int, int], axes: Floats, colouring: Colouring | None,
+    sheet: CellSheet, mask: Mask, steps: tuple[int, int], axes: Floats, colouring: Colouring | None,
     limits: tuple[float, float],
 ) -> Painted:  # fmt: skip
     """Return the cells of a sheet in `mask` (n-1, m-1), `steps` of them as one, as seen along `axes`."""
@@ -59,18 +59,17 @@ def painted(
 
     marks = [_marks(count, step) for count, step in zip(sheet.nodes.shape[:2], steps, strict=True)]
     nodes = sheet.nodes[np.ix_(*marks)]
-    starts = [mark[:-1] for mark in marks]
-    keep = np.logical_or.reduceat(np.logical_or.reduceat(mask, starts[0], axis=0), starts[1], axis=1)
+    keep = reduced(np.logical_or, mask, *marks)
     ring = np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]], axis=2)[keep]
     normal = np.cross(ring[:, 2] - ring[:, 0], ring[:, 3] - ring[:, 1])
     normal /= np.maximum(norms(normal), 1e-300)[:, None]
     facing = normal @ axes.T
     light = 0.7 + 0.3 * np.abs(facing @ _LIGHT)
     if colouring and sheet.values is not None:
-        worst = np.minimum if colouring.worst_is_low else np.maximum
-        values = worst.reduceat(worst.reduceat(sheet.values, starts[0], axis=0), starts[1], axis=1)[keep]
-        scale = mpl.colormaps["YlGnBu_r" if colouring.worst_is_low else "YlGnBu"]
-        colours = scale(np.clip((values - limits[0]) / (limits[1] - limits[0]), 0.0, 1.0))
+        values = reduced(colouring.worst, sheet.values, *marks)[keep]
+        colours = mpl.colormaps[colouring.scale](
+            np.clip((values - limits[0]) / (limits[1] - limits[0]), 0.0, 1.0)
+        )
     else:
         colours = np.tile([0.88, 0.9, 0.92, 1.0], (len(ring), 1))
     colours[:, :3] *= np.minimum(light, 1.0)[:, None]
@@ -99,7 +98,7 @@ def paint(ax: Axes, painted: Sequence[Painted]) -> None:
         for name in ("quads", "colours", "depth", "outline", "outline_depth")
     )
     lines = outline[:, [0, 1, 1, 0]]
-    size = float(np.ptp(quads.reshape(-1, 2), axis=0).max()) or 1.0
+    size = extent_of(quads.reshape(-1, 2)) or 1.0
     order = np.argsort(np.concatenate([depth, front + _FORWARD * size]), kind="stable")
     faint, strong = faint_ink(0.45), faint_ink(1.0)
     widths = np.concatenate([np.full(len(quads), 0.25), np.full(len(lines), 0.9)])
@@ -114,5 +113,5 @@ def paint(ax: Axes, painted: Sequence[Painted]) -> None:
 
 
 def faint_ink(alpha: float) -> tuple[float, ...]:
-    """Return the colour of lines, so opaque."""
+    """Return the colour of lines with an opacity from 0 to 1."""
     return (*(int(INK[k : k + 2], 16) / 255 for k in (1, 3, 5)), alpha)

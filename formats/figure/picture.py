@@ -8,14 +8,11 @@ from typing import BinaryIO
 
 from meshonet.formats.figure.layers import DOTS
 from meshonet.formats.figure.slices import parse_slice
-from meshonet.formats.format import Format, only_one
-from meshonet.formats.registry import format_for_output
+from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, meant
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import ALL_NAMES, metric_of
-
-KINDS = ("png", "svg", "pdf", "html")
 
 
 @dataclass(frozen=True)
@@ -59,7 +56,7 @@ class Picture:
             raise InputError(problem, "use 1 or more", parameter="every")
 
     def draw(self, kind: str, path: Path | BinaryIO, grids: Iterable[Grid], dots: int = DOTS) -> None:
-        """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``, or as an ``html`` page.
+        """Draw the only grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``, or as an ``html`` page.
 
         Pages go to a path only, pictures also to an open file; `dots` are those an inch of a ``png``.
         """
@@ -81,14 +78,3 @@ class Picture:
             values = tuple(per_cell_of_blocks(grid, metric.name))
             colouring = Colouring(values, label, worst_is_low=metric.worst == "min")
         write(path, grid, kind, colouring, view, dots)
-
-
-def picture_format(output: str, to_format: str | None = None) -> Format:
-    """Return the format of a picture by the ending of `output`; standard output (``-``) is a ``png``.
-
-    Raises InputError: `output` is no picture.
-    """
-    record = format_for_output(output, to_format or ("png" if output == "-" else None))
-    if record.name not in KINDS:
-        raise InputError(f"{record.name} is no picture", "use .png, .svg, .pdf or .html", source=output)
-    return record

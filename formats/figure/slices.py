@@ -21,6 +21,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 _SPEC = re.compile(r"\s*([ijkxyz])\s*=\s*([-+.\w]+)\s*", re.ASCII)
+"""A slice as users write it: a direction and a number."""
 _MOST = 12
 """Edges of a cell, each of which a plane may cut."""
 
@@ -55,14 +56,14 @@ def parse_slice(text: str) -> Slice:
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
+class CellSheet:
     """A lattice of nodes (n, m, 3) in space and the values (n-1, m-1) of its cells, if they have any."""
 
     nodes: Floats
     values: Floats | None
 
 
-def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[Sheet]:
+def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet]:
     """Return the layer of an index of every block that has it; a cell beside it gives the value.
 
     Raises InputError: no block has the index.
@@ -76,7 +77,7 @@ def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[Sheet]:
         node = index % count
         nodes = np.moveaxis(block.nodes, at.direction, 0)[node]
         beside = np.moveaxis(values[number], at.direction, 0)[min(node, count - 2)] if values else None
-        sheets.append(Sheet(nodes, beside))
+        sheets.append(CellSheet(nodes, beside))
     if not sheets:
         most = max(block.counts[at.direction] for block in grid.blocks)
         remedy = f"use 0 to {most - 1}, or -1 for the last"
@@ -115,6 +116,7 @@ def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
 
 
 _CORNERS = np.array(list(product((0, 1), repeat=3)))
+"""Corners of a cell, as steps along i, j and k."""
 _EDGES = np.array([(a, b) for a in range(8) for b in range(a) if bin(a ^ b).count("1") == 1])
 """Pairs of corners that an edge joins."""
 

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshonet.formats.figure.figure import draw, frame, note, step_words
-from meshonet.formats.figure.layers import INK, Box, Colouring
+from meshonet.formats.figure.blocks import shown_counts
+from meshonet.formats.figure.figure import colour_bar, draw, frame, note, step_words
+from meshonet.formats.figure.layers import INK, Box, Colouring, limits_of
 from meshonet.formats.figure.painting import faint_ink, paint, painted, steps_of
-from meshonet.formats.figure.slices import Cut, Sheet, cut, layers
+from meshonet.formats.figure.slices import CellSheet, Cut, cut, layers
 from meshonet.formats.figure.view import View, flat_box
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block, face_of
@@ -57,24 +58,24 @@ def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure
     return draw(plane, colouring, flat_box(view.zoom), view.every)
 
 
-def _surface(grid: Grid, values: list[Floats] | None) -> list[Sheet]:
+def _surface(grid: Grid, values: list[Floats] | None) -> list[CellSheet]:
     """Return the patches of a surface, or the walls of a volume, all of its outer boundary without any."""
     if grid.form == "surface":
-        return [Sheet(block.nodes, values[k] if values else None) for k, block in enumerate(grid.blocks)]
+        return [CellSheet(block.nodes, values[k] if values else None) for k, block in enumerate(grid.blocks)]
     return [_sheet(grid, patch, values) for patch in grid.walls() or grid.outer_patches()]
 
 
-def _sheet(grid: Grid, patch: Patch, values: list[Floats] | None) -> Sheet:
+def _sheet(grid: Grid, patch: Patch, values: list[Floats] | None) -> CellSheet:
     nodes = grid.face(patch.block, patch.side)
     spans = patch.range(nodes.shape[:-1])
     shown = None
     if values:
         cells = face_of(values[patch.block], patch.side)
         shown = cells[tuple(slice(first, last) for first, last in spans)]
-    return Sheet(nodes[tuple(slice(first, last + 1) for first, last in spans)], shown)
+    return CellSheet(nodes[tuple(slice(first, last + 1) for first, last in spans)], shown)
 
 
-def _flattened(sheets: Sequence[Sheet]) -> list[Floats] | None:
+def _flattened(sheets: Sequence[CellSheet]) -> list[Floats] | None:
     """Return the nodes (n, m, 2) of sheets that are in one plane of two axes, None where they are not."""
     every = np.concatenate([sheet.nodes.reshape(-1, 3) for sheet in sheets])
     extent = np.ptp(every, axis=0)
@@ -84,7 +85,7 @@ def _flattened(sheets: Sequence[Sheet]) -> list[Floats] | None:
     return [np.delete(sheet.nodes, across, axis=2) for sheet in sheets]
 
 
-def _seen(grid: Grid, sheets: Sequence[Sheet], colouring: Colouring | None, view: View) -> Figure:
+def _seen(grid: Grid, sheets: Sequence[CellSheet], colouring: Colouring | None, view: View) -> Figure:
     """Return a picture of sheets from a direction."""
     axes = view.axes
     inside = [_within(sheet, view.zoom) for sheet in sheets]
@@ -104,10 +105,10 @@ def _seen(grid: Grid, sheets: Sequence[Sheet], colouring: Colouring | None, view
     low, high = points.min(axis=0), points.max(axis=0)
     pad = 0.03 * float((high - low).max())
     box = float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)
-    figure, ax, bar = _one_frame(box, colouring)
+    figure, (ax,), bar = frame([box], colouring is not None)
     pixels = ax.get_window_extent().width / (box[1] - box[0])
     steps = [steps_of(sheet, axes, pixels, view.every) for sheet in sheets]
-    limits = _limits(colouring, sheets)
+    limits = limits_of(colouring, [sheet.values for sheet in sheets if sheet.values is not None])
     parts = [
         painted(sheet, mask, step, axes, colouring, limits)
         for sheet, mask, step in zip(sheets, inside, steps, strict=True)
@@ -117,11 +118,11 @@ def _seen(grid: Grid, sheets: Sequence[Sheet], colouring: Colouring | None, view
     ax.set_axis_off()
     _triad(ax, axes, _emptiest(points, box))
     note(ax, step_words(sorted({step for pair in steps for step in pair})))
-    _finish(figure, ax, bar, grid, colouring, limits)
+    _finish(ax, bar, grid, colouring, limits)
     return figure
 
 
-def _within(sheet: Sheet, zoom: tuple[float, ...] | None) -> Any:
+def _within(sheet: CellSheet, zoom: tuple[float, ...] | None) -> Any:
     """Say for each cell (n-1, m-1) whether it is in the box of `zoom`."""
     shape = [count - 1 for count in sheet.nodes.shape[:2]]
     if zoom is None:
@@ -145,14 +146,13 @@ def _cut_figure(grid: Grid, polygons: Cut, colouring: Colouring | None, view: Vi
     pad = 0.02 * float((high - low).max())
     whole = float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)
     box = flat_box(view.zoom) or whole
-    figure, ax, bar = _one_frame(box, colouring)
-    limits = _limits(colouring, [Sheet(points, polygons.values)])
+    figure, (ax,), bar = frame([box], colouring is not None)
+    limits = limits_of(colouring, [] if polygons.values is None else [polygons.values])
     pixels = ax.get_window_extent().width / (box[1] - box[0])
     size = np.sqrt(_polygon_areas(points)) * pixels
     fills: dict[str, Any] = {"facecolors": "#e1e6eb"}
     if colouring and polygons.values is not None:
-        name = "YlGnBu_r" if colouring.worst_is_low else "YlGnBu"
-        fills = {"array": polygons.values, "cmap": name, "clim": limits}
+        fills = {"array": polygons.values, "cmap": colouring.scale, "clim": limits}
     widths = np.clip(0.06 * size, 0.0, 0.4)
     collection = PolyCollection(
         list(points), edgecolors=faint_ink(0.6), linewidths=widths, rasterized=True, zorder=1, **fills
@@ -161,7 +161,7 @@ def _cut_figure(grid: Grid, polygons: Cut, colouring: Colouring | None, view: Vi
     names = [name for k, name in enumerate("xyz") if view.slice is None or k != view.slice.direction]
     ax.set(xlim=box[:2], ylim=box[2:])
     note(ax, f"{names[0]} to the right, {names[1]} upwards")
-    _finish(figure, ax, bar, replace(grid, name=f"{grid.name}   {view.slice}".strip()), colouring, limits)
+    _finish(ax, bar, replace(grid, name=f"{grid.name}   {view.slice}".strip()), colouring, limits)
     return figure
 
 
@@ -171,39 +171,16 @@ def _polygon_areas(points: Floats) -> Floats:
     return np.asarray(0.5 * np.abs((x * ahead[1] - y * ahead[0]).sum(axis=1)))
 
 
-def _one_frame(box: Box, colouring: Colouring | None) -> tuple[Figure, Axes, Axes | None]:
-    ratio = min(max((box[1] - box[0]) / (box[3] - box[2]), 0.02), 50.0)
-    figure, (ax,), bar = frame([ratio], colouring is not None)
-    return figure, ax, bar
-
-
-def _limits(colouring: Colouring | None, sheets: Sequence[Sheet]) -> tuple[float, float]:
-    shown = [sheet.values.ravel() for sheet in sheets if sheet.values is not None]
-    if colouring is None or not shown:
-        return 0.0, 1.0
-    if colouring.limits:
-        return colouring.limits
-    low, high = np.percentile(np.concatenate(shown), (1, 99))
-    return float(low), float(max(high, low + 1e-9 * abs(low) + 1e-30))
-
-
 def _finish(
-    figure: Figure, ax: Axes, bar: Axes | None, grid: Grid, colouring: Colouring | None,
-    limits: tuple[float, float],
-) -> None:  # fmt: skip
+    ax: Axes, bar: Axes | None, grid: Grid, colouring: Colouring | None, limits: tuple[float, float]
+) -> None:
     """Add title and scale."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
     if bar is not None and colouring:
-        scale = "YlGnBu_r" if colouring.worst_is_low else "YlGnBu"
-        colours = ScalarMappable(Normalize(*limits), scale)
-        figure.colorbar(colours, cax=bar).set_label(colouring.label, color=INK, size=9)
-        bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
-    cells = sum(int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks)
-    count = len(grid.blocks)
-    size = f"{count} block{'s' * (count > 1)}, {cells} cells"
-    ax.set_title(f"{grid.name[:48]}   {size}".strip(), size=10, color=INK, loc="left", pad=4)
+        colour_bar(bar, ScalarMappable(Normalize(*limits), colouring.scale), colouring.label)
+    ax.set_title(f"{grid.name[:48]}   {shown_counts(grid)}".strip(), size=10, color=INK, loc="left", pad=4)
 
 
 def _emptiest(points: Floats, box: Box) -> tuple[float, float]:

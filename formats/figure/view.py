@@ -1,4 +1,4 @@
-"""What of a grid a picture shows, and from where."""
+"""The part of a grid that a picture shows, and the direction that it is seen from."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from meshonet.geometry.blocks.grid import Grid
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the outer edges of the one grid of `grids`, a line for each cell at them."""
+    """Write the outer edges of the only grid of `grids`, a line for each cell at them."""
     grid = only_one(grids, "a .geo file")
     mesh = unstructured(grid)
     loops = [loop for k, number in enumerate(node_numbers(grid)) for loop in _loops(grid, k, number + 1)]

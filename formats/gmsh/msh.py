@@ -7,7 +7,7 @@ converters such as OpenFOAM's insist on. https://gmsh.info/doc/texinfo/gmsh.html
 import struct
 from collections.abc import Iterable
 from pathlib import Path
-from typing import BinaryIO, NamedTuple, TypeAlias
+from typing import Any, BinaryIO, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -35,12 +35,12 @@ class Link(NamedTuple):
     nodes: Indices
 
 
-Block: TypeAlias = "tuple[str, Indices]"
+CellGroup: TypeAlias = "tuple[str, Indices]"
 """Name of a group of cells and their nodes (m, k) counted from 0."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the one grid of `grids`: quads, and lines in groups named as its patches.
+    """Write the only grid of `grids`: quads, and lines in groups named as its patches.
 
     Of a volume, hexahedra and quads.
     """
@@ -73,7 +73,7 @@ def quotable(name: str) -> str:
     return printable(name).replace('"', "'")
 
 
-def _write_22(path: Path, points: Floats, blocks: list[Block], links: list[Link], *, text: bool) -> None:
+def _write_22(path: Path, points: Floats, blocks: list[CellGroup], links: list[Link], *, text: bool) -> None:
     import meshio
 
     tags = [np.full(len(nodes), tag) for tag, (_, nodes) in enumerate(blocks, start=1)]
@@ -97,81 +97,79 @@ def _dimension(nodes: Indices) -> int:
     return int(nodes.shape[1]).bit_length() - 1
 
 
-def _write_41(path: Path, points: Floats, blocks: list[Block], links: list[Link], *, text: bool) -> None:
+def _write_41(path: Path, points: Floats, blocks: list[CellGroup], links: list[Link], *, text: bool) -> None:
     """Write the patches, entities 1, 2 ... of a dimension, and the cells, entity 1 of the next."""
     dim = _dimension(blocks[-1][1])
     entities = [(dim - 1, tag, nodes) for tag, (_, nodes) in enumerate(blocks[:-1], start=1)]
     entities.append((dim, 1, blocks[-1][1]))
     with path.open("wb") as stream:
+        file = _File(stream, text)
         stream.write(f"$MeshFormat\n4.1 {int(not text)} 8\n".encode())
         stream.write(b"" if text else struct.pack("<i", 1) + b"\n")
         stream.write(f"$EndMeshFormat\n$PhysicalNames\n{len(blocks)}\n".encode())
         for k, (name, nodes) in enumerate(blocks, start=1):
             stream.write(f'{_dimension(nodes)} {k} "{quotable(name)}"\n'.encode())
         stream.write(b"$EndPhysicalNames\n$Entities\n")
-        _write_entities(stream, points, entities, text=text)
+        _write_entities(file, points, entities)
         stream.write(b"$EndEntities\n$Nodes\n")
         count = len(points)
-        _numbers(stream, "q", (1, count, 1, count), text=text)
-        _numbers(stream, "i", (dim, 1, 0), text=text, end=b" ")
-        _numbers(stream, "q", (count,), text=text)
-        _rows(stream, np.arange(1, count + 1)[:, None], text=text)
-        _rows(stream, points, text=text)
+        file.line(("q", 1, count, 1, count))
+        file.line(("i", dim, 1, 0), ("q", count))
+        file.rows(np.arange(1, count + 1)[:, None])
+        file.rows(points)
         stream.write(b"$EndNodes\n$Elements\n")
         total = sum(len(nodes) for _, nodes in blocks)
-        _numbers(stream, "q", (len(blocks), total, 1, total), text=text)
+        file.line(("q", len(blocks), total, 1, total))
         first = 1
         for dimension, tag, nodes in entities:
-            _numbers(stream, "i", (dimension, tag, _KINDS[nodes.shape[1]]), text=text, end=b" ")
-            _numbers(stream, "q", (len(nodes),), text=text)
-            _rows(stream, np.column_stack([np.arange(first, first + len(nodes)), nodes + 1]), text=text)
+            file.line(("i", dimension, tag, _KINDS[nodes.shape[1]]), ("q", len(nodes)))
+            file.rows(np.column_stack([np.arange(first, first + len(nodes)), nodes + 1]))
             first += len(nodes)
         stream.write(b"$EndElements\n")
         if links:
-            _write_periodic(stream, dim - 1, links, text=text)
+            _write_periodic(file, dim - 1, links)
 
 
-def _write_periodic(stream: BinaryIO, dimension: int, links: list[Link], *, text: bool) -> None:
-    stream.write(b"$Periodic\n")
-    _numbers(stream, "q", (len(links),), text=text)
+class _File(NamedTuple):
+    """A file of version 4.1 being written, as text or as bytes."""
+
+    stream: BinaryIO
+    text: bool
+
+    def line(self, *groups: tuple[Any, ...]) -> None:
+        """Write a few numbers, in groups of a kind: ``i``, ``q`` (of 8 bytes) or ``d``."""
+        if self.text:
+            words = [f"{v:.17g}" if kind == "d" else str(v) for kind, *values in groups for v in values]
+            self.stream.write(" ".join(words).encode() + b"\n")
+        else:
+            packed = (struct.pack(f"<{len(values)}{kind}", *values) for kind, *values in groups)
+            self.stream.write(b"".join(packed))
+
+    def rows(self, rows: Floats | Indices) -> None:
+        """Write rows of numbers, those of whole ones in 8 bytes."""
+        floats = rows.dtype.kind == "f"
+        if self.text:
+            write_rows(self.stream, " ".join(["%e" if floats else "%d"] * rows.shape[1]), rows)
+        else:
+            self.stream.write(np.ascontiguousarray(rows, "<f8" if floats else "<i8").data)
+
+
+def _write_periodic(file: _File, dimension: int, links: list[Link]) -> None:
+    file.stream.write(b"$Periodic\n")
+    file.line(("q", len(links)))
     for link in links:
-        _numbers(stream, "i", (dimension, link.tag, link.master), text=text)
-        _numbers(stream, "q", (len(link.affine),), text=text, end=b" ")
-        _numbers(stream, "d", tuple(link.affine), text=text)
-        _numbers(stream, "q", (len(link.nodes),), text=text)
-        _rows(stream, link.nodes + 1, text=text)
-    stream.write(b"$EndPeriodic\n")
+        file.line(("i", dimension, link.tag, link.master))
+        file.line(("q", len(link.affine)), ("d", *link.affine))
+        file.line(("q", len(link.nodes)))
+        file.rows(link.nodes + 1)
+    file.stream.write(b"$EndPeriodic\n")
 
 
-def _write_entities(
-    stream: BinaryIO, points: Floats, entities: list[tuple[int, int, Indices]], *, text: bool
-) -> None:
+def _write_entities(file: _File, points: Floats, entities: list[tuple[int, int, Indices]]) -> None:
     """Write the box and the physical group of each entity, without what bounds it."""
     dimensions = [dimension for dimension, _, _ in entities]
-    _numbers(stream, "q", tuple(map(dimensions.count, range(4))), text=text)
+    file.line(("q", *map(dimensions.count, range(4))))
     for group, (_, tag, nodes) in enumerate(entities, start=1):
         own = points[nodes.ravel()]
-        box = (*own.min(axis=0).tolist(), *own.max(axis=0).tolist())
-        _numbers(stream, "i", (tag,), text=text, end=b" ")
-        _numbers(stream, "d", box, text=text, end=b" ")
-        _numbers(stream, "q", (1,), text=text, end=b" ")
-        _numbers(stream, "i", (group,), text=text, end=b" ")
-        _numbers(stream, "q", (0,), text=text)
-
-
-def _numbers(
-    stream: BinaryIO, kind: str, values: tuple[float, ...], *, text: bool, end: bytes = b"\n"
-) -> None:
-    """Write a few numbers: in text blank-separated, then `end`."""
-    if text:
-        stream.write(" ".join(f"{v:.17g}" if kind == "d" else str(v) for v in values).encode() + end)
-    else:
-        stream.write(struct.pack(f"<{len(values)}{kind}", *values))
-
-
-def _rows(stream: BinaryIO, rows: Floats | Indices, *, text: bool) -> None:
-    if text:
-        field = "%e" if rows.dtype.kind == "f" else "%d"
-        write_rows(stream, " ".join([field] * rows.shape[1]), rows)
-    else:
-        stream.write(np.ascontiguousarray(rows, "<f8" if rows.dtype.kind == "f" else "<i8").data)
+        box = *own.min(axis=0).tolist(), *own.max(axis=0).tolist()
+        file.line(("i", tag), ("d", *box), ("q", 1), ("i", group), ("q", 0))

@@ -9,19 +9,23 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from meshonet.formats.gmsh.sections import Elements, Nodes, elements, nodes, physical_tags
-from meshonet.formats.mesh.surface import Surface, flat, shapes_of
+from meshonet.formats.gmsh.sections import Elements, NumberedNodes, elements, nodes, physical_tags
+from meshonet.formats.mesh.surface import MeshBoundary, flat, shapes_of
 from meshonet.formats.mesh.unstructured import Indices
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
 _VERSIONS = ("2.2", "4.1")
+"""Versions of the format that are read."""
 _NAME = re.compile(rb'\s*(\d+)\s+(\d+)\s+"([^"\n]*)"')
+"""A line of ``$PhysicalNames``: dimension, tag, name."""
 _LINES = {1: 2, 8: 3}
+"""Nodes of Gmsh's kinds of lines, of first and second order."""
 _CELLS = {2: 3, 3: 4, 9: 3, 10: 4, 16: 4}
 """Corners of Gmsh's kinds of lines and plane cells; those of second order have more nodes."""
 _AGAIN = "write the file again"
+"""Remedy for a damaged file."""
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
@@ -83,7 +87,7 @@ def _names(section: bytes) -> dict[int, str]:
     }
 
 
-def _surface(numbered: Nodes, groups: Elements, names: dict[int, str]) -> Surface:
+def _surface(numbered: NumberedNodes, groups: Elements, names: dict[int, str]) -> MeshBoundary:
     order = np.argsort(numbered.tags, kind="stable")
     tags = numbered.tags[order]
     if not len(tags):
@@ -109,7 +113,7 @@ def _surface(numbered: Nodes, groups: Elements, names: dict[int, str]) -> Surfac
             cells.setdefault(_CELLS[kind], []).append(at[:, : _CELLS[kind]])
         elif kind != 15:
             raise InputError("has cells of three dimensions", "give a mesh of two")
-    return Surface(
+    return MeshBoundary(
         flat(numbered.points),
         {name: np.concatenate(pieces) for name, pieces in edges.items()},
         [np.concatenate(cells[corners]) for corners in sorted(cells)],

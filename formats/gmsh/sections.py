@@ -17,12 +17,13 @@ from meshonet.geometry.errors import InputError
 SIZES = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 12: 27, 15: 1, 16: 8, 17: 20}
 """Nodes of each kind of element."""
 _CUT = "the file is cut short: write it again"
+"""Remedy for a file that ends too soon."""
 
 Elements: TypeAlias = "list[tuple[int, int, Indices]]"
 """Kind, physical group (0: none) and node tags (n, nodes) of blocks of elements."""
 
 
-class Nodes(NamedTuple):
+class NumberedNodes(NamedTuple):
     """Tags (n,) and points (n, 3)."""
 
     tags: Indices
@@ -78,7 +79,7 @@ class _Stream:
         return count
 
 
-def nodes(section: bytes, version: str, binary: bool, order: str) -> Nodes:
+def nodes(section: bytes, version: str, binary: bool, order: str) -> NumberedNodes:
     """Return the nodes of a section ``$Nodes``."""
     stream = _Stream(section, binary, order)
     if version == "4.1":
@@ -86,13 +87,13 @@ def nodes(section: bytes, version: str, binary: bool, order: str) -> Nodes:
     count = stream.line()
     if not binary:
         rows = stream.take("f8", 4 * count).reshape(-1, 4)
-        return Nodes(_whole(rows[:, 0]), rows[:, 1:])
+        return NumberedNodes(_whole(rows[:, 0]), rows[:, 1:])
     raw = stream.take("i1", 28 * count)
     rows = raw.view(np.dtype([("tag", order + "i4"), ("point", order + "f8", 3)]))
-    return Nodes(rows["tag"].astype(np.int64), rows["point"].astype(np.float64).reshape(-1, 3))
+    return NumberedNodes(rows["tag"].astype(np.int64), rows["point"].astype(np.float64).reshape(-1, 3))
 
 
-def _blocks_of_nodes(stream: _Stream) -> Nodes:
+def _blocks_of_nodes(stream: _Stream) -> NumberedNodes:
     tags, points = [np.empty(0, np.int64)], [np.empty((0, 3))]
     for _ in range(stream.bounded(int(stream.take("u8", 4)[0]))):
         dimension, _, parametric = stream.take("i4", 3).tolist()
@@ -102,7 +103,7 @@ def _blocks_of_nodes(stream: _Stream) -> Nodes:
         if not 3 <= width <= 6:
             raise InputError("has nodes of an unknown kind", "write the file again", place="$Nodes")
         points.append(stream.take("f8", width * count).reshape(count, width)[:, :3].astype(np.float64))
-    return Nodes(np.concatenate(tags), np.concatenate(points))
+    return NumberedNodes(np.concatenate(tags), np.concatenate(points))
 
 
 def elements(

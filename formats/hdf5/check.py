@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshonet.formats.mesh.connection_text import connections_from
+from meshonet.formats.mesh.metadata_read import connections_from
 from meshonet.formats.mesh.recover_topology import known_topology
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import SIDES, Floats, Topology
@@ -40,6 +40,7 @@ _MOST_SEARCHED = 1 << 28
 _DAMAGE = (OSError, RuntimeError, LookupError, TypeError, ValueError, ArithmeticError)
 """What h5py makes of damaged data: almost anything, but no errors that only a program's mistakes are."""
 _TEXT = np.dtype([("length", "<u4"), ("heap", "<u8"), ("index", "<u4")])
+"""How HDF5 stores a text of variable length: its length, and its place in a heap."""
 
 
 class Checked:

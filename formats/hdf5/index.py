@@ -20,10 +20,11 @@ if TYPE_CHECKING:
 OF_PARTS = ("request", "part_size", "size")
 """Attributes that parts have and the index does not."""
 _AGAIN = "repeat the command that made it, with {skip_existing}"
+"""Remedy for parts that do not fit their index."""
 
 
 class Failed(NamedTuple):
-    """A member that could not be made: its input, what it is called, why, and whether to try it again."""
+    """A member that could not be made: its input, its name, the error, and whether to try it again."""
 
     text: str
     member: str
@@ -71,7 +72,7 @@ def part_facts(path: Path) -> PartFacts:
 
 
 def _fixed(file: h5py.File, name: str) -> str:
-    """Return an attribute that is a text of fixed length; those of others are left alone."""
+    """Return an attribute that is a text of fixed length, an empty text for any other attribute."""
     kind = file.attrs.get_id(name).dtype.kind if name in file.attrs else ""
     return bytes(file.attrs[name]).decode("utf-8", "replace") if kind == "S" else ""
 

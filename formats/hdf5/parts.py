@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.blocks.grid import Grid
 
 _NAME = re.compile(r"part-(\d{5,12})\.h5")
+"""Name of a part's file."""
 State = Literal["missing", "complete", "extended"]
 
 
@@ -100,7 +101,7 @@ class PartFiles:
         return facts
 
     def size_there(self) -> int:
-        """Return of how many inputs the parts that are there are made, 0 where there are none."""
+        """Return how many inputs each of the existing parts is made of, 0 if there are no parts."""
         for number in self.numbers()[:1]:
             return part_facts(self.path(number)).part_size
         return 0

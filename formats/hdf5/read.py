@@ -1,21 +1,26 @@
-"""Reading HDF5 datasets: boundaries, grids, and the numbers that made them."""
+"""Reading HDF5 datasets: boundaries, grids, the numbers that made them, and samples named as inputs."""
 
+from __future__ import annotations
+
+import hashlib
 import json
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from operator import call
 from typing import Any, NoReturn, TypeVar
 
 from meshonet.formats.hdf5.check import Checked, checked, opened
 from meshonet.formats.hdf5.index import Part, shown_parts
+from meshonet.formats.hdf5.write import TEXTS
 from meshonet.formats.mesh.recover_topology import boundary_of, usable
-from meshonet.formats.source import Source
+from meshonet.formats.source import Source, open_source
 from meshonet.geometry.arrays import SIDES, Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid, Origin
-from meshonet.geometry.blocks.patches import Kind, Patch
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.shapes.shape import Shape
 
@@ -87,7 +92,7 @@ def kept_of(parts: Sequence[Part], split: str) -> Sequence[int]:
 
 
 def rows_of(kept: Sequence[int], source: Source) -> Sequence[int]:
-    """Return those of the samples `kept` that the source's rows name; InputError where there are none."""
+    """Return the samples of `kept` that the rows of the source select; raise InputError if there are none."""
     if not kept:
         remedy = "mark samples where they are made, by {family} and {split}"
         raise InputError(f"no sample is marked {source.split!r}", remedy)
@@ -141,14 +146,56 @@ def _patches(data: Checked, k: int) -> tuple[Patch, ...]:
         raise InputError(problem, "remove the dataset 'parts'") from None
 
 
-def _patch(
-    name: str,
-    side: Side,
-    start: int,
-    stop: int,
-    block: int = 0,
-    across: tuple[int, int] | None = None,
-    kind: Kind = "other",
-) -> Patch:
+def _patch(name: str, side: Side, start: int, stop: int, block: int = 0, *more: Any) -> Patch:
+    across, kind = more or (None, "other")
     second = (int(across[0]), int(across[1])) if across else None
     return Patch(str(name), side, int(start), int(stop), second, int(block), kind)
+
+
+@dataclass(frozen=True)
+class DatasetSamples:
+    """Samples of a dataset, of one split or of all: those of the numbers `rows`."""
+
+    name: str
+    split: str
+    rows: range
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def digests(self) -> Iterator[str]:
+        """Yield a digest of what is stored of each of these samples."""
+        for digest in samples_read(open_source(self.named(0, len(self.rows))), _digest):
+            try:
+                yield digest()
+            except InputError as error:
+                yield str(error)
+
+    def named(self, start: int, stop: int, step: int = 1) -> str:
+        """Return the input that names every `step`-th of these samples from `start` to `stop`."""
+        rows = self.rows[start:stop:step]
+        split = f"{self.split}," if self.split else ""
+        words = f"{rows[0]}" if len(rows) == 1 else f"{rows.start}:{rows.stop}"
+        return f"{self.name}#{split}{words}" + (f":{rows.step}" if len(rows) > 1 and rows.step > 1 else "")
+
+
+def _digest(data: Checked, k: int) -> str:
+    names = [f"blocks/{m}" for m in range(data.blocks)] or [
+        name for name in (*SIDES, "nodes") if name in data
+    ]
+    digest = hashlib.sha256("\0".join(data.text(name, k) for name in TEXTS).encode())
+    for name in names:
+        digest.update(data.nodes(name, k).tobytes())
+    return digest.hexdigest()
+
+
+def samples_of(text: str) -> DatasetSamples:
+    """Return the samples that an input names; InputError where it is no dataset, or has none of them."""
+    source = open_source(text)
+    with in_source(source.name), opened(source) as file:
+        parts = shown_parts(file, source)
+        kept = Checked(file, source).kept(source.split) if parts is None else kept_of(parts, source.split)
+        count = len(rows_of(kept, source))
+    name = text.rpartition("#")[0] if source.split or source.rows else text
+    rows = range(len(kept))[source.rows] if source.rows else range(count)
+    return DatasetSamples(name, source.split, rows)

@@ -13,8 +13,7 @@ import numpy as np
 
 from meshonet.formats.format import size_of
 from meshonet.formats.hdf5.file import created
-from meshonet.formats.mesh.connection_text import connections_text
-from meshonet.formats.mesh.metadata import plain
+from meshonet.formats.mesh.metadata import connections_text, plain
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
 BLOCK = 1 << 22
 """Bytes of samples that are held back to be written together."""
 TEXTS = ("names", "split", "parts", "provenance")
+"""Datasets of texts, one a sample."""
 CHUNK = 1 << 14
 """Bytes up to which rows of several samples share a chunk."""
 Kind = Literal["meshonet-boundary", "meshonet-grid"]

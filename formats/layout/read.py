@@ -1,4 +1,4 @@
-"""Layouts are read: everything in the file is looked at before it is used."""
+"""Reading layouts, whose values are all checked before they are used."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain, Periodic
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.places import arc_at, cells_at
-from meshonet.geometry.errors import InputError, in_source
+from meshonet.geometry.errors import InputError, in_place, in_source
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
@@ -28,6 +28,7 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.shapes.domain_shape import DomainShape
 
 MOST_BYTES = 256 << 20
+"""A larger file would take many times its size in memory."""
 
 
 def read_layout(source: Source) -> Layout:
@@ -50,7 +51,7 @@ def read_layout(source: Source) -> Layout:
     loops = tuple(_loop(values) for values in file.rows("loops"))
     periodic = _periodic(file) if "periodic" in data else None
     domain = Domain(loops, printable(file.text("name")), periodic=periodic)
-    layout = _Nodes(domain, file.rows("vertices"), file.rows("edges"), file.rows("faces")).layout()
+    layout = _LayoutNodes(domain, file.rows("vertices"), file.rows("edges"), file.rows("faces")).layout()
     fronts = [k for k, values in enumerate(file.rows("loops")) if values.data.get("front") is True]
     return replace(layout, fronts=tuple(fronts))
 
@@ -83,7 +84,7 @@ def _loop(values: Values) -> Loop:
     corners = values.numbers("corners", len(points))
     if corners != sorted(set(corners)):
         raise values.error("its corners do not ascend")
-    with values.located():
+    with in_place(values.place):
         curve = Curve(points, closed=True, corners=kinks, straight=straight if straight.any() else None)
         loop = Loop(curve, tuple(corners), tuple(printable(name) for name in values.texts("names")))
     if (polygon_area(curve.points) > 0) != (values.place == "loops[0]"):
@@ -97,7 +98,7 @@ def _periodic(file: Values) -> Periodic:
     return Periodic(first, second, shift)
 
 
-class _Nodes:
+class _LayoutNodes:
     """All nodes: vertices, then those between the ends of edges, then those inside faces."""
 
     def __init__(
@@ -127,7 +128,10 @@ class _Nodes:
         loop, cells, partner = (np.concatenate(each) for each in (self.loop, self.cells, self.partner))
         for values, line in zip(self.edges, self.lines, strict=True):
             if "partner" in values.data:
-                partner[line[1:-1]] = self._partner(values, line)[1:-1]
+                other = self._line(values, values.data["partner"])
+                if len(other) != len(line):
+                    raise values.error("its partner has another number of cells")
+                partner[line[1:-1]] = other[1:-1]
         places = Places(loop, np.concatenate(self.arc), cells, partner)
         mesh = QuadMesh(self.domain, np.concatenate(self.nodes), lattice_quads(blocks), places)
         return Layout(mesh, blocks, layers)
@@ -179,13 +183,6 @@ class _Nodes:
         if values.count("cells") != len(inner) + 1:
             raise values.error(f"has {values.count('cells')} cells and {len(inner)} nodes between its ends")
         return np.concatenate([ends[:1], inner, ends[1:]]).astype(np.intp)
-
-    def _partner(self, values: Values, line: Indices) -> Indices:
-        """Return the nodes of the edge that an edge is, moved by the period."""
-        other = self._line(values, values.data["partner"])
-        if len(other) != len(line):
-            raise values.error("its partner has another number of cells")
-        return other
 
     def _line(self, values: Values, number: Any) -> Indices:
         """Return the nodes of an edge, the other way round for a number -1 - k."""

@@ -1,9 +1,7 @@
-"""Values of a JSON object, looked at before they are used."""
+"""Values of a JSON object, checked before they are used."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,15 +22,6 @@ class Values:
     def error(self, problem: str) -> InputError:
         """Return the error for this place."""
         return InputError(problem, "write the layout again", place=self.place)
-
-    @contextmanager
-    def located(self) -> Iterator[None]:
-        """Name this place in the input errors of a block that name none."""
-        try:
-            yield
-        except InputError as error:
-            error.place = error.place or self.place
-            raise
 
     def rows(self, key: str) -> list[Values]:
         """Return the objects of a list that is not empty."""
@@ -81,7 +70,7 @@ class Values:
         return [self._below(key, value, below) for value in values]
 
     def entry(self, key: str, k: int, of: int, below: int) -> int:
-        """Return number `k` of a list of so many whole numbers from 0 to below a limit."""
+        """Return entry `k` of a list of `of` whole numbers from 0 to below a limit."""
         values = self.data.get(key)
         if not isinstance(values, list) or len(values) != of:
             raise self.error(f"{key} are not {of} numbers")

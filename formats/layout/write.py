@@ -1,4 +1,4 @@
-"""Layouts are written: every node once, at a vertex, on an edge or in a face."""
+"""Writing layouts: every node stands once, at a vertex, on an edge or in a face."""
 
 import json
 from collections.abc import Iterable
@@ -15,6 +15,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 
 NAME, VERSION = "meshonet-layout", 1
+"""What a file of layouts says that it is."""
 
 
 def write_layouts(path: Path, layouts: Iterable[Layout]) -> None:
@@ -43,7 +44,7 @@ def _dumped(value: Any) -> str:
 def as_dict(layout: Layout) -> dict[str, Any]:
     """Return a layout as what JSON can hold (`meshonet.formats.layout`)."""
     domain = layout.mesh.domain
-    drawn = _Drawn(layout)
+    drawn = _WrittenLayout(layout)
     facts: dict[str, Any] = {
         "format": NAME, "version": VERSION, "name": domain.name, "cells": layout.cells,
         "loops": [
@@ -67,7 +68,7 @@ def _loop(loop: Loop) -> dict[str, Any]:
     return facts | {"straight": straight, "kinks": curve.corner_index.tolist()}
 
 
-class _Drawn:
+class _WrittenLayout:
     """The edges and faces of a layout as they are written."""
 
     def __init__(self, layout: Layout) -> None:

@@ -1,4 +1,4 @@
-"""Nodes between files, whose first index runs fastest, and memory, where the last one does.
+"""Arrays copied between the order of files (first index fastest) and that of memory (last index fastest).
 
 Copied plane by plane, so that both the rows that are read and those that are written stay in the cache: a
 block of 257 x 257 x 257 nodes takes 0.2 s, at once 0.4 s.
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats
 
 _ROWS = 16
+"""Rows copied at a time: as many numbers as two cache lines have."""
 
 
 def put(target: NDArray[Any], values: NDArray[Any]) -> None:

@@ -30,7 +30,7 @@ def cells_of(number: Indices) -> Indices:
 
 
 def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
-    """Return numbers from 0 on for the cells of blocks with so many nodes along each direction, i fastest."""
+    """Return numbers from 0 on for the cells of blocks with these counts of nodes, i fastest."""
     shapes = [tuple(n - 1 for n in count) for count in counts]
     ends = np.cumsum([0, *(int(np.prod(shape)) for shape in shapes)])
     return [

@@ -1,4 +1,4 @@
-r"""Sides of volumes that are no more than a line or a point, as around an axis or at a pole.
+r"""Degenerate sides of volumes: those that collapse to a line, as at an axis, or to a point, as at a pole.
 
 ::
 

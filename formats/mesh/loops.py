@@ -1,31 +1,41 @@
-"""Closed curves out of edges in any order and direction, with the name that each edge has."""
+"""Closed curves out of edges in any order and direction, with the name that each edge has.
+
+They give default names to the outer edges of a grid of blocks: the outermost curve is ``outer``, those around
+bodies are ``body``, ``body2`` and so on.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.formats.mesh.unstructured import Indices
+from meshonet.formats.mesh.cell_faces import faces_of
+from meshonet.formats.mesh.unstructured import node_numbers, points_of
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import face_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.polygon.corners import Indices
 
 
 @dataclass(frozen=True)
-class Loop:
+class EdgeLoop:
     """A closed curve: point numbers (n,) in order, the last one joined to the first, and each edge's name."""
 
     nodes: Indices
     names: tuple[str, ...]
 
-    def reversed(self) -> Loop:
+    def reversed(self) -> EdgeLoop:
         """Return it the other way round, from the same point."""
-        return Loop(np.roll(self.nodes[::-1], 1), self.names[::-1])
+        return EdgeLoop(np.roll(self.nodes[::-1], 1), self.names[::-1])
 
-    def begun_at(self, place: int) -> Loop:
+    def begun_at(self, place: int) -> EdgeLoop:
         """Return it from its node number `place` on."""
-        return Loop(np.roll(self.nodes, -place), (*self.names[place:], *self.names[:place]))
+        return EdgeLoop(np.roll(self.nodes, -place), (*self.names[place:], *self.names[:place]))
 
     @property
     def changes(self) -> list[int]:
@@ -33,7 +43,7 @@ class Loop:
         return [k for k in range(len(self.names)) if self.names[k] != self.names[k - 1]]
 
 
-def closed_loops(edges: Mapping[str, Indices], points: Floats) -> list[Loop]:
+def closed_loops(edges: Mapping[str, Indices], points: Floats) -> list[EdgeLoop]:
     """Return the closed curves of named edges (k, 2), each from its first edge on and in its direction.
 
     Raises InputError: a point where one edge ends, or more than two meet.
@@ -52,7 +62,7 @@ def closed_loops(edges: Mapping[str, Indices], points: Floats) -> list[Loop]:
     return _followed(ends.ravel().tolist(), twin.tolist(), names)
 
 
-def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[Loop]:
+def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[EdgeLoop]:
     loops, used = [], [False] * len(names)
     for first in range(len(names)):
         if used[first]:
@@ -63,5 +73,45 @@ def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[Loop]:
             nodes.append(flat[at])
             own.append(names[at // 2])
             at = twin[at ^ 1]
-        loops.append(Loop(np.array(nodes, np.int64), tuple(own)))
+        loops.append(EdgeLoop(np.array(nodes, np.int64), tuple(own)))
     return loops
+
+
+def with_loop_names(grid: Grid) -> Grid:
+    """Return a grid of planar blocks with patches on all its outer edges."""
+    outer = grid.outer_patches()
+    unnamed = [patch for patch in outer if not any(_covers(named, patch) for named in grid.patches)]
+    if not unnamed:
+        return grid
+    numbers = node_numbers(grid)
+    titles = _titles(grid, numbers, outer)
+    taken = {patch.name for patch in grid.patches}
+    new = []
+    for patch in unnamed:
+        line = face_of(numbers[patch.block], patch.side)[patch.start : patch.stop + 1]
+        title = titles.get(int(line[0]), titles.get(int(line[-1]), "outer"))
+        new.append(replace(patch, name=title if title not in taken else f"{title}-unnamed", kind="other"))
+    return replace(grid, patches=(*grid.patches, *new))
+
+
+def _covers(named: Patch, part: Patch) -> bool:
+    same = (named.block, named.side, named.name) == (part.block, part.side, part.name)
+    return same and named.start <= part.start and part.stop <= named.stop
+
+
+def _titles(grid: Grid, numbers: list[Indices], outer: list[Patch]) -> dict[int, str]:
+    """Return the name of the line that each outer node is on; periodic sides are parts of lines too."""
+    ends = [(p.block, p.side, p.start, p.stop) for p in outer]
+    for each in grid.connections:
+        if each.transform:
+            ends += [(block, side, *span[0]) for block, side, span in each.ends]
+    rows = [faces_of(face_of(numbers[k], side)[start : stop + 1], side) for k, side, start, stop in ends]
+    points = points_of(grid, numbers)
+    try:
+        loops = closed_loops({"": np.concatenate(rows)}, points)
+    except InputError:  # lines that touch: they count as one
+        return {}
+    outermost, *others = sorted(loops, key=lambda loop: -abs(polygon_area(points[loop.nodes])))
+    names = [(outermost, "outer")]
+    names += [(loop, "body" if k == 1 else f"body{k}") for k, loop in enumerate(others, start=1)]
+    return {int(node): name for loop, name in names for node in loop.nodes}

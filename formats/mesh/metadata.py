@@ -1,24 +1,13 @@
-"""What a grid is besides its nodes, as short texts, for formats that have room for text."""
+"""Topology, name, patches and provenance of a grid as texts, for formats that can hold text."""
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import Any, TypeAlias, get_args
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, astuple
+from typing import TypeAlias
 
-import numpy as np
-
-from meshonet.formats.mesh.axis_order import nodes_of
-from meshonet.formats.mesh.connection_text import connections_from, connections_text
-from meshonet.formats.mesh.recover_topology import known_topology, recovered, usable
-from meshonet.formats.mesh.slices import planar
-from meshonet.formats.source import printable
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import check_connections
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.blocks.patches import kind_of
 from meshonet.geometry.shapes.spatial_shape import in_space
 
 Facts: TypeAlias = Mapping[str, Sequence[str]]
@@ -56,112 +45,11 @@ def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]
     return {name: texts for name, texts in facts.items() if any(texts)}
 
 
-def number_of_grid(facts: Facts) -> int | None:
-    """Return the number, in its file, of the grid of several blocks that one with `facts` belongs to."""
-    words = facts["block"][0].split() if facts.get("block") else []
-    return int(words[0]) if len(words) == 2 and all(w.isdecimal() and len(w) < 9 for w in words) else None
-
-
-def says_in_space(facts: Facts) -> bool:
-    """Say whether the facts of a block are those of one in space."""
-    return list(facts.get("coordinates", ())) == ["3"]
-
-
-def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
-    """Return the nodes of a block of x, y[, z], each (n1, n2, n3), that its facts say is in space or a plane.
-
-    Raises InputError: it is no plane and not said to be in space.
-    """
-    if not says_in_space(facts):
-        return planar(coordinates)
-    return nodes_of([np.squeeze(values) for values in coordinates])
-
-
-def grid_of_blocks(blocks: Sequence[tuple[Floats, Facts]], name: str = "") -> Grid:
-    """Return the grid of blocks, each its nodes and facts, in the order that the facts say.
-
-    Raises InputError: a block is missing or there twice; connections that do not fit the nodes.
-    """
-    rows = sorted(((int(facts["block"][0].split()[1]), nodes, facts) for nodes, facts in blocks), key=_first)
-    if [k for k, _, _ in rows] != list(range(len(rows))):
-        problem = f"has blocks {', '.join(str(k) for k, _, _ in rows[:9])} of a grid"
-        raise InputError(problem, "keep all blocks of the grid in the file, once")
-    return _grid([(nodes, facts) for _, nodes, facts in rows], name)
-
-
-def _grid(blocks: Sequence[tuple[Floats, Facts]], name: str) -> Grid:
-    facts = blocks[0][1]
-    name = printable(facts["name"][0]) if facts.get("name") else name
-    connections = connections_from(facts["connections"][0]) if facts.get("connections") else ()
-    patches = (replace(patch, block=k) for k, (_, own) in enumerate(blocks) for patch in _parts(own))
-    made = tuple(Block(usable(nodes), finite=True) for nodes, _ in blocks)
-    check_connections(connections, [block.counts for block in made])
-    made = with_equal_nodes(made, connections)
-    return Grid(made, tuple(patches), connections, name, _provenance(facts))
-
-
-def _first(row: tuple[int, Floats, Facts]) -> int:
-    return row[0]
-
-
-def grid_with(nodes: Floats, facts: Facts, name: str = "") -> Grid:
-    """Return the grid of `nodes` and the facts of its file; without a topology it is recovered, in the plane.
-
-    A block of a grid of several is one by itself, without the connections.
-
-    `name` is its name when the facts do not say; other facts than `facts_of` makes are passed over.
-    """
-    if says_in_space(facts):
-        alone = number_of_grid(facts) is None
-        return _grid([(nodes, facts if alone else {**facts, "connections": []})], name)
-    name = printable(facts["name"][0]) if facts.get("name") else name
-    if not facts.get("topology"):
-        return recovered(nodes, name)
-    parts = tuple(_parts(facts))
-    if number_of_grid(facts) is not None:  # a block taken out of a grid of several
-        return Grid.from_nodes(usable(nodes), "quad", parts, name)
-    topology = known_topology(facts["topology"][0])
-    return Grid.from_nodes(usable(nodes), topology, parts, name, _provenance(facts))
-
-
-def _provenance(facts: Facts) -> dict[str, Any]:
-    try:
-        provenance = json.loads(facts["provenance"][0]) if facts.get("provenance") else {}
-    except (ValueError, RecursionError):
-        return {}
-    return provenance if isinstance(provenance, dict) else {}
-
-
 def plain(value: object) -> object:
     """Turn numpy's numbers and arrays into what JSON can say, and anything else into its text."""
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
-def _parts(facts: Facts) -> list[Patch]:
-    """Return the patches of a block, of the kinds that the facts say or else the names."""
-    patches = [_part(text) for text in facts.get("parts", ())]
-    spans = facts.get("across", ())
-    if len(spans) == len(patches):
-        patches = [replace(patch, across=_across(text)) for patch, text in zip(patches, spans, strict=True)]
-    kinds: list[Any] = list(facts.get("kinds", ()))
-    if len(kinds) != len(patches) or not {*kinds} <= {*get_args(Kind)}:
-        return patches
-    return [replace(patch, kind=kind) for patch, kind in zip(patches, kinds, strict=True)]
-
-
-def _across(text: str) -> tuple[int, int] | None:
-    words = text.split()
-    try:
-        return (int(words[0]), int(words[1])) if words else None
-    except (ValueError, IndexError):
-        raise InputError(f"span {text[:60]!r} is not 'first last'", "remove the field 'across'") from None
-
-
-def _part(text: str) -> Patch:
-    words: list[Any] = text.split(" ", 3)
-    try:
-        side, start, stop, name = words[0], int(words[1]), int(words[2]), words[3]
-    except (ValueError, IndexError):
-        problem = f"part {text[:60]!r} is not 'side start stop name'"
-        raise InputError(problem, "remove the field 'parts'") from None
-    return Patch(printable(name), side, start, stop)
+def connections_text(connections: Iterable[Connection]) -> str:
+    """Return connections as JSON: their fields in order, the transform as an object or null."""
+    return json.dumps([[*astuple(c)[:-1], asdict(c.transform) if c.transform else None] for c in connections])

@@ -1,4 +1,4 @@
-"""What carries the nodes of one joined side to those of the other: nothing, a shift, a rotation.
+"""The rigid motion between two joined sides: none, a translation or a rotation.
 
 It is found from the nodes, since conventions of files differ in its sign.
 """
@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, extent_of, norms
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.find_connections import TOLERANCE
@@ -22,6 +22,7 @@ from meshonet.geometry.linear import nearest_rotation
 LOOSE = 1e-3
 """Joined nodes may differ by this part of the shortest edge along their side."""
 _DIGITS = range(1, 18)
+"""Significant digits that a shift may have been written with."""
 
 
 def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
@@ -36,7 +37,7 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
     edges = [norms(np.diff(own, axis=k)) for k in range(own.ndim - 1)]
     edge = min(float(lengths.min()) for lengths in edges)
     own, donor = (nodes.reshape(-1, nodes.shape[-1]) for nodes in (own, donor))
-    reach = max(LOOSE * edge, TOLERANCE * float(np.ptp(own, axis=0).max()))
+    reach = max(LOOSE * edge, TOLERANCE * extent_of(own))
     for motion in _motions(own, donor):
         if np.abs(motion(own) - donor).max() <= reach:
             return replace(connection, transform=motion if motion.shift or motion.turn else None)

@@ -1,10 +1,10 @@
-"""Names and kinds of patches as solvers' files take them."""
+"""Names and kinds of patches in the form that files of flow solvers require."""
 
 import re
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Sequence
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Kind, Patch
+from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
 
 
 def words(
@@ -38,6 +38,13 @@ def unused(stem: str, used: Container[str], limit: int = 64) -> str:
         count += 1
         word = f"{stem[: limit - len(str(count)) - 1]}-{count}"
     return word
+
+
+def kind_said(name: str, word: str, known: Sequence[tuple[str, Kind]]) -> Kind:
+    """Return the kind of a patch called `name`: as that says, or else as the file's `word` for it begins."""
+    by_word: Kind = next((kind for sign, kind in known if word.startswith(sign)), "other")
+    by_name = kind_of(name)
+    return by_word if by_name == "other" else by_name
 
 
 def kinds(grid: Grid, patches: Iterable[Patch]) -> dict[str, Kind]:

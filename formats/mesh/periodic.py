@@ -1,4 +1,4 @@
-"""The periodic sides of a grid as pairs of named faces that face each other, row by row.
+"""The boundary of a grid as named faces, each with the cell behind it; periodic ones as pairs, row by row.
 
 ::
 
@@ -17,9 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.formats.mesh.cell_faces import faces_of
+from meshonet.formats.mesh.cell_faces import cell_numbers, faces_of
 from meshonet.formats.mesh.names import unused
-from meshonet.geometry.blocks.block import face_of
+from meshonet.geometry.blocks.block import Range, face_of
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.outer_patches import owners_of
@@ -31,7 +31,7 @@ _OPPOSITE = {2: [1, 0], 4: [0, 3, 2, 1]}
 """Places in a row of the nodes that the partner's row, of so many nodes, has one after the other."""
 
 
-class Part(NamedTuple):
+class NamedFaces(NamedTuple):
     """Faces (k, 2 or 4) of node numbers, and the number (k,) of the cell behind each."""
 
     faces: Indices
@@ -44,8 +44,8 @@ class PeriodicPair(NamedTuple):
     name: str
     partner: str
     motion: Motion
-    own: Part
-    opposite: Part
+    own: NamedFaces
+    opposite: NamedFaces
 
     @property
     def faces(self) -> Indices:
@@ -60,6 +60,32 @@ class PeriodicPair(NamedTuple):
         return np.asarray(np.unique(rows, axis=0))
 
 
+def outer_parts(
+    grid: Grid, numbers: Sequence[Indices]
+) -> tuple[dict[str, NamedFaces], tuple[PeriodicPair, ...]]:
+    """Return the outer faces by name, those of periodic pairs last, and these pairs.
+
+    `numbers` are those of the nodes of each block. Faces that connections join belong to no part; an outer
+    one that nobody named is called by its side.
+    """
+    cells = cell_numbers([block.counts for block in grid.blocks])
+    pieces: dict[str, list[NamedFaces]] = {}
+    for patch in grid.outer_patches():
+        side = face_of(numbers[patch.block], patch.side)
+        ranges = patch.range(side.shape)
+        nodes = side[tuple(slice(start, stop + 1) for start, stop in ranges)]
+        behind = face_of(cells[patch.block], patch.side)[tuple(slice(*span) for span in ranges)]
+        part = NamedFaces(faces_of(nodes, patch.side), behind.ravel(order="F"))
+        pieces.setdefault(patch.name, []).append(part)
+    parts = {
+        name: NamedFaces(*map(np.concatenate, zip(*several, strict=True))) for name, several in pieces.items()
+    }
+    pairs = tuple(periodic_pairs(grid, numbers, cells, parts))
+    for pair in pairs:
+        parts |= {pair.name: pair.own, pair.partner: pair.opposite}
+    return parts, pairs
+
+
 def periodic_pairs(
     grid: Grid, numbers: Sequence[Indices], cells: Sequence[Indices], taken: Iterable[str]
 ) -> list[PeriodicPair]:
@@ -69,7 +95,7 @@ def periodic_pairs(
     periodic2, and so on, and never as those `taken` by other faces.
     """
     motions: list[Motion] = []
-    by_motion: dict[tuple[int, str, str], list[tuple[Part, Part]]] = {}
+    by_motion: dict[tuple[int, str, str], list[tuple[NamedFaces, NamedFaces]]] = {}
     for connection in grid.connections:
         if connection.transform is None:
             continue
@@ -80,7 +106,7 @@ def periodic_pairs(
     pairs, used = [], set(taken)
     for count, ((number, *both), ends_of) in enumerate(by_motion.items()):
         own, partner = (
-            Part(*map(np.concatenate, zip(*ends, strict=True))) for ends in zip(*ends_of, strict=True)
+            NamedFaces(*map(np.concatenate, zip(*ends, strict=True))) for ends in zip(*ends_of, strict=True)
         )
         titles = []
         for k, name in enumerate(both, start=1):
@@ -101,11 +127,13 @@ def _known(motion: Motion, motions: list[Motion]) -> tuple[int, bool]:
     return len(motions) - 1, False
 
 
-def _parts(connection: Connection, numbers: Sequence[Indices], cells: Sequence[Indices]) -> tuple[Part, Part]:
+def _parts(
+    connection: Connection, numbers: Sequence[Indices], cells: Sequence[Indices]
+) -> tuple[NamedFaces, NamedFaces]:
     """Return the faces of both sides of a connection, the donor's the other way round, and the cells."""
     faces = [faces_of(nodes, connection.side) for nodes in both_sides(connection, numbers)]
     behind = [rows.ravel(order="F") for rows in both_sides(cellwise(connection), cells)]
-    return Part(faces[0], behind[0]), Part(faces[1][:, _OPPOSITE[faces[1].shape[1]]], behind[1])
+    return NamedFaces(faces[0], behind[0]), NamedFaces(faces[1][:, _OPPOSITE[faces[1].shape[1]]], behind[1])
 
 
 def both_sides(connection: Connection, numbers: Sequence[Indices]) -> tuple[Indices, Indices]:
@@ -122,6 +150,15 @@ def cellwise(connection: Connection) -> Connection:
         for span in (connection.range, connection.donor_range)
     )
     return replace(connection, range=own, donor_range=donor)
+
+
+def donor_range(each: Connection) -> Range:
+    """Return the donor's range, first and last node swapped along directions that are opposed."""
+    span = list(each.donor_range)
+    for way in each.orientation:
+        if way < 0:
+            span[-way - 1] = span[-way - 1][::-1]
+    return tuple(span)
 
 
 def patch_on(grid: Grid, connection: Connection) -> str:

@@ -1,4 +1,4 @@
-"""The outer edges of a grid as a boundary, and the grid of a file whose topology nobody wrote down."""
+"""The outer edges of a grid as a boundary, and the topology of grids whose file does not state it."""
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.shapes.spatial_shape import SpatialShape, in_space
 
 _SEAM = 1e-6
+"""Sides are joined when they differ by no more than this part of their first step."""
 
 
 def boundary_of(grid: Grid) -> Shape:
@@ -61,8 +62,12 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
 def usable(nodes: Floats) -> Floats:
     """Return `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3) as they are.
 
-    Raises InputError: a coordinate is not finite, or so large that products of two are not.
+    Raises InputError: one node along a direction; a coordinate that is not finite, or so large that products
+    of two are not.
     """
+    if min(nodes.shape[:-1]) < 2:
+        counts = " x ".join(map(str, nodes.shape[:-1]))
+        raise InputError(f"{counts} nodes", "give at least two along every direction")
     if not -LARGEST < nodes.min() <= nodes.max() < LARGEST:  # NaN passes through min and compares false
         place = tuple(np.argwhere(~(np.abs(nodes) < LARGEST))[0].tolist())
         node = ", ".join(f"{name}={k}" for name, k in zip("ijk", place[:-1], strict=False))

@@ -1,4 +1,4 @@
-"""What the structured blocks of a three-dimensional file are: a grid in the plane, volumes, or surfaces.
+"""Whether the blocks of a three-dimensional file are a grid in the plane, volumes, or surfaces.
 
 The rule, for all blocks of a file together:
 
@@ -6,18 +6,19 @@ The rule, for all blocks of a file together:
   other shifted along one coordinate (a layer one cell thick), is a slice.
 - Where all blocks are slices across the same coordinate at the same places, the file holds a grid in the
   plane: that coordinate and the index across are left out.
-- Else a block with one plane of nodes is a surface patch, any other one a volume, whose index i is reversed
-  where its directions are left-handed.
+- Else a block with one plane of nodes is a surface patch, any other one a volume.
+- Index i is reversed in the plane and in volumes where their directions are left-handed.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.mesh.axis_order import nodes_of
+from meshonet.formats.mesh.recover_topology import is_left_handed
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.handedness import signed_volume
 from meshonet.geometry.errors import InputError, in_place
@@ -27,7 +28,7 @@ _SAME = 1e-6
 
 
 @dataclass(frozen=True)
-class Lattice:
+class IndexedNodes:
     """Nodes of a block (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3), and which index of its file i, j, k were.
 
     `reversed` says that i runs against its index, counted from its last node.
@@ -37,14 +38,9 @@ class Lattice:
     axes: tuple[int, ...]
     reversed: bool = False
 
-    @property
-    def dropped(self) -> int:
-        """The index of the file that is left out, -1 where none is."""
-        return next((axis for axis in range(3) if axis not in self.axes), -1)
-
 
 class _Slice(NamedTuple):
-    """The index across a slice, the coordinates within it, and where it is along the one across."""
+    """A slice: index across it, coordinates within it, coordinate across it and its values, size."""
 
     axis: int
     kept: tuple[int, ...]
@@ -53,7 +49,7 @@ class _Slice(NamedTuple):
     size: float
 
 
-def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[Lattice]:
+def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[IndexedNodes]:
     """Return the nodes of all blocks of a file by the rule above; `places` are what errors call them.
 
     The coordinates x, y[, z] of a block are (n1, n2, n3) each, of any unit, number type and memory order;
@@ -67,7 +63,11 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
             with in_place(place):
                 slices.append(_slice_of(coordinates))
         if _in_one_plane(slices):
-            return [_plane(block, each) for block, each in zip(blocks, slices, strict=True) if each]
+            planes = [_plane(block, each) for block, each in zip(blocks, slices, strict=True) if each]
+            return [
+                replace(each, nodes=each.nodes[::-1], reversed=True) if is_left_handed(each.nodes) else each
+                for each in planes
+            ]
         return [_in_space(block) for block in blocks]
 
 
@@ -76,15 +76,10 @@ def planar(coordinates: Sequence[Floats]) -> Floats:
 
     Raises InputError: it is no slice.
     """
-    return plane_of(coordinates)[0]
-
-
-def plane_of(coordinates: Sequence[Floats]) -> tuple[Floats, int]:
-    """Return the nodes as `planar` does, and which index was left out: 0, 1 or 2."""
     with np.errstate(all="ignore"):
         cut = _slice_of(coordinates, most=max(coordinates[0].shape))
         if cut:
-            return _plane(coordinates, cut).nodes, cut.axis
+            return _plane(coordinates, cut).nodes
     counts = "x".join(map(str, coordinates[0].shape))
     if 1 in coordinates[0].shape:
         problem = f"the {counts} nodes lie on a curved or tilted surface"
@@ -93,19 +88,19 @@ def plane_of(coordinates: Sequence[Floats]) -> tuple[Floats, int]:
     raise InputError(f"a grid of {counts} nodes is three-dimensional", remedy)
 
 
-def _plane(coordinates: Sequence[Floats], cut: _Slice) -> Lattice:
+def _plane(coordinates: Sequence[Floats], cut: _Slice) -> IndexedNodes:
     within = [_at(coordinates[k], cut.axis, 0) for k in cut.kept]
-    return Lattice(nodes_of(within), tuple(axis for axis in range(3) if axis != cut.axis))
+    return IndexedNodes(nodes_of(within), tuple(axis for axis in range(3) if axis != cut.axis))
 
 
-def _in_space(coordinates: Sequence[Floats]) -> Lattice:
+def _in_space(coordinates: Sequence[Floats]) -> IndexedNodes:
     """Return a volume block or a surface patch."""
     axes = tuple(axis for axis, count in enumerate(coordinates[0].shape) if count > 1)
     coordinates = [np.squeeze(values) for values in coordinates]
     left_handed = len(axes) == 3 and signed_volume(coordinates) < 0
     if left_handed:
         coordinates = [values[::-1] for values in coordinates]
-    return Lattice(nodes_of(coordinates), axes, left_handed)
+    return IndexedNodes(nodes_of(coordinates), axes, left_handed)
 
 
 def _in_one_plane(slices: Sequence[_Slice | None]) -> bool:
@@ -123,7 +118,7 @@ def _in_one_plane(slices: Sequence[_Slice | None]) -> bool:
 
 
 def _slice_of(coordinates: Sequence[Floats], most: int = 2) -> _Slice | None:
-    """Return how a block of at most so many planes is a slice, None where it is none."""
+    """Return the slice that a block of at most `most` planes is, None if it is not a slice."""
     dims = coordinates[0].shape
     if sum(count > 1 for count in dims) < 2:
         problem = f"a grid of {'x'.join(map(str, dims))} nodes has no cells"

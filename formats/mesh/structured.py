@@ -1,65 +1,66 @@
-"""Structured blocks of a file, with what it says of their faces, as grids in the plane or in space."""
+"""Grids from the structured blocks of a file, their named faces and interfaces, in the plane or in space.
+
+A file may say where blocks are joined and what is a boundary; what it does not say is found by position. So
+is the motion of a periodic interface, since conventions of files differ in its sign.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import groupby
+from typing import Any
 
-from meshonet.formats.mesh.gather import Joint, Piece, Stretch, grids_of
-from meshonet.formats.mesh.gather_space import grids_in_space
-from meshonet.formats.mesh.metadata import Facts, grid_with, nodes_by_facts
-from meshonet.formats.mesh.recover_topology import usable
-from meshonet.formats.mesh.slices import Lattice, lattices
-from meshonet.formats.mesh.windows import Face, Pair, Part, connection_of, part_of, patch_of
+import numpy as np
+
+from meshonet.formats.mesh.loops import with_loop_names
+from meshonet.formats.mesh.metadata import Facts
+from meshonet.formats.mesh.metadata_read import grid_of_blocks, grid_with, nodes_by_facts, number_of_grid
+from meshonet.formats.mesh.motions import like_others, matched
+from meshonet.formats.mesh.recover_topology import recovered, usable
+from meshonet.formats.mesh.slices import IndexedNodes, lattices
+from meshonet.formats.mesh.windows import Face, Pair, connection_of, patch_of
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.connection import Connection, Motion, check_connections
+from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
+from meshonet.geometry.blocks.find_connections import find_connections, order
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.errors import InputError, in_place
+from meshonet.geometry.blocks.patches import Patch, kind_of
+from meshonet.geometry.blocks.transform import turned_patch
+from meshonet.geometry.errors import in_place
 
 
 @dataclass(frozen=True)
 class FileBlock:
     """A block of a file: x, y[, z], each (n1, n2, n3), of any number type, its name, its place in messages.
 
-    `iblank` says how many nodes have which mark, where there are marks.
+    `iblank` says how many nodes have which mark, where there are marks; `facts` are what `facts_of` made.
     """
 
     coordinates: Sequence[Floats]
     name: str = ""
     place: str = ""
     iblank: Mapping[str, int] = field(default_factory=dict)
+    facts: Facts = field(default_factory=dict)
 
 
-def grids_of_file(
-    blocks: Sequence[FileBlock], faces: Sequence[Face], pairs: Sequence[Pair], name: str
-) -> Iterator[Grid]:
-    """Yield the grids of the blocks of a file called `name`, by the rule of `meshonet.formats.mesh.slices`.
+def described_grids(blocks: Iterable[FileBlock], name: str) -> Iterator[Grid]:
+    """Yield the grids of blocks whose facts say their topology, those of a grid of several side by side."""
+    for number, group in groupby(blocks, key=lambda block: number_of_grid(block.facts)):
+        read = ((block, _described(block)) for block in group)
+        if number is not None:
+            yield grid_of_blocks([(nodes, block.facts) for block, nodes in read], name)
+            continue
+        for block, nodes in read:
+            with in_place(block.place):
+                yield grid_with(nodes, block.facts, block.name)
 
-    Blocks that touch are one grid, and so are all patches of surface; each of the others is one by itself.
 
-    Raises InputError: a block without cells, nodes that are not usable, pairs that do not lie on each other.
-    """
-    if not blocks:
-        return
-    read = lattices([block.coordinates for block in blocks], [block.place for block in blocks])
-    for lattice, block in zip(read, blocks, strict=True):
-        with in_place(block.place):
-            usable(lattice.nodes)
-    patches: list[list[Patch]] = [[] for _ in blocks]
-    for face in faces:
-        patch = patch_of(face, read)
-        if patch is not None:
-            patches[patch.block].append(patch)
-    pieces = [
-        Piece(lattice.nodes, block.name, tuple(own), block.iblank)
-        for lattice, block, own in zip(read, blocks, patches, strict=True)
-    ]
-    if read[0].nodes.shape[-1] == 2:
-        yield from grids_of(pieces, list(_joints(pairs, read)), name)
-        return
-    connections = [_connected(pair, read) for pair in pairs]
-    yield from grids_in_space(pieces, [each for each in connections if each], name)
+def _described(block: FileBlock) -> Floats:
+    with in_place(block.place):
+        return usable(nodes_by_facts(block.coordinates, block.facts))
 
 
 def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Grid:
@@ -72,26 +73,140 @@ def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Gri
     (lattice,) = lattices([coordinates])
     if lattice.nodes.shape[-1] == 2:
         return grid_with(lattice.nodes, facts, name)
-    (grid,) = grids_in_space([Piece(usable(lattice.nodes))], (), name)
+    (grid,) = _grids([lattice], [FileBlock(coordinates)], (), (), name)
     return grid
 
 
-def _connected(pair: Pair, read: Sequence[Lattice]) -> Connection | None:
-    try:
-        return connection_of(pair, read)
-    except ValueError:
-        ends = " to ".join(f"block {window.block}" for window in (pair.own, pair.donor))
-        problem = f"interface {pair.name!r} of {ends} joins indices that do not lie on each other"
-        raise InputError(problem, "correct its ranges and its transform") from None
+def grids_of_file(
+    blocks: Sequence[FileBlock], faces: Sequence[Face], pairs: Sequence[Pair], name: str
+) -> Iterator[Grid]:
+    """Yield the grids of the blocks of a file called `name`, by the rule of `meshonet.formats.mesh.slices`.
+
+    Blocks that touch are one grid, and so are all patches of surface; each of the others is one by itself.
+    Several grids are called by their block where that has a name, else by `name` and a number, in the order
+    of their first blocks. Outer edges of a planar grid of several blocks that have no name get one
+    (`meshonet.formats.mesh.loops`).
+
+    Raises InputError: a block without cells, nodes that are not usable, pairs that do not lie on each other.
+    """
+    if blocks:
+        read = lattices([block.coordinates for block in blocks], [block.place for block in blocks])
+        yield from _grids(read, blocks, faces, pairs, name)
 
 
-def _joints(pairs: Sequence[Pair], read: Sequence[Lattice]) -> Iterator[Joint]:
-    """Yield what is joined of plane blocks; each runs along an interface against the other."""
+def _grids(
+    read: Sequence[IndexedNodes],
+    blocks: Sequence[FileBlock],
+    faces: Sequence[Face],
+    pairs: Sequence[Pair],
+    name: str,
+) -> Iterator[Grid]:
+    for lattice, block in zip(read, blocks, strict=True):
+        with in_place(block.place):
+            usable(lattice.nodes)
+    made = [Block(lattice.nodes, finite=True) for lattice in read]
+    patches = [patch for face in faces if (patch := patch_of(face, read))]
+    stated, named = _stated(pairs, read, made)
+    planar = read[0].nodes.shape[-1] == 2
+    if planar:
+        patches += named
+    known = [end for each in stated for end in each.ends]
+    known += [
+        (p.block, p.side, p.range(made[p.block].face(p.side).shape[:-1]))
+        for p in patches
+        if p.kind != "interface"
+    ]
+    without = [(*end[:2], *end[2][0]) if planar else end for end in known]
+    connections = sorted((*stated, *find_connections(made, without=without)), key=order)
+    groups = _groups(made, connections)
+    for count, group in enumerate(groups, start=1):
+        own_name = blocks[group[0]].name if len(group) == 1 else ""
+        grid = _joined(group, made, blocks, connections, patches)
+        grid = replace(grid, name=name if len(groups) == 1 else own_name or f"{name}-{count}")
+        if planar:
+            grid = _alone(grid) if len(group) == 1 else with_loop_names(grid)
+        yield grid
+
+
+def _stated(
+    pairs: Sequence[Pair], read: Sequence[IndexedNodes], blocks: Sequence[Block]
+) -> tuple[list[Connection], list[Patch]]:
+    """Return the connections that a file states, once though most stand there twice, and periodic patches.
+
+    These are of sides whose pairs are called so. Periodic connections of one motion, or its inverse, get the
+    very same one, so that they agree where they meet.
+    """
+    stated: dict[object, Connection] = {}
+    names: dict[object, str] = {}
+    motions: list[Motion] = []
     for pair in pairs:
-        own, donor = part_of(pair.own, read), part_of(pair.donor, read)
-        if own and donor:
-            yield Joint(_stretch(pair.own.block, own), _stretch(pair.donor.block, donor), pair.name)
+        each = connection_of(pair, read)
+        if each is None:
+            continue
+        if kind_of(pair.name) == "periodic":
+            names[each.ends[0]] = pair.name
+        first = each if order(each) <= order(each.reversed()) else each.reversed()
+        if first.ends not in stated:
+            check_connections([first], [block.counts for block in blocks])
+            connection = matched(first, blocks)
+            stated[first.ends] = (
+                connection if connection.transform is None else like_others(connection, motions)
+            )
+    patches = [
+        Patch(names[end], end[1], end[2][0][0], end[2][0][1], block=end[0])
+        for each in stated.values()
+        for end in each.ends
+        if each.transform is not None and end in names
+    ]
+    return list(stated.values()), patches
 
 
-def _stretch(block: int, part: Part) -> Stretch:
-    return block, part.side, *part.range[0]
+def _groups(blocks: Sequence[Block], connections: Sequence[Connection]) -> list[list[int]]:
+    """Return the numbers of the blocks of each grid: connected ones, and all patches of surface."""
+    label = list(range(len(blocks)))
+    surface = [k for k, block in enumerate(blocks) if block.nodes.shape[2:] == (3,)]
+    joined = [(each.block, each.donor) for each in connections] + [(surface[0], k) for k in surface]
+    for pair in joined:
+        a, b = (label[k] for k in pair)
+        label = [min(a, b) if each in (a, b) else each for each in label]
+    return [[k for k in range(len(blocks)) if label[k] == first] for first in sorted(set(label))]
+
+
+def _joined(
+    group: Sequence[int],
+    blocks: Sequence[Block],
+    of_file: Sequence[FileBlock],
+    connections: Sequence[Connection],
+    patches: Sequence[Patch],
+) -> Grid:
+    """Return the grid of the blocks of a `group`; the provenance has their names and the counts of iblank."""
+    number = {block: k for k, block in enumerate(group)}
+    own = tuple(
+        replace(each, block=number[each.block], donor=number[each.donor])
+        for each in connections
+        if each.block in number
+    )
+    ordered = sorted((p for p in patches if p.block in number), key=lambda p: p.block)
+    titles, marks = [of_file[k].name for k in group], Counter[str]()
+    for k in group:
+        marks.update(of_file[k].iblank)
+    facts: dict[str, Any] = {"zones": titles} if all(titles) and len(titles) > 1 else {}
+    facts |= {"iblank": dict(marks)} if marks else {}
+    named = tuple(replace(p, block=number[p.block]) for p in ordered)
+    return Grid(with_equal_nodes([blocks[k] for k in group], own), named, own, provenance=facts)
+
+
+def _alone(grid: Grid) -> Grid:
+    """Return the grid of a block that touches no other, its topology recovered, its patches along."""
+    if any(each.transform for each in grid.connections):
+        return with_loop_names(grid)
+    nodes, patches = grid.blocks[0].nodes, grid.patches
+    alone = replace(recovered(nodes, grid.name), provenance=grid.provenance)
+    if grid.connections and not alone.connections:
+        return with_loop_names(grid)
+    for _ in range(4):
+        if nodes.shape == alone.nodes.shape and np.array_equal(nodes, alone.nodes):
+            return replace(alone, patches=patches or alone.patches)
+        patches = tuple(turned_patch(patch, len(nodes) - 1) for patch in patches)
+        nodes = np.swapaxes(nodes, 0, 1)[:, ::-1]
+    return alone

@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from meshonet.formats.mesh.loops import Loop, closed_loops
+from meshonet.formats.mesh.loops import EdgeLoop, closed_loops
 from meshonet.formats.mesh.unstructured import Indices
 from meshonet.formats.source import LARGEST, printable
 from meshonet.geometry.arrays import SIDES, Floats, Side
@@ -25,7 +25,7 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.shapes.named_edges import Labelled, runs
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.geometry.shapes.polygon_shape import Ring, domain_or_body, polygon_shape
+from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
 
 MOST_EDGES = 400_000
@@ -35,7 +35,7 @@ NAMELESS = "boundary"
 
 
 @dataclass(frozen=True)
-class Surface:
+class MeshBoundary:
     """What a mesh of points (n, 2) says of its boundary.
 
     Parameters
@@ -50,7 +50,7 @@ class Surface:
     cells: list[Indices] = field(default_factory=list)
 
 
-def shapes_of(surface: Surface, name: str) -> Iterator[Shape]:
+def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
     """Yield the shapes that the closed curves of `surface` make.
 
     A four-sided domain whose opposite sides have equal counts keeps its nodes, as do a body and a far field
@@ -89,7 +89,7 @@ def _free_edges(cells: list[Indices]) -> Indices:
     return edges[np.sort(first[count == 1])]
 
 
-def _with_holes(outer: Loop, holes: list[Loop], surface: Surface, name: str) -> Shape:
+def _with_holes(outer: EdgeLoop, holes: list[EdgeLoop], surface: MeshBoundary, name: str) -> Shape:
     """Return the domain of curves; the nodes of an O grid are kept, west and east with them."""
     points = surface.points
     if len(holes) == 1 and len(outer.nodes) == len(holes[0].nodes):
@@ -102,21 +102,21 @@ def _with_holes(outer: Loop, holes: list[Loop], surface: Surface, name: str) -> 
     return polygon_shape([_ring(loop, points) for loop in (outer, *holes)], name)
 
 
-def _clockwise(loop: Loop, points: Floats) -> Loop:
+def _clockwise(loop: EdgeLoop, points: Floats) -> EdgeLoop:
     return loop.reversed() if polygon_area(points[loop.nodes]) > 0 else loop
 
 
-def _ring(loop: Loop, points: Floats) -> Ring:
+def _ring(loop: EdgeLoop, points: Floats) -> PolygonRing:
     """Return a curve with its corners: where it turns, and where its edges change their name."""
     ring, names = points[loop.nodes], [printable(name) for name in loop.names]
     if len(set(names)) == 1:
-        return Ring(ring, None, names[:1] if names[0] else ())
+        return PolygonRing(ring, None, names[:1] if names[0] else ())
     turns = np.flatnonzero(np.abs(turning(ring, closed=True)) > np.radians(CORNER_DEG))
     corners = sorted({*turns.tolist(), *loop.changes})
-    return Ring(ring, corners, [names[k] or NAMELESS for k in corners])
+    return PolygonRing(ring, corners, [names[k] or NAMELESS for k in corners])
 
 
-def _cut(inner: Loop, outer: Loop, surface: Surface) -> list[int]:
+def _cut(inner: EdgeLoop, outer: EdgeLoop, surface: MeshBoundary) -> list[int]:
     """Return the nodes from the first of `inner` to the far field along the cells, where they lead there."""
     if len(surface.cells) != 1 or surface.cells[0].shape[1] != 4:
         return []
@@ -156,13 +156,13 @@ def _line_across(quads: Indices, start: int, count: int) -> list[int]:
     return []
 
 
-def _o_parts(inner: Loop, outer: Loop) -> tuple[Patch, ...]:
+def _o_parts(inner: EdgeLoop, outer: EdgeLoop) -> tuple[Patch, ...]:
     """Return the parts of both curves, or none when nothing is named."""
-    sides: tuple[tuple[Side, Loop], ...] = (("south", inner), ("north", outer))
+    sides: tuple[tuple[Side, EdgeLoop], ...] = (("south", inner), ("north", outer))
     return tuple(part for side, loop in sides for part in runs(side, loop.names))
 
 
-def _domain(loop: Loop, surface: Surface, name: str) -> Shape:
+def _domain(loop: EdgeLoop, surface: MeshBoundary, name: str) -> Shape:
     points = surface.points
     corners = _corners(loop, surface)
     if corners is None:
@@ -192,7 +192,7 @@ def _domain(loop: Loop, surface: Surface, name: str) -> Shape:
     return Boundary(edges["south"], edges["north"], edges["west"], edges["east"], "quad", parts, name)
 
 
-def _corners(loop: Loop, surface: Surface) -> list[int] | None:
+def _corners(loop: EdgeLoop, surface: MeshBoundary) -> list[int] | None:
     """Return the four corners of a domain as places of `chain`, when there are four."""
     quads = [rows for rows in surface.cells if rows.shape[1] == 4]
     if len(quads) == 1 and len(surface.cells) == 1:
@@ -203,7 +203,7 @@ def _corners(loop: Loop, surface: Surface) -> list[int] | None:
     return loop.changes if len(loop.changes) == 4 else None
 
 
-def _labelled(shape: Shape, loops: list[Loop], points: Floats) -> Shape:
+def _labelled(shape: Shape, loops: list[EdgeLoop], points: Floats) -> Shape:
     """Return `shape` with the names of the edges it was made of, if they have any."""
     if not any(any(loop.names) for loop in loops):
         return shape

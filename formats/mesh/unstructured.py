@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.mesh.cell_faces import cells_of
-from meshonet.formats.mesh.outer_parts import outer_parts
-from meshonet.formats.mesh.periodic import PeriodicPair
+from meshonet.formats.mesh.periodic import PeriodicPair, outer_parts
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.shared_nodes import shared_nodes

@@ -1,4 +1,4 @@
-"""Parts of the faces of blocks in the indices of a file, as parts of the sides of the blocks they became.
+"""Parts of block faces by the indices of a file, and the parts of sides that they are in the blocks read.
 
 A file counts the nodes of a block by three indices. The block that was read may have an index less, and may
 have the first one reversed (`meshonet.formats.mesh.slices`).
@@ -9,18 +9,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
-from meshonet.formats.mesh.slices import Lattice
+from meshonet.formats.mesh.slices import IndexedNodes
 from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import PLACES, Range
 from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.meeting_sides import AROUND
 from meshonet.geometry.blocks.patches import Kind, Patch
 from meshonet.geometry.errors import InputError
 
 Triple: TypeAlias = tuple[int, int, int]
 _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.items()}
+"""Sides by the direction that they are an end of, and which end."""
 
 
-class Window(NamedTuple):
+class FaceWindow(NamedTuple):
     """A part of a face of a block: its first and last node, counted from 0 by the three indices of the file.
 
     The last node may come before the first one, as files have it where two windows are joined.
@@ -34,7 +36,7 @@ class Window(NamedTuple):
 class Face(NamedTuple):
     """A part of a face that is called something."""
 
-    window: Window
+    window: FaceWindow
     name: str
     kind: Kind
 
@@ -45,13 +47,13 @@ class Pair(NamedTuple):
     `partner` has the index of the donor that lies along each index of the own block.
     """
 
-    own: Window
-    donor: Window
+    own: FaceWindow
+    donor: FaceWindow
     partner: Triple
     name: str = ""
 
 
-class Part(NamedTuple):
+class SidePart(NamedTuple):
     """A part of a side; for each of its directions the index of the file, and 1 or -1 as that one ran."""
 
     side: Side
@@ -60,8 +62,8 @@ class Part(NamedTuple):
     ways: tuple[int, ...]
 
 
-def part_of(window: Window, lattices: Sequence[Lattice]) -> Part | None:
-    """Return the part of a side that a window is, None where it is none: an edge, or all of a plane block.
+def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | None:
+    """Return the part of a side that a window is, None for an edge or for all of a plane block.
 
     Raises InputError: there is no such block, or it does not reach so far.
     """
@@ -87,10 +89,10 @@ def part_of(window: Window, lattices: Sequence[Lattice]) -> Part | None:
         return None
     span = tuple((min(first, last), max(first, last)) for _, first, last in along)
     ways = tuple(1 if first < last else -1 for _, first, last in along)
-    return Part(_SIDES[fixed[0]], span, tuple(axis for axis, _, _ in along), ways)
+    return SidePart(_SIDES[fixed[0]], span, tuple(axis for axis, _, _ in along), ways)
 
 
-def patch_of(face: Face, lattices: Sequence[Lattice]) -> Patch | None:
+def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
     """Return the patch that a face is; None and raises as `part_of`."""
     part = part_of(face.window, lattices)
     if part is None:
@@ -100,7 +102,7 @@ def patch_of(face: Face, lattices: Sequence[Lattice]) -> Patch | None:
     return Patch(face.name, part.side, start, stop, *place, face.kind)
 
 
-def connection_of(pair: Pair, lattices: Sequence[Lattice]) -> Connection | None:
+def connection_of(pair: Pair, lattices: Sequence[IndexedNodes]) -> Connection | None:
     """Return the connection that a pair is, without a motion; None and raises as `part_of`.
 
     Also raises InputError: indices that do not lie on each other.
@@ -108,6 +110,9 @@ def connection_of(pair: Pair, lattices: Sequence[Lattice]) -> Connection | None:
     here, there = part_of(pair.own, lattices), part_of(pair.donor, lattices)
     if here is None or there is None:
         return None
+    ends = pair.own.block, here.side, here.range, pair.donor.block, there.side, there.range
+    if lattices[pair.own.block].nodes.shape[-1] == 2:  # right-handed, they run along it in opposite ways
+        return Connection(*ends, (-AROUND[here.side] * AROUND[there.side],))
     orientation = []
     if any(pair.partner[axis] not in there.axes for axis in here.axes):
         problem = (
@@ -117,5 +122,4 @@ def connection_of(pair: Pair, lattices: Sequence[Lattice]) -> Connection | None:
     for axis, way in zip(here.axes, here.ways, strict=True):
         place = there.axes.index(pair.partner[axis])
         orientation.append((place + 1) * way * there.ways[place])
-    ends = pair.own.block, here.side, here.range, pair.donor.block, there.side, there.range
     return Connection(*ends, tuple(orientation))

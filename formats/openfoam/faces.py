@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.mesh.cell_faces import cell_numbers
-from meshonet.formats.mesh.periodic import Part, both_sides, cellwise
+from meshonet.formats.mesh.periodic import NamedFaces, both_sides, cellwise
 from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -40,7 +40,7 @@ class Faces(NamedTuple):
     neighbour: Labels
 
 
-def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, Part]) -> Faces:
+def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, NamedFaces]) -> Faces:
     """Return the faces of a grid of volumes whose nodes have these `numbers`, outer ones as `parts` has them.
 
     Raises InputError: more than 32 bits count; a cell that is its own neighbour.
@@ -75,16 +75,16 @@ def whole(nodes: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
     return np.asarray(several & (nodes[:, 0] != nodes[:, 2]) & (nodes[:, 1] != nodes[:, 3]))
 
 
-def without_collapsed(faces: Faces, parts: Mapping[str, Part]) -> tuple[Faces, dict[str, Part]]:
+def without_collapsed(faces: Faces, parts: Mapping[str, NamedFaces]) -> tuple[Faces, dict[str, NamedFaces]]:
     """Return faces and parts without those that are no more than a line, and without parts that lose all."""
     keep, inner = whole(faces.nodes), len(faces.neighbour)
     kept = {name: (part, whole(part.faces)) for name, part in parts.items()}
     left = Faces(faces.nodes[keep], faces.owner[keep], faces.neighbour[keep[:inner]])
-    return left, {name: Part(p.faces[at], p.cells[at]) for name, (p, at) in kept.items() if at.any()}
+    return left, {name: NamedFaces(p.faces[at], p.cells[at]) for name, (p, at) in kept.items() if at.any()}
 
 
 def _beyond(grid: Grid, cells: Sequence[Indices]) -> list[list[Labels]]:
-    """Return the cell beyond each face of the sides of each block, -1 where there is none, i or j fastest."""
+    """Return the neighbour at each face of the sides of each block, -1 at the boundary, i or j fastest."""
     table = [[np.full(face_of(own, side).shape, -1) for side in PLACES] for own in cells]
     sides = list(PLACES)
     for each in grid.connections:

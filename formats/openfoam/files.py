@@ -4,6 +4,8 @@ Binary ones are those of a little-endian machine with labels of 32 bits and scal
 reads by what the header says. https://doc.openfoam.com/2312/fundamentals/input-types/dictionaries/
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -16,6 +18,7 @@ from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
 
 _ARCH = '    arch        "LSB;label=32;scalar=64";\n'
+"""Header entry that says what numbers of a binary file are."""
 
 
 def head(
@@ -36,19 +39,21 @@ def write_mesh(folder: Path, points: Floats, faces: Faces, *, binary: bool) -> N
         f"nPoints: {len(points)} nCells: {int(faces.owner.max()) + 1} "
         f"nFaces: {len(faces.nodes)} nInternalFaces: {len(faces.neighbour)}"
     )
-    _write_points(folder / "points", points, binary=binary)
+    put = _put if binary else _rows
+    with _list(folder / "points", "vectorField", binary=binary) as stream:
+        put(stream, points, "(%e %e %e)")
     _write_faces(folder / "faces", faces.nodes, binary=binary)
-    _write_labels(folder / "owner", faces.owner, note, binary=binary)
-    _write_labels(folder / "neighbour", faces.neighbour, note, binary=binary)
+    for name, labels in (("owner", faces.owner), ("neighbour", faces.neighbour)):
+        with _list(folder / name, "labelList", note, binary=binary) as stream:
+            put(stream, labels, "%d")
 
 
-def _write_points(path: Path, points: Floats, *, binary: bool) -> None:
+@contextmanager
+def _list(path: Path, kind: str, note: str = "", *, binary: bool) -> Iterator[BinaryIO]:
+    """Give the stream of a list whose header is written."""
     with path.open("wb") as stream:
-        stream.write(head("vectorField", path.name, binary=binary).encode("ascii"))
-        if binary:
-            _put(stream, points, len(points))
-        else:
-            _rows(stream, "(%e %e %e)", points)
+        stream.write(head(kind, path.name, note, binary=binary).encode("ascii"))
+        yield stream
 
 
 def _write_faces(path: Path, nodes: NDArray[np.int32], *, binary: bool) -> None:
@@ -56,12 +61,11 @@ def _write_faces(path: Path, nodes: NDArray[np.int32], *, binary: bool) -> None:
     kind = "faceCompactList" if binary else "faceList"
     own = nodes != np.roll(nodes, -1, axis=1)
     sizes = own.sum(axis=1)
-    with path.open("wb") as stream:
-        stream.write(head(kind, path.name, binary=binary).encode("ascii"))
+    with _list(path, kind, binary=binary) as stream:
         if binary:
             flat = nodes if (sizes == 4).all() else nodes[own]
-            _put(stream, np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32), len(nodes) + 1)
-            _put(stream, flat, flat.size)
+            _put(stream, np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32))
+            _put(stream, flat.reshape(-1))
             return
         stream.write(f"{len(nodes)}\n(\n".encode("ascii"))
         ends = [0, *(np.flatnonzero(np.diff(sizes)) + 1).tolist(), len(nodes)]
@@ -72,24 +76,16 @@ def _write_faces(path: Path, nodes: NDArray[np.int32], *, binary: bool) -> None:
         stream.write(b")\n")
 
 
-def _write_labels(path: Path, labels: NDArray[np.int32], note: str, *, binary: bool) -> None:
-    with path.open("wb") as stream:
-        stream.write(head("labelList", path.name, note, binary=binary).encode("ascii"))
-        if binary:
-            _put(stream, labels, len(labels))
-        else:
-            _rows(stream, "%d", labels[:, None])
-
-
-def _put(stream: BinaryIO, values: NDArray[Any], count: int) -> None:
-    """Write a list of `count` things as bytes."""
-    stream.write(f"\n{count}\n(".encode("ascii"))
+def _put(stream: BinaryIO, values: NDArray[Any], _: str = "") -> None:
+    """Write a list as bytes."""
+    stream.write(f"\n{len(values)}\n(".encode("ascii"))
     order = values.dtype.newbyteorder("<")
     stream.write(np.ascontiguousarray(values, order).data)
     stream.write(b")\n")
 
 
-def _rows(stream: BinaryIO, form: str, rows: NDArray[Any]) -> None:
+def _rows(stream: BinaryIO, rows: NDArray[Any], form: str) -> None:
+    """Write a list as text, an entry of the given form a line."""
     stream.write(f"{len(rows)}\n(\n".encode("ascii"))
-    write_rows(stream, form, rows)
+    write_rows(stream, form, rows.reshape(len(rows), -1))
     stream.write(b")\n")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshonet.formats.mesh.names import kinds, words
-from meshonet.formats.mesh.periodic import Part, PeriodicPair
+from meshonet.formats.mesh.periodic import NamedFaces, PeriodicPair
 from meshonet.formats.openfoam.files import head
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.connection import Motion
@@ -20,11 +20,12 @@ PLANES = ""
 EMPTY = "frontAndBack"
 """Title of their patch, of type ``empty``."""
 _TYPES: dict[Kind, str] = {"wall": "wall", "symmetry": "symmetry"}
+"""OpenFOAM's types of patches; kinds that are not here are ``patch``."""
 _FLAT = 1e-15
 """A symmetry plane is one whose unit normals differ by no more, squared (symmetryPlanePolyPatch.C)."""
 
 
-class Patch(NamedTuple):
+class CasePatch(NamedTuple):
     """Outer faces that lie behind each other in the list of faces; `more` are further entries."""
 
     name: str
@@ -33,7 +34,7 @@ class Patch(NamedTuple):
     more: tuple[str, ...] = ()
 
 
-def with_empty_planes(grid: Grid, parts: Mapping[str, Part]) -> dict[str, Part]:
+def with_empty_planes(grid: Grid, parts: Mapping[str, NamedFaces]) -> dict[str, NamedFaces]:
     """Return `parts` with bottoms and tops as one, `PLANES`, the last, where the grid is a plane's.
 
     That is so where all blocks are one cell thick between symmetry planes: solvers then leave k out.
@@ -50,30 +51,30 @@ def with_empty_planes(grid: Grid, parts: Mapping[str, Part]) -> dict[str, Part]:
         return dict(parts)
     planes = [parts[name] for name in parts if name in ends]
     rest = {name: part for name, part in parts.items() if name not in ends}
-    return {**rest, PLANES: Part(*map(np.concatenate, zip(*planes, strict=True)))}
+    return {**rest, PLANES: NamedFaces(*map(np.concatenate, zip(*planes, strict=True)))}
 
 
 def patches_of(
-    grid: Grid, parts: Mapping[str, Part], pairs: Sequence[PeriodicPair], points: Floats
-) -> list[Patch]:
+    grid: Grid, parts: Mapping[str, NamedFaces], pairs: Sequence[PeriodicPair], points: Floats
+) -> list[CasePatch]:
     """Return title, type and further entries of the patch of each part; periodic sides are ``cyclic``."""
     kind = kinds(grid, grid.outer_patches())
     word = words((name for name in parts if name != PLANES), taken=[EMPTY], letter=True)
-    patches = {PLANES: Patch(EMPTY, "empty", 0)}
+    patches = {PLANES: CasePatch(EMPTY, "empty", 0)}
     for name, title in word.items():
         type_ = _TYPES.get(kind.get(name, "other"), "patch")
         if type_ == "symmetry" and _is_flat(points[parts[name].faces]):
             type_ = "symmetryPlane"
-        patches[name] = Patch(title, type_, 0)
+        patches[name] = CasePatch(title, type_, 0)
     for pair in pairs:
         ends = (pair.name, pair.partner, pair.motion), (pair.partner, pair.name, pair.motion.inverse())
         for name, partner, motion in ends:
             more = f"neighbourPatch  {word[partner]};", *_transform(motion)
-            patches[name] = Patch(word[name], "cyclic", 0, more)
+            patches[name] = CasePatch(word[name], "cyclic", 0, more)
     return [patches[name]._replace(size=len(part.cells)) for name, part in parts.items()]
 
 
-def write_boundary(path: Path, patches: Sequence[Patch], start: int) -> None:
+def write_boundary(path: Path, patches: Sequence[CasePatch], start: int) -> None:
     """Write names, types and face counts of the patches, whose faces begin at number `start`."""
     text = f"{head('polyBoundaryMesh', 'boundary')}{len(patches)}\n(\n"
     for patch in patches:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from meshonet.formats.format import Options, only_one
 from meshonet.formats.mesh.collapsed import with_collapsed
-from meshonet.formats.mesh.outer_parts import outer_parts
+from meshonet.formats.mesh.periodic import outer_parts
 from meshonet.formats.mesh.unstructured import node_numbers, points_of
 from meshonet.formats.openfoam.faces import all_faces, without_collapsed
 from meshonet.formats.openfoam.files import head, write_mesh
@@ -26,12 +26,13 @@ _DICTIONARIES = {
     "fvSchemes": "gradSchemes {}\ndivSchemes {}\nlaplacianSchemes {}\n",
     "fvSolution": "",
 }
+"""Least entries of the dictionaries without which OpenFOAM's tools do not start."""
 _SMALL = 1 << 16
 """Cells up to which a mesh is text, which people can read, unless options say otherwise."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the one grid of `grids` around `path`, which is left empty.
+    """Write the only grid of `grids` around `path`, which is left empty.
 
     A plane one, or one that is one cell thick between symmetry planes, has these as a patch ``empty``. Cells
     at sides that are a line or a point are prisms and pyramids. The mesh that is there is replaced when the

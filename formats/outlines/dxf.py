@@ -10,15 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.formats.mesh.surface import MOST_EDGES, Surface, shapes_of
+from meshonet.formats.mesh.surface import MOST_EDGES, MeshBoundary, shapes_of
 from meshonet.formats.mesh.unstructured import Indices
 from meshonet.formats.source import LARGEST, Source, printable
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
 _KINDS = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
+"""Entities that are curves."""
 _MOST_BYTES = 64 << 20
+"""Larger drawings take too long to read: no outline needs so many curves."""
 _MEET = 1e-6
 """How far apart, in extents, two ends may lie and still meet."""
 _SAG = 1e-5
@@ -67,7 +69,7 @@ def _lines(curves: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
     if not curves:
         return []
     every = np.array([(v.x, v.y) for _, curve in curves for v in curve.control_vertices()])
-    extent = float(np.ptp(every, axis=0).max())
+    extent = extent_of(every)
     if not (np.abs(every) < LARGEST).all() or extent == 0:
         raise InputError("its curves have no size, or one that is not finite", "check the drawing")
     lines, count = [], 0
@@ -85,10 +87,10 @@ def _lines(curves: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
     return lines
 
 
-def _joined(lines: list[tuple[str, Floats]]) -> Surface:
+def _joined(lines: list[tuple[str, Floats]]) -> MeshBoundary:
     """Return the curves as edges between points, ends that meet being one point."""
     points = np.concatenate([line for _, line in lines])
-    reach = _MEET * float(np.ptp(points, axis=0).max())
+    reach = _MEET * extent_of(points)
     counts = [len(line) for _, line in lines]
     stops = np.cumsum(counts)
     starts = stops - counts
@@ -107,4 +109,4 @@ def _joined(lines: list[tuple[str, Floats]]) -> Surface:
     for (layer, _), start, stop in zip(lines, starts, stops, strict=True):
         nodes = same[start:stop]
         edges.setdefault(layer, []).append(np.stack([nodes[:-1], nodes[1:]], axis=1))
-    return Surface(points, {layer: np.concatenate(pieces) for layer, pieces in edges.items()})
+    return MeshBoundary(points, {layer: np.concatenate(pieces) for layer, pieces in edges.items()})

@@ -20,18 +20,19 @@ from meshonet.formats.source import LARGEST, Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.geometry.shapes.polygon_shape import Ring, domain_or_body, polygon_shape
+from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
 _ASK = "give a POLYGON or a closed LINESTRING"
+"""Remedy for what is no outline."""
 
 
 @dataclass(frozen=True)
-class _Drawn:
-    """A geometry, what it is called, where it stands, and the properties of its rings."""
+class _Geometry:
+    """A geometry: its name, its place in the file, and the properties of its rings."""
 
     name: str
     place: str
@@ -45,7 +46,7 @@ def read_wkt(source: Source) -> Iterator[Shape]:
     Raises InputError: text that is no WKT, a geometry that is no outline; with its line.
     """
     geometries = _geometries(_text(source))
-    yield from _named([_Drawn(source.stem, place, geometry, {}) for place, geometry in geometries])
+    yield from _named([_Geometry(source.stem, place, geometry, {}) for place, geometry in geometries])
 
 
 def read_geojson(source: Source) -> Iterator[Shape]:
@@ -61,7 +62,7 @@ def read_geojson(source: Source) -> Iterator[Shape]:
         features = _features(json.loads(_text(source)))
     except (ValueError, RecursionError) as error:
         raise InputError(f"is not JSON ({_short(error)})", "give a GeoJSON file") from None
-    drawn: list[_Drawn] = []
+    drawn: list[_Geometry] = []
     for number, (properties, geometry) in enumerate(features, start=1):
         place = f"feature {number}" if len(features) > 1 else ""
         name = printable(str(properties.get("name") or "")) or source.stem
@@ -69,7 +70,7 @@ def read_geojson(source: Source) -> Iterator[Shape]:
             raise InputError("is not a GeoJSON geometry (it names no type)", _ASK, place=place)
         try:
             with np.errstate(all="ignore"):  # of NaN and infinity, which are refused later
-                drawn.append(_Drawn(name, place, shape(geometry), properties))
+                drawn.append(_Geometry(name, place, shape(geometry), properties))
         except (ShapelyError, ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
             raise InputError(f"is not a GeoJSON geometry ({_short(error)})", _ASK, place=place) from None
     yield from _named(drawn)
@@ -96,7 +97,7 @@ def _geometries(text: str) -> list[tuple[str, BaseGeometry]]:
     return geometries
 
 
-def _named(drawn: list[_Drawn]) -> Iterator[Shape]:
+def _named(drawn: list[_Geometry]) -> Iterator[Shape]:
     """Yield the shapes of what is drawn, numbered where several share a name."""
     parts = [(each, rings) for each in drawn for rings in _rings(each.geometry, each.place)]
     if not parts:
@@ -110,7 +111,7 @@ def _named(drawn: list[_Drawn]) -> Iterator[Shape]:
             raise
 
 
-def _shape(drawn: _Drawn, rings: list[Any], name: str) -> Shape:
+def _shape(drawn: _Geometry, rings: list[Any], name: str) -> Shape:
     """Return the domain of a polygon, or the body or outline that a closed line is."""
     points = [_points(ring) for ring in rings]
     if rings[0].geom_type == "LineString":
@@ -119,7 +120,7 @@ def _shape(drawn: _Drawn, rings: list[Any], name: str) -> Shape:
     names = _of_rings(drawn.properties, "names", len(rings))
     return polygon_shape(
         [
-            Ring(ring, _corners(own, k), _names(label, k))
+            PolygonRing(ring, _corners(own, k), _names(label, k))
             for k, (ring, own, label) in enumerate(zip(points, corners, names, strict=True), start=1)
         ],
         name,

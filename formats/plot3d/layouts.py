@@ -2,13 +2,16 @@
 
 A file is a header of integers, ``[count] ni nj [nk]`` for every block, and then for every block all x,
 all y, [all z] and [iblank], i fastest. Nothing in it says whether there is a count, a third direction or
-an iblank array, so every layout is tried and those whose length is exactly the file's are kept.
-https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
+an iblank array, so every layout is tried and those whose length is exactly the file's are kept; of these the
+one is read whose cells are the most regular. https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
 """
 
+from __future__ import annotations
+
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from math import prod
 from typing import Any
 
@@ -16,22 +19,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.mesh.slices import lattices
-from meshonet.formats.plot3d.regular import regular_cells
+from meshonet.formats.plot3d.stream import Stream
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 
 Dims = tuple[int, ...]
 Header = Callable[[int], "int | None"]
 """Returns header integer k, or None past the end or where the number is no integer."""
 _MOST_BLOCKS = 100_000
+"""A header that counts more blocks is none of Plot3D."""
 _MOST_FLAGS = 1000
+"""An iblank array of more different values is none."""
 _JUDGED = 100
+"""Nodes along each index whose cells are looked at to tell readings apart."""
 _LESS_LIKELY = 0.1
+"""How much less regular a surface counts than a grid in the plane."""
 MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS
 """Integers of the longest header."""
 
 
 @dataclass(frozen=True)
-class Layout:
+class FileLayout:
     """One way to read a file: whether a count stands first, 2 or 3 axes, whether iblank follows, all dims."""
 
     counted: bool
@@ -56,7 +64,7 @@ class Layout:
         return self.starts(real, integer)[-1]
 
 
-def layouts(integer: Header) -> Iterator[Layout]:
+def layouts(integer: Header) -> Iterator[FileLayout]:
     """Yield the layouts whose header is plausible: a sensible count, every dimension at least 1."""
     for counted, axes in itertools.product((True, False), (3, 2)):
         blocks = integer(0) if counted else 1
@@ -65,7 +73,7 @@ def layouts(integer: Header) -> Iterator[Layout]:
         dims = _dims(integer, blocks, axes, int(counted))
         if dims:
             for iblank in (False, True):
-                yield Layout(counted, axes, iblank, dims)
+                yield FileLayout(counted, axes, iblank, dims)
 
 
 def _dims(integer: Header, blocks: int, axes: int, start: int) -> tuple[Dims, ...]:
@@ -81,25 +89,56 @@ def _dims(integer: Header, blocks: int, axes: int, start: int) -> tuple[Dims, ..
 
 @dataclass(frozen=True)
 class Candidate:
-    """A layout that fits the file's length, and how to get a block's arrays out of it.
+    """A layout that fits the file's length, and the numbers of the file in it.
 
     Parameters
     ----------
-    arrays, flags : return for block k its coordinates, and its iblank array, flat in the file's number type.
+    stream : all numbers of the file.
+    real, integer : number types of coordinates, and of dims and iblank.
+    planes : whether the arrays of a block stand plane by plane.
     numbers, kind : the number type and byte order, for messages and as options of the format.
     """
 
-    layout: Layout
-    arrays: Callable[[int], Sequence[NDArray[Any]]]
-    flags: Callable[[int], NDArray[Any]]
-    numbers: str = ""
-    kind: frozenset[str] = frozenset()
+    layout: FileLayout
+    stream: Stream
+    real: np.dtype[Any]
+    integer: np.dtype[Any]
+    planes: bool
+    numbers: str
+    kind: frozenset[str]
 
     @property
     def traits(self) -> frozenset[str]:
         """The options of the format that describe it."""
         count = "multi" if self.layout.counted else "single"
-        return self.kind | {count, f"{self.layout.axes}d", "iblank" if self.layout.iblank else "no-iblank"}
+        iblank = "iblank" if self.layout.iblank else "no-iblank"
+        return self.kind | {count, f"{self.layout.axes}d", iblank, "planes" if self.planes else "whole"}
+
+    def arrays(self, block: int) -> list[NDArray[Any]]:
+        """Return the coordinates of a block, flat; views of those that stand whole."""
+        axes = self.layout.axes
+        rows = [self._numbers(at, axes * n, self.real).reshape(axes, -1) for at, n in self._planes(block)]
+        return list(rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1))
+
+    def flags(self, block: int) -> NDArray[Any]:
+        """Return the iblank array of a block, flat."""
+        size = self.layout.axes * self.real.itemsize
+        flags = [self._numbers(at + size * n, n, self.integer) for at, n in self._planes(block)]
+        return flags[0] if len(flags) == 1 else np.concatenate(flags)
+
+    def _planes(self, block: int) -> list[tuple[int, int]]:
+        """Return where the arrays of each plane of a block start, and its nodes; one entry for whole ones."""
+        start, end = self._starts[block : block + 2]
+        planes = self.layout.dims[block][2] if self.planes else 1
+        nodes = prod(self.layout.dims[block]) // planes
+        return [(start + k * ((end - start) // planes), nodes) for k in range(planes)]
+
+    @cached_property
+    def _starts(self) -> list[int]:
+        return self.layout.starts(self.real.itemsize, self.integer.itemsize)
+
+    def _numbers(self, at: int, count: int, kind: np.dtype[Any]) -> NDArray[Any]:
+        return np.frombuffer(self.stream.take(at, count * kind.itemsize), kind)
 
     @property
     def blocks(self) -> range:
@@ -171,3 +210,33 @@ def _tallied(flags: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
     counts = np.bincount(np.asarray(flags - flags.min(), np.int64))
     values = np.flatnonzero(counts)
     return values + low, counts[values]
+
+
+def regular_cells(nodes: Floats) -> tuple[int, int]:
+    """Return how many cells lie as most others do, and how many there are, of (ni, nj, 2) or in space.
+
+    In the plane and in volumes these are the cells of the prevailing sign of area or volume; on a surface the
+    pairs of neighbours whose normals differ by less than a right angle.
+    """
+    if nodes.shape[2:] == (3,):
+        normal = _cross(*_diagonals(nodes))
+        pairs = (normal[1:], normal[:-1]), (normal[:, 1:], normal[:, :-1])
+        signs = np.concatenate([np.ones(1), *((a * b).sum(axis=-1).ravel() for a, b in pairs)])
+        return int((signs > 0).sum()), len(signs)
+    if nodes.ndim == 3:
+        (x, y), (u, v) = (np.moveaxis(d, -1, 0) for d in _diagonals(nodes))
+        signs = x * v - y * u
+    else:
+        u, v, w = (nodes[1:, :-1, :-1], nodes[:-1, 1:, :-1], nodes[:-1, :-1, 1:])
+        corner = nodes[:-1, :-1, :-1]
+        signs = (_cross(u - corner, v - corner) * (w - corner)).sum(axis=-1)
+    return max(int((signs > 0).sum()), int((signs < 0).sum())), signs.size
+
+
+def _diagonals(nodes: Floats) -> tuple[Floats, Floats]:
+    return nodes[1:, 1:] - nodes[:-1, :-1], nodes[:-1, 1:] - nodes[1:, :-1]
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    (x, y, z), (u, v, w) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)

@@ -3,8 +3,8 @@
 It goes with a Plot3D file of the same grid, plane, of volumes or of surfaces. Faces are 1, 2
 at k = 1, kmax; 3, 4 at i = 1, imax; 5, 6 at j = 1, jmax; their two ranges run over the next indices in cyclic
 order (i, j), (j, k), (k, i). Of two joined faces the second's ranges run as the first's, or are swapped.
-Names of patches stand in comments before their rows. Periodic sides, which nobody has laid down, are rows of
-type PERIODIC that else are as those of interfaces.
+Names of patches stand in comments before their rows. Periodic sides, which the format does not define, are
+rows of type PERIODIC that else are as those of interfaces.
 https://crumsey.github.io/turbmodels/nmf_documentation.html
 """
 
@@ -12,14 +12,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from meshonet.formats.format import only_one
-from meshonet.formats.mesh.names import kinds, words
+from meshonet.formats.mesh.names import kind_said, kinds, words
+from meshonet.formats.mesh.periodic import donor_range, patch_on
+from meshonet.formats.mesh.windows import Face, FaceWindow, Pair
+from meshonet.formats.source import printable
 from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import PLACES, Range
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Kind
+from meshonet.geometry.blocks.patches import Kind, kind_of
+from meshonet.geometry.errors import InputError
 
 PART = "# part: "
 """Begins the comment that names the patch of the next row; before two names, that of its donor."""
@@ -28,11 +33,12 @@ FACES = (3, 5, 1)
 _TYPES: dict[Kind, str] = {
     "wall": "VISCOUS", "farfield": "FARFIELD", "inlet": "INFLOW", "outlet": "OUTFLOW", "symmetry": "SYMMETRY",
 }  # fmt: skip
+"""Types of boundary in the map; other patches have their name as type."""
 _RULE = "# " + "=" * 78
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the map of the one grid of `grids`."""
+    """Write the map of the only grid of `grids`."""
     write_map(path, [only_one(grids, "a .nmf file")])
 
 
@@ -76,18 +82,14 @@ class _Rows:
         return rows
 
     def _joined(self, each: Connection) -> list[str]:
-        along = list(each.donor_range)
-        for way in each.orientation:
-            first, last = along[abs(way) - 1]
-            along[abs(way) - 1] = (first, last) if way > 0 else (last, first)
         own, own_first = self._window(each.block, each.side, each.range)
-        donor, donor_first = self._window(each.donor, each.donor_side, tuple(along))
+        donor, donor_first = self._window(each.donor, each.donor_side, donor_range(each))
         # the third direction of blocks with two lies along that of others
         partner = [*(abs(way) - 1 for way in each.orientation), 1][own_first]
         swap = str(partner != donor_first).upper()
         if each.transform is None:
             return [f"ONE_TO_ONE {own} {donor} {swap}"]
-        names = [_named(self._grid, way) for way in (each, each.reversed())]
+        names = [patch_on(self._grid, way) for way in (each, each.reversed())]
         return [*(f"{PART}{name}" for name in names if all(names)), f"PERIODIC {own} {donor} {swap}"]
 
     def _window(self, block: int, side: Side, part: Range) -> tuple[str, int]:
@@ -104,14 +106,110 @@ class _Rows:
         return f"{self._before + block + 1} {FACES[axis] - end} {spans[first]} {spans[1 - first]}", first
 
 
-def _named(grid: Grid, each: Connection) -> str:
-    """Return the name of the patch that a side of a connection lies in."""
-    counts = grid.blocks[each.block].face(each.side).shape[:-1]
-    for p in grid.patches:
-        if (p.block, p.side) == (each.block, each.side) and _within(each.range, p.range(counts)):
-            return p.name
-    return ""
+_KINDS: tuple[tuple[str, Kind], ...] = (
+    ("viscous", "wall"), ("wall", "wall"), ("tangency", "wall"), ("inviscid", "wall"), ("farfield",
+    "farfield"), ("inflow", "inlet"), ("outflow", "outlet"), ("back_pressure", "outlet"), ("sym", "symmetry"),
+)  # fmt: skip
+"""Kinds of boundary by the start of the map's word for them."""
+_NOTHING = ("unprocessed", "collapsed", "pole", "patched", "overset")
+"""Types of rows that say nothing of a face that is used here."""
+_MOST_BYTES = 1 << 26
+"""A larger file is no map: it would have a million rows."""
+_REMEDY = "write the map again, or take it away"
+"""Remedy for a map that does not fit."""
 
 
-def _within(part: Range, whole: Range) -> bool:
-    return all(a <= first and last <= b for (first, last), (a, b) in zip(part, whole, strict=True))
+class Map(NamedTuple):
+    """What a map says of blocks: named faces, and pairs that are joined."""
+
+    faces: list[Face]
+    pairs: list[Pair]
+
+
+def read_map(path: Path, dims: Sequence[tuple[int, int, int]]) -> Map:
+    """Return what the map at `path` says of blocks with `dims`.
+
+    Raises InputError: it cannot be read, or is of blocks of other sizes.
+    """
+    name = printable(path.name)
+    try:
+        if path.stat().st_size > _MOST_BYTES:
+            raise InputError(f"its map {name} is implausibly large", "take it away")
+        text = path.read_text("utf-8", "replace")
+        lines = list(enumerate((line.strip() for line in text.splitlines()), start=1))
+        return _read([(n, line) for n, line in lines if line], dims)
+    except InputError as error:
+        error.place = error.place or name
+        raise
+    except (ValueError, IndexError, OSError) as error:
+        raise InputError(
+            f"its map cannot be read ({printable(str(error))[:80]})", _REMEDY, place=name
+        ) from None
+
+
+def _read(lines: list[tuple[int, str]], dims: Sequence[tuple[int, int, int]]) -> Map:
+    plain = [(n, line) for n, line in lines if not line.startswith("#")]
+    count = int(plain[0][1].split()[0]) if plain else 0
+    own_dims = [tuple(int(word) for word in line.split()[1:4]) for _, line in plain[1 : count + 1]]
+    if own_dims != [tuple(size) for size in dims]:
+        shown = ", ".join("x".join(map(str, size)) for size in own_dims[:3])
+        raise InputError(f"its map is of {count} blocks: {shown}", _REMEDY)
+    known = Map([], [])
+    rows = {n for n, _ in plain[count + 1 :]}
+    names: list[str] = []
+    for number, line in lines:
+        if number in rows:
+            try:
+                _row(known, line, names, dims)
+            except (ValueError, IndexError):
+                raise InputError(f"row {printable(line)[:60]!r} is not understood", _REMEDY) from None
+            names = []
+        elif line.startswith(PART.strip()):
+            names.append(printable(line[len(PART.strip()) :].strip()))
+    return known
+
+
+def _row(known: Map, line: str, names: list[str], dims: Sequence[tuple[int, int, int]]) -> None:
+    """Add what one row says: a face, or two that are joined."""
+    words = line.split()
+    title = words[0].strip("'\"")
+    numbers = [int(word) for word in words[1:13] if word.lstrip("-").isdigit()]
+    windows = [_window(numbers[k : k + 6], dims) for k in range(0, len(numbers), 6)]
+    if title.lower().startswith(_NOTHING):
+        return
+    if len(windows) == 1:
+        name = names[0] if names and names[0] else printable(title).lower() or "part"
+        known.faces.append(Face(windows[0], name, kind_said(name, title.lower(), _KINDS)))
+        return
+    own, donor = windows
+    periodic = title.lower().startswith("periodic")
+    names = names or ([title.lower()] if periodic else [])
+    known.faces.extend(Face(w, name, kind_of(name)) for w, name in zip(windows, names, strict=False))
+    first, second = ((_fixed(numbers[at]) + 1) % 3 for at in (1, 7))
+    swapped = any(word.strip(".").lower() in ("true", "t") for word in words[13:14])
+    partner = [0, 0, 0]
+    partner[_fixed(numbers[1])] = _fixed(numbers[7])
+    for step in (0, 1):
+        partner[(first + step) % 3] = (second + (step ^ swapped)) % 3
+    known.pairs.append(Pair(own, donor, (partner[0], partner[1], partner[2])))
+
+
+def _window(numbers: Sequence[int], dims: Sequence[tuple[int, int, int]]) -> FaceWindow:
+    """Return the window that block, face and two ranges are; ValueError where there is no such face."""
+    number, face, *spans = numbers
+    fixed = _fixed(face)
+    if not 1 <= number <= len(dims) or len(spans) != 4:
+        raise ValueError(number)
+    first, last = [0, 0, 0], [0, 0, 0]
+    first[fixed] = last[fixed] = 0 if face % 2 else dims[number - 1][fixed] - 1
+    for step in (1, 2):
+        axis = (fixed + step) % 3
+        first[axis], last[axis] = (node - 1 for node in spans[2 * step - 2 : 2 * step])
+        if not 0 <= min(first[axis], last[axis]) <= max(first[axis], last[axis]) < dims[number - 1][axis]:
+            raise ValueError(face)
+    return FaceWindow(number - 1, (first[0], first[1], first[2]), (last[0], last[1], last[2]))
+
+
+def _fixed(face: int) -> int:
+    """Return the index that is constant on a face of this number."""
+    return FACES.index(face if face % 2 else face - 1)

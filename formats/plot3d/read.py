@@ -1,23 +1,19 @@
 """Reading Plot3D grids of any layout, which their length and their cells tell."""
 
-import re
 from collections.abc import Iterator
 from typing import NoReturn
 
-import numpy as np
-
 from meshonet.formats.format import Options
 from meshonet.formats.mesh.structured import FileBlock, grids_of_file
-from meshonet.formats.plot3d import binary, text
+from meshonet.formats.plot3d import binary, is_text, text
 from meshonet.formats.plot3d.layouts import Candidate, best
-from meshonet.formats.plot3d.nmf_read import Map, read_map
-from meshonet.formats.source import HEAD_BYTES, Source
+from meshonet.formats.plot3d.nmf import Map, read_map
+from meshonet.formats.source import Source
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, in_place
 
 _WRITTEN_ONLY = {"span-i", "span-j", "span-k"}
-_INTEGER_LINE = re.compile(rb"\s*(?:\d+(?:\*\d+)?[ \t,]*)+\r?\n")
-_INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")
+"""Options that say nothing of how a file is read."""
 
 
 def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:
@@ -53,27 +49,3 @@ def _misfit(every: list[Candidate], wanted: Options) -> NoReturn:
     fitting = " or ".join(" ".join(sorted(candidate.traits)) for candidate in every[:3])
     problem = f"is not {' '.join(sorted(wanted))}: it fits {fitting}"
     raise InputError(problem, "correct or leave out the options")
-
-
-def sniff(head: bytes) -> bool:
-    """Say whether `head` starts with the dims of a Plot3D grid; a whole file must also fit them."""
-    textual = is_text(head)
-    if textual and not _INTEGER_FIRST.match(head):
-        return False
-    if len(head) == HEAD_BYTES:
-        return bool(_INTEGER_LINE.match(head)) if textual else _could_be_binary(head)
-    try:
-        return bool(text.candidates(head) if textual else binary.candidates(memoryview(head)))
-    except InputError:
-        return False
-
-
-def is_text(head: bytes) -> bool:
-    """Say whether `head` is text; binary integers below 2^24 always have a zero byte."""
-    return b"\0" not in head[:64]
-
-
-def _could_be_binary(head: bytes) -> bool:
-    """Say whether the first integers of a long file can be dims, or the length of a record of them."""
-    words = np.frombuffer(head, "<i4", 3), np.frombuffer(head, ">i4", 3)
-    return any(bool(((first >= 1) & (first <= 100_000)).all()) for first in words)

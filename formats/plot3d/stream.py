@@ -1,14 +1,16 @@
-"""The numbers of a binary Plot3D file as one stream, whether Fortran framed them in records or not."""
+"""The numbers of a binary Plot3D file as one stream, with or without Fortran's record lengths."""
 
 from __future__ import annotations
 
 import struct
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import accumulate
 
 _MOST_RECORDS = 400_000
+"""More records, a hundred thousand blocks of some arrays, are a wrong reading."""
 _LONGEST_HEADER = 1 << 21
+"""Bytes of a first record of dims."""
 
 
 class Stream:
@@ -40,37 +42,37 @@ def unframed(data: memoryview, order: str) -> Stream | None:
     Each record stands between its length twice. gfortran splits one of more than 2 GiB: a negative first word
     says that more follows.
     """
-    at = 0
     pieces: list[memoryview] = []
-    word = struct.Struct(order + "i")
-    records, more = 0, False
-    while at < len(data):
-        if at + 8 > len(data) or len(pieces) == _MOST_RECORDS:
+    records, more, end = 0, False, 0
+    for at, length, split, whole in _records(data, order):
+        if not length or not whole or len(pieces) == _MOST_RECORDS:
             return None
-        first = word.unpack_from(data, at)[0]
-        length, records, more = abs(first), records + (not more), first < 0
-        end = at + 4 + length
-        if not length or end + 4 > len(data) or abs(word.unpack_from(data, end)[0]) != length:
-            return None
-        pieces.append(data[at + 4 : end])
-        at = end + 4
-    return Stream(pieces, records) if pieces else None
+        pieces.append(data[at + 4 : at + 4 + length])
+        records, more, end = records + (not more), split, at + length + 8
+    return Stream(pieces, records) if pieces and end == len(data) else None
 
 
 def broken_record(data: memoryview, order: str) -> str:
     """Return what is wrong with the first record that breaks off; nothing if the first is none of dims."""
-    word, at, count = struct.Struct(order + "i"), 0, 1
-    while at + 4 <= len(data):
-        length = abs(word.unpack_from(data, at)[0])
-        end = at + 4 + length
-        if count == 1 and (length % 4 or not 0 < length <= _LONGEST_HEADER):
+    for count, (at, length, _, whole) in enumerate(_records(data, order), start=1):
+        if count == 1 and (length % 4 or not 0 < length <= _LONGEST_HEADER or not whole):
             return ""
-        if end + 4 > len(data) or abs(word.unpack_from(data, end)[0]) != length:
-            if count == 1:
-                return ""
+        if not whole:
             left = max(len(data) - at - 8, 0)
-            if left < length:
-                return f"Fortran record {count}, at byte {at}, says {length} bytes and {left} are left"
-            return f"Fortran record {count}, at byte {at}, says {length} bytes and does not end so"
-        at, count = end + 4, count + 1
+            rest = f"{left} are left" if left < length else "does not end so"
+            return f"Fortran record {count}, at byte {at}, says {length} bytes and {rest}"
     return ""
+
+
+def _records(data: memoryview, order: str) -> Iterator[tuple[int, int, bool, bool]]:
+    """Yield of each record start, length, whether it is continued, and whether its two lengths agree."""
+    word, at = struct.Struct(order + "i"), 0
+    while at + 4 <= len(data):
+        first = word.unpack_from(data, at)[0]
+        length = abs(first)
+        end = at + 4 + length
+        whole = end + 4 <= len(data) and abs(word.unpack_from(data, end)[0]) == length
+        yield at, length, first < 0, whole
+        if not whole:
+            return
+        at = end + 4

@@ -1,20 +1,22 @@
 """Plot3D as text: free format, commas, repeat counts ``r*v`` (in the dims too), Fortran ``D`` exponents."""
 
 import re
-from collections.abc import Sequence
 
 import numpy as np
 
 from meshonet.formats.format import Options
-from meshonet.formats.plot3d.layouts import Candidate, Layout, layouts
-from meshonet.formats.text.free_format import leading_numbers
-from meshonet.formats.text.number_table import parsed
+from meshonet.formats.plot3d.layouts import Candidate, FileLayout, layouts
+from meshonet.formats.plot3d.stream import Stream
+from meshonet.formats.text.number_table import leading_numbers, parsed
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 
 _FREE_FORMAT = bytes.maketrans(b",;dDqQ\x1a\v\f", b"  eeee   ")
+"""Separators and exponent letters of Fortran as those of C."""
 _NUMBER = re.compile(rb"([+-]?(?:\d+\.?\d*|\.\d+))(?:e?([+-]\d{1,4})|e(\d{1,4}))?", re.IGNORECASE)
+"""A number whose exponent may lack its letter."""
 _MOST_NODES = 1e12
+"""Dims beyond are no dims."""
 _MOST_REPEATED = 4
 """Numbers a byte of file, repeats expanded; constant planes and iblank stay far below."""
 
@@ -34,33 +36,16 @@ def candidates(data: bytes, wanted: Options = frozenset()) -> list[Candidate]:
     fitting = [layout for layout in tried if layout.length() == len(values)]
     if not fitting:
         raise _misfit(tried, len(values))
-    whole = [_candidate(layout, values, planes=False) for layout in fitting]
-    if "planes" not in wanted:
-        return whole
-    return [*whole, *(_candidate(layout, values, planes=True) for layout in fitting if layout.axes == 3)]
+    stream, kind = Stream([values.data.cast("B")]), frozenset({"ascii"})
+    return [
+        Candidate(layout, stream, values.dtype, values.dtype, planes, "ASCII", kind)
+        for planes in (False, True)
+        for layout in fitting
+        if not planes or ("planes" in wanted and layout.axes == 3)
+    ]
 
 
-def _candidate(layout: Layout, values: Floats, *, planes: bool) -> Candidate:
-    starts = layout.starts()
-
-    def rows(k: int) -> Floats:
-        arrays = layout.axes + int(layout.iblank)
-        part = values[starts[k] : starts[k + 1]]
-        if not planes:
-            return part.reshape(arrays, -1)
-        return part.reshape(layout.dims[k][2], arrays, -1).swapaxes(0, 1).reshape(arrays, -1)
-
-    def coordinates(k: int) -> Sequence[Floats]:
-        return list(rows(k)[: layout.axes])
-
-    def flags(k: int) -> Floats:
-        return np.asarray(rows(k)[-1])
-
-    kind = frozenset({"ascii", "planes" if planes else "whole"})
-    return Candidate(layout, coordinates, flags, "ASCII", kind)
-
-
-def _misfit(tried: list[Layout], numbers: int) -> InputError:
+def _misfit(tried: list[FileLayout], numbers: int) -> InputError:
     if not tried:
         return InputError(
             "does not start with the dims of a Plot3D grid",

@@ -12,7 +12,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.format import Options
+from meshonet.formats.format import Options, at_least_one
 from meshonet.formats.mesh.axis_order import first_fastest
 from meshonet.formats.output import PART_SUFFIX, final_name, whole_file
 from meshonet.formats.plot3d.nmf import write_map
@@ -26,7 +26,7 @@ _LINE = 4
 """Numbers a line of text."""
 
 
-class Block:
+class StoredBlock:
     """A block as Plot3D stores it: dims, and x, y[, z], the first index fastest.
 
     In `space`, plane nodes (ni, nj, 2) have z = 0.
@@ -67,15 +67,14 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     """
     if "planes" in options:
         raise InputError("planes are read and not written", "leave the word out")
-    grids = list(grids)
+    rest = iter(grids)
+    grids = [at_least_one(rest), *rest]
     space = any(map(in_space, grids))
     if space and "2d" in options:
         raise InputError("nodes of a grid in space have z", "leave the word 2d out")
     # VTK takes a counted flat C binary file of float64 for a solid one of float32
     space = space or "3d" in options or ("binary" in options and "2d" not in options)
-    blocks = [Block(each.nodes, options, space=space) for grid in grids for each in grid.blocks]
-    if not blocks:
-        raise InputError("there is no grid to write", "check the input")
+    blocks = [StoredBlock(each.nodes, options, space=space) for grid in grids for each in grid.blocks]
     if "single" in options and len(blocks) > 1:
         what = "grids" if len(grids) > 1 else "blocks"
         problem = f"{len(blocks)} {what} do not fit in a file without a count"
@@ -100,7 +99,7 @@ def map_of(path: Path) -> Path | None:
     return None if name.endswith(PART_SUFFIX) else path.with_name(name).with_suffix(".nmf")
 
 
-def _put_text(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> None:
+def _put_text(stream: BinaryIO, blocks: Sequence[StoredBlock], options: Options) -> None:
     """Write text: the count of blocks, the dims of each on a line, then the numbers."""
     head = [] if "single" in options else [str(len(blocks))]
     head += [" ".join(map(str, block.dims)) for block in blocks]
@@ -119,7 +118,7 @@ def _put_lines(stream: BinaryIO, field: str, values: NDArray[Any]) -> None:
             write_rows(stream, " ".join([field] * width), part.reshape(-1, width))
 
 
-def _put_bytes(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> None:
+def _put_bytes(stream: BinaryIO, blocks: Sequence[StoredBlock], options: Options) -> None:
     """Write C binary, or Fortran records: count, dims, one record a block, each between its length twice."""
     framed = "fortran" in options
 
@@ -144,7 +143,7 @@ def _put_bytes(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> N
         stream.write(frame(size))
 
 
-def _head(blocks: Sequence[Block], options: Options) -> Iterator[bytes]:
+def _head(blocks: Sequence[StoredBlock], options: Options) -> Iterator[bytes]:
     """Yield the count, where there is one, and the dims."""
     sizes = [size for block in blocks for size in block.dims]
     if "single" not in options:

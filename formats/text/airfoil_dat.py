@@ -1,4 +1,4 @@
-"""Airfoil coordinate files as found in the wild.
+"""Airfoil coordinate files, in the many forms in which they are published.
 
 Selig's order (trailing edge, upper side, leading edge, lower side, trailing edge), Lednicer's (a line with
 two counts, then both surfaces from the leading edge), either of them backwards or without counts, from any
@@ -15,13 +15,15 @@ import numpy as np
 
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.rows import Line, decode, left_out, mostly_rows, read_lines, table
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.notes import Change
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 MOST_POINTS = 20_000
+"""An airfoil of more points is a mistake."""
 _ASK = "give an airfoil as lines of x y from the trailing edge round to it again, or in Lednicer's order"
+"""Remedy for what is no airfoil."""
 
 
 def read_shapes(source: Source) -> Iterator[Airfoil]:
@@ -80,14 +82,14 @@ def _data(lines: list[Line]) -> tuple[list[Line], list[int], Line | None]:
         for block in blocks
     ]
     blocks = [block for block in fits if block]
-    while len(blocks) > 1 and len(blocks[-1]) < 3 and _far_or_told(blocks, lines):
+    while len(blocks) > 1 and len(blocks[-1]) < 3 and _is_apart(blocks, lines):
         blocks.pop()  # numbers in the prose behind the data
     rows = [line for block in blocks for line in block]
     starts = np.cumsum([0, *map(len, blocks[:-1])]).tolist()
     return _without_heading(_without_mark(rows), starts, usual)
 
 
-def _far_or_told(blocks: list[list[Line]], lines: list[Line]) -> bool:
+def _is_apart(blocks: list[list[Line]], lines: list[Line]) -> bool:
     """Say whether the last block is apart from the data: by prose, or because it lies elsewhere."""
     before, last = blocks[-2][-1], blocks[-1][0]
     if any(line.kind not in ("blank", "gap") for line in lines[before.number : last.number - 1]):
@@ -97,7 +99,7 @@ def _far_or_told(blocks: list[list[Line]], lines: list[Line]) -> bool:
 
 
 def _without_mark(rows: list[Line]) -> list[Line]:
-    """Return rows without one behind the data such as 999 999: a number twice, outside all but headings."""
+    """Return rows without an end mark such as 999 999: the same number twice, far outside the data."""
     if len(rows) < 8:
         return rows
     points, last = (np.array([line.values[:2] for line in part]) for part in (rows[3:-1], rows[-1:]))
@@ -130,7 +132,7 @@ def _without_heading(
     while len(rows) > 4:
         rest = np.array([line.values[:2] for line in rows[1:]])
         point = np.array(rows[0].values[:2])
-        extent = float(np.ptp(rest, axis=0).max())
+        extent = extent_of(rest)
         apart = float(np.hypot(*(rest[[0, -1]] - point).T).min())
         whole = "." not in rows[0].text and sum("." in line.text for line in rows[1:]) > 0.8 * len(rest)
         named = any(re.fullmatch(r"0\d+", word) for word in rows[0].text.split())

@@ -1,18 +1,19 @@
-"""Many numbers as text, and back: what mesh files of solvers mostly consist of.
+"""Tables of numbers written as text, and read, by compiled code.
 
 Compiled, since Python's own formatting takes longer than all the rest: an 800 x 800 grid is written as SU2's
-text in 0.4 s instead of 2.5 s, as Plot3D's in 0.1 s instead of 1.2 s.
+text in 0.4 s instead of 2.5 s, as Plot3D's in 0.1 s instead of 1.2 s, and numbers are read in 0.1 us each.
 """
 
 import warnings
 from itertools import accumulate
+from mmap import mmap
 from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
-from meshonet.kernels._native import FLOAT_BYTES, INTEGER_BYTES, put_rows
+from meshonet.kernels._native import FLOAT_BYTES, INTEGER_BYTES, count_words, put_rows, take_numbers
 
 _ROWS = 1 << 13
 """Rows turned into text at a time: their text stays in the second-level cache."""
@@ -53,3 +54,22 @@ def parsed(text: bytes) -> Floats | None:
             return np.fromstring(text, dtype=np.float64, sep=" ") if text.strip() else np.empty(0)
         except (DeprecationWarning, ValueError):
             return None
+
+
+def leading_numbers(text: bytes | mmap, most: int | None = None, start: int = 0) -> tuple[Floats, int]:
+    """Return the numbers of `text` from byte `start` on, at most so many, and where what is left starts.
+
+    They are in Fortran's free format, and end at a word that is no number, or that needs another reader: not
+    finite, subnormal, repeated.
+
+    >>> values, stop = leading_numbers(b"1 2.5, -3d2 0.4-101 end")
+    >>> values.tolist(), stop
+    ([1.0, 2.5, -300.0, 4e-102], 20)
+    """
+    if start >= len(text):
+        return np.empty(0), len(text)
+    part = np.frombuffer(text, np.int8, offset=start)
+    room = count_words(part) if most is None else min(most, len(part))
+    values = np.empty(room)
+    count, stop = take_numbers(part, values)
+    return values[:count], start + stop

@@ -27,11 +27,12 @@ from meshonet.geometry.polygon.self_intersection import check_outline
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.geometry.shapes.polygon_shape import Ring, domain_or_body, polygon_shape
+from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
 
 AnyOutline = TypeVar("AnyOutline", bound=Boundary | Outline | Airfoil)
 MOST_POINTS = 100_000
+"""A curve of more points is a mistake."""
 _JOIN = 1e-6
 """How far apart, in extents, the ends of two edges may lie and still meet."""
 
@@ -104,7 +105,9 @@ def _domains(rings: list[list[Line]], name: str, notes: tuple[str, ...]) -> list
         problem, place = f"{len(rings)} blocks of points, one of {len(few)}", f"line {few[0].number}"
         raise InputError(problem, "give closed curves, or four edges divided by blank lines", place=place)
     drawn = [
-        Ring(np.array([line.values[:2] for line in ring]), places=[f"line {line.number}" for line in ring])
+        PolygonRing(
+            np.array([line.values[:2] for line in ring]), places=[f"line {line.number}" for line in ring]
+        )
         for ring in rings
     ]
     groups = nested([ring.points for ring in drawn])

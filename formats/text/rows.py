@@ -25,11 +25,16 @@ _REMEMBERED = 200_000
 """Characters of a text whose lines are kept for the next reader."""
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?"
+"""A number as C or Fortran write it."""
 _ONE = re.compile(_NUMBER)
 _FUSED = re.compile(r"([+-]?\d*\.\d+(?:[eEdD][+-]?\d+)?)([+-]\d*\.\d+(?:[eEdD][+-]?\d+)?)")
+"""Two numbers whose columns run into each other."""
 _COMMA = re.compile(r"[+-]?(?:\d*,)?\d+(?:[eEdD][+-]?\d+)?")
+"""A number with a decimal comma."""
 _SPLIT = re.compile(r"[\s,;]+")
+"""What stands between columns."""
 _PLACEHOLDER = re.compile(r"[._?-]{2,}|-")
+"""Dots or dashes where a number should be."""
 _MEANT = re.compile(
     r"[+-]?(?:nan|inf(?:inity)?|\*{2,}|(?=[^.]*\.?\w*\d)[\dOolI]*\.[\w.]*(?:e[+-]?\w+)?|\d+(?:_\d+)+)",
     re.IGNORECASE,
@@ -39,7 +44,7 @@ _REMARK = re.compile(r"\s(?:#|!|//|<-).*$|^\s*(?:#|!|//).*$")
 
 
 class Line(NamedTuple):
-    """One line: its number from 1, what it is, its values when it is a row, its text.
+    """One line: its number from 1, its kind, its values if it is a row, its text.
 
     Kinds: ``row`` is numbers only, two or more; ``noted`` is two numbers and then words; ``gap`` begins with
     a number and has dots where the next should be; ``damaged`` begins with two words that were meant as
@@ -78,7 +83,7 @@ def decode(data: bytes) -> str:
 
 
 def read_lines(text: str) -> list[Line]:
-    r"""Return the lines of a text, each with what it is.
+    r"""Return the lines of a text, each with its kind.
 
     Examples
     --------
@@ -100,7 +105,7 @@ def _lines(text: str) -> tuple[Line, ...]:
 
 
 def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
-    """Say whether `head` is text with at least so many rows of as many numbers, four fifths of its rows."""
+    """Say whether four fifths of the rows of `head`, at least `least`, have `counts` numbers."""
     try:
         lines = read_lines(decode(head))
     except InputError:

@@ -19,6 +19,7 @@ _KINDS = {
     "Float32": "f4", "Float64": "f8", "Int8": "i1", "UInt8": "u1", "Int16": "i2", "UInt16": "u2",
     "Int32": "i4", "UInt32": "u4", "Int64": "i8", "UInt64": "u8",
 }  # fmt: skip
+"""NumPy's number types by VTK's names."""
 CUT = "the file is cut short or its sizes are wrong: write it again"
 """The remedy where a file ends too soon."""
 _BLOCK_NODES = 1 << 15

@@ -18,8 +18,7 @@ from meshonet.formats.format import Options, only_one
 from meshonet.formats.mesh.metadata import facts_of
 from meshonet.formats.mesh.structured import grid_of_block
 from meshonet.formats.source import Source, printable
-from meshonet.formats.text.free_format import leading_numbers
-from meshonet.formats.text.number_table import write_rows
+from meshonet.formats.text.number_table import leading_numbers, write_rows
 from meshonet.formats.vtk.arrays import CUT, points_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.extrude import plane_of_extruded
@@ -31,12 +30,15 @@ _KINDS = {
     "vtktypeint64": "i8", "vtkidtype": "i8",
     "short": "i2", "unsigned_short": "u2", "char": "i1", "unsigned_char": "u1",
 }  # fmt: skip
+"""NumPy's number types by the names of legacy files, in lower case."""
 _LINE = 4096
+"""Bytes of the longest line that is read as one."""
 _WORD = re.compile(rb"\S")
+"""Where the next line that is not blank begins."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the one grid of `grids`, of one block; text has 17 digits."""
+    """Write the only grid of `grids`, of one block; text has 17 digits."""
     grid, text = only_one(grids, "a .vtk file"), "ascii" in options
     ni, nj, nk = (*grid.blocks[0].counts, 1)[:3]
     with path.open("wb") as stream:

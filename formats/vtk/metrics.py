@@ -17,7 +17,7 @@ from meshonet.geometry.quality.metrics import metrics_of as metrics_of_cells
 
 
 def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> None:
-    """Write the one grid of `grids` to `path`, a ``.vtm`` file where there may be `many` blocks.
+    """Write the only grid of `grids` to `path`, a ``.vtm`` file where there may be `many` blocks.
 
     Raises InputError: many blocks and a file of one.
     """

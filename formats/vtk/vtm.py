@@ -1,30 +1,35 @@
-"""Writing VTK multi-block files, ``.vtm``: an index beside a folder ``NAME_blocks`` with a ``.vts`` a block.
+"""VTK multi-block files, ``.vtm``: an index beside a folder ``NAME_blocks`` with a ``.vts`` a block.
 
 A grid of several blocks is a ``Block`` in the index, and its blocks say which grid they belong to; a grid of
-one block stands there by itself and says that it is whole.
+one block stands there by itself and says that it is whole. Blocks that other programs wrote do not say it:
+where they touch they make one grid.
 https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import count
-from pathlib import Path
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import chain, count, groupby
+from pathlib import Path, PurePosixPath
 from typing import Any, TypeAlias
 
 from numpy.typing import NDArray
 
+from meshonet.formats.format import at_least_one
 from meshonet.formats.mesh.metadata import facts_of
+from meshonet.formats.mesh.structured import FileBlock, described_grids, grids_of_file
 from meshonet.formats.output import final_name, whole_folder
-from meshonet.formats.source import printable
+from meshonet.formats.source import Source, printable
 from meshonet.formats.vtk.arrays import escaped
 from meshonet.formats.vtk.vts import write
+from meshonet.formats.vtk.vts_read import read_block
 from meshonet.geometry.blocks.extrude import plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_place
 
 CellData: TypeAlias = Callable[[Grid], Sequence[Mapping[str, NDArray[Any]]]]
 """Gives values of the cells of each block of a grid, by name (`meshonet.formats.vtk.vts.write`)."""
 _OURS = re.compile(r"block-\d+\.vts")
+"""Names of the files that this package writes into the folder."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = None) -> None:
@@ -38,8 +43,10 @@ def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = 
         raise InputError(f"folder {shown} holds other files, which would be lost", "choose another name")
     lines: list[str] = []
     files = count()
+    rest = iter(grids)
+    first = at_least_one(rest)
     with whole_folder(folder) as part:
-        for number, grid in enumerate(grids):
+        for number, grid in enumerate(chain([first], rest)):
             described = plane_of_extruded(grid) or grid
             several = described.topology == "blocks"
             title = escaped(grid.name or f"block-{number}")
@@ -56,9 +63,65 @@ def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = 
                 lines.append(f'    <DataSet {place} name="{label}" file="{file}"/>')
             if several:
                 lines.append("    </Block>")
-        if not lines:
-            raise InputError("there is no grid to write", "check the input")
     tag = '<VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">'
     head = ['<?xml version="1.0"?>', tag, "  <vtkMultiBlockDataSet>"]
     index = [*head, *lines, "  </vtkMultiBlockDataSet>", "</VTKFile>", ""]
     path.write_text("\n".join(index), encoding="utf-8")
+
+
+_MOST_BYTES = 16 << 20
+"""An index of more bytes would name some hundred thousand blocks."""
+
+
+def read_grids(source: Source) -> Iterator[Grid]:
+    """Yield the grids that the ``.vts`` make which the index names, in its folder or below.
+
+    Raises InputError: no such index; a file that is not below its folder, is missing or no ``.vts``.
+    """
+    from xml.etree import ElementTree
+
+    if source.path is None:
+        raise InputError("names files beside itself, and a stream has none", "give its path")
+    if source.size > _MOST_BYTES:
+        raise InputError(f"{source.size >> 20} MB are too much for an index", "give a .vtm file")
+    try:
+        root = ElementTree.fromstring(source.read_bytes())  # noqa: S314  (expat bounds what entities expand to)
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        raise InputError(f"is not well-formed XML ({printable(str(error))[:80]})", "write it again") from None
+    if root.tag != "VTKFile" or root.get("type") != "vtkMultiBlockDataSet":
+        raise InputError("is no VTK multi-block file", "give one of type vtkMultiBlockDataSet")
+    names = [block.get("file", "") for block in root.iter("DataSet")]
+    if not any(names):
+        raise InputError("names no files", "write the file again")
+    blocks = (
+        _read(source.path.parent, name, block.get("name", ""))
+        for block in root.iter("DataSet")
+        if (name := block.get("file", ""))
+    )
+    yield from _grids(blocks, source.stem)
+
+
+def _grids(blocks: Iterator[FileBlock], stem: str) -> Iterator[Grid]:
+    """Yield the grids that this package wrote, then those made of blocks that other programs wrote."""
+    foreign: list[FileBlock] = []
+    for own, group in groupby(blocks, key=lambda block: bool(block.facts.get("topology"))):
+        if own:
+            yield from described_grids(group, stem)
+        else:
+            foreign += group
+    yield from grids_of_file(foreign, (), (), foreign[0].name if len(foreign) == 1 else stem)
+
+
+def _read(folder: Path, name: str, title: str) -> FileBlock:
+    shown = printable(name)[:60]
+    parts = PurePosixPath(name)
+    if parts.is_absolute() or ".." in parts.parts or "\0" in name:
+        raise InputError(f"names {shown!r}, which is not below its folder", "keep the blocks beside it")
+    if parts.suffix.lower() != ".vts":
+        raise InputError(f"names {shown!r}, which is no .vts", "give blocks that are structured grids")
+    path = folder / parts
+    if not path.is_file():
+        raise InputError(f"names {shown!r}, which is not there", "keep the blocks beside it")
+    with in_place(shown):
+        coordinates, facts = read_block(Source(printable(str(path)), path=path))
+        return FileBlock(coordinates, printable(title or parts.stem), shown, facts=facts)

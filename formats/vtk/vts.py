@@ -1,16 +1,18 @@
 """Writing VTK XML structured grids, ``.vts``.
 
-Written raw appended, little endian, float64, with 64-bit lengths: the form that is quickest to write
-and that every VTK reads. Topology, name, parts and provenance go into FieldData, which VTK shows and
-nothing stumbles over.
+Written raw appended, little endian, float64, with 64-bit lengths: the form that is quickest to write and that
+every VTK reads. Topology, name, parts and provenance go into FieldData, which VTK shows and nothing stumbles
+over.
 https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
+
+from __future__ import annotations
 
 import math
 import struct
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +21,11 @@ from meshonet.formats.format import only_one
 from meshonet.formats.mesh.metadata import Facts, facts_of
 from meshonet.formats.vtk.arrays import escaped, points_of
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.extrude import plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    pass
 
 _HEAD = """\
 <?xml version="1.0"?>
@@ -35,6 +39,7 @@ _HEAD = """\
   </StructuredGrid>
   <AppendedData encoding="raw">
    _"""
+"""The XML before the appended numbers."""
 
 
 def write(
@@ -52,7 +57,7 @@ def write(
     """
     nodes = grid.blocks[block].nodes
     cells = {name: _cell_values(name, values, nodes) for name, values in (cell_data or {}).items()}
-    facts = facts_of(plane_of_extruded(grid) or grid) if facts is None else facts
+    facts = _facts(grid) if facts is None else facts
     ni, nj, nk = (*grid.blocks[block].counts, 1)[:3]
     with path.open("wb") as stream:
         stream.write(_head((ni, nj, nk), facts, cells).encode())
@@ -66,8 +71,16 @@ def write(
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the one grid of `grids`, of one block."""
+    """Write the only grid of `grids`, of one block."""
     write(path, only_one(grids, "a .vts file"))
+
+
+def _facts(grid: Grid) -> Facts:
+    if grid.form == "plane":
+        return facts_of(grid)
+    from meshonet.geometry.blocks.extrude import plane_of_extruded
+
+    return facts_of(plane_of_extruded(grid) or grid)
 
 
 def _head(dims: tuple[int, int, int], facts: Facts, cells: Mapping[str, NDArray[Any]]) -> str:

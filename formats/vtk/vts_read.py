@@ -14,7 +14,7 @@ from meshonet.formats.source import Source, printable
 from meshonet.formats.vtk.arrays import CUT, Encoded, Encoding, decode
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_place
 
 if TYPE_CHECKING:
     from mmap import mmap
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 Extent = tuple[int, int, int, int, int, int]
 _MOST_NODES = 1 << 40
+"""A grid that claims more is damaged: its nodes would take 24 TB."""
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
@@ -106,12 +107,8 @@ def _points(piece: Element, encoding: Encoding) -> Floats:
         raise InputError(f"offset {offset[:40]!r} is not a number", "write the file again")
     kind, form, count = array.get("type", ""), array.get("format", "ascii"), 3 * math.prod(dims)
     encoded = Encoded(kind, count, form, array.text or "", int(offset))
-    try:
-        values = decode(encoded, encoding)
-    except InputError as error:
-        error.place = error.place or "Points"
-        raise
-    return values.reshape(*dims, 3)
+    with in_place("Points"):
+        return decode(encoded, encoding).reshape(*dims, 3)
 
 
 def _assembled(pieces: list[Element], whole: Extent, encoding: Encoding) -> Floats:

@@ -15,7 +15,7 @@ from meshonet.geometry.blocks.grid import Grid
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the one grid of `grids`: quads and lines, or of a volume hexahedra and quads."""
+    """Write the only grid of `grids`: quads and lines, or of a volume hexahedra and quads."""
     import meshio
 
     mesh = unstructured(only_one(grids, "a .vtu file"))

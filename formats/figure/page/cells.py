@@ -22,6 +22,7 @@ _RATIO = 50.0
 _CANDIDATES = 20_000
 """Cells, the worst ones, among which places are looked for."""
 _NEAR = 3
+"""Least distance of two worst places, in cells."""
 _NEAR_PART = 0.06
 """Worst places are further apart than this many cells, and this part of the cells along some direction."""
 

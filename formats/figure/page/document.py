@@ -18,10 +18,11 @@ _PAGE = """<!doctype html>
 </body>
 </html>
 """
+"""The document around a title, a style and a body."""
 
 
 def document(title: str, style: str, body: str) -> str:
-    """Return an HTML document; `style` and `body` stand in it as they are."""
+    """Return an HTML document; `style` and `body` are inserted unescaped."""
     return _PAGE.format(title=html.escape(title), style=style, body=body)
 
 

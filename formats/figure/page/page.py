@@ -37,6 +37,7 @@ _BODY = """{body}
 <script type="module">
 {program}
 </script>"""
+"""The body of a page: markup, facts, numbers, program."""
 
 
 def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: View | None = None) -> None:
@@ -51,7 +52,7 @@ def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: V
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the page of the one grid of `grids`."""
+    """Write the page of the only grid of `grids`."""
     write_page(path, only_one(grids, "a page"))
 
 

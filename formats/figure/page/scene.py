@@ -60,7 +60,7 @@ class Lattice:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class SceneSheet:
     """A layer of a lattice: `axis` is the direction across it, None where the lattice is a layer itself.
 
     `node` is its index along `axis`, `ranges` the first and last node along the others.
@@ -148,14 +148,14 @@ def _fits(grid: Grid) -> bool:
     return grid.form != "volume" or nodes <= MOST_NODES
 
 
-def _whole(grid: Grid) -> tuple[list[Lattice], list[Sheet]]:
+def _whole(grid: Grid) -> tuple[list[Lattice], list[SceneSheet]]:
     """Return every block, and its cells or its patches to show."""
     lattices = [
         Lattice(number, block.nodes, (0,) * len(block.counts)) for number, block in enumerate(grid.blocks)
     ]
     if grid.form != "volume":
         every = [
-            Sheet(number, f"block {number}", "block", None, 0, tuple((0, n - 1) for n in block.counts))
+            SceneSheet(number, f"block {number}", "block", None, 0, tuple((0, n - 1) for n in block.counts))
             for number, block in enumerate(grid.blocks)
         ]
         return lattices, every
@@ -164,17 +164,17 @@ def _whole(grid: Grid) -> tuple[list[Lattice], list[Sheet]]:
         axis, end = patch.place
         last = grid.blocks[patch.block].counts[axis] - 1
         ranges = patch.range(grid.face(patch.block, patch.side).shape[:-1])
-        sheets.append(Sheet(patch.block, patch.name, patch.kind, axis, last if end else 0, ranges))
+        sheets.append(SceneSheet(patch.block, patch.name, patch.kind, axis, last if end else 0, ranges))
     return lattices, sheets
 
 
-def _shell(grid: Grid) -> tuple[list[Lattice], list[Sheet]]:
+def _shell(grid: Grid) -> tuple[list[Lattice], list[SceneSheet]]:
     """Return the patches of a volume, each as a lattice and a sheet of its own."""
     lattices, sheets = [], []
     for number, patch in enumerate(grid.outer_patches()):
         lattices.append(_of_patch(grid, patch))
         ranges = tuple((0, count - 1) for count in lattices[-1].counts)
-        sheets.append(Sheet(number, patch.name, patch.kind, None, 0, ranges))
+        sheets.append(SceneSheet(number, patch.name, patch.kind, None, 0, ranges))
     return lattices, sheets
 
 

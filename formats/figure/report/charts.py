@@ -10,7 +10,9 @@ from meshonet.formats.figure.page.cells import BARS, Scale, histogram
 from meshonet.geometry.arrays import Floats
 
 _WIDTH, _HEIGHT, _FOOT = 240, 64, 16
+"""Size of a histogram and the room for numbers below it, pixels."""
 _TINY = 1e-300
+"""Keeps a division by a scale without extent finite."""
 
 
 def histogram_svg(values: Floats, scale: Scale, limits: Sequence[float] = ()) -> str:

@@ -6,7 +6,6 @@ import heapq
 import html
 import itertools
 from collections.abc import Sequence
-from importlib import import_module
 from pathlib import Path
 
 from meshonet.formats.figure.page.document import document, file_text
@@ -21,11 +20,11 @@ SHOWN = 20
 class QualityPage:
     """Collects reports, one after the other, and keeps the grids of the `SHOWN` worst of them only.
 
-    Worst are those with broken gates, then those with the largest angle.
+    Worst are those with broken gates, then those with the largest angle. `software` is said to have made it.
     """
 
-    def __init__(self, gates: Sequence[Gate] = ()) -> None:
-        self._gates = tuple(gates)
+    def __init__(self, gates: Sequence[Gate] = (), software: str = "meshonet") -> None:
+        self._gates, self._software = tuple(gates), software
         self._rows: list[tuple[str, str, float, bool]] = []
         self._worst: list[tuple[tuple[bool, float], int, str, QualityReport]] = []
         self._numbers = itertools.count()
@@ -53,8 +52,7 @@ class QualityPage:
         articles = [article(label, report, self._gates, -number) for _, number, label, report in shown]
         title = self._rows[0][0] if len(self._rows) == 1 else f"{len(self._rows)} grids"
         head = f"<h1>Grid quality</h1>\n{self._summary({-number for _, number, _, _ in shown})}"
-        version = import_module("meshonet").__version__  # by name: this room does not know the whole
-        foot = f"<footer>Made by meshonet {version}. Metrics are defined in its page on quality.</footer>"
+        foot = f"<footer>Made by {self._software}. Metrics are defined in its page on quality.</footer>"
         style = file_text("meshonet.formats.figure.report", "report.css")
         return document(f"Grid quality: {title}", style, "\n".join([head, *articles, foot]))
 

@@ -1,0 +1,146 @@
+"""Grids of their nodes and the texts that `meshonet.formats.mesh.metadata` makes."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from operator import itemgetter
+from typing import Any, get_args
+
+import numpy as np
+
+from meshonet.formats.mesh.axis_order import nodes_of
+from meshonet.formats.mesh.metadata import Facts
+from meshonet.formats.mesh.recover_topology import known_topology, recovered, usable
+from meshonet.formats.mesh.slices import planar
+from meshonet.formats.source import printable
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block, Range
+from meshonet.geometry.blocks.connection import Connection, Motion, check_connections
+from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Kind, Patch
+from meshonet.geometry.errors import InputError
+
+
+def number_of_grid(facts: Facts) -> int | None:
+    """Return the number, in its file, of the grid of several blocks that one with `facts` belongs to."""
+    words = facts["block"][0].split() if facts.get("block") else []
+    return int(words[0]) if len(words) == 2 and all(w.isdecimal() and len(w) < 9 for w in words) else None
+
+
+def says_in_space(facts: Facts) -> bool:
+    """Say whether the facts of a block are those of one in space."""
+    return list(facts.get("coordinates", ())) == ["3"]
+
+
+def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
+    """Return the nodes of a block of x, y[, z], each (n1, n2, n3), that its facts say is in space or a plane.
+
+    Raises InputError: it is no plane and not said to be in space.
+    """
+    if not says_in_space(facts):
+        return planar(coordinates)
+    return nodes_of([np.squeeze(values) for values in coordinates])
+
+
+def grid_of_blocks(blocks: Sequence[tuple[Floats, Facts]], name: str = "") -> Grid:
+    """Return the grid of blocks, each its nodes and facts, in the order that the facts say.
+
+    Raises InputError: a block is missing or there twice; connections that do not fit the nodes.
+    """
+    rows = sorted(
+        ((int(facts["block"][0].split()[1]), nodes, facts) for nodes, facts in blocks), key=itemgetter(0)
+    )
+    if [k for k, _, _ in rows] != list(range(len(rows))):
+        problem = f"has blocks {', '.join(str(k) for k, _, _ in rows[:9])} of a grid"
+        raise InputError(problem, "keep all blocks of the grid in the file, once")
+    return _grid([(nodes, facts) for _, nodes, facts in rows], name)
+
+
+def _grid(blocks: Sequence[tuple[Floats, Facts]], name: str) -> Grid:
+    facts = blocks[0][1]
+    name = printable(facts["name"][0]) if facts.get("name") else name
+    connections = connections_from(facts["connections"][0]) if facts.get("connections") else ()
+    patches = (replace(patch, block=k) for k, (_, own) in enumerate(blocks) for patch in _parts(own))
+    made = tuple(Block(usable(nodes), finite=True) for nodes, _ in blocks)
+    check_connections(connections, [block.counts for block in made])
+    made = with_equal_nodes(made, connections)
+    return Grid(made, tuple(patches), connections, name, _provenance(facts))
+
+
+def grid_with(nodes: Floats, facts: Facts, name: str = "") -> Grid:
+    """Return the grid of `nodes` and the facts of its file; without a topology it is recovered, in the plane.
+
+    A block of a grid of several is one by itself, without the connections.
+
+    `name` is its name when the facts do not say; other facts than `facts_of` makes are passed over.
+    """
+    if says_in_space(facts):
+        alone = number_of_grid(facts) is None
+        return _grid([(nodes, facts if alone else {**facts, "connections": []})], name)
+    name = printable(facts["name"][0]) if facts.get("name") else name
+    if not facts.get("topology"):
+        return recovered(nodes, name)
+    parts = tuple(_parts(facts))
+    if number_of_grid(facts) is not None:  # a block taken out of a grid of several
+        return Grid.from_nodes(usable(nodes), "quad", parts, name)
+    topology = known_topology(facts["topology"][0])
+    return Grid.from_nodes(usable(nodes), topology, parts, name, _provenance(facts))
+
+
+def _provenance(facts: Facts) -> dict[str, Any]:
+    try:
+        provenance = json.loads(facts["provenance"][0]) if facts.get("provenance") else {}
+    except (ValueError, RecursionError):
+        return {}
+    return provenance if isinstance(provenance, dict) else {}
+
+
+def _parts(facts: Facts) -> list[Patch]:
+    """Return the patches of a block, of the kinds that the facts say or else the names."""
+    patches = [_part(text) for text in facts.get("parts", ())]
+    spans = facts.get("across", ())
+    if len(spans) == len(patches):
+        patches = [replace(patch, across=_across(text)) for patch, text in zip(patches, spans, strict=True)]
+    kinds: list[Any] = list(facts.get("kinds", ()))
+    if len(kinds) != len(patches) or not {*kinds} <= {*get_args(Kind)}:
+        return patches
+    return [replace(patch, kind=kind) for patch, kind in zip(patches, kinds, strict=True)]
+
+
+def _across(text: str) -> tuple[int, int] | None:
+    words = text.split()
+    try:
+        return (int(words[0]), int(words[1])) if words else None
+    except (ValueError, IndexError):
+        raise InputError(f"span {text[:60]!r} is not 'first last'", "remove the field 'across'") from None
+
+
+def _part(text: str) -> Patch:
+    words: list[Any] = text.split(" ", 3)
+    try:
+        side, start, stop, name = words[0], int(words[1]), int(words[2]), words[3]
+    except (ValueError, IndexError):
+        problem = f"part {text[:60]!r} is not 'side start stop name'"
+        raise InputError(problem, "remove the field 'parts'") from None
+    return Patch(printable(name), side, start, stop)
+
+
+def connections_from(text: str) -> tuple[Connection, ...]:
+    """Return the connections of a JSON text (`connections_text`)."""
+    try:
+        rows = json.loads(text or "[]")
+        return tuple(
+            Connection(k, side, _range(span), donor, face, _range(other), tuple(ways), _motion(move))
+            for k, side, span, donor, face, other, ways, move in rows
+        )
+    except (ValueError, TypeError, KeyError, RecursionError):
+        raise InputError("its connections are not those of blocks", "write the dataset again") from None
+
+
+def _range(span: list[list[int]]) -> Range:
+    return tuple((int(first), int(last)) for first, last in span)
+
+
+def _motion(move: dict[str, Any] | None) -> Motion | None:
+    return Motion(tuple(move["shift"]), tuple(map(tuple, move["turn"]))) if move else None
