@@ -13,6 +13,8 @@ underscores. What is here is loaded when it is first used: importing the package
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from meshonet.above import ABOVE
+
 if TYPE_CHECKING:
     from meshonet.api.convert import convert as convert
     from meshonet.api.deform import deform as deform
@@ -51,9 +53,9 @@ if TYPE_CHECKING:
     from meshonet.geometry.sections.section import Section as Section
     from meshonet.geometry.sections.stack import Stack as Stack
     from meshonet.geometry.spacing.sampling import Sampling as Sampling
-    from meshonet.solvers.method import METHODS as METHODS
     from meshonet.solvers.pipeline.make_grid import make_grid as make_grid
     from meshonet.solvers.pipeline.make_grid import make_grids as make_grids
+    from meshonet.solvers.pipeline.methods import METHODS as METHODS
     from meshonet.solvers.pipeline.parameters import grid_request as grid_request
     from meshonet.solvers.pipeline.request import GridRequest as GridRequest
     from meshonet.solvers.pipeline.result import Result as Result
@@ -86,7 +88,7 @@ _MODULES = {
     "meshonet.geometry.sections.section": ("Section",),
     "meshonet.geometry.sections.stack": ("Stack",),
     "meshonet.geometry.spacing.sampling": ("Sampling",),
-    "meshonet.solvers.method": ("METHODS",),
+    "meshonet.solvers.pipeline.methods": ("METHODS",),
     "meshonet.solvers.pipeline.make_grid": ("make_grid", "make_grids"),
     "meshonet.solvers.pipeline.parameters": ("grid_request",),
     "meshonet.solvers.pipeline.request": ("GridRequest",),
@@ -104,6 +106,14 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module 'meshonet' has no attribute {name!r}")
     value = globals()[name] = getattr(import_module(_HOMES[name]), name)
     return value
+
+
+def _measured(grid: Any) -> Any:
+    return import_module("meshonet.geometry.quality.measure").measure(grid, percentiles=True)
+
+
+ABOVE["measure"] = _measured
+ABOVE["write"] = lambda *what, **settings: __getattr__("write")(*what, **settings)
 
 
 def __dir__() -> list[str]:

@@ -28,10 +28,11 @@ import typer.core
 
 from meshonet import __version__
 from meshonet_cli.commands import COMMANDS, Command
-from meshonet_cli.stage_line import stopping_lines
-from meshonet_cli.stopping import install
+from meshonet_cli.terminal.stage_line import stopping_lines
+from meshonet_cli.terminal.stopping import install
 
 INTERRUPTED, BAD_INPUT = 130, 2
+"""Exit codes: of Ctrl-C as shells have it, and of input that cannot be used."""
 
 
 def _version(wanted: bool) -> None:
@@ -150,7 +151,7 @@ def _on_ranks(arguments: Sequence[str]) -> int:
 
 
 def _explained(error: Exception, name: str) -> str:
-    from meshonet_cli.errors import explained
+    from meshonet_cli.terminal.errors import explained
 
     usage = getattr(error, "format_message", None)
     if usage is None:

@@ -47,6 +47,14 @@ def convert(
     InputError
         A format that cannot be read, or written, or cannot hold 3D grids; a height that is not positive;
         numbers of cells that `coarsen` does not divide.
+
+    Examples
+    --------
+    >>> import meshonet
+    >>> meshonet.tfi("naca:2412", res=(41, 17)).write("fine.vts")
+    >>> convert("fine.vts", "coarse.cgns", coarsen=2)
+    >>> meshonet.read("coarse.cgns").nodes.shape
+    (21, 9, 2)
     """
     conversion = Conversion(extrude, planes, swap, normalise, coarsen)
     boundaries = conversion.of_boundaries(str(source), str(output), from_format, to_format)

@@ -90,6 +90,11 @@ def rotation(degrees: float, about: Sequence[float] = (0.0, 0.0)) -> Motion:
     Motion
         The motion that turns the plane counter-clockwise about a point (2,).
 
+    Raises
+    ------
+    InputError
+        An angle or point that is not finite, a point that is no (x, y).
+
     Examples
     --------
     >>> rotation(90, about=(1, 0))(np.array([[2.0, 0.0]])).round(12).tolist()

@@ -35,9 +35,12 @@ def inputs(
 
     Parameters
     ----------
-    names : files, folders, zip archives, designations; ``@FILE`` is a list of them, one a line.
-    pick : patterns of names (``naca*``), to take only such files of folders, archives and lists.
-    shard : k and n, to take every n-th input from the k-th on.
+    names : str, Path or list of these
+        Files, folders, zip archives, designations; ``@FILE`` is a list of them, one a line.
+    pick : str or list of str, optional
+        Patterns of names (``naca*``), to take only such files of folders, archives and lists.
+    shard : tuple of 2 int, optional
+        k and n, to take every n-th input from the k-th on.
 
     Yields
     ------
@@ -48,6 +51,11 @@ def inputs(
     ------
     InputError
         For a folder, archive or list that cannot be read, or in which there is nothing.
+
+    Examples
+    --------
+    >>> list(inputs(["naca:0012", "naca:2412", "naca:4412"], shard=(2, 2)))
+    ['naca:2412']
     """
     words = (names,) if isinstance(names, str | Path) else names
     patterns = (pick,) if isinstance(pick, str) else tuple(pick)
@@ -80,6 +88,11 @@ def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
     ------
     InputError
         A file that cannot be read, or holds several: `read_all` has them.
+
+    Examples
+    --------
+    >>> read("naca:2412").name
+    'NACA 2412'
     """
     nothing = "holds nothing", "give a file with a boundary or a grid in it"
     several = "holds several grids or boundaries", "use read_all"
@@ -118,6 +131,13 @@ def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Gr
     ------
     InputError
         A file that cannot be read.
+
+    Examples
+    --------
+    >>> import meshonet
+    >>> meshonet.tfi("naca:2412", res=(41, 17)).write("grid.h5")
+    >>> [grid.nodes.shape for grid in read_all("grid.h5")]
+    [(41, 17, 2)]
     """
     text = str(path)
     if is_designation(text):
@@ -151,6 +171,13 @@ def write(what: Grid | Boundary | Layout, path: str | Path, *, to_format: str | 
     ------
     InputError
         A format that is not known or cannot hold this; a place that cannot be written.
+
+    Examples
+    --------
+    >>> import meshonet
+    >>> write(meshonet.sample_boundary("naca:2412", res=(41, 17)), "edges.h5")
+    >>> read("edges.h5").topology
+    'o'
     """
     kind: Kind = (
         "grids" if isinstance(what, Grid) else "layouts" if isinstance(what, Layout) else "boundaries"

@@ -95,24 +95,62 @@ def domain_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
     return parameters
 
 
-def tfi(shape: AnyShape, *, res: Counts | None = None, **parameters: Any) -> Grid:
+def tfi(shape: AnyShape, *, res: Counts | None = None, method: str = "tfi", **parameters: Any) -> Grid:
     """Return a grid by transfinite interpolation; parameters as of `grid`, and ``blending``.
+
+    Parameters
+    ----------
+    shape, res, method, **parameters
+        As of `grid`, and ``blending``, a setting of ``tfi``: ``arclength`` or ``linear``.
 
     Returns
     -------
     Grid
         A grid by transfinite interpolation.
+
+    Raises
+    ------
+    InputError
+        A shape or parameter that cannot be used.
+    NoValidGridError
+        Cells are folded, and `allow_invalid` was not given.
+    SolverError
+        The method diverged.
+
+    Examples
+    --------
+    >>> tfi("naca:2412", res=(41, 17), blending="linear").nodes.shape
+    (41, 17, 2)
     """
-    return grid(shape, res=res, method="tfi", **parameters)
+    return grid(shape, res=res, method=method, **parameters)
 
 
 def solve_pde(shape: AnyShape, *, res: Counts | None = None, method: str = "auto", **parameters: Any) -> Grid:
     """Return a grid by elliptic equations, a variational method or marching; parameters as of `grid`.
 
+    Parameters
+    ----------
+    shape, res, method, **parameters
+        As of `grid`.
+
     Returns
     -------
     Grid
         A grid by elliptic equations, a variational method or marching.
+
+    Raises
+    ------
+    InputError
+        A shape or parameter that cannot be used.
+    NoValidGridError
+        Cells are folded, and `allow_invalid` was not given.
+    SolverError
+        The method diverged.
+
+    Examples
+    --------
+    >>> solve_pde("naca:2412", res=(41, 17), method="winslow").quality().folded
+    0
     """
     return grid(shape, res=res, method=method, **parameters)
 
@@ -129,6 +167,20 @@ def infer(shape: AnyShape, *, res: Counts | None = None, model: str | None = Non
     -------
     Grid
         The grid that measures best, or that of an operator.
+
+    Raises
+    ------
+    InputError
+        A shape or parameter that cannot be used.
+    NoValidGridError
+        Cells are folded, and `allow_invalid` was not given.
+    SolverError
+        The method diverged.
+
+    Examples
+    --------
+    >>> infer("naca:2412", res=(41, 17)).quality().folded
+    0
     """
     return grid(shape, res=res, method="best", model=model, **parameters)
 
@@ -206,6 +258,11 @@ def sample_family(
     ------
     InputError
         No such family, a range that leaves the family's, members that cannot be split.
+
+    Examples
+    --------
+    >>> [edges.south.shape for edges in sample_family("arch", 2, res=(31, 11), seed=1)]
+    [(31, 2), (31, 2)]
     """
     spread = None if range is None else "{!r}:{!r}".format(*range)
     sampling = sampling_of(res, {})

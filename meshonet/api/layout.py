@@ -14,8 +14,10 @@ def layout(shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, **pa
 
     Parameters
     ----------
-    shape, assemble
+    shape : str, Path, array, Grid, Boundary or Domain, or a list of these
         As of `grid`.
+    assemble : bool, optional
+        Whether all of them are one domain.
     **parameters
         ``cells`` or ``cell_size``, ``far_field``, ``layout``, ``pitch``, ``inlet``, ``outlet``; with
         ``first_cell``, or ``y_plus`` and ``reynolds``, and ``walls`` it is the layout outside of layers.

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 from meshonet.api.quality import single_grid
-from meshonet.formats.figure.picture import Picture, picture_format
+from meshonet.formats.figure.picture import Picture
 from meshonet.formats.output import whole_file
+from meshonet.formats.registry import picture_format
 from meshonet.geometry.blocks.grid import Grid
 
 
@@ -46,6 +47,11 @@ def plot(
     InputError
         An unknown metric, slice or ending, a box that shows none of the grid, a file that cannot be read or
         written.
+
+    Examples
+    --------
+    >>> import meshonet
+    >>> plot(meshonet.tfi("naca:2412", res=(41, 17)), "grid.png", metric=None)
     """
     picture = Picture(metric, zoom, every, slice, seen_from)
     kind = picture_format(str(output), to_format).name

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from meshonet import __version__
 from meshonet.api.files import only
 from meshonet.formats.figure.report.report import QualityPage
 from meshonet.formats.output import whole_file
@@ -82,11 +83,18 @@ def quality_page(
     ------
     InputError
         As `quality`; something that is no gate; an output that cannot be written.
+
+    Examples
+    --------
+    >>> import meshonet
+    >>> made = meshonet.infer("naca:2412", res=(41, 17))
+    >>> quality_page([made], "quality.html", fail_on=["folded>0"])
+    True
     """
     gates = parse_gates(fail_on)
     if format_for_output(str(output)).name != "html":
         raise InputError("a report is a page", "name it FILE.html", parameter="output", source=str(output))
-    page = QualityPage(gates)
+    page = QualityPage(gates, f"meshonet {__version__}")
     for number, source in enumerate(grids):
         grid = single_grid(source)
         label = str(source) if isinstance(source, str | Path) else grid.name or f"grid {number}"

@@ -38,6 +38,14 @@ def stack(
         A file or parameter that cannot be used.
     NoValidGridError
         Cells are folded, and `allow_invalid` was not given.
+
+    Examples
+    --------
+    >>> import meshonet
+    >>> section = meshonet.read("naca:0012")
+    >>> wing = meshonet.Stack((meshonet.Section(section, 1.0, 0.0), meshonet.Section(section, 0.5, 2.0)))
+    >>> len(stack(wing, around=49, span=9, surface=True).blocks)
+    3
     """
     what = (sections if isinstance(sections, Stack) else stack_of(str(sections))).with_tip(tip)
     request = stack_request(**parameters)

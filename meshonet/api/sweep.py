@@ -42,8 +42,14 @@ def sweep(
         ``circle:RADIUS``, a file with a closed curve, a domain or a planar grid, or what these are.
     path : str, Path or array (n, 3)
         A file, points that a smooth curve goes through, or a path itself.
-    planes, up, twist, scale
-        As of `meshonet.Sweep`.
+    planes : int, optional
+        As of `meshonet.Sweep`, like the next three.
+    up : tuple of 3 float, optional
+        Direction that the section's y axis is nearest to where the path starts.
+    twist : float, optional
+        Degrees by which the section turns along the path.
+    scale : float, optional
+        Size of the last section over that of the first.
     res : int or tuple of int, optional
         Nodes along the sides of a four-sided section.
     **parameters

@@ -48,7 +48,7 @@ def train(
     output : str or Path
         Model file, ``.safetensors``.
     model : str, optional
-        Name in `meshonet.solvers.neural.registry.MODELS`; None goes by what the first dataset holds.
+        What to train, as ``train --model`` lists; None goes by what the first dataset holds.
     settings : dict, optional
         Settings of the model; for ``quad`` weights of its loss.
     split : str, optional
@@ -83,6 +83,15 @@ def train(
         or datasets.
     SolverError
         The loss is not finite.
+
+    Examples
+    --------
+    >>> import meshonet
+    >>> names = [f"arch-{number}.h5" for number in range(6)]
+    >>> for name, edges in zip(names, meshonet.sample_family("arch", 6, res=17), strict=True):
+    ...     meshonet.solve_pde(edges).write(name)
+    >>> train(names, "arch.safetensors", split="random", epochs=1, batch=4, points=60)["model"]
+    'meshonet'
     """
     path = Path(output)
     if path.suffix != ".safetensors":

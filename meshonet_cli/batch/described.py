@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import hashlib
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-WITHOUT_EFFECT = ("threads", "percentiles", "history", "criteria")
+WITHOUT_EFFECT = ("threads", "percentiles", "history", "criteria", "detailed")
 """Fields of requests, and of what makes them, on which no node depends."""
 _MODEL = ".safetensors"
+"""Ending of a file that holds a model."""
 
 
 def described(value: object) -> str:
@@ -32,11 +35,16 @@ def described(value: object) -> str:
         return "{" + ", ".join(sorted(f"{described(k)}: {described(v)}" for k, v in value.items())) + "}"
     if isinstance(value, tuple | list):
         return "(" + "".join(f"{described(each)}, " for each in value).strip(" ") + ")"
+    if isinstance(value, functools.partial):
+        return f"{described(value.func)}{described(value.args)}{described(_effective(value.keywords))}"
     if isinstance(value, type) or (callable(value) and hasattr(value, "__qualname__")):
         return f"{value.__module__}.{value.__qualname__}"
     if dataclasses.is_dataclass(value):
         facts = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
     else:
         facts = vars(value) if hasattr(value, "__dict__") else {"value": str(value)}
-    kept = {name: fact for name, fact in facts.items() if name not in WITHOUT_EFFECT}
-    return f"{type(value).__qualname__}{described(kept)}"
+    return f"{type(value).__qualname__}{described(_effective(facts))}"
+
+
+def _effective(facts: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: fact for name, fact in facts.items() if name not in WITHOUT_EFFECT}

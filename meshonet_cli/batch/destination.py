@@ -19,14 +19,18 @@ from meshonet_cli.batch.item import NO_NUMBER, Item
 
 if TYPE_CHECKING:
     from meshonet.formats.hdf5.parts import PartFiles
+    from meshonet.formats.inputs import Inputs
     from meshonet.geometry.layout.layout import Layout
-    from meshonet_cli.batch.sources import Members
+    from meshonet_cli.batch.sources import DrawnInputs
 
 FIELDS = ("stem", "index", "name")
+"""Fields of a pattern for names of outputs."""
 MANY = 10_000
 """Inputs of which more are written as a dataset in parts."""
 _PART_BYTES, _LIKELY_NODES = 1 << 28, 40_000
+"""Bytes of a part at the most, and the nodes of a member whose size is not known before."""
 _MOST_IN_PART, _MOST_FOR_MANY_WORKERS = 1000, 100
+"""Members of a part at the most; fewer where many workers share the parts."""
 
 
 class Destination:
@@ -89,7 +93,7 @@ class Destination:
     def _can_have_parts(self) -> bool:
         return self.format.name == "hdf5" and not self.each and self.text != "-"
 
-    def part_size_for(self, members: Members[Any], *, skip_existing: bool, elsewhere: bool) -> int:
+    def part_size_for(self, inputs: Inputs | DrawnInputs, *, skip_existing: bool, elsewhere: bool) -> int:
         """Return how many inputs a part of the dataset has, 0 where it is no dataset in parts.
 
         Parts are written where they are asked for, by jobs that share the work, where parts are to be
@@ -98,8 +102,7 @@ class Destination:
 
         Raises InputError: there is another dataset, which parts would replace or which cannot be continued.
         """
-        inputs = members.origin.inputs if members.origin else None
-        if inputs is None or not self._can_have_parts or not inputs.more_than(0):
+        if not self._can_have_parts or not inputs.more_than(0):
             return 0
         index = Path(self.text)
         shared = inputs.shard != (1, 1)

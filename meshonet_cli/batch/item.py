@@ -1,12 +1,16 @@
-"""One member of a batch, with the names that messages and files have for it."""
+"""One member of a batch, with the names that messages and files have for it, and what comes of it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeAlias, TypeVar
 
 from meshonet.formats.source import printable
+
+if TYPE_CHECKING:
+    from meshonet_cli.report.timed import Timed
 
 
 class Named(Protocol):
@@ -34,6 +38,7 @@ class Unreadable:
 
 
 T = TypeVar("T", bound=Named)
+V = TypeVar("V")
 NO_NUMBER = -1
 """Index of a member of a shard, of which it is not known how many members come before it."""
 
@@ -48,10 +53,11 @@ class Item(Generic[T]):
     seconds: float  # spent on reading it
     only: bool = True  # whether its source holds nothing else
     called: str = ""  # its stem, where it comes from several files
+    path: str = ""  # of its own file, where it has one
 
     def without_content(self) -> Item[Name]:
         """Return the same member with nothing but the name of what it holds."""
-        return Item(self.index, self.source, Name(self.what.name), self.seconds, self.only, self.called)
+        return replace(self, what=Name(self.what.name))  # type: ignore[arg-type, return-value]
 
     @property
     def label(self) -> str:
@@ -72,3 +78,18 @@ def stem_of(source: str) -> str:
     ('root', 'naca2412', 'root')
     """
     return "stdin" if source == "-" else Path(source).stem.replace(":", "")
+
+
+Outcome: TypeAlias = "tuple[Any, Timed] | Exception"
+"""What to write of a member and its report, or the error that it ended in."""
+Pair: TypeAlias = tuple[Item[Any], Outcome]
+"""A member and what comes of it."""
+Make: TypeAlias = Callable[[Iterable[Item[Any]]], Iterator[Pair]]
+"""Makes members in order; what other processes are to do can be pickled."""
+
+
+def made(outcome: V | Exception) -> V:
+    """Return what was made, or raise the error that it ended in."""
+    if isinstance(outcome, Exception):
+        raise outcome
+    return outcome

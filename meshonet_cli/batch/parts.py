@@ -5,49 +5,41 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import starmap
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.hdf5.parts import Failed, OtherPartsError, PartFiles, State
-from meshonet.formats.inputs import Inputs, Numbered
+from meshonet.formats.inputs import Inputs
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet_cli.batch.destination import same_size
 from meshonet_cli.batch.input_digests import digests_of
-from meshonet_cli.batch.item import Item, Name, Named, Unreadable
+from meshonet_cli.batch.item import Item, Make, Unreadable, made
 from meshonet_cli.batch.sources import DrawnInputs, records
-from meshonet_cli.batch.timed import Timed
-from meshonet_cli.errors import explained
+from meshonet_cli.terminal.errors import explained
 
 if TYPE_CHECKING:
     from meshonet.formats.registry import Kind
     from meshonet.geometry.blocks.boundary import Boundary
     from meshonet.geometry.blocks.grid import Grid
     from meshonet.geometry.families.draw import Draw
-    from meshonet_cli.session import Session
-
-T = TypeVar("T", bound=Named)
-R = TypeVar("R", bound=Timed)
-Work = Callable[
-    [Iterable[tuple[Item[Any], str]]],
-    Iterator[tuple[Item[Name], str, tuple[Any, R] | Exception]],
-]
-"""Yields for each member, in order, what it makes of it and a report, or the error that it ended in."""
+    from meshonet_cli.report.timed import Timed
+    from meshonet_cli.terminal.session import Session
 
 
 @dataclass(frozen=True)
-class Part:
+class PartTask:
     """A task: the number of a part, from 0, and the inputs whose members it holds."""
 
     number: int
     inputs: tuple[str | InputError | Draw, ...]
 
 
-def parts_of(inputs: Inputs | DrawnInputs, size: int) -> Iterator[Part]:
+def parts_of(inputs: Inputs | DrawnInputs, size: int) -> Iterator[PartTask]:
     """Yield the tasks that make the parts of a shard, of `size` inputs each, as inputs are found."""
-    return starmap(Part, inputs.parts(size))
+    return starmap(PartTask, inputs.parts(size))
 
 
 @dataclass
-class PartDone(Generic[R]):
+class PartDone:
     """What became of a part: its file, whether it was there, and a report or an error of each member.
 
     Of one that was there `lacks` is how many members failed when it was made.
@@ -57,11 +49,11 @@ class PartDone(Generic[R]):
     path: str
     state: State
     lacks: int = 0
-    members: list[tuple[Item[Name], R | Exception]] = field(default_factory=list)
+    members: list[tuple[Item[Any], Timed | Exception]] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
-class PartMaker(Generic[T, R]):
+class PartMaker:
     """Makes parts, in this process or another, and returns no more than reports.
 
     Parameters
@@ -69,17 +61,17 @@ class PartMaker(Generic[T, R]):
     files : where the parts lie.
     kind : what they hold, grids or boundaries.
     read : yields what an input holds.
-    work : makes the samples.
+    work : makes the members.
     skip_existing : whether a part that is there, of the same inputs and settings, stays.
     """
 
     files: PartFiles
     kind: Kind
-    read: Callable[[Any], Iterator[T]]
-    work: Work[R]
+    read: Callable[[Any], Iterator[Any]]
+    work: Make
     skip_existing: bool = False
 
-    def __call__(self, part: Part) -> PartDone[R]:
+    def __call__(self, part: PartTask) -> PartDone:
         """Make a part, whole or not at all.
 
         Raises OtherPartsError: the part that is there was made of other inputs or with other settings, or is
@@ -87,7 +79,7 @@ class PartMaker(Generic[T, R]):
         """
         inputs = [each for entry in part.inputs for each in digests_of(entry)]
         state = self.files.state(part.number, inputs)
-        done: PartDone[R] = PartDone(part.number, str(self.files.path(part.number)), state)
+        done: PartDone = PartDone(part.number, str(self.files.path(part.number)), state)
         if state != "missing" and not self.skip_existing:
             self.files.refuse(part.number)
         if state == "complete":
@@ -97,7 +89,7 @@ class PartMaker(Generic[T, R]):
         self.files.write(part.number, self.kind, self._samples(part, done, failed), inputs, failed)
         return done
 
-    def _samples(self, part: Part, done: PartDone[R], failed: list[Failed]) -> Iterator[Grid | Boundary]:
+    def _samples(self, part: PartTask, done: PartDone, failed: list[Failed]) -> Iterator[Grid | Boundary]:
         """Yield what goes into the part, and note a report or an error of each member on the way."""
         size = ""
 
@@ -106,17 +98,16 @@ class PartMaker(Generic[T, R]):
             again = not isinstance(error, MeshonetError)
             failed.append(Failed(item.source, item.label, explained(error), again))
 
-        def readable() -> Iterator[tuple[Item[T], str]]:
-            entries = (Numbered(each) if isinstance(each, str | InputError) else each for each in part.inputs)
-            for item in records(entries, self.read):
+        def readable() -> Iterator[Item[Any]]:
+            for item in records(part.inputs, self.read):
                 if isinstance(item.what, Unreadable):
                     fail(item, item.what.error)
                 else:
-                    yield item, ""
+                    yield item
 
-        for item, _, outcome in self.work(readable()):
+        for item, outcome in self.work(readable()):
             try:
-                what, report = _made(outcome)
+                what, report = made(outcome)
                 size = same_size(what, size)
             except Exception as error:
                 fail(item, error)
@@ -127,16 +118,10 @@ class PartMaker(Generic[T, R]):
         done.members.sort(key=lambda member: member[0].index)
 
 
-def _made(outcome: tuple[Any, R] | Exception) -> tuple[Grid | Boundary, R]:
-    if isinstance(outcome, Exception):
-        raise outcome
-    return outcome
+Outcomes = Iterator[tuple[PartTask, PartDone | Exception]]
 
 
-Outcomes = Iterator[tuple[Part, "PartDone[R] | Exception"]]
-
-
-def one_after_the_other(make: Callable[[Part], PartDone[R]], parts: Iterable[Part]) -> Outcomes[R]:
+def one_after_the_other(make: Callable[[PartTask], PartDone], parts: Iterable[PartTask]) -> Outcomes:
     """Yield what `make` makes of parts in this process, or the errors that they ended in."""
     for part in parts:
         try:
@@ -146,7 +131,7 @@ def one_after_the_other(make: Callable[[Part], PartDone[R]], parts: Iterable[Par
 
 
 def deliver_parts(
-    outcomes: Outcomes[R], files: PartFiles, session: Session, written: Callable[[R, str], None], *,
+    outcomes: Outcomes, files: PartFiles, session: Session, written: Callable[[Any, str], None], *,
     skip_existing: bool, whole: bool,
 ) -> None:  # fmt: skip
     """Report every member of parts as they are made, and show the parts as one file.
@@ -176,7 +161,7 @@ def deliver_parts(
         session.warn(f"{files.index} also shows parts of an earlier run with more inputs: {len(more)}")
 
 
-def _report(done: PartDone[R], index: str, session: Session, written: Callable[[R, str], None]) -> None:
+def _report(done: PartDone, index: str, session: Session, written: Callable[[Any, str], None]) -> None:
     if done.state == "complete":
         failed = f"; {done.lacks} of its inputs failed" if done.lacks else ""
         session.skip(done.path, index, failed)

@@ -5,49 +5,18 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING, Any, Generic
+from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.inputs import Inputs, Numbered
-from meshonet.formats.registry import read_shapes
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError
 from meshonet_cli.batch.item import NO_NUMBER, Item, T, Unreadable, stem_of
-from meshonet_cli.session import Session
+from meshonet_cli.terminal.session import Session
 
 if TYPE_CHECKING:
     from meshonet.geometry.families.draw import Draw
     from meshonet.geometry.shapes.shape import Shape
     from meshonet.geometry.spacing.sampling import Sampling
-
-
-@dataclass(frozen=True)
-class Origin(Generic[T]):
-    """Where members come from: inputs, and what yields the members that an input holds."""
-
-    inputs: Inputs | DrawnInputs
-    read: Callable[[Any], Iterator[T]]
-
-
-class Members(Iterator[Item[T]]):
-    """Members of a batch, one after the other.
-
-    Parameters
-    ----------
-    members : they themselves.
-    origin : for those who read them elsewhere; None where all inputs together make one.
-    """
-
-    def __init__(self, members: Iterator[Item[T]], origin: Origin[T] | None = None) -> None:
-        self._members, self.origin = members, origin
-
-    @property
-    def several(self) -> bool:
-        """Whether they come from more than one input and do not belong together."""
-        return self.origin is not None and self.origin.inputs.more_than(1)
-
-    def __next__(self) -> Item[T]:
-        return next(self._members)
 
 
 @dataclass(frozen=True)
@@ -62,6 +31,10 @@ class DrawnInputs:
         k, n = self.shard
         return map(self.draws.__getitem__, range(k - 1, len(self.draws), n))
 
+    def count(self) -> int:
+        """Return how many members the shard has."""
+        return len(self.draws) // self.shard[1]
+
     def parts(self, size: int) -> Iterator[tuple[int, tuple[Draw, ...]]]:
         """Yield number and members of the parts of the shard, `size` each."""
         k, n = self.shard
@@ -73,16 +46,14 @@ class DrawnInputs:
         return len(self.draws) > count
 
 
-def items(inputs: Inputs, read: Callable[[str], Iterator[T]], session: Session) -> Members[T]:
-    """Return the members of every input; one that cannot be read is reported and passed over."""
-    return Members(_items(inputs, read, session), Origin(inputs, read))
-
-
-def _items(inputs: Inputs, read: Callable[[str], Iterator[T]], session: Session) -> Iterator[Item[T]]:
+def members_of(
+    inputs: Inputs | DrawnInputs, read: Callable[[Any], Iterator[T]], session: Session
+) -> Iterator[Item[T]]:
+    """Yield the members of every input; one that cannot be read is reported and passed over."""
     session.batch = session.batch or inputs.more_than(1)
     session.watch()
     count = inputs.count() if session.live else None
-    for item in records(inputs.own(), read):
+    for item in records(inputs.own(), read, alone=not session.batch):
         session.batch = session.batch or not item.only
         if isinstance(item.what, Unreadable):
             session.fail(printable(item.source), item.source, item.what.error)
@@ -91,20 +62,28 @@ def _items(inputs: Inputs, read: Callable[[str], Iterator[T]], session: Session)
             yield item
 
 
-def records(inputs: Iterable[Numbered | Draw], read: Callable[[Any], Iterator[T]]) -> Iterator[Item[Any]]:
-    """Yield every member of every input, or `Unreadable` in its place."""
+def records(
+    inputs: Iterable[Numbered | str | InputError | Draw], read: Callable[[Any], Iterator[T]], *,
+    alone: bool = False,
+) -> Iterator[Item[Any]]:  # fmt: skip
+    """Yield every member of every input, or `Unreadable` in its place; draws can be `alone`."""
     count = 0
     for each in inputs:
-        drawn = not isinstance(each, tuple)
-        entry: str | InputError | Draw
-        first: int | None
-        entry, first, step = each if isinstance(each, tuple) else (each, each.index, 0)
+        entry, first, step = _numbered(each)
+        drawn = not isinstance(entry, str | InputError)
         number = count if first is None else first
         for what, seconds, only in _told_apart(_entries(entry, read)):
-            yield Item(number, _source(entry), what, seconds, only and not drawn)
+            yield Item(number, _source(entry), what, seconds, only and (alone or not drawn))
             number = number + step if step else NO_NUMBER
             # a file that is bad as a whole has no number
             count += not (only and isinstance(what, Unreadable))
+
+
+def _numbered(entry: Numbered | str | InputError | Draw) -> tuple[Any, int | None, int]:
+    """Return an input, the number of its first member where it is known, and the step to the next one."""
+    if isinstance(entry, Numbered):
+        return entry
+    return (entry, None, 1) if isinstance(entry, str | InputError) else (entry, entry.index, 0)
 
 
 def _source(entry: str | InputError | Draw) -> str:
@@ -149,17 +128,7 @@ def _entries(
         yield Unreadable(InputError("holds nothing", remedy, source=printable(str(source)))), 0.0
 
 
-def shape_items(
-    inputs: Inputs, fmt: str | None, session: Session, assembled: Sampling | None = None
-) -> Members[Shape]:
-    """Return the shapes of every input, or the one domain of them all, as `assembled` says."""
-    read = partial(read_shapes, fmt=fmt)
-    if assembled is None:
-        return items(inputs, read, session)
-    return Members(_assembly(inputs, read, assembled, session))
-
-
-def _assembly(
+def assembly(
     inputs: Inputs, read: Callable[[str], Iterator[Shape]], sampling: Sampling, session: Session
 ) -> Iterator[Item[Shape]]:
     """Yield the one domain that the shapes of all inputs make; an error is reported, and nothing is left."""

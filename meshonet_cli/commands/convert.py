@@ -1,5 +1,6 @@
 """``meshonet convert``."""
 
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import typer
@@ -20,19 +21,25 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 
 # fmt: off
-@o.expanded
-def convert(
-    formats: o.FileOptions,
-    many: o.InputOptions,
-    printing: o.PrintOptions,
-    files: Annotated[list[str] | None, typer.Argument(
-        metavar="IN... [OUT]", show_default=False,
-        help="Files to read, or - for standard input; without -o the last name is the file to write.",
-    )] = None,
-    output: Annotated[str | None, _output(
+@dataclass(frozen=True)
+class ConvertedFiles(o.FileOptions):
+    """Files of other formats."""
+
+    output: Annotated[str, _output(
         "-o", "--output", metavar="OUT",
         help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also {name}, "
         "{index}) or one .h5.",
+    )] = ""
+
+
+@o.expanded
+def convert(
+    files: ConvertedFiles,
+    many: o.InputOptions,
+    printing: o.PrintOptions,
+    names: Annotated[list[str] | None, typer.Argument(
+        metavar="IN... [OUT]", show_default=False,
+        help="Files to read, or - for standard input; without -o the last name is the file to write.",
     )] = None,
     extrude: Annotated[float | None, _option(
         "--extrude", metavar="H",
@@ -68,17 +75,14 @@ def convert(
     """Turn files from one format into another."""
     from meshonet.formats.convert import Conversion
     from meshonet.geometry.errors import InputError
-    from meshonet_cli.convert_batch import convert_files, print_formats
+    from meshonet_cli.tasks.conversions import convert_files, print_formats
 
-    session = printing.session()
     if list_formats:
-        return print_formats(session)
-    *sources, target = names = [*(files or []), *([output] if output else [])] or [""]
+        return print_formats(printing.session())
+    *sources, target = words = [*(names or []), *([files.output] if files.output else [])] or [""]
     if not sources:
-        remedy = f"name it: meshonet convert {names[0] or 'IN'} OUT"
+        remedy = f"name it: meshonet convert {words[0] or 'IN'} OUT"
         raise InputError("there is no file to write", remedy, source="convert")
-    return convert_files(
-        many.of(sources), target, Conversion(extrude, planes, swap, normalise, coarsen or 1), formats,
-        session, plot3d=plot3d,
-    )
+    batch = printing.batch(many.of(sources), replace(files, output=target))
+    return convert_files(batch, Conversion(extrude, planes, swap, normalise, coarsen or 1), plot3d)
 # fmt: on

@@ -19,7 +19,6 @@ _option = o.option_of(o.METHOD)
 def deform(
     grid: o.Grids,
     many: o.InputOptions,
-    output: o.Output,
     files: o.FileOptions,
     printing: o.PrintOptions,
     workers: o.EngineOptions,
@@ -41,13 +40,11 @@ def deform(
     threads: o.Threads = None,
 ) -> int:
     """Make grids follow a changed boundary, their layers as they were."""
-    from meshonet_cli.deform_batch import write_deformed
+    from meshonet_cli.tasks.deformations import walls_of, write_deformed
 
+    walls = walls_of(wall or (), rotate or (), shift or ())
     return write_deformed(
-        many.of(grid, grids=True), output, printing.session(), wall=wall or (), rotate=rotate or (),
-        shift=shift or (),
-        allow_invalid=allow_invalid, criteria=gates.criteria(), from_format=files.from_format,
-        to_format=files.to_format, skip_existing=files.skip_existing, part_size=files.part_size,
-        engine=workers.chosen(), threads=threads,
+        printing.batch(many.of(grid, grids=True), files, workers), walls, gates.criteria(),
+        allow_invalid=allow_invalid, threads=threads,
     )
 # fmt: on

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = ("meshonet doctor", "meshonet doctor --json")
 _SIGNS = {True: "ok", False: "NO", None: "-"}
+"""What is printed of a check: passed, failed, not made."""
 
 
 def doctor(as_json: o.AsJson = False) -> int:
@@ -20,7 +21,7 @@ def doctor(as_json: o.AsJson = False) -> int:
     The exit code is 1 when something is missing or does not work.
     """
     from meshonet.api.doctor import doctor as examined
-    from meshonet_cli.session import Session
+    from meshonet_cli.terminal.session import Session
 
     session, findings = Session(as_json=as_json), examined()
     if as_json:

@@ -15,42 +15,38 @@ EXAMPLES = (
 )
 _option = o.option_of(o.METHOD)
 
+
 # fmt: off
-ModelName = Annotated[str | None, _option(
-    "--model", metavar="NAME|PATH",
-    help="Operator: a shipped one (see meshonet models), a .safetensors file, or base for the conformal "
-    "solver without a network. C grids are marched and take none. [default: what measures best for the "
-    "topology]",
-)]
-Polish = Annotated[str, _option(
-    "--polish", metavar="auto|off|N", show_default=True,
-    help="Iterations of a solver after the operator, elliptic or variational. With off or N and no --model, "
-    "the network for the topology is used.",
-)]
-Answer = Annotated[Literal["valid", "pasted", "raw"], _option(
-    "--answer", metavar="valid|pasted|raw", show_default=True,
-    help="For models that do not meet the boundary exactly: raw is the output of the network, pasted has "
-    "the true boundary on its edges, valid is pasted and unfolded.",
-)]
-DeviceName = Annotated[Literal["cpu", "cuda"] | None, _option(
-    "--device", metavar="cpu|cuda",
-    help="Evaluate networks with torch on this device, all grids of a batch together. Without --polish, "
-    "airfoil-o then takes 3 steps of polish and other models none. [default: without torch]",
-)]
-# fmt: on
-
-
 @o.expanded
 def infer(
-    boundary: o.Boundaries, output: o.Output, many: o.InputOptions, sampling: o.SamplingOptions,
-    first: o.LayerOptions,
-    domain: o.DomainOptions, checks: o.CheckOptions, gates: o.GateOptions,
-    files: o.FileOptions, printing: o.PrintOptions,
-    volume: o.VolumeOptions, workers: o.EngineOptions,
-    blocks: o.BlocksName = "auto", walls: o.Walls = None, model: ModelName = None, polish: Polish = "auto",
-    answer: Answer = "valid", device: DeviceName = None, refine: o.Refine = 0,
-    threads: o.Threads = None,
-) -> int:  # fmt: skip
+    boundary: o.Boundaries,
+    grids: o.GridOptions,
+    domain: o.DomainOptions,
+    volume: o.VolumeOptions,
+    blocks: o.BlocksName = "auto",
+    model: Annotated[str | None, _option(
+        "--model", metavar="NAME|PATH",
+        help="Operator: a shipped one (see meshonet models), a .safetensors file, or base for the conformal "
+        "solver without a network. C grids are marched and take none. [default: what measures best for the "
+        "topology]",
+    )] = None,
+    polish: Annotated[str, _option(
+        "--polish", metavar="auto|off|N", show_default=True,
+        help="Iterations of a solver after the operator, elliptic or variational. With off or N and no "
+        "--model, the network for the topology is used.",
+    )] = "auto",
+    answer: Annotated[Literal["valid", "pasted", "raw"], _option(
+        "--answer", metavar="valid|pasted|raw", show_default=True,
+        help="For models that do not meet the boundary exactly: raw is the output of the network, pasted has "
+        "the true boundary on its edges, valid is pasted and unfolded.",
+    )] = "valid",
+    device: Annotated[Literal["cpu", "cuda"] | None, _option(
+        "--device", metavar="cpu|cuda",
+        help="Evaluate networks with torch on this device, all grids of a batch together. Without --polish, "
+        "airfoil-o then takes 3 steps of polish and other models none. [default: without torch]",
+    )] = None,
+    refine: o.Refine = 0,
+) -> int:
     """Make the grid that measures best: conformal, marched or variational.
 
     Around a body, this is an O grid by a conformal map, or a grid marched from the wall for C grids and where
@@ -58,31 +54,9 @@ def infer(
     into blocks. In space, six faces are filled by the variational method, and surfaces with a first cell are
     marched off. A neural operator is used where --model, --polish or --device asks for one.
     """
-    from meshonet_cli.grid_batch import request_of, write_grids
+    from meshonet_cli.tasks.grids import write_grids
 
     settings = {"model": model, "polish": o.polish_steps(polish), "answer": answer, "device": device}
-    criteria = gates.criteria()
-    request = request_of(
-        "best",
-        sampling,
-        checks,
-        criteria,
-        first,
-        volume,
-        settings=settings,
-        refine=refine,
-        blocks=blocks,
-        threads=threads,
-        **domain.parameters(walls),
-    )
-    session = printing.session()
-    return write_grids(
-        many.of(boundary),
-        output,
-        request,
-        criteria,
-        files,
-        session,
-        assemble=domain.assemble,
-        engine=workers.chosen(),
-    )
+    request = grids.request("best", settings, volume, refine=refine, blocks=blocks, **domain.parameters())
+    return write_grids(grids.batch(boundary), request, grids.gates.criteria(), assemble=domain.assemble)
+# fmt: on

@@ -1,10 +1,12 @@
 """``meshonet layout``."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
 
 from meshonet_cli import options as o
+from meshonet_cli.batch.files import Files
 
 EXAMPLES = (
     "meshonet layout plate.geojson -o plate.json",
@@ -17,6 +19,19 @@ _sampling = o.option_of(o.SAMPLING)
 
 
 # fmt: off
+@dataclass(frozen=True)
+class LayoutFiles(Files):
+    """Files of layouts."""
+
+    output: Annotated[str, o.option_of(o.IO)(
+        "-o", "--output", metavar="LAYOUT.json",
+        help="File to write, or - for standard output. For several inputs: 'dir/{stem}.json' (also {name}, "
+        "{index}).",
+    )]
+    from_format: o.From = None
+    skip_existing: o.SkipExisting = False
+
+
 @o.expanded
 def layout(
     domain: Annotated[list[str], typer.Argument(
@@ -24,11 +39,7 @@ def layout(
         help="File with a domain: WKT, GeoJSON, points of closed curves, DXF, the boundary of a mesh; an "
         "airfoil, naca:2412, or - for standard input.",
     )],
-    output: Annotated[str, o.option_of(o.IO)(
-        "-o", "--output", metavar="LAYOUT.json",
-        help="File to write, or - for standard output. For several inputs: 'dir/{stem}.json' (also {name}, "
-        "{index}).",
-    )],
+    files: LayoutFiles,
     many: o.InputOptions,
     blocks: o.DomainOptions,
     printing: o.PrintOptions,
@@ -37,20 +48,16 @@ def layout(
         "--far-field", metavar="R", help="Distance of the far field, in chords of all bodies. [default: 15]",
     )] = None,
     first_cell: o.FirstCell = None, y_plus: o.YPlus = None, reynolds: o.Reynolds = None,
-    walls: o.Walls = None,
-    from_format: o.From = None,
-    skip_existing: o.SkipExisting = False,
 ) -> int:
     """Split domains into blocks and write these.
 
     With a first cell, they are those outside of the layers, which a grid has around them in addition.
     """
-    from meshonet_cli.layout_batch import write_layouts
+    from meshonet_cli.tasks.layouts import write_layouts
 
     first = {"first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds}
     return write_layouts(
-        many.of(domain), output, blocks.parameters(walls) | first, far_field, printing.session(),
-        assemble=blocks.assemble, from_format=from_format, skip_existing=skip_existing,
-        engine=workers.chosen(),
+        printing.batch(many.of(domain), files, workers), blocks.parameters() | first, far_field,
+        assemble=blocks.assemble,
     )
 # fmt: on

@@ -20,7 +20,7 @@ def models(
 ) -> int:
     """List the operators that are shipped."""
     from meshonet.api.models import models as described
-    from meshonet_cli.session import Session
+    from meshonet_cli.terminal.session import Session
 
     session = Session(as_json=as_json, debug=debug)
     facts = [model for each in name for model in described(each)] if name else described()

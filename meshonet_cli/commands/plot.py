@@ -1,5 +1,6 @@
 """``meshonet plot``."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 from meshonet_cli import options as o
@@ -10,21 +11,34 @@ EXAMPLES = (
     "meshonet plot wing.cgns --slice y=.5 -o slice.png",
     "meshonet plot wing.cgns -o wing.html",
 )
-_BOX = ("a box", "x0,x1,y0,y1", "zoom")
-_DIRECTION = ("a direction", "azimuth and elevation in degrees, e.g. -125,25", "seen_from")
+_BOX = ("a box", "use x0,x1,y0,y1", "zoom")
+"""What an error says of a box: name, remedy, parameter."""
+_DIRECTION = ("a direction", "use azimuth and elevation in degrees, e.g. -125,25", "seen_from")
+"""Likewise of a direction."""
 _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 
 # fmt: off
-@o.expanded
-def plot(
-    grid: o.Grids,
+@dataclass(frozen=True)
+class PictureFiles(o.SectionFiles):
+    """Files of pictures."""
+
     output: Annotated[str, _output(
         "-o", "--output", metavar="PICTURE",
         help="Picture to write, .png, .svg or .pdf, or an interactive page, .html; - for standard output. "
         "For several inputs: "
         "'dir/{stem}.png' (also {name}, {index}).",
-    )],
+    )]
+    to_format: Annotated[str | None, _output(
+        "--to", metavar="FORMAT",
+        help="png, svg, pdf or html, when the ending does not say. [default on standard output: png]",
+    )] = None
+
+
+@o.expanded
+def plot(
+    grid: o.Grids,
+    files: PictureFiles,
     many: o.InputOptions,
     printing: o.PrintOptions,
     metric: Annotated[str, _option(
@@ -46,38 +60,12 @@ def plot(
     every: Annotated[int | None, _option(
         "--every", metavar="K", help="Draw every K-th grid line. [default: as many as can be distinguished]",
     )] = None,
-    from_format: o.From = None,
-    to_format: Annotated[str | None, _output(
-        "--to", metavar="FORMAT",
-        help="png, svg, pdf or html, when the ending does not say. [default on standard output: png]",
-    )] = None,
-    skip_existing: o.SkipExisting = False,
 ) -> int:
     """Draw grids, coloured by a quality metric."""
     from meshonet.formats.figure.picture import Picture
-    from meshonet_cli.plot_batch import plot_grids
+    from meshonet_cli.tasks.pictures import plot_grids
 
-    box, direction = _numbers(zoom, (4, 6), _BOX), _numbers(seen_from, (2,), _DIRECTION)
-    view = None if direction is None else (direction[0], direction[1])
-    picture = Picture(None if metric == "none" else metric, box, every, slice_, view)
-    return plot_grids(
-        many.of(grid, grids=True), output, picture, printing.session(),
-        from_format=from_format, to_format=to_format, skip_existing=skip_existing,
-    )
+    box, direction = o.numbers(zoom, (4, 6), *_BOX), o.numbers(seen_from, (2,), *_DIRECTION)
+    picture = Picture(None if metric == "none" else metric, box, every, slice_, direction)
+    return plot_grids(printing.batch(many.of(grid, grids=True), files), picture)
 # fmt: on
-
-
-def _numbers(
-    text: str | None, counts: tuple[int, ...], what: tuple[str, str, str]
-) -> tuple[float, ...] | None:
-    """Return the numbers of an option, as many as one of `counts`; `what` is thing, form and parameter."""
-    if text is None:
-        return None
-    thing, form, parameter = what
-    try:
-        numbers = tuple(float(word) for word in text.split(","))
-    except ValueError:
-        numbers = ()
-    if len(numbers) not in counts:
-        raise o.bad_value(text, thing, f"use {form}", parameter)
-    return numbers

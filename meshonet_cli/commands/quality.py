@@ -53,7 +53,7 @@ def quality(
     """Measure grids: folded cells, angles, skewness."""
     from meshonet.geometry.quality.report import COMPARED
     from meshonet.geometry.threads import limited_to
-    from meshonet_cli.quality_batch import measure_grids
+    from meshonet_cli.tasks.qualities import measure_grids
 
     o.only_with("compare", compare is not None, pair=pair)
     with limited_to(threads):

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
-from meshonet.solvers.method import METHODS
+from meshonet.solvers.pipeline.methods import METHODS
 from meshonet_cli import options as o
-from meshonet_cli.errors import with_options
+from meshonet_cli.terminal.errors import with_options
 
 EXAMPLES = (
     "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
@@ -31,71 +31,62 @@ if TYPE_CHECKING:
 else:
     MethodName = Literal[tuple(SOLVERS)]
 
+
 # fmt: off
-Method = Annotated[MethodName, _option(
-    "--method", metavar="|".join(SOLVERS), show_default=True,
-    help=with_options(" ".join(f"{name}: {text}." for name, text in SOLVERS.items())),
-)]
-Tolerance = Annotated[float | None, _option(
-    "--tol", metavar="T",
-    help="Stop at this residual, relative to that of the interpolated start (variational: stop when no node "
-    "moves by more than about T times the square root of the domain's area). [default: where more cycles "
-    "would change the grid by less than its discretisation error]",
-)]
-MaxCycles = Annotated[int | None, _option(
-    "--max-cycles", metavar="N", min=1,
-    help="Multigrid cycles (variational: iterations at full resolution) at the most. [default: 30 (200)]",
-)]
-Coarse = Annotated[str, _option(
-    "--coarse", metavar="auto|off|N", show_default=True,
-    help="Solve on N x N nodes and interpolate to --res by splines. auto does so for quads and C grids of "
-    "more than 512 nodes a side with winslow (N is then 257) and of more than 257 with variational (129), "
-    "where the quality measures the same; not with --tol, --max-cycles or --initial.",
-)]
-Initial = Annotated[str | None, _option("--initial", metavar="GRID", help="Grid to start from.")]
-RepairMargin = Annotated[int | None, o.option_of(o.CHECKS)(
-    "--repair-margin", metavar="CELLS", min=2, max=24,
-    help="Width of the band of cells around folded ones that moves when they are unfolded; 12 is slower and "
-    "smoother. [default: 6, more where that is not enough]",
-)]
-History = Annotated[str | None, o.option_of(o.IO)(
-    "--history", metavar="F.csv",
-    help="Write residual, change, seconds, folded cells and functional of every cycle to F.csv.",
-)]
-# fmt: on
-
-
 @o.expanded
 def solve_pde(
-    boundary: o.Boundaries, output: o.Output, many: o.InputOptions, sampling: o.SamplingOptions,
-    first: o.LayerOptions,
-    sides: o.SideOptions, domain: o.DomainOptions, checks: o.CheckOptions, gates: o.GateOptions,
-    files: o.FileOptions,
-    printing: o.PrintOptions, volume: o.VolumeOptions, workers: o.EngineOptions,
-    blocks: o.BlocksName = "auto", walls: o.Walls = None,
-    method: Method = "auto", tol: Tolerance = None, max_cycles: MaxCycles = None, coarse: Coarse = "auto",
-    refine: o.Refine = 0, initial: Initial = None, history: History = None, slide: o.Slide = None,
-    wall_angle: o.WallAngle = None, repair_margin: RepairMargin = None,
-    threads: o.Threads = None,
-) -> int:  # fmt: skip
+    boundary: o.Boundaries,
+    grids: o.GridOptions,
+    sides: o.SideOptions,
+    domain: o.DomainOptions,
+    volume: o.VolumeOptions,
+    blocks: o.BlocksName = "auto",
+    method: Annotated[MethodName, _option(
+        "--method", metavar="|".join(SOLVERS), show_default=True,
+        help=with_options(" ".join(f"{name}: {text}." for name, text in SOLVERS.items())),
+    )] = "auto",
+    tol: Annotated[float | None, _option(
+        "--tol", metavar="T",
+        help="Stop at this residual, relative to that of the interpolated start (variational: stop when no "
+        "node moves by more than about T times the square root of the domain's area). [default: where more "
+        "cycles would change the grid by less than its discretisation error]",
+    )] = None,
+    max_cycles: Annotated[int | None, _option(
+        "--max-cycles", metavar="N", min=1,
+        help="Multigrid cycles (variational: iterations at full resolution) at the most. [default: 30 (200)]",
+    )] = None,
+    coarse: Annotated[str, _option(
+        "--coarse", metavar="auto|off|N", show_default=True,
+        help="Solve on N x N nodes and interpolate to --res by splines. auto does so for quads and C grids "
+        "of more than 512 nodes a side with winslow (N is then 257) and of more than 257 with variational "
+        "(129), where the quality measures the same; not with --tol, --max-cycles or --initial.",
+    )] = "auto",
+    refine: o.Refine = 0,
+    initial: Annotated[str | None, _option("--initial", metavar="GRID", help="Grid to start from.")] = None,
+    history: Annotated[str | None, o.option_of(o.IO)(
+        "--history", metavar="F.csv",
+        help="Write residual, change, seconds, folded cells and functional of every cycle to F.csv.",
+    )] = None,
+    slide: o.Slide = None,
+    wall_angle: o.WallAngle = None,
+    repair_margin: Annotated[int | None, o.option_of(o.CHECKS)(
+        "--repair-margin", metavar="CELLS", min=2, max=24,
+        help="Width of the band of cells around folded ones that moves when they are unfolded; 12 is slower "
+        "and smoother. [default: 6, more where that is not enough]",
+    )] = None,
+) -> int:
     """Make grids by elliptic equations, a variational method, or marching.
 
     In space, six faces (of a grid, or six patches that enclose a volume) are filled, the patches of a surface
     are marched off by --method hyperbolic, and several blocks are smoothed across their interfaces.
     """
-    from meshonet_cli.grid_batch import initial_grid, request_of, write_grids
+    from meshonet_cli.tasks.grids import initial_grid, write_grids
 
-    criteria = gates.criteria()
-    request = request_of(
-        method, sampling, checks, criteria, first, sides, volume,
-        settings={"tol": tol, "max_cycles": max_cycles},
-        coarse=o.coarse_nodes(coarse), refine=refine, initial=initial_grid(initial),
-        history=history is not None,
-        slide=slide, wall_angle=wall_angle, repair_margin=repair_margin,
-        blocks=blocks, threads=threads, **domain.parameters(walls),
-    )  # fmt: skip
-    session = printing.session()
-    return write_grids(
-        many.of(boundary), output, request, criteria, files, session,
-        history=history, assemble=domain.assemble, engine=workers.chosen(),
-    )  # fmt: skip
+    request = grids.request(
+        method, {"tol": tol, "max_cycles": max_cycles}, sides, volume, coarse=o.coarse_nodes(coarse),
+        refine=refine, initial=initial_grid(initial), history=history is not None, slide=slide,
+        wall_angle=wall_angle, repair_margin=repair_margin, blocks=blocks, **domain.parameters(),
+    )
+    criteria = grids.gates.criteria()
+    return write_grids(grids.batch(boundary), request, criteria, history=history, assemble=domain.assemble)
+# fmt: on

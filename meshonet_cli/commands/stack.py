@@ -23,7 +23,7 @@ def stack(
         help="File with two sections or more: airfoil (a file or naca:2412), chord, z, and where needed x, y "
         "and twist, or sweep and dihedral; or - for standard input.",
     )],
-    output: o.Output,
+    files: o.VolumeFiles,
     many: o.InputOptions,
     printing: o.PrintOptions,
     gates: o.GateOptions,
@@ -65,12 +65,10 @@ def stack(
         "[default: 1.2, or what --layers need]",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
-    to_format: o.To = None,
-    skip_existing: o.SkipExisting = False,
     threads: o.Threads = None,
 ) -> int:
     """Make volumes around wings and blades, and in ducts, from sections."""
-    from meshonet_cli.volume_batch import write_stacks
+    from meshonet_cli.tasks.volumes import write_stacks
 
     chosen = {
         "around": around, "span": span, "base": base, "far_field": far_field, "first_cell": first_cell,
@@ -78,8 +76,7 @@ def stack(
     }
     parameters = {name: value for name, value in chosen.items() if value is not None}
     return write_stacks(
-        many.of(sections, suffixes=(".toml",)), output, parameters | {"allow_invalid": allow_invalid},
-        printing.session(), tip=tip, surface=surface, criteria=gates.criteria(), to_format=to_format,
-        skip_existing=skip_existing, engine=workers.chosen(),
+        printing.batch(many.of(sections, suffixes=(".toml",)), files, workers),
+        parameters | {"allow_invalid": allow_invalid}, gates.criteria(), tip=tip, surface=surface,
     )
 # fmt: on

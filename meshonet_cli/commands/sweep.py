@@ -17,16 +17,16 @@ _sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
 # fmt: off
 @o.expanded
 def sweep(
-    files: Annotated[list[str], typer.Argument(
+    names: Annotated[list[str], typer.Argument(
         metavar="OUTLINE... PATH", show_default=False,
         help="Cross-sections: circle:RADIUS, or a file with a closed curve, a domain, a layout or a planar "
         "grid. Then the path of all: a file of points x y z, one a line, or lines and arcs in TOML.",
     )],
-    output: o.Output,
     many: o.InputOptions,
     printing: o.PrintOptions,
     gates: o.GateOptions,
     workers: o.EngineOptions,
+    files: o.SectionFiles,
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ", help="Nodes along the sides of a four-sided section. [default: 65x33]",
     )] = None,
@@ -70,27 +70,23 @@ def sweep(
         "--growth", metavar="G", help="Largest ratio of neighbouring cells away from walls. [default: 1.2]",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
-    from_format: o.From = None,
-    to_format: o.To = None,
-    skip_existing: o.SkipExisting = False,
     threads: o.Threads = None,
 ) -> int:
     """Make volumes of pipes and ducts, cross-sections carried along curves."""
     from meshonet.geometry.errors import InputError
-    from meshonet_cli.volume_batch import vector, write_sweeps
+    from meshonet.solvers.sweeping.sweep import Sweep
+    from meshonet_cli.tasks.volumes import write_sweeps
 
-    *outlines, path = files
+    *outlines, path = names
     if not outlines:
         remedy = f"name it: meshonet sweep {path} PATH -o pipe.h5"
         raise InputError("there is no path", remedy, source="sweep")
     section = {
-        "cells": cells, "cell_size": cell_size, "walls": walls or (), "layout": layout,
+        "res": res, "cells": cells, "cell_size": cell_size, "walls": walls or (), "layout": layout,
         "first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds, "growth": growth,
         "allow_invalid": allow_invalid, "threads": threads,
     }
-    along = {"planes": planes, "up": vector(up), "twist": twist, "scale": scale}
-    return write_sweeps(
-        many.of(outlines), path, output, res, section, along, printing.session(), criteria=gates.criteria(),
-        from_format=from_format, to_format=to_format, skip_existing=skip_existing, engine=workers.chosen(),
-    )
+    direction = o.numbers(up, (3,), "a direction", "use X,Y,Z, e.g. 0,0,1", "up")
+    batch = printing.batch(many.of(outlines), files, workers)
+    return write_sweeps(batch, path, section, Sweep(planes, direction, twist, scale), gates.criteria())
 # fmt: on

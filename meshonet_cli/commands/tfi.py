@@ -1,7 +1,8 @@
 """``meshonet tfi``."""
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
+from meshonet.solvers.pipeline.methods import METHODS
 from meshonet_cli import options as o
 
 EXAMPLES = (
@@ -10,6 +11,11 @@ EXAMPLES = (
     "meshonet sample-boundary naca:2412 -o - | meshonet tfi - -o - | meshonet quality -",
 )
 BlendingName = Literal["arclength", "linear"]
+ALGEBRAIC = {name: row.summary for name, row in METHODS.items() if row.algebraic}
+if TYPE_CHECKING:
+    MethodName: TypeAlias = str
+else:
+    MethodName = Literal[tuple(ALGEBRAIC)]
 _option = o.option_of(o.METHOD)
 
 
@@ -17,30 +23,20 @@ _option = o.option_of(o.METHOD)
 @o.expanded
 def tfi(
     boundary: o.Boundaries,
-    many: o.InputOptions,
-    output: o.Output,
-    sampling: o.SamplingOptions,
-    first: o.LayerOptions,
+    grids: o.GridOptions,
     sides: o.SideOptions,
-    checks: o.CheckOptions,
-    gates: o.GateOptions,
-    files: o.FileOptions,
-    printing: o.PrintOptions,
-    workers: o.EngineOptions,
-    blending: Annotated[BlendingName, _option(
-        "--blending", metavar="arclength|linear", show_default=True,
-        help="Blend the edges by their arc length, or linearly by index.",
-    )] = "arclength",
-    threads: o.Threads = None,
+    method: Annotated[MethodName, _option(
+        "--method", metavar="|".join(ALGEBRAIC), show_default=True,
+        help=" ".join(f"{name}: {text}." for name, text in ALGEBRAIC.items()),
+    )] = "tfi",
+    blending: Annotated[BlendingName | None, _option(
+        "--blending", metavar="arclength|linear",
+        help="Blend the edges by their arc length, or linearly by index. [default: arclength]",
+    )] = None,
 ) -> int:
     """Make grids by transfinite interpolation."""
-    from meshonet_cli.grid_batch import request_of, write_grids
+    from meshonet_cli.tasks.grids import write_grids
 
-    criteria = gates.criteria()
-    request = request_of(
-        "tfi", sampling, checks, criteria, first, sides, settings={"blending": blending}, threads=threads
-    )
-    return write_grids(
-        many.of(boundary), output, request, criteria, files, printing.session(), engine=workers.chosen()
-    )
+    request = grids.request(method, {"blending": blending}, sides)
+    return write_grids(grids.batch(boundary), request, grids.gates.criteria())
 # fmt: on

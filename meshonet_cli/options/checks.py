@@ -66,8 +66,11 @@ class GateOptions:
         Raises InputError: a gate that is none.
         """
         from meshonet.geometry.quality.criteria import Criteria
-        from meshonet.geometry.quality.gates import parse_gates
 
         profiles = tuple(profile.value for profile in self.profile or ())
+        if not self.fail_on:
+            return Criteria((), profiles)
+        from meshonet.geometry.quality.gates import parse_gates
+
         return Criteria(parse_gates(self.fail_on, more), profiles)
 # fmt: on

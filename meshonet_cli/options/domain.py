@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from meshonet_cli.options.groups import DOMAIN, bad_value, option_of
+from meshonet_cli.options.groups import DOMAIN, numbers, option_of
 
 _option = option_of(DOMAIN)
 
@@ -56,28 +56,17 @@ class DomainOptions:
         "--outlet", metavar="L", help="With --pitch: length behind the blade, in axial chords. [default: 1]",
     )] = None
 
-    def parameters(self, walls: str | None = None) -> dict[str, Any]:
+    walls: Walls = None
+
+    def parameters(self) -> dict[str, Any]:
         """Return them for the library; raise InputError for what cannot be read."""
         values = {name: value for name, value in vars(self).items() if name != "assemble"}
         return values | {
             "layout": None if self.layout is None else _layout(self.layout),
-            "pitch": None if self.pitch is None else shift(self.pitch),
-            "walls": () if walls is None else tuple(name.strip() for name in walls.split(",")),
+            "pitch": numbers(self.pitch, (2,), "a vector", "use DX,DY, e.g. 0,0.8", "pitch"),
+            "walls": () if self.walls is None else tuple(name.strip() for name in self.walls.split(",")),
         }
 # fmt: on
-
-
-def shift(text: str) -> tuple[float, float]:
-    """Return the vector ``DX,DY``, or raise InputError.
-
-    >>> shift("0,57.5")
-    (0.0, 57.5)
-    """
-    try:
-        x, y = (float(word) for word in text.split(","))
-    except ValueError:
-        raise bad_value(text, "a vector", "use DX,DY, e.g. 0,0.8", "pitch") from None
-    return x, y
 
 
 def _layout(text: str) -> Any:

@@ -1,16 +1,22 @@
-"""Options that say what is read, what is written and what is printed."""
+"""Options that say what is read, which of many inputs, what is written and what is printed."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from meshonet_cli.options.groups import IO, option_of
+from meshonet_cli.batch.files import Files
+from meshonet_cli.options.groups import IO, bad_value, option_of
 
 if TYPE_CHECKING:
-    from meshonet_cli.session import Session
+    from meshonet.formats.inputs import Inputs
+    from meshonet_cli.batch.run import Batch
+    from meshonet_cli.batch.sources import DrawnInputs
+    from meshonet_cli.options.engine import EngineOptions
+    from meshonet_cli.terminal.session import Session
 
 _option = option_of(IO)
 
@@ -55,12 +61,25 @@ Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")
 
 
 @dataclass(frozen=True)
-class FileOptions:
-    """Formats of a command that turns files into files."""
+class VolumeFiles(Files):
+    """Files of a command whose inputs have one format and which writes no datasets in parts."""
 
-    from_format: From = None
+    output: Output
     to_format: To = None
     skip_existing: SkipExisting = False
+
+
+@dataclass(frozen=True)
+class SectionFiles(VolumeFiles):
+    """Files of a command that writes no datasets in parts."""
+
+    from_format: From = None
+
+
+@dataclass(frozen=True)
+class FileOptions(SectionFiles):
+    """Files of a command that turns files into files or datasets."""
+
     part_size: PartSize = None
 
 
@@ -74,7 +93,51 @@ class PrintOptions:
 
     def session(self) -> Session:
         """Return the session that prints so."""
-        from meshonet_cli.session import Session
+        from meshonet_cli.terminal.session import Session
 
         return Session(quiet=self.quiet, as_json=self.as_json, debug=self.debug)
+
+    def batch(
+        self, inputs: Inputs | DrawnInputs, files: Files, workers: EngineOptions | None = None
+    ) -> Batch:
+        """Return the run over inputs that prints so."""
+        from meshonet_cli.batch.run import Batch
+
+        session = self.session()
+        return Batch(inputs, files, session, workers.chosen()) if workers else Batch(inputs, files, session)
+
+
+@dataclass(frozen=True)
+class InputOptions:
+    """Which inputs are taken of folders, zip archives and lists, and which of all inputs."""
+
+    pick: Annotated[list[str] | None, _option(
+        "--pick", metavar="PATTERN",
+        help="Of folders, .zip files and lists take files of these names only, e.g. 'naca*'; case does not "
+        "matter. Can be repeated.",
+    )] = None
+    shard: Annotated[str | None, _option(
+        "--shard", metavar="K/N",
+        help="Take every N-th input from the K-th on, for N jobs that share the work; of a dataset in parts, "
+        "every N-th part.",
+    )] = None
 # fmt: on
+
+    def of(self, words: Sequence[str], *, grids: bool = False, suffixes: Sequence[str] = ()) -> Inputs:
+        """Return the inputs that `words` name: shapes, or `grids`, or files of other endings.
+
+        Raises InputError: as `Inputs`; a shard that is none.
+        """
+        from meshonet.formats.inputs import Inputs, readable_suffixes
+
+        endings = frozenset(suffixes) or readable_suffixes(grids_only=grids)
+        return Inputs(tuple(words), endings, tuple(self.pick or ()), self.part())
+
+    def part(self) -> tuple[int, int]:
+        """Return K and N of the shard, 1 and 1 for all inputs. Raises InputError: it is none."""
+        if self.shard is None:
+            return 1, 1
+        words = self.shard.split("/")
+        if len(words) != 2 or not all(word.isascii() and word.isdigit() and len(word) < 10 for word in words):
+            raise bad_value(self.shard, "a shard", "use K/N, e.g. 3/8 for the third of eight", "shard")
+        return int(words[0]), int(words[1])

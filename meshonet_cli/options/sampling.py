@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
+from meshonet.geometry.spacing.laws import LAWS
 from meshonet_cli.options.groups import SAMPLING, bad_value, option_of
 
 if TYPE_CHECKING:
     from meshonet.geometry.spacing.sampling import Sampling
 
-# the library's own choices, repeated here because its modules load numpy; a test holds them equal
+if TYPE_CHECKING:
+    SpacingName: TypeAlias = str
+else:
+    SpacingName = Literal[tuple(LAWS)]
+# the library's choices, repeated because its module loads numpy; a test holds them equal
 TopologyName = Literal["auto", "quad", "o", "c"]
-SpacingName = Literal["auto", "conformal", "uniform", "cosine", "tanh", "curvature"]
 _option = option_of(SAMPLING)
 
 # fmt: off
@@ -35,7 +39,7 @@ class SamplingOptions:
         "counts both sides of the wake). auto takes C when a first cell is given and the edge is sharp.",
     )] = "auto"
     spacing: Annotated[SpacingName, _option(
-        "--spacing", metavar="auto|conformal|uniform|cosine|tanh|curvature", show_default=True,
+        "--spacing", metavar="|".join(LAWS), show_default=True,
         help="Spacing of the nodes along walls.",
     )] = "auto"
     le_spacing: Annotated[float | None, _option(

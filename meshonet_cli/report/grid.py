@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 from meshonet.geometry.notes import changes_in
 from meshonet.geometry.quality.verdicts import named
-from meshonet_cli.batch.timed import Timed
-from meshonet_cli.errors import with_options
-from meshonet_cli.text import span
+from meshonet_cli.report.timed import Timed
+from meshonet_cli.terminal.errors import with_options
+from meshonet_cli.terminal.text import span
 
 if TYPE_CHECKING:
     from meshonet.geometry.quality.blocks import BlockCounts
     from meshonet.geometry.quality.gates import Judgement
-    from meshonet.geometry.quality.summary import Quality
-    from meshonet.solvers.progress import Row
+    from meshonet.geometry.summary import Quality
+    from meshonet.solvers.progress import HistoryRow
+    from meshonet_cli.terminal.summary import MemberRow
 
 _METHODS = {"conformal": "conformal map"}
 """Methods whose names alone would not say what they do, for people."""
@@ -40,14 +41,29 @@ class Report(Timed):
     path: tuple[str, ...] = ()
     residual: float | None = None
     cycles: int | None = None
-    history: tuple[Row, ...] = ()
+    history: tuple[HistoryRow, ...] = ()
     blocks: BlockCounts | None = None
     judgement: Judgement | None = None
+
+    @property
+    def warning(self) -> str:
+        """That there are folded cells."""
+        folded = self.quality.folded
+        return f"{self.item.label}: {folded} folded cells are in {self.output}" if folded else ""
+
+    def row(self) -> MemberRow | None:
+        """Return its row of a table, where it was judged."""
+        if not self.judgement:
+            return None
+        from meshonet_cli.terminal.summary import MemberRow, figures
+
+        return MemberRow(self.item.label, figures(self.quality), self.judgement)
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
         from meshonet.geometry.quality.blocks import BlockFigures
         from meshonet.geometry.quality.report import quality_dict
+        from meshonet_cli.terminal.summary import gates_not_met
 
         figures = self.blocks.as_dict() if isinstance(self.blocks, BlockFigures) else None
         blocks = {} if figures is None else {"cells": self.quality.cells, **figures}
@@ -57,6 +73,7 @@ class Report(Timed):
             "path": list(self.path), "residual": self.residual, "cycles": self.cycles,
             "quality": quality_dict(self.quality), "seconds": self.times_json(),
             "notes": [with_options(note) for note in self.notes], "changes": list(changes_in(self.notes)),
+            "gates_not_met": gates_not_met(self.judgement),
         }  # fmt: skip
 
     def lines(self) -> str:

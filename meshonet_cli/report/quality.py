@@ -3,19 +3,21 @@
 from dataclasses import dataclass
 from typing import Any
 
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.blocks import LINES, BlockFigures
 from meshonet.geometry.quality.figures import Figures
+from meshonet.geometry.quality.gates import Judgement
 from meshonet.geometry.quality.growth import Extreme
-from meshonet.geometry.quality.metrics import METRICS, SOLID_METRICS
+from meshonet.geometry.quality.metrics import metrics_of
 from meshonet.geometry.quality.profiles import CheckResult, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
-from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.quality.verdicts import named, verdict_word
 from meshonet.geometry.quality.walls import Spread, WallRow
-from meshonet_cli.batch.timed import Timed
-from meshonet_cli.summary import figures
-from meshonet_cli.text import aligned, figure
+from meshonet.geometry.summary import Quality
+from meshonet_cli.report.timed import Timed
+from meshonet_cli.terminal.summary import MemberRow, figures, gates_not_met
+from meshonet_cli.terminal.text import aligned, figure
 
 _PLACES = {2: "i, j", 3: "block, i, j", 4: "block, i, j, k"}
 """Places of nodes and cells by how many numbers they have."""
@@ -26,11 +28,20 @@ class Measured(Timed):
     """The report of a grid that was measured."""
 
     report: QualityReport
+    judgement: Judgement
+    judged: bool
+
+    def row(self) -> MemberRow:
+        """Return its row of a table."""
+        comparison = self.report.comparison
+        values = figures(self.report.quality) | (comparison.figures() if comparison else {})
+        return MemberRow(self.item.label, values, self.judgement if self.judged else None)
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
         member = {"input": self.item.source, "name": self.item.what.name}
-        return member | self.report.as_dict() | {"seconds": self.times_json()}
+        end = {"seconds": self.times_json(), "gates_not_met": gates_not_met(self.judgement)}
+        return member | self.report.as_dict() | end
 
     def lines(self) -> str:
         """Return the tables for people."""
@@ -43,7 +54,7 @@ class Measured(Timed):
             if not many
             else blocks_line(report.figures.blocks)
         )
-        rows = [f"{self.item.label}: {size}, {quality.cells} cells, {folded}", quality_table(quality)]
+        rows = [f"{self.item.label}: {size}, {quality.cells} cells, {folded}", quality_table(grid, quality)]
         if many:
             rows.append(lines_table(report.figures.blocks))
         if report.figures.wall_rows and (report.profile or grid.around_body or many):
@@ -57,17 +68,12 @@ class Measured(Timed):
             rows.append(comparison_lines(report.comparison))
         return "\n".join(rows)
 
-    def figures_of_row(self) -> dict[str, float]:
-        """Return the figures that a summary of many grids shows."""
-        comparison = self.report.comparison
-        return figures(self.report.quality) | (comparison.figures() if comparison else {})
 
-
-def quality_table(quality: Quality) -> str:
+def quality_table(grid: Grid, quality: Quality) -> str:
     """Return the metrics as a table; it needs the percentiles."""
     places = max(len(summary.worst) for summary in quality.metrics.values())
     rows = [["metric", "min", "p01", "mean", "p99", "max", f"worst at {_PLACES[places]}"]]
-    for metric in SOLID_METRICS if "volume_ratio" in quality.metrics else METRICS:
+    for metric in metrics_of(grid):
         row = quality[metric.name]
         name = f"{metric.name} ({metric.unit})" if metric.unit else metric.name
         values = [_figure(value) for value in (row.min, row.p01, row.mean, row.p99, row.max)]

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.output import whole_file
-from meshonet_cli.session import Session
-from meshonet_cli.text import duration
+from meshonet_cli.terminal.session import Session
+from meshonet_cli.terminal.text import duration
 
 if TYPE_CHECKING:
     from meshonet.solvers.neural.fit.loop import Progress

@@ -23,13 +23,14 @@ from weakref import WeakKeyDictionary
 
 from meshonet import __version__
 from meshonet.geometry.errors import InputError
-from meshonet_cli.batch.executors.engine import Engine
 from meshonet_cli.batch.executors.processes_engine import share_cores
 from meshonet_cli.batch.executors.workers import EngineLostError, Warn, WorkerDiedError, Workers
-from meshonet_cli.provenance import abridged
+from meshonet_cli.batch.provenance import abridged
 
 if TYPE_CHECKING:
     from distributed import Client
+
+    from meshonet_cli.batch.executors.engine import Engine
 
 _SECONDS = 10  # to wait for the scheduler's answer
 T = TypeVar("T")

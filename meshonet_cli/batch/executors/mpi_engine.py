@@ -13,11 +13,12 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError
-from meshonet_cli.batch.executors.engine import Engine
 from meshonet_cli.batch.executors.workers import Warn, Workers
 
 if TYPE_CHECKING:
     from mpi4py.futures import MPIPoolExecutor
+
+    from meshonet_cli.batch.executors.engine import Engine
 
 _ranks: MPIPoolExecutor | None = None
 """The ranks that work for this one, while it runs inside `on_ranks`."""

@@ -10,14 +10,17 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context, parent_process
 from multiprocessing.process import BaseProcess
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from meshonet_cli.batch.executors.engine import Engine
 from meshonet_cli.batch.executors.workers import Warn, Workers
+
+if TYPE_CHECKING:
+    from meshonet_cli.batch.executors.engine import Engine
 
 T = TypeVar("T")
 R = TypeVar("R")
 _TERMINATED = 143
+"""Exit code of a process that was asked to end (SIGTERM)."""
 _GRACE = 10.0  # seconds that a process has to remove what it was writing
 
 

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-from meshonet_cli.text import bar, duration
+from meshonet_cli.terminal.text import bar, duration
 
 if TYPE_CHECKING:
     from meshonet.solvers.stages import Stage

@@ -10,22 +10,23 @@ import sys
 import threading
 import time
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet.geometry.notes import advice_in, changes_in
-from meshonet_cli.errors import explained, with_options
-from meshonet_cli.stage_line import StageLine
-from meshonet_cli.stopping import check
-from meshonet_cli.summary import Row, Summary
-from meshonet_cli.text import bar
+from meshonet_cli.terminal.errors import explained, with_options
+from meshonet_cli.terminal.stage_line import StageLine
+from meshonet_cli.terminal.stopping import check
+from meshonet_cli.terminal.text import bar
 
 if TYPE_CHECKING:
-    from meshonet_cli.batch.timed import Timed
+    from meshonet_cli.report.timed import Timed
+    from meshonet_cli.terminal.summary import MemberRow
 
 GATE_NOT_MET = 1
+"""Exit code where a gate is broken."""
 SAME_ERRORS = 3
 """How many inputs are named that end in the same error; the others are counted."""
 
@@ -56,7 +57,7 @@ class Session:
         self.batch = False
         self.summary = False
         """Whether a table of all members is the result."""
-        self.rows: list[Row] = []
+        self.rows: list[MemberRow] = []
         self._stdout_is_taken = False
         self._errors: Counter[str] = Counter()
         self.members = self.done = self.failed = self.skipped = self.beyond = self.changed = 0
@@ -80,10 +81,12 @@ class Session:
 
     def fail(self, label: str, source: str, error: Exception, *, repeated: bool = False) -> None:
         """Report a member that failed; of one that may be `repeated` for each the first `SAME_ERRORS`."""
+        from meshonet_cli.terminal.summary import MemberRow
+
         self.failed += 1
         code = error.exit_code if isinstance(error, MeshonetError) else 2
         self.worst = max(self.worst, code)
-        self.rows.append(Row(label))
+        self.rows.append(MemberRow(label))
         line = explained(error, label)
         if self.debug:
             import traceback
@@ -96,7 +99,7 @@ class Session:
         if self.as_json:
             self.result({"input": source, "output": None, "error": line, "exit_code": code})
 
-    def judge(self, row: Row) -> None:
+    def judge(self, row: MemberRow) -> None:
         """Report gates that a member did not meet, and keep its row for a table."""
         self.rows.append(row)
         problems = row.judgement.problems if row.judgement else ()
@@ -109,39 +112,33 @@ class Session:
         """Print what the user should know even when quiet."""
         self._write(f"warning: {text}")
 
-    def report(self, report: Timed, problems: Sequence[str] | None = None) -> None:
-        """Report a member that is done: as JSON, in full when it is alone, on one line in a batch.
-
-        JSON says which gates it did not meet, `problems`, unless None.
-        """
+    def written(self, report: Timed, path: str) -> None:
+        """Report a member whose result is in the file `path`: in full when it is alone, else on one line."""
+        report.finished(path)
+        if report.warning:
+            self.warn(report.warning)
         self.done += 1
         if not self.batch:
             self._unwatch()
         if self.as_json:
-            self.result({**report.as_json(), **_not_met(problems)})
+            self.result(report.as_json())
         else:
             self.note(report.line() if self.batch else report.lines())
         self.changed += bool(changes_in(report.notes))
         self._advice |= dict.fromkeys(advice_in(report.notes))
+        if row := report.row():
+            self.judge(row)
 
-    def written(self, report: Timed, path: str) -> None:
-        """Report a member whose result is in the file `path`."""
-        report.finished(path)
-        self.report(report)
-
-    def show(self, report: Printed, problems: Sequence[str] | None = None) -> None:
-        """Print a report that is itself the result: on standard output, in full, unless quiet.
-
-        JSON says which gates it does not meet, `problems`, unless None.
-        """
+    def show(self, report: Printed) -> None:
+        """Print a report that is itself the result: on standard output, in full, unless quiet."""
         self.done += 1
         if self.as_json or not self.quiet:
-            self.conclude(report, problems)
+            self.conclude(report)
 
-    def conclude(self, total: Printed, problems: Sequence[str] | None = None) -> None:
+    def conclude(self, total: Printed) -> None:
         """Print the report of all members together: on standard output, even when quiet."""
         if self.as_json:
-            self.result({**total.as_json(), **_not_met(problems)})
+            self.result(total.as_json())
         else:
             self.print(total.lines())
 
@@ -222,11 +219,8 @@ class Session:
             if problem and count > SAME_ERRORS:
                 more = count - SAME_ERRORS
                 self._write(f"error: {more} more input{'s' if more > 1 else ''}: {with_options(problem)}")
-        table = Summary(self.rows)
-        if self.summary and table.members:
-            self.conclude(table)
-        elif table.judged and self.batch and not (self.quiet or self.as_json):
-            (self._write if self._stdout_is_taken else self.print)(table.lines())
+        if self.rows:
+            self._tabulate(self.rows)
         if self.batch and not (self.quiet or self.as_json):
             spent = time.perf_counter() - self._begun
             gates = f" ({self.beyond} of them beyond a gate)" if self.beyond else ""
@@ -239,6 +233,15 @@ class Session:
             for advice in self._advice:
                 self._write(with_options(advice))
         return self.worst
+
+    def _tabulate(self, rows: list[MemberRow]) -> None:
+        from meshonet_cli.terminal.summary import BatchSummary
+
+        table = BatchSummary(rows)
+        if self.summary and table.members:
+            self.conclude(table)
+        elif table.judged and self.batch and not (self.quiet or self.as_json):
+            (self._write if self._stdout_is_taken else self.print)(table.lines())
 
     def _write(self, text: str) -> None:
         with self._writing:
@@ -271,7 +274,3 @@ def _is_pipe(descriptor: int) -> bool:
         return stat.S_ISFIFO(os.fstat(descriptor).st_mode)
     except OSError:  # it is closed
         return False
-
-
-def _not_met(problems: Sequence[str] | None) -> dict[str, list[str]]:
-    return {} if problems is None else {"gates_not_met": [with_options(problem) for problem in problems]}

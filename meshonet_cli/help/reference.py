@@ -1,4 +1,4 @@
-"""What every ``--help`` prints: ``python -m meshonet_cli.reference > docs/reference/cli.md``."""
+"""What every ``--help`` prints: ``python -m meshonet_cli.help.reference > docs/reference/cli.md``."""
 
 import contextlib
 import io
@@ -11,11 +11,12 @@ WIDTH = 98  # columns of the help texts
 
 _HEAD = """# Commands
 
-<!-- made by python -m meshonet_cli.reference; a test keeps it current -->
+<!-- made by python -m meshonet_cli.help.reference; a test keeps it current -->
 
 Look up an option here: what `meshonet --help` and the `--help` of every command print.
 `python -m meshonet_cli` is the same program.
 """
+"""Begins the page of commands."""
 
 
 def reference() -> str:

@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from meshonet.geometry.quality.verdicts import VERDICTS, verdict_word
-from meshonet_cli.text import aligned, figure
+from meshonet_cli.terminal.errors import with_options
+from meshonet_cli.terminal.text import aligned, figure
 
 if TYPE_CHECKING:
     from meshonet.geometry.quality.gates import Judgement
-    from meshonet.geometry.quality.summary import Quality
+    from meshonet.geometry.summary import Quality
 
 LABELS = {
     "folded": "folded", "max_angle": "max angle", "mean_angle": "mean angle", "relative_l2": "rel L2",
@@ -27,8 +28,13 @@ def figures(quality: Quality) -> dict[str, float]:
     return {"folded": quality.folded, "max_angle": angle.max, "mean_angle": angle.mean}
 
 
+def gates_not_met(judgement: Judgement | None) -> list[str]:
+    """Return what JSON says of gates."""
+    return [with_options(problem) for problem in judgement.problems] if judgement else []
+
+
 @dataclass(frozen=True)
-class Row:
+class MemberRow:
     """A member of a batch, with its figures by column; one without figures ended in an error."""
 
     label: str
@@ -42,13 +48,13 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Summary:
+class BatchSummary:
     """Figures of many grids, and the verdicts where they were judged."""
 
-    rows: Sequence[Row]
+    rows: Sequence[MemberRow]
 
     @property
-    def members(self) -> list[Row]:
+    def members(self) -> list[MemberRow]:
         """The rows of grids."""
         return [row for row in self.rows if row.figures]
 
@@ -108,7 +114,7 @@ class Summary:
         return [label for label, _ in pairs], [value for _, value in pairs]
 
 
-def _beyond(row: Row) -> Sequence[str]:
+def _beyond(row: MemberRow) -> Sequence[str]:
     return row.judgement.beyond if row.judgement else ()
 
 

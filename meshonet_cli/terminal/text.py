@@ -1,6 +1,7 @@
 """Numbers and tables as text."""
 
 _BAR_LENGTH = 24
+"""Characters of a bar of progress."""
 
 
 def aligned(rows: list[list[str]]) -> str:

@@ -1,15 +1,16 @@
-"""The grids of `quality`, one after the other."""
+"""The grids of `quality`."""
 
 import time
 from collections.abc import Sequence
 from functools import partial
 
+from meshonet import __version__
 from meshonet.api.quality import quality
 from meshonet.formats.figure.picture import Picture
 from meshonet.formats.figure.report.report import QualityPage
 from meshonet.formats.inputs import Inputs
 from meshonet.formats.output import whole_file
-from meshonet.formats.registry import format_for_output, read_grids
+from meshonet.formats.registry import format_for_output, picture_format, read_grids
 from meshonet.formats.vtk.metrics import write_metrics
 from meshonet.geometry.blocks.match_grids import GridMatcher, Pairing
 from meshonet.geometry.errors import InputError
@@ -17,11 +18,9 @@ from meshonet.geometry.quality.criteria import Criteria
 from meshonet.geometry.quality.gates import Gate
 from meshonet.solvers.stages import reached
 from meshonet_cli.batch.destination import Destination
-from meshonet_cli.batch.sources import items
-from meshonet_cli.plot_batch import picture_file
+from meshonet_cli.batch.sources import members_of
 from meshonet_cli.report.quality import Measured
-from meshonet_cli.session import Session
-from meshonet_cli.summary import Row
+from meshonet_cli.terminal.session import Session
 
 
 def measure_grids(
@@ -37,7 +36,7 @@ def measure_grids(
     """
     gates = criteria.gates
     session.summary = summary
-    outputs = [picture_file(plot, None, Picture())] if plot else []
+    outputs = [_picture_file(plot)] if plot else []
     outputs += [_metrics_file(per_cell)] if per_cell else []
     for destination in outputs:
         destination.check_room(several=inputs.more_than(1))
@@ -45,14 +44,15 @@ def measure_grids(
             raise InputError("standard output has the table", "write to a file", source="-")
     page = _page(html, gates) if html else None
     references = GridMatcher(read_grids(compare), pairing) if compare else None
-    for item in items(inputs, partial(read_grids, fmt=fmt), session):
+    for item in members_of(inputs, partial(read_grids, fmt=fmt), session):
         with session.member(item.label, item.source):
             begun = time.perf_counter()
             reference = references.match(item.what.name) if references else None
             paired = time.perf_counter()
             reached("quality")
             report = quality(item.what, profile=criteria.profiles, compare=reference)
-            measured = Measured(item, report.under(gates))
+            report = report.under(gates)
+            measured = Measured(item, report, report.judgement(gates), judged=bool(criteria))
             measured.seconds["quality"] = time.perf_counter() - paired
             if references:
                 measured.seconds["compare"] = paired - begun
@@ -62,12 +62,11 @@ def measure_grids(
                 with measured.timed("write"):
                     destination.write(destination.path(item), [item.what])
             measured.finished(None)
-            judgement = measured.report.judgement(gates)
             if summary:
                 session.done += 1
             else:
-                session.show(measured, judgement.problems)
-            session.judge(Row(item.label, measured.figures_of_row(), judgement if criteria else None))
+                session.show(measured)
+            session.judge(measured.row())
             if page:
                 page.add(item.label, measured.report)
     if page and html and session.done:
@@ -81,7 +80,13 @@ def _page(output: str, gates: Sequence[Gate]) -> QualityPage:
     """Return a page to collect reports for, which is to be written to `output`."""
     if format_for_output(output).name != "html":
         raise InputError("a report is a page", "name it FILE.html", parameter="html", source=output)
-    return QualityPage(gates)
+    return QualityPage(gates, f"meshonet {__version__}")
+
+
+def _picture_file(output: str) -> Destination:
+    """Return the destination of a picture. Raises InputError: `output` is none."""
+    kind = picture_format(output).name
+    return Destination(output, kind, put=partial(Picture().draw, kind))
 
 
 def _metrics_file(output: str) -> Destination:

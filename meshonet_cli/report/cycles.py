@@ -7,9 +7,9 @@ from pathlib import Path
 
 from meshonet.formats.output import check_place
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.progress import Cycle, Row
+from meshonet.solvers.progress import Cycle, HistoryRow
 
-COLUMNS = ("input", *(each.name for each in fields(Row)))  # of the file
+COLUMNS = ("input", *(each.name for each in fields(HistoryRow)))  # of the file
 INTERVAL = 0.1  # least seconds between two texts on the terminal
 
 
@@ -39,7 +39,7 @@ def check_file(text: str | None) -> None:
     check_place(Path(text), text)
 
 
-def write(path: Path, members: Iterable[tuple[str, Iterable[Row]]]) -> None:
+def write(path: Path, members: Iterable[tuple[str, Iterable[HistoryRow]]]) -> None:
     """Write the cycles of all members, each under its label, to `path`."""
     import csv
 

@@ -5,20 +5,22 @@ from __future__ import annotations
 import contextlib
 import math
 import time
-from collections.abc import Iterator
-from dataclasses import InitVar, dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from meshonet_cli.batch.item import Item
-from meshonet_cli.errors import with_options
-from meshonet_cli.text import span
+from meshonet_cli.terminal.errors import with_options
+from meshonet_cli.terminal.text import span
 
 if TYPE_CHECKING:
     from meshonet.geometry.blocks.block import Block
     from meshonet.geometry.blocks.boundary import Boundary
     from meshonet.geometry.blocks.grid import Grid
+    from meshonet_cli.terminal.summary import MemberRow
 
 STAGES = ("read", "boundary", "load", "layout", "grid", "guard", "quality", "compare", "write")
+"""Stages that times are reported of, in this order."""
 
 
 @dataclass
@@ -39,6 +41,15 @@ class Timed:
         begun = time.perf_counter()
         yield
         self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - begun
+
+    @property
+    def warning(self) -> str:
+        """What a user must know even when nothing else is printed."""
+        return ""
+
+    def row(self) -> MemberRow | None:
+        """Return its row of a table, where it was judged."""
+        return None
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
@@ -76,37 +87,32 @@ class Timed:
 
 @dataclass
 class Delivered(Timed):
-    """The report of a grid or boundary in a file: `facts` are for JSON, `text` and `notes` for people.
+    """The report of what is in a file: `facts` are for JSON, `text` and `notes` for people."""
 
-    Of `what` it keeps the counts alone, since reports come from other processes.
-    """
-
-    what: InitVar[Grid | Boundary]
     facts: dict[str, Any]
-    text: str = ""
-    counts: dict[str, int] = field(init=False)
-    topology: str = field(init=False)
-
-    def __post_init__(self, what: Grid | Boundary) -> None:
-        super().__post_init__()
-        self.counts, self.topology = _counts(what), what.topology
+    text: str
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
-        counts = self.counts | {"topology": self.topology}
         notes = {"notes": [with_options(note) for note in self.notes]} if self.notes else {}
-        return {**self.member_json(), **counts, **self.facts, **notes, "seconds": self.times_json()}
+        return {**self.member_json(), **self.facts, **notes, "seconds": self.times_json()}
 
     def lines(self) -> str:
         """Return it for people."""
-        size = (
-            "{ni} x {nj} nodes"
-            if "ni" in self.counts
-            else "{blocks} blocks, {cells} cells, {interfaces} interfaces"
-        )
-        text = f"{size.format(**self.counts)}, {self.text or self.topology}"
-        head = f"{self.item.label} -> {self.output}: {text}, {self.times()}"
+        head = f"{self.item.label} -> {self.output}: {self.text}, {self.times()}"
         return "\n  ".join([head, *map(with_options, self.notes)])
+
+
+def delivered(
+    item: Item[Any], what: Grid | Boundary, facts: dict[str, Any], text: str = "", notes: Sequence[str] = ()
+) -> Delivered:
+    """Return the report of a grid or boundary, of which `text` says more than its topology."""
+    counts, topology = _counts(what), what.topology
+    size = (
+        "{ni} x {nj} nodes" if "ni" in counts else "{blocks} blocks, {cells} cells, {interfaces} interfaces"
+    )
+    told = f"{size.format(**counts)}, {text or topology}"
+    return Delivered(item, {**counts, "topology": topology, **facts}, told, notes=tuple(notes))
 
 
 def _counts(what: Grid | Boundary) -> dict[str, int]:

@@ -1,14 +1,12 @@
-"""The grids of `deform`, one after the other."""
+"""The grids of `deform`."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 from meshonet.api.deform import rotation
 from meshonet.api.files import only, read_all
-from meshonet.formats.inputs import Inputs
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
@@ -17,48 +15,27 @@ from meshonet.geometry.quality.criteria import Criteria
 from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.deformations import make_deformed
-from meshonet_cli.batch.destination import Destination
-from meshonet_cli.batch.executors.engine import HERE, Engine
 from meshonet_cli.batch.item import Item
-from meshonet_cli.batch.run import process
-from meshonet_cli.batch.sources import items
-from meshonet_cli.grid_batch import judging, reported
+from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.options.groups import bad_value
 from meshonet_cli.report.grid import Report
-from meshonet_cli.session import Session
+from meshonet_cli.tasks.grids import reported
 
 
 def write_deformed(
-    inputs: Inputs, output: str, session: Session, *, wall: Sequence[str] = (),
-    rotate: Sequence[str] = (), shift: Sequence[str] = (), allow_invalid: bool = False,
-    criteria: Criteria = Criteria(), from_format: str | None = None, to_format: str | None = None,
-    skip_existing: bool = False, part_size: int | None = None, engine: Engine = HERE,
-    threads: int | None = None,
+    batch: Batch, walls: Mapping[str, NewWall] | NewWall, criteria: Criteria, *, allow_invalid: bool,
+    threads: int | None,
 ) -> int:  # fmt: skip
-    """Write the grids of `inputs` with walls in their new places and return the exit code."""
-    walls = walls_of(wall, rotate, shift)
-    make = _Deformed(
-        walls, DeformRequest(allow_invalid, criteria.percentiles, engine.threads(threads)), criteria
-    )
-    destination = Destination(output, to_format, "grids", part_size=part_size)
-    members = items(inputs, partial(read_grids, fmt=from_format), session)
-    return process(
-        members, make, destination, session, written=judging(session), skip_existing=skip_existing,
-        engine=engine,
-    )  # fmt: skip
+    """Write the grids of the inputs with `walls` in their new places and return the exit code."""
+    request = DeformRequest(allow_invalid, criteria.percentiles, batch.engine.threads(threads))
+    make = each(_deformed, walls=walls, request=request, criteria=criteria)
+    return batch.run(BatchTask(partial(read_grids, fmt=batch.files.from_format), make))
 
 
-@dataclass(frozen=True)
-class _Deformed:
-    """Makes the deformed grids."""
-
-    walls: Mapping[str, NewWall] | NewWall
-    request: DeformRequest
-    criteria: Criteria
-
-    def __call__(self, item: Item[Grid]) -> tuple[Grid, Report]:
-        deformed = make_deformed(item.what, self.walls, self.request)
-        return reported(item, deformed, self.criteria)  # type: ignore[arg-type]
+def _deformed(
+    item: Item[Grid], walls: Mapping[str, NewWall] | NewWall, request: DeformRequest, criteria: Criteria
+) -> tuple[Grid, Report]:
+    return reported(item, make_deformed(item.what, walls, request), criteria)
 
 
 def walls_of(

@@ -1,12 +1,13 @@
-"""The manual page, made of the help: ``python -m meshonet_cli.man > meshonet.1``."""
+"""The manual page, made of the help: ``python -m meshonet_cli.help.man > meshonet.1``."""
 
 from __future__ import annotations
 
 from meshonet import __version__
 from meshonet_cli.commands import COMMANDS
-from meshonet_cli.reference import help_text
+from meshonet_cli.help.reference import help_text
 
 _WIDTH = 78
+"""Characters a line of a manual page."""
 
 
 def man_page() -> str:

@@ -1,0 +1,51 @@
+"""The boundaries of `sample-boundary`: from files, or drawn from a family."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+from meshonet.formats.registry import format_for_output, read_shapes
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.draw import Draw
+from meshonet.geometry.shapes.shape import Shape, edges_of
+from meshonet.geometry.spacing.sampling import Sampling
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import Batch, BatchTask, each
+from meshonet_cli.batch.sources import DrawnInputs
+from meshonet_cli.report.timed import Delivered, delivered, part_names
+
+EDGE_NODES = 1000
+"""Nodes that the edges of a boundary have, as a rule."""
+
+
+def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = None) -> int:
+    """Sample shapes, from files or of a family, keep so many nodes as sensors, and return the exit code.
+
+    Raises InputError: a format without room for sensors, or for several members.
+    """
+    files = batch.files
+    if sensors is not None and format_for_output(files.output, files.to_format, "boundaries").name != "hdf5":
+        raise InputError("only HDF5 keeps sensors", "write an .h5 file", parameter="sensors")
+    drawn = isinstance(batch.inputs, DrawnInputs)
+    read: Any = itself if drawn else partial(read_shapes, fmt=files.from_format)
+    make = each(_sampled, sampling=sampling, sensors=sensors)
+    return batch.run(BatchTask(read, make, "boundaries", nodes=EDGE_NODES))
+
+
+def itself(member: Draw) -> Iterator[Draw]:
+    """Yield what a member of a family holds, itself."""
+    return iter([member])
+
+
+def _sampled(item: Item[Shape], sampling: Sampling, sensors: int | None) -> tuple[Boundary, Delivered]:
+    begun = time.perf_counter()
+    boundary = edges_of(item.what, sampling)
+    if sensors is not None:
+        boundary = boundary.with_sensors(sensors)
+    report = delivered(item, boundary, part_names(boundary), notes=boundary.notes)
+    report.seconds["boundary"] = time.perf_counter() - begun
+    return boundary, report

@@ -1,0 +1,47 @@
+"""The files of `convert`."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+from meshonet.formats.convert import Conversion, plot3d_variant, unused_iblank
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import Batch, BatchTask, each
+from meshonet_cli.report.timed import Delivered, delivered, part_names
+from meshonet_cli.terminal.session import Session
+
+
+def convert_files(batch: Batch, conversion: Conversion, plot3d: str | None = None) -> int:
+    """Write what the inputs hold in another format and return the exit code; `plot3d` is a variant of it."""
+    files = batch.files
+    from_format, to_format = plot3d_variant(plot3d, files.output, files.from_format, files.to_format)
+    boundaries = conversion.of_boundaries(batch.inputs.first(), files.output, from_format, to_format)
+    put = None if boundaries else conversion.extruder(files.output, to_format)
+    read = partial(conversion.read, fmt=from_format, boundaries=boundaries)
+    make = each(_converted, conversion=conversion, warn=batch.session.warn)
+    task = BatchTask(read, make, "boundaries" if boundaries else "grids", put)
+    return replace(batch, files=replace(files, to_format=to_format)).run(task)
+
+
+def _converted(
+    item: Item[Grid | Boundary], conversion: Conversion, warn: Callable[[str], None]
+) -> tuple[Grid | Boundary, Delivered]:
+    what = conversion(item.what)
+    note = unused_iblank(item.what)
+    if note:
+        warn(f"{item.label}: {note}")
+    return what, delivered(item, what, part_names(what))
+
+
+def print_formats(session: Session) -> int:
+    """Print what every format can do, one JSON object each when asked, and return the exit code."""
+    from meshonet.formats.catalogue import plain, rows
+
+    if session.as_json:
+        for row in rows():
+            session.result(row)
+    else:
+        session.print(plain())
+    return session.finish()

@@ -1,0 +1,29 @@
+"""The pictures of `plot`."""
+
+from dataclasses import replace
+from functools import partial
+
+from meshonet.formats.figure.picture import Picture
+from meshonet.formats.registry import picture_format, read_grids
+from meshonet.geometry.blocks.grid import Grid
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import Batch, BatchTask, each
+from meshonet_cli.report.timed import Delivered, delivered
+
+
+def plot_grids(batch: Batch, picture: Picture) -> int:
+    """Draw every grid and return the exit code.
+
+    Raises InputError: the output is no picture, or holds one and there are several grids.
+    """
+    kind = picture_format(batch.files.output, batch.files.to_format).name
+    read = partial(read_grids, fmt=batch.files.from_format)
+    files = replace(batch.files, to_format=kind)
+    return replace(batch, files=files).run(
+        BatchTask(read, each(_drawn, metric=picture.metric), put=partial(picture.draw, kind))
+    )
+
+
+def _drawn(item: Item[Grid], metric: str | None) -> tuple[Grid, Delivered]:
+    colours = f"coloured by {metric}" if metric else "lines"
+    return item.what, delivered(item, item.what, {"metric": metric}, colours)

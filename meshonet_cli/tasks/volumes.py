@@ -1,0 +1,93 @@
+"""The volumes of `stack` and `sweep`."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from functools import partial
+from typing import Any
+
+from meshonet.api.grid import domain_parameters
+from meshonet.formats.path import path_of
+from meshonet.formats.section import read_sections
+from meshonet.formats.stack import stack_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.curves.path import Path
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import change_facts
+from meshonet.geometry.quality.criteria import Criteria
+from meshonet.geometry.sections.stack import Stack, Tip
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.solvers.pipeline.parameters import grid_request
+from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
+from meshonet.solvers.pipeline.sweeps import make_sweep
+from meshonet.solvers.stacking.request import StackRequest, stack_request
+from meshonet.solvers.sweeping.sweep import Sweep
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.provenance import provenance
+from meshonet_cli.batch.run import Batch, BatchTask, each
+from meshonet_cli.options.groups import bad_value
+from meshonet_cli.options.sampling import resolution
+from meshonet_cli.report.grid import Report
+from meshonet_cli.report.timed import Delivered, delivered, part_names
+from meshonet_cli.tasks.grids import reported
+
+VOLUME_NODES = 1_000_000
+"""Nodes of a volume, about; how many there will be is known when it is made."""
+
+
+def write_stacks(
+    batch: Batch, parameters: Mapping[str, Any], criteria: Criteria, *, tip: Tip | None, surface: bool
+) -> int:
+    """Write the volumes, or the surfaces, of the stacks of the inputs and return the exit code."""
+    request = stack_request(**_shared(parameters, batch), percentiles=criteria.percentiles)
+    if surface and criteria:
+        raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")
+    make = each(_surface, request=request) if surface else each(_stacked, request=request, criteria=criteria)
+    return batch.run(BatchTask(partial(_stack, tip=tip), make, nodes=VOLUME_NODES))
+
+
+def _stack(source: str, tip: Tip | None) -> Iterator[Stack]:
+    return iter([stack_of(source).with_tip(tip)])
+
+
+def _stacked(item: Item[Stack], request: StackRequest, criteria: Criteria) -> tuple[Grid, Report]:
+    return reported(item, make_stack(item.what, request), criteria)
+
+
+def _surface(item: Item[Stack], request: StackRequest) -> tuple[Grid, Delivered]:
+    begun = time.perf_counter()
+    grid, notes = stack_surface(item.what, request)
+    report = delivered(item, grid, part_names(grid), "surface", notes=notes)
+    report.seconds["grid"] = time.perf_counter() - begun
+    return grid.with_provenance(**change_facts(notes), **provenance()), report
+
+
+def write_sweeps(
+    batch: Batch, path: str, section: Mapping[str, Any], settings: Sweep, criteria: Criteria
+) -> int:
+    """Write the volumes of the sections of the inputs along a path; return the exit code."""
+    parameters = domain_parameters(_shared(section, batch)) | {"percentiles": criteria.percentiles}
+    res = parameters.pop("res")
+    request = grid_request(res=None if res is None else _counts(res), **parameters)
+    make = each(_swept, path=path_of(path), request=request, settings=settings, criteria=criteria)
+    return batch.run(BatchTask(partial(read_sections, fmt=batch.files.from_format), make, nodes=VOLUME_NODES))
+
+
+def _swept(
+    item: Item[Shape], path: Path, request: GridRequest, settings: Sweep, criteria: Criteria
+) -> tuple[Grid, Report]:
+    return reported(item, make_sweep(item.what, path, request, settings), criteria)
+
+
+def _counts(text: str) -> tuple[int, int]:
+    ni, nj, nk = resolution(text)
+    if nk is not None:
+        raise bad_value(text, "the nodes of a section", "use NIxNJ, and {planes} along the path", "res")
+    return ni, nj
+
+
+def _shared(parameters: Mapping[str, Any], batch: Batch) -> dict[str, Any]:
+    """Return parameters, the cores shared out among the workers of the engine."""
+    return {**parameters, "threads": batch.engine.threads(parameters.get("threads"))}
