@@ -45,6 +45,7 @@ def eager_threads(monkeypatch: pytest.MonkeyPatch) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "client(program): runs a program that is not from PyPI")
     config.addinivalue_line("markers", "solver(program): runs a program that Debian does not have either")
+    config.addinivalue_line("markers", "slow: takes a second or more; make test-fast leaves it out")
     config.addinivalue_line("markers", "browser: opens pages in Chromium")
 
 

@@ -15,7 +15,7 @@ from test_architecture import BLOCKED, HEAVY, ROOT, python
 import meshonet
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.solvers.method import METHODS, Each, method_named
+from meshonet.solvers.pipeline.methods import METHODS, Each, method_named
 
 if TYPE_CHECKING:
     from meshonet.geometry.blocks.grid import Grid
@@ -34,6 +34,7 @@ def test_importing_it_loads_nothing_heavy() -> None:
     assert done.stdout == f"{meshonet.__version__}\n"
 
 
+@pytest.mark.slow
 def test_a_grid_needs_no_heavy_library(tmp_path: Path) -> None:
     code = "import meshonet; meshonet.grid('naca:0012', res=40).write('g.vts')"
     assert python(BLOCKED.format(names=HEAVY) + code, cwd=tmp_path).returncode == 0
@@ -158,6 +159,7 @@ def test_methods_are_functions_with_settings() -> None:
     np.testing.assert_allclose(first.grid.nodes, again.grid.nodes, atol=1e-8)
 
 
+@pytest.mark.slow
 def test_the_page_of_examples_prints_what_it_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import contextlib
     import io

@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,7 @@ from meshonet.solvers.neural.registry import described
 ROOT = Path(__file__).parents[1]
 REFERENCE = ROOT / "docs" / "reference"
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
-GENERATED = {"cli", "families", "formats", "models"}
+GENERATED = {"blocking", "cli", "families", "formats", "models"}
 GUIDES = [
     page for page in PAGES if page.stem not in GENERATED and "benchmarks" not in page.relative_to(ROOT).parts
 ]
@@ -47,16 +48,16 @@ def pages() -> object:
 
 
 def test_the_models_page_is_current() -> None:
-    assert (REFERENCE / "models.md").read_text() == pages().models_page(), "run make docs"  # type: ignore[attr-defined]
+    assert (REFERENCE / "models.md").read_text() == pages().models_page(), "run make text"  # type: ignore[attr-defined]
 
 
 def test_the_page_of_held_out_errors_is_current() -> None:
     page = (ROOT / "docs" / "benchmarks" / "models.md").read_text()
-    assert page == pages().errors_page(), "run make docs"  # type: ignore[attr-defined]
+    assert page == pages().errors_page(), "run make text"  # type: ignore[attr-defined]
 
 
 def test_the_formats_page_is_current() -> None:
-    assert (REFERENCE / "formats.md").read_text() == pages().formats_page(), "run make docs"  # type: ignore[attr-defined]
+    assert (REFERENCE / "formats.md").read_text() == pages().formats_page(), "run make text"  # type: ignore[attr-defined]
 
 
 def test_curves_have_a_row_for_every_epoch_of_their_model() -> None:
@@ -85,7 +86,12 @@ def test_the_reference_has_both_halves_of_switches() -> None:
 
 
 def test_the_families_page_is_current() -> None:
-    assert (REFERENCE / "families.md").read_text() == pages().families_page(), "run make docs"  # type: ignore[attr-defined]
+    assert (REFERENCE / "families.md").read_text() == pages().families_page(), "run make text"  # type: ignore[attr-defined]
+
+
+def test_the_page_of_the_files_of_blocking_is_current() -> None:
+    page = (ROOT / "docs" / "development" / "blocking.md").read_text()
+    assert page == pages().blocking_page(), "run make text"  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=path_of)
@@ -217,11 +223,30 @@ def test_the_example_makefile_grids_a_folder_and_judges_it(tmp_path: Path) -> No
     assert (tmp_path / "quality.json").read_text().count('"folded"') >= 2
 
 
+def paths_named(page: str) -> Iterator[tuple[str, str]]:
+    """Paths in backticks, and the folder in the heading above."""
+    folder = ""
+    for line in page.splitlines():
+        words = re.findall(r"`([a-z_/]+(?:/|\.py|\.md|\.pyi|\.pyx))`", line)
+        if line.startswith("#"):
+            folder = words[0] if words else ""
+        yield from ((word, folder) for word in words)
+
+
 @pytest.mark.parametrize("name", ["architecture", "changes", "stages"])
 def test_every_path_of_the_pages_for_developers_is_there(name: str) -> None:
-    """Paths in backticks, from the root or from a package; NAME stands for what is added."""
-    page = (ROOT / "docs" / "development" / f"{name}.md").read_text()
-    words = re.findall(r"`([a-z_/]+(?:/|\.py|\.md|\.pyi|\.pyx))`", page)
-    assert len(words) > 15
-    roots = (ROOT, ROOT / "docs", ROOT / "tests" / "formats", ROOT / "meshonet_cli")
-    assert not [word for word in words if not any((root / word).exists() for root in roots)]
+    """From the root, a package, or the folder that the heading names; NAME stands for what is added."""
+    named = list(paths_named((ROOT / "docs" / "development" / f"{name}.md").read_text()))
+    assert len(named) > 15
+    roots = [ROOT / each for each in ("", "docs", "tests/formats", "meshonet_cli", "kernels")]
+    missing = [
+        word for word, folder in named if not any((r / word).exists() for r in (*roots, ROOT / folder))
+    ]
+    assert not missing
+
+
+@pytest.mark.parametrize("package", ["geometry", "solvers", "meshonet_cli"])
+def test_the_drawing_shows_every_folder(package: str) -> None:
+    drawing = blocks(ROOT / "docs" / "development" / "architecture.md", "text")[0]
+    folders = {path.parent.name for path in (ROOT / package).glob("*/__init__.py")}
+    assert folders <= set(re.findall(r"(\w+)/", drawing))

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import meshonet
-from meshonet_cli.man import man_page
+from meshonet_cli.help.man import man_page
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]

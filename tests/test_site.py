@@ -57,7 +57,7 @@ def test_a_page_says_first_when_to_use_it(page: Path) -> None:
 def test_pages_are_short() -> None:
     words = {page: len(page.read_text().split()) for page in PAGES}
     assert median(words.values()) < 800
-    generated = {DOCS / "reference" / "cli.md"}
+    generated = {DOCS / "reference" / "cli.md", DOCS / "development" / "blocking.md"}
     long = [page for page, n in words.items() if n > 1500 and page not in generated]
     assert [path_of(page) for page in long if MEASURED not in page.parents] == []
 
@@ -86,7 +86,10 @@ def parameters(function: object) -> set[str]:
     return {name.strip("* ") for head in heads for name in head.split(",")}
 
 
-@pytest.mark.parametrize("name", [n for n in meshonet.__all__ if inspect.isfunction(getattr(meshonet, n))])
+FUNCTIONS = [n for n in meshonet.__all__ if inspect.isfunction(getattr(meshonet, n))]
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_public_function_documents_its_parameters_and_what_it_returns(name: str) -> None:
     function = getattr(meshonet, name)
     doc = inspect.getdoc(function) or ""
@@ -94,6 +97,18 @@ def test_a_public_function_documents_its_parameters_and_what_it_returns(name: st
     assert "as of `grid`" in doc or parameters(function) == set(signature.parameters)
     if signature.return_annotation not in (None, "None"):
         assert re.search(r"^(Returns|Yields)\n-+$", doc, flags=re.MULTILINE)
+    if signature.parameters:
+        assert re.search(r"^Raises\n-+$", doc, flags=re.MULTILINE)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_public_function_types_its_parameters_and_has_an_example(name: str) -> None:
+    """Examples run with the doctests; here they are there."""
+    doc = inspect.getdoc(getattr(meshonet, name)) or ""
+    assert re.search(r"^Examples\n-+\n(.+\n)*?>>> ", doc, flags=re.MULTILINE)
+    section = doc.partition("Parameters\n----------\n")[2].split("\n\n")[0]
+    heads = [line for line in section.splitlines() if not line.startswith((" ", "*", "shape, res"))]
+    assert not [head for head in heads if not re.fullmatch(r"[\w, ]+ : .+", head)]
 
 
 @pytest.mark.parametrize("name", meshonet.__all__[1:])

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import Meshonet
+from inferred import infer
 
 from meshonet.formats.registry import read_grids, read_shapes
-from meshonet.solvers.neural.inference import infer
 from meshonet.solvers.neural.operator import in_batches
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from command_line import Meshonet, Process
 
-from meshonet.formats.figure.picture import picture_format
+from meshonet.formats.registry import picture_format
 
 
 @pytest.fixture

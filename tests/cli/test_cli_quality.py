@@ -8,8 +8,10 @@ from command_line import Meshonet, dataset, duct
 
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.quality.measure import per_cell
-from meshonet.geometry.quality.metrics import NAMES
+from meshonet.geometry.quality.metrics import METRICS, QUAD_METRICS
 from meshonet.geometry.quality.report import COMPARED
+
+NAMES = [metric.name for metric in (*QUAD_METRICS, *METRICS)]
 
 
 @pytest.fixture

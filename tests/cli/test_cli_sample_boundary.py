@@ -7,6 +7,9 @@ import numpy as np
 import pytest
 from command_line import Meshonet, duct
 
+from meshonet.geometry.families.family import FAMILIES
+from meshonet.geometry.spacing.laws import LAWS
+
 
 def test_a_shape_becomes_a_boundary_dataset(meshonet: Meshonet) -> None:
     done = meshonet("sample-boundary", "naca:0012", "-o", "b.h5", "--res", "81x31")
@@ -34,7 +37,7 @@ def test_far_field_is_in_chords(meshonet: Meshonet) -> None:
         np.testing.assert_allclose(radius, 30, rtol=1e-6)
 
 
-@pytest.mark.parametrize("law", ["conformal", "uniform", "cosine", "tanh", "curvature"])
+@pytest.mark.parametrize("law", [law for law in LAWS if law != "auto"])
 def test_spacing_moves_the_wall_nodes(meshonet: Meshonet, law: str) -> None:
     assert meshonet("sample-boundary", "naca:2412", "-o", "b.h5", "--spacing", law).code == 0
     assert meshonet("sample-boundary", "naca:2412", "-o", "auto.h5").code == 0
@@ -77,7 +80,7 @@ def test_a_format_without_boundaries_is_refused(meshonet: Meshonet) -> None:
     assert "vts cannot hold boundaries; write one of hdf5" in done.err
 
 
-@pytest.mark.parametrize("name", ["arch", "hexagon", "wrench", "semicircle", "airfoil", "hole", "procedural"])
+@pytest.mark.parametrize("name", [*FAMILIES, "procedural"])
 def test_a_family_becomes_a_dataset(meshonet: Meshonet, name: str) -> None:
     done = meshonet("sample-boundary", "--family", name, "--count", "3", "--res", "41x21", "-o", "b.h5")
     assert done.code == 0

@@ -14,7 +14,10 @@ from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.measure import per_cell_of_blocks
-from meshonet.geometry.quality.metrics import SOLID_NAMES
+from meshonet.geometry.quality.metrics import METRICS, SOLID_METRICS
+from meshonet.geometry.quality.profiles import PROFILES
+
+NAMES = [metric.name for metric in (*SOLID_METRICS, *METRICS)]
 
 
 @pytest.fixture
@@ -40,7 +43,7 @@ def test_a_volume_is_measured_by_both_tests_and_at_its_walls(meshonet: Meshonet,
         "none folded at corners, none by the Bezier test"
     )
     rows = {line.split()[0]: line for line in lines}
-    assert set(SOLID_NAMES) <= set(rows)
+    assert set(NAMES) <= set(rows)
     assert rows["volume_ratio"].split()[5:] == ["8", "0,", "3,", "0,", "0"]
     assert "wall: first cell" in done.out
     facts = meshonet("quality", duct_vtm, "--json").only
@@ -76,7 +79,7 @@ def test_cells_are_written_with_their_metrics(meshonet: Meshonet, duct_vtm: Path
     reader.Update()
     cells = reader.GetOutput().GetCellData()
     (grid,) = read_grids(str(duct_vtm))
-    for name in SOLID_NAMES:
+    for name in NAMES:
         values = per_cell_of_blocks(grid, name)[1]
         np.testing.assert_array_equal(vtk_to_numpy(cells.GetArray(name)), values.T.ravel(), err_msg=name)
 
@@ -93,7 +96,7 @@ def test_a_volume_is_compared_with_another(meshonet: Meshonet, duct_vtm: Path) -
     assert "block=1, i=2, j=2, k=2" in meshonet("quality", duct_vtm, "--compare", "other.vtm").out
 
 
-@pytest.mark.parametrize("profile", ["openfoam", "pointwise", "verdict", "viscous"])
+@pytest.mark.parametrize("profile", PROFILES)
 def test_profiles_judge_volumes(meshonet: Meshonet, duct_vtm: Path, profile: str) -> None:
     done = meshonet("quality", duct_vtm, "--profile", profile)
     assert done.code in (0, 1)

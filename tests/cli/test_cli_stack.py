@@ -83,12 +83,12 @@ def test_a_gate_ends_with_1(meshonet: Meshonet, wing: Path) -> None:
         (("--span", "2"), "--span: 2 nodes"),
         (("--base", "0"), "--base: a base of 0 chords"),
         (("--far-field", "0.5"), "--far-field: 0.5 chords"),
-        (("--first-cell", "0"), "--first-cell: 0 chords"),
+        (("--first-cell", "0"), "--first-cell: a first cell of 0"),
         (
             ("--first-cell", "1e-3", "--y-plus", "1", "--reynolds", "1e6"),
             "--first-cell and --y-plus both say",
         ),
-        (("--y-plus", "1"), "--y-plus and --reynolds belong together"),
+        (("--y-plus", "1"), "--y-plus without --reynolds"),
         (("--layers", "9", "--growth", "1.2"), "--layers and --growth both say"),
         (
             ("--surface", "--fail-on", "folded>0"),

@@ -6,7 +6,7 @@ import shlex
 
 import pytest
 
-from meshonet_cli.provenance import provenance
+from meshonet_cli.batch.provenance import provenance
 
 
 @pytest.mark.parametrize(

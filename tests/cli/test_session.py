@@ -11,10 +11,10 @@ from command_line import terminal
 
 from meshonet.geometry.errors import InputError, NoValidGridError, SolverError
 from meshonet.geometry.quality.gates import Judgement
-from meshonet_cli.errors import explained
-from meshonet_cli.session import Session
-from meshonet_cli.summary import Row
-from meshonet_cli.text import aligned, figure, span
+from meshonet_cli.terminal.errors import explained
+from meshonet_cli.terminal.session import Session
+from meshonet_cli.terminal.summary import MemberRow
+from meshonet_cli.terminal.text import aligned, figure, span
 
 
 def test_the_worst_outcome_of_the_members_is_the_exit_code(capsys: pytest.CaptureFixture[str]) -> None:
@@ -70,7 +70,7 @@ FIGURES = {"folded": 0.0}
 
 def test_gates_say_the_figure_and_set_one(capsys: pytest.CaptureFixture[str]) -> None:
     session = Session(quiet=True)
-    session.judge(Row("g.vts", FIGURES, Judgement(("max_angle.max is 175",))))
+    session.judge(MemberRow("g.vts", FIGURES, Judgement(("max_angle.max is 175",))))
     assert session.finish() == 1
     assert capsys.readouterr().err == "gate not met: g.vts: max_angle.max is 175\n"
 
@@ -132,8 +132,8 @@ def test_a_session_counts_grids_beyond_a_gate_among_those_done(capsys: pytest.Ca
     session = Session()
     session.batch = True
     session.done = 3
-    session.judge(Row("a.vts", FIGURES, Judgement(("max_angle.max is 175", "folded is 1"))))
-    session.judge(Row("b.vts", FIGURES, Judgement()))
+    session.judge(MemberRow("a.vts", FIGURES, Judgement(("max_angle.max is 175", "folded is 1"))))
+    session.judge(MemberRow("b.vts", FIGURES, Judgement()))
     session.finish()
     assert "3 done (1 of them beyond a gate) in " in capsys.readouterr().err
 

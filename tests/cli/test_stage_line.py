@@ -14,11 +14,11 @@ import pytest
 from command_line import ROOT, terminal
 
 from meshonet.solvers.stages import reached
-from meshonet_cli import session as session_module
-from meshonet_cli import stage_line
 from meshonet_cli.app import run
-from meshonet_cli.session import Session
-from meshonet_cli.stage_line import StageLine, stopping_lines
+from meshonet_cli.terminal import session as session_module
+from meshonet_cli.terminal import stage_line
+from meshonet_cli.terminal.session import Session
+from meshonet_cli.terminal.stage_line import StageLine, stopping_lines
 
 WIPED = "\r\x1b[2K"
 
@@ -148,7 +148,7 @@ def on_terminal(folder: Path, stdout: int) -> str:
     """Return what a command prints on a terminal, without the first second."""
     leader, follower = pty.openpty()
     program = (
-        "import sys, meshonet_cli.stage_line as s; s.DELAY = 0.0; s.INTERVAL = 0.001\n"
+        "import sys, meshonet_cli.terminal.stage_line as s; s.DELAY = 0.0; s.INTERVAL = 0.001\n"
         "from meshonet_cli.app import run\n"
         "code = run(['infer', 'naca:0012', '--res', '300', '-o', 'g.vts'])\n"
         "sys.exit(code or ('rich' in sys.modules))"

@@ -8,12 +8,12 @@ import sys
 import pytest
 from command_line import ROOT
 
-from meshonet_cli.stopping import check
+from meshonet_cli.terminal.stopping import check
 
 DROPPED = """
 import os, sys, weakref
-from meshonet_cli.session import Session
-from meshonet_cli.stopping import install
+from meshonet_cli.terminal.session import Session
+from meshonet_cli.terminal.stopping import install
 
 number = int(sys.argv[1])
 install()
@@ -45,7 +45,9 @@ def test_a_dropped_signal_stops_at_the_next_member(number: int, raised: str) -> 
 
 def test_an_ignored_signal_stays_ignored() -> None:
     code = "import os, signal; signal.signal(signal.SIGHUP, signal.SIG_IGN); "
-    code += "from meshonet_cli.stopping import install; install(); os.kill(os.getpid(), signal.SIGHUP)"
+    code += (
+        "from meshonet_cli.terminal.stopping import install; install(); os.kill(os.getpid(), signal.SIGHUP)"
+    )
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     assert subprocess.run([sys.executable, "-c", code], env=environment).returncode == 0
 

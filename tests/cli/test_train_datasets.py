@@ -46,7 +46,7 @@ def test_a_dataset_without_grids_is_refused(meshonet: Meshonet) -> None:
 
 
 def test_the_help_names_every_model_that_can_be_trained(meshonet: Meshonet) -> None:
-    from meshonet.solvers.neural.registry import MODELS
+    from meshonet.solvers.neural.models.architectures import MODELS
 
     text = " ".join(meshonet("train", "--help").out.replace("│", " ").split())
     assert all(name in text for name in MODELS)

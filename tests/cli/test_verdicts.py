@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 from command_line import Meshonet, Process
 
+from meshonet.geometry.quality.profiles import PROFILES
+
 FOILS = ("naca:0012", "naca:2412", "missing.dat")
 VISCOUS = ("--res", "41x15", "--profile", "viscous", "-o", "{stem}.h5")
 
@@ -46,7 +48,7 @@ def test_what_is_not_judged_has_no_table(meshonet: Meshonet) -> None:
 
 
 def test_a_profile_says_the_same_when_the_grid_is_made_and_afterwards(meshonet: Meshonet) -> None:
-    for profile in ("openfoam", "pointwise", "verdict", "viscous"):
+    for profile in PROFILES:
         words = ("--profile", profile, "--json")
         made = meshonet("infer", "naca:4412", "--res", "61x31", "-o", "g.h5", *words)
         read = meshonet("quality", "g.h5", *words)

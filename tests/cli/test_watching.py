@@ -21,7 +21,7 @@ from meshonet.formats.registry import read_grids
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.energy.functional import Weights, value
 from meshonet.solvers.progress import Cycle, cycle_ended, listening
-from meshonet_cli.convergence import COLUMNS, Live
+from meshonet_cli.report.cycles import COLUMNS, Live
 
 
 def table(path: str = "h.csv") -> list[dict[str, str]]:

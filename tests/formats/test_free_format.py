@@ -8,7 +8,7 @@ from random import Random
 import numpy as np
 import pytest
 
-from meshonet.formats.text.free_format import leading_numbers
+from meshonet.formats.text.number_table import leading_numbers
 
 
 @pytest.mark.parametrize("form", ["{:.16e}", "{:.15g}", "{:.7e}", "{:.17f}", "{:.20e}", "{:.3f}", "{!r}"])

@@ -10,7 +10,8 @@ import vtk
 from format_shapes import c_grid, channel, memory, ring
 from vtk.util.numpy_support import vtk_to_numpy
 
-from meshonet.formats.plot3d.read import read_grids, sniff
+from meshonet.formats.plot3d import sniff
+from meshonet.formats.plot3d.read import read_grids
 from meshonet.formats.registry import format_named
 from meshonet.formats.source import Source, open_source
 from meshonet.geometry.arrays import Floats

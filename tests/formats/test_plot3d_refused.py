@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from format_shapes import channel, memory
 
-from meshonet.formats.plot3d.read import read_grids, sniff
+from meshonet.formats.plot3d import sniff
+from meshonet.formats.plot3d.read import read_grids
 from meshonet.formats.registry import format_named
 from meshonet.geometry.errors import InputError
 
@@ -119,7 +120,7 @@ def test_two_readings_of_the_same_length_are_told_apart_by_their_cells() -> None
 def test_a_block_too_large_for_a_fortran_record_is_refused(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("meshonet.formats.plot3d.write.Block.nodes", 1 << 27)
+    monkeypatch.setattr("meshonet.formats.plot3d.write.StoredBlock.nodes", 1 << 27)
     writer = format_named("plot3d:fortran").write_grids
     assert writer is not None
     with pytest.raises(

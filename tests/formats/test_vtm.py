@@ -12,8 +12,7 @@ from many_blocks import MANY, butterfly, by_block, duct
 
 from meshonet.formats.output import whole_file
 from meshonet.formats.source import open_source
-from meshonet.formats.vtk.vtm import write_grids
-from meshonet.formats.vtk.vtm_read import read_grids
+from meshonet.formats.vtk.vtm import read_grids, write_grids
 from meshonet.formats.vtk.vts_read import read_grids as read_vts
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid

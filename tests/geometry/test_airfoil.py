@@ -38,6 +38,7 @@ def test_curve_passes_every_given_point_and_does_not_cross_itself(
     assert airfoil.chord == pytest.approx(size, rel=0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", [0.06, 0.12, 0.21])
 def test_fits_the_formula_between_the_stations_of_old_reports(ratio):
     """The formula is known between the points; 35 of them should give it to 0.05 % of chord."""

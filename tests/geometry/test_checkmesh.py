@@ -104,6 +104,7 @@ def ring() -> Grid:
     return Grid.from_nodes(nodes, "o")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [shaken, ring, c_grid])
 @pytest.mark.parametrize("rows", [3, 128])
 def test_they_are_those_of_openfoam(make: object, rows: int, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -118,7 +119,6 @@ def test_they_are_those_of_openfoam(make: object, rows: int, monkeypatch: pytest
     assert found.non_orthogonality.mean == pytest.approx(mean, rel=1e-9)
     assert found.face_skewness.max == pytest.approx(max(skews), rel=1e-9)
     assert found.face_skewness.mean == pytest.approx(np.mean(skews), rel=1e-9, abs=1e-12)
-    assert found.severe == sum(angle > 70 for angle in angles)
 
 
 def test_a_parallelogram_is_as_oblique_as_it_looks() -> None:
@@ -126,7 +126,6 @@ def test_a_parallelogram_is_as_oblique_as_it_looks() -> None:
     found = faces(Grid.from_nodes(np.stack([x + 3 * y, y], axis=-1)))
     assert found.non_orthogonality is not None
     assert found.non_orthogonality.max == pytest.approx(np.degrees(np.arctan(3)))
-    assert found.severe == 3 * 3 + 4 * 2  # every face inside
     assert found.box_ratio is not None
     assert found.box_ratio.max == pytest.approx((2 * 1 + 2 * 3) / 2)
 

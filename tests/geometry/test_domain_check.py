@@ -122,6 +122,7 @@ def test_many_points_and_many_holes_take_no_time():
         assert time.perf_counter() - start < 1.0
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(
     outer=st.lists(st.tuples(st.integers(0, 12), st.integers(0, 12)), min_size=3, max_size=7, unique=True),

@@ -12,7 +12,7 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.assembly import assembled, domain_of
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.geometry.shapes.polygon_shape import Ring, polygon_shape
+from meshonet.geometry.shapes.polygon_shape import PolygonRing, polygon_shape
 from meshonet.geometry.spacing.sampling import Sampling
 
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]])
@@ -37,7 +37,7 @@ def circle(x: float, y: float, radius: float, n: int = 60) -> Floats:
     ],
 )
 def test_what_is_one_block_and_what_many(rings: list[Floats], many: bool, topology: str | None) -> None:
-    shape = polygon_shape([Ring(ring) for ring in rings], "here")
+    shape = polygon_shape([PolygonRing(ring) for ring in rings], "here")
     assert shape.many == many
     if topology is None:
         with pytest.raises(InputError, match="a domain with 2 holes is not one block; let infer"):
@@ -85,7 +85,7 @@ def test_a_ring_that_cannot_be_is_refused(points: Floats, more: dict[str, list[i
 
 def test_the_ring_of_an_error_is_named() -> None:
     with pytest.raises(InputError, match="ring 2: the outline crosses itself"):
-        polygon_shape([Ring(SQUARE), Ring(0.2 * SQUARE[[0, 2, 1, 3]] + 1)])
+        polygon_shape([PolygonRing(SQUARE), PolygonRing(0.2 * SQUARE[[0, 2, 1, 3]] + 1)])
 
 
 def test_bodies_lie_in_a_circle_at_the_far_field_in_chords_of_all() -> None:

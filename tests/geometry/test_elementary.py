@@ -225,6 +225,7 @@ def test_a_product_of_shapes_that_do_not_fit_is_refused(left, right):
 PARTS = st.floats(-1e3, 1e3, allow_subnormal=False)
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(PARTS, PARTS, PARTS, PARTS), min_size=1, max_size=20))
 def test_products_of_complex_numbers_round_every_product_and_sum(parts):
     a, b, c, d = np.array(parts).T

@@ -30,6 +30,7 @@ def test_tubes_have_the_gap_to_their_neighbours_in_any_direction(turn):
         assert gaps.min() == pytest.approx(0.7 - 2 * 0.2, rel=2e-3)
 
 
+@pytest.mark.slow
 def test_places_that_samples_of_the_walls_hit_are_no_gap():
     bank = [tube(1.0 + k, y, 0.25, 160) for k in range(3) for y in (0.5, 1.5)]
     domain = Domain((BOX, *bank))

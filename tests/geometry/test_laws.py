@@ -4,7 +4,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.laws import LAWS, TanhLaw, spacing_tanh
+from meshonet.geometry.spacing.laws import LAWS
+from meshonet.geometry.spacing.tanh_law import TanhLaw, spacing_tanh
 
 Q = np.linspace(0.0, 1.0, 33)
 

@@ -91,6 +91,7 @@ def test_mirrored_turns_a_clockwise_walk_counter_clockwise() -> None:
     assert np.sum((np.conj(z) * np.roll(z, -1)).imag) > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("camber", "crosses"), [(0.0, False), (0.03, True), (-0.03, True), (0.1, False)])
 def test_the_root_is_the_one_of_a_walk_in_small_steps(camber: float, crosses: bool) -> None:
     x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 31)))

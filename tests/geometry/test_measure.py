@@ -2,12 +2,22 @@
 
 import numpy as np
 import pytest
+from block_grids import butterfly
+from spatial_shapes import box
 
 from meshonet.geometry.arrays import as_planar
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.measure import count_folded, folded_cells, measure, per_cell, worst_cells
-from meshonet.geometry.quality.metrics import METRICS, NAMES
+from meshonet.geometry.quality import metrics
+from meshonet.geometry.quality.measure import (
+    count_folded,
+    folded_cells,
+    measure,
+    per_cell,
+    per_cell_of_blocks,
+    worst_cells,
+)
+from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS, Metric
 
 
 def cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -152,7 +162,7 @@ def test_area_ratio_looks_across_the_seam_of_an_o_grid() -> None:
 def test_summary_is_that_of_the_cells() -> None:
     grid = shaken(140, 200)
     quality = measure(grid, percentiles=True)
-    for metric in METRICS:
+    for metric in QUAD_METRICS:
         values = per_cell(grid, metric.name)
         summary = quality[metric.name]
         assert (summary.min, summary.max) == (values.min(), values.max())
@@ -219,7 +229,7 @@ def test_collapsed_cells_have_finite_figures() -> None:
     nodes[2, 2] = nodes[2, 1] = nodes[1, 2] = nodes[1, 1]
     quality = measure(Grid.from_nodes(nodes), percentiles=True)
     assert quality.folded == 4
-    for metric in METRICS:
+    for metric in QUAD_METRICS:
         assert np.isfinite(
             [quality[metric.name].min, quality[metric.name].mean, quality[metric.name].max]
         ).all()
@@ -238,19 +248,31 @@ def test_an_unknown_metric_is_refused_with_the_known_ones() -> None:
         per_cell(shaken(), "beauty")
 
 
-def test_a_metric_with_a_function_of_its_own_is_measured_like_the_others(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    from meshonet.geometry.quality import measure as module
-    from meshonet.geometry.quality import metrics
-    from meshonet.geometry.quality.metrics import METRICS, Metric
+FORMS = {
+    "plane": Grid.from_nodes(lattice(4, 6)),
+    "blocks": butterfly(),
+    "surface": Grid.from_nodes(np.pad(lattice(4, 6), ((0, 0), (0, 0), (0, 1)))),
+    "volume": Grid.from_nodes(box()),
+}
 
-    extent = Metric("extent", "", "max", "i plus j", lambda grid: grid.x[:-1, :-1] + grid.y[:-1, :-1])
-    for room in (module, metrics):
-        monkeypatch.setattr(room, "METRICS", (*METRICS, extent))
-    monkeypatch.setattr(module, "NAMES", (*(metric.name for metric in METRICS), "extent"))
-    nodes = np.stack(np.meshgrid(np.arange(4.0), np.arange(6.0), indexing="ij"), axis=-1)
-    grid = Grid.from_nodes(nodes)
-    found = measure(grid, percentiles=True)["extent"]
-    assert (found.min, found.max, found.worst, found.p99) == (0.0, 6.0, (2, 4), pytest.approx(5.86))
-    assert per_cell(grid, "extent").shape == (3, 5)
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_metric_with_a_function_is_measured_in_every_grid(
+    form: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A line of `METRICS` is enough; here the abscissa of a cell's first corner."""
+    grid = FORMS[form]
+    inner = (slice(-1),) * len(grid.blocks[0].counts)
+    abscissa = Metric("abscissa", "", "max", "x of the first corner", lambda nodes: nodes[(*inner, 0)])
+    monkeypatch.setattr(metrics, "METRICS", (abscissa,))
+    values = per_cell_of_blocks(grid, "abscissa")
+    assert [cells.shape for cells in values] == [
+        tuple(count - 1 for count in block.counts) for block in grid.blocks
+    ]
+    found = measure(grid, percentiles=True)
+    every = np.concatenate([cells.ravel() for cells in values])
+    assert list(found)[-1] == "abscissa"
+    row = found["abscissa"]
+    assert (row.min, row.max, row.p99) == (every.min(), every.max(), np.percentile(every, 99))
+    worst = row.worst if grid.topology == "blocks" else (0, *row.worst)
+    assert values[worst[0]][worst[1:]] == every.max()

@@ -121,7 +121,7 @@ def test_a_box_has_the_figures_of_a_box() -> None:
         "max_angle": 90, "min_angle": 90, "skewness": 0, "deviation": 0, "scaled_jacobian": 1,
         "jacobian_ratio": 1, "bezier_ratio": 1, "aspect_ratio": 4, "orthogonality": 90, "volume_ratio": 1,
     }  # fmt: skip
-    assert set(expected) == set(quality.metrics) == set(SOLID_NAMES)
+    assert set(expected) == set(SOLID_NAMES) <= set(quality.metrics)
     for name, value in expected.items():
         row = quality[name]
         assert [row.min, row.p01, row.mean, row.p99, row.max] == pytest.approx([value] * 5, abs=1e-12)
@@ -220,6 +220,7 @@ def test_neighbours_across_connections_count() -> None:
     assert measure(joined)["area_ratio"].max == pytest.approx(3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", [(70, 66, 68), (3, 300, 400), (400, 3, 300)])
 def test_figures_of_many_cells_are_those_of_all_values(shape: tuple[int, int, int]) -> None:
     nodes = lattice(*[(0.0, count - 1.0, count) for count in shape])
@@ -233,6 +234,7 @@ def test_figures_of_many_cells_are_those_of_all_values(shape: tuple[int, int, in
         assert values[row.worst[1:]] in (row.min, row.max)
 
 
+@pytest.mark.slow
 def test_threads_change_no_bit(eager_threads: None) -> None:
     nodes = lattice((0, 69, 70), (0, 69, 70), (0, 65, 66))
     grid = Grid.from_nodes(nodes + np.random.default_rng(0).uniform(-0.4, 0.4, nodes.shape))

@@ -25,6 +25,7 @@ def joined(nodes: list[Floats]) -> Grid:
     return Grid(with_equal_nodes(blocks, connections), (), connections)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", range(24))
 def test_a_face_is_joined_however_both_blocks_are_counted(first: int) -> None:
     own = turned(lattice((0, 1, 4), (0, 1, 3), (0, 1, 5)), first)

@@ -5,6 +5,7 @@ import shapely
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.laws import LAWS
 from meshonet.geometry.spacing.sampling import Sampling
 
 SQUARE = np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]])
@@ -23,7 +24,7 @@ def test_the_lowest_edge_is_south_from_any_start_and_either_way(turned, way):
     np.testing.assert_array_equal(corners, SQUARE)
 
 
-@pytest.mark.parametrize("spacing", ["auto", "uniform", "cosine", "tanh", "curvature"])
+@pytest.mark.parametrize("spacing", [law for law in LAWS if law != "conformal"])
 def test_every_corner_of_the_outline_is_a_node(spacing):
     b = Outline(L_SHAPE).boundary(Sampling(ni=33, nj=24, spacing=spacing))
     outline = b.outline()

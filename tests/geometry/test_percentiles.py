@@ -45,6 +45,7 @@ GRIDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", GRIDS)
 def test_they_are_those_of_all_cells_sorted(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     grid = GRIDS[name]()

@@ -63,6 +63,7 @@ def test_the_worst_cell_is_named_by_its_block() -> None:
         np.testing.assert_allclose(cell, whole.nodes[a : a + 2, b : b + 2].mean(axis=(0, 1)))
 
 
+@pytest.mark.slow
 def test_faces_between_blocks_are_those_of_openfoam() -> None:
     grid = butterfly()
     angles, skews = merged(grid).measures()

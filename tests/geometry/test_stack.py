@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.curves.monotone import monotone_through
+from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.section import Section, placed
 from meshonet.geometry.sections.stack import Stack
@@ -55,7 +55,7 @@ def test_sections_are_met_bitwise():
 def test_smooth_values_overshoot_nowhere_and_have_no_kink():
     x, values = np.array([0.0, 1.0, 2.0, 5.0]), np.array([[0.0, 1.0], [1.0, 1.0], [1.0, 0.2], [4.0, 0.9]])
     fine = np.linspace(0.0, 5.0, 2001)
-    out = monotone_through(x, values, fine)
+    out = monotone_cubic(x, values, fine)
     for k in range(3):
         inside = (fine >= x[k]) & (fine <= x[k + 1])
         low, high = np.minimum(values[k], values[k + 1]), np.maximum(values[k], values[k + 1])

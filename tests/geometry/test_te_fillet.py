@@ -23,6 +23,7 @@ def airfoil(request: pytest.FixtureRequest) -> Airfoil:
     return naca(request.param)
 
 
+@pytest.mark.slow
 def test_only_the_base_is_changed_and_from_inside(airfoil: Airfoil) -> None:
     given, made = (dense(body.curve) for body in (airfoil, airfoil.rounded()))
     outline = shapely.Polygon(given)

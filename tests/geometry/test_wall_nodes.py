@@ -3,6 +3,7 @@ import pytest
 from sections import selig
 
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.spacing.laws import LAWS
 from meshonet.geometry.spacing.sampling import Sampling
 
 BASES = [2.2e-4, 8e-4, 3e-3, 0.02, 0.2]
@@ -20,7 +21,7 @@ def growth(wall: np.ndarray) -> float:
 
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize("ni", [7, 20, 50, 100, 333])
-@pytest.mark.parametrize("spacing", ["auto", "tanh", "cosine", "uniform", "curvature"])
+@pytest.mark.parametrize("spacing", LAWS)
 def test_nodes_are_distinct_and_both_corners_of_the_base_are_among_them(base, ni, spacing):
     wall = Airfoil(selig(0.12, 0.02, base)).wall(ni, Sampling(spacing=spacing))
     assert len(wall) == ni

@@ -11,7 +11,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import measure
-from meshonet.solvers.algebraic.resample.grids import divided, evaluate, thinned
+from meshonet.solvers.algebraic.resample.grids import divided, refine_grid, thinned
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.pipeline.coarse import solve_coarse
@@ -56,7 +56,7 @@ def test_away_from_edges_it_is_the_spline_of_the_nodes() -> None:
     solved = solve(thinned(boundary, 33, 17)).grid.nodes
     ends = [np.linspace(0, 1, n) for n in (33, 17, 97, 65)]
     splines = [RectBivariateSpline(*ends[:2], solved[..., c], s=0)(*ends[2:]) for c in (0, 1)]
-    off = np.abs(evaluate(solved, boundary) - np.stack(splines, axis=-1))
+    off = np.abs(refine_grid(solved, boundary) - np.stack(splines, axis=-1))
     assert off[15:-15, 20:-20].max() < 1e-12
     assert 1e-7 < off.max() < 1e-4
 
@@ -78,7 +78,7 @@ def test_a_kink_of_an_edge_between_coarse_nodes_is_met_and_forgotten_inside() ->
     kinked = even.copy()
     kinked[:, 0, 1] -= 0.02 * np.maximum(0.0, 1.0 - np.abs(100 * t - 50) / 2)
     boundary = quad(kinked[:, 0], kinked[:, -1], kinked[0], kinked[-1])
-    found = evaluate(even[::4, ::4], boundary)
+    found = refine_grid(even[::4, ::4], boundary)
     assert found[50, 0, 1] == -0.02
     assert 0.004 < np.abs(found - even)[50, 4].max() < 0.016
     np.testing.assert_allclose(found[:, 8:], even[:, 8:], atol=1e-12)

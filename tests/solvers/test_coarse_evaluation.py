@@ -8,6 +8,7 @@ from meshonet.kernels._native import resample, tfi_coarse
 from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.resample.edge_blending import REACH, inwards
 from meshonet.solvers.algebraic.resample.spline import bending, places
+from meshonet.solvers.algebraic.tfi import interpolate, parameters
 from meshonet.solvers.neural.quad.coarse_grids import Edges, rims
 
 RNG = np.random.default_rng(5)
@@ -68,10 +69,13 @@ def test_it_is_the_sum_of_matrices(m: int, n: int, ni: int, nj: int, straightene
 @pytest.mark.parametrize(("m", "n", "ni", "nj"), [(33, 33, 65, 65), (9, 5, 40, 23), (4, 6, 3, 2)])
 def test_the_beginning_is_the_interpolation_of_thinned_edges(m: int, n: int, ni: int, nj: int) -> None:
     edges = Edges(*(np.ascontiguousarray(side) for side in rims(wavy(ni, nj))))
-    found = np.empty((2, 2, m, n))
-    tfi_coarse(edges.sides, placed(m, n, ni, nj)[1], found)
-    thin = edges.thinned(m, n)
-    np.testing.assert_allclose(found, thin.interpolated(thin.laws()), rtol=0, atol=1e-14)
+    for k, found in enumerate(edges.transfinite(m, n)):
+        south, north, west, east = (side[k].T for side in edges.thinned(m, n).sides)
+        expected = np.empty((2, m, n))
+        interpolate(
+            *expected, (south, north, west, east), parameters((south, north, west, east), "arclength")
+        )
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-14)
 
 
 def test_arrays_that_do_not_fit_are_refused() -> None:

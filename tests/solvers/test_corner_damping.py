@@ -8,7 +8,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample import corner_damping as acute
-from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
+from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.energy.variational import solve
 
@@ -70,4 +70,4 @@ def test_a_valid_grid_in_a_spike_stays_valid_when_evaluated(degrees: float, n: i
     boundary = spike(degrees, n)
     coarse = solve(thinned(boundary, 33, 33)).grid.nodes
     assert count_folded(coarse) == 0
-    assert count_folded(evaluate(coarse, boundary)) == 0
+    assert count_folded(refine_grid(coarse, boundary)) == 0

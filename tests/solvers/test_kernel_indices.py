@@ -24,12 +24,12 @@ from meshonet.solvers.smoothing.volume_spacing import wanted_edges
 USED = {
     "meshonet.geometry.curves.curve": ("curve_points", "curve_slopes"),
     "meshonet.geometry.layout.quad_mesh": ("connect_quads",),
-    "meshonet.solvers.blocking.base_complex": ("split_quads",),
-    "meshonet.solvers.blocking.chords": ("joined_classes",),
-    "meshonet.solvers.blocking.frames": ("surface_comb", "surface_prune"),
-    "meshonet.solvers.blocking.motorcycle": ("probe_rays", "trace_rays"),
-    "meshonet.solvers.blocking.quad_mesh": ("walk_map",),
-    "meshonet.solvers.blocking.surface": ("surface_fans",),
+    "meshonet.solvers.blocking.decomposition.collapse.base_complex": ("split_quads",),
+    "meshonet.solvers.blocking.sizes.chords": ("joined_classes",),
+    "meshonet.solvers.blocking.decomposition.field.frames": ("surface_comb", "surface_prune"),
+    "meshonet.solvers.blocking.decomposition.quads.motorcycle": ("probe_rays", "trace_rays"),
+    "meshonet.solvers.blocking.decomposition.quads.quad_mesh": ("walk_map",),
+    "meshonet.solvers.blocking.decomposition.surface.surface": ("surface_fans",),
     "meshonet.solvers.energy.hexes": ("HexDescent",),
     "meshonet.solvers.energy.quad_problem": ("QuadDescent", "line_neighbours"),
     "meshonet.solvers.hyperbolic.volume.march": ("surface_march", "respace_lines"),
@@ -38,14 +38,13 @@ USED = {
 
 OTHERS = {
     "surface_comb": {(2,)},
-    "split_quads": {(1,)},
     "put_rows": {(0,)},
     "probe_rays": {(0, 3)},
     "trace_rays": {(0, 3)},
     "walk_map": {(0, 3)},
     "surface_march": {(2, "order")},
 }
-"""Whole numbers that are no indices: quarter-turns, names of nodes, what only Python reads."""
+"""Whole numbers that are no indices: quarter-turns, what only Python reads."""
 
 Place = tuple[int | str, ...]
 Call = tuple[Callable[..., Any], tuple[Any, ...]]

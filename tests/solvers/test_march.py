@@ -88,6 +88,7 @@ def test_wall_and_seam_are_met_bitwise() -> None:
     np.testing.assert_array_equal(solution.boundary.north, nodes[:, -1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_no_cell_is_folded_around_procedural_airfoils(seed: int) -> None:
     rng = np.random.default_rng(seed)

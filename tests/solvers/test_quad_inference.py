@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from inferred import infer
 from quad_models import random_model
 from random_quads import random_quad
 from solver_shapes import arch, hexagon, ring, segment, wrench
@@ -14,9 +15,8 @@ from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.threads import limited_to, thread_count
-from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
+from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
 from meshonet.solvers.elliptic.solve import solve as winslow
-from meshonet.solvers.neural.inference import infer
 from meshonet.solvers.neural.operator import in_batches
 from meshonet.solvers.neural.quad import coarse_grids, operator
 from meshonet.solvers.neural.quad.coarse_grids import Edges
@@ -101,8 +101,8 @@ def test_evaluation_is_that_of_coarse_solves(model: str) -> None:
     boundary = arch(90, 70)
     edges = Edges.of([boundary])
     coarse = coarse_grids.coarse_grids(edges, load(model).network(), 1)
-    (found,) = coarse_grids.evaluate(coarse, edges)
-    expected = evaluate(np.ascontiguousarray(np.moveaxis(coarse[0], 0, -1)), boundary)
+    (found,) = coarse_grids.refine_coarse(coarse, edges)
+    expected = refine_grid(np.ascontiguousarray(np.moveaxis(coarse[0], 0, -1)), boundary)
     np.testing.assert_allclose(np.moveaxis(found, 0, -1), expected, rtol=0, atol=1e-14)
     thin = edges.thinned(33, 33)
     for side in SIDES:

@@ -11,7 +11,7 @@ from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.energy import repair as module
 from meshonet.solvers.energy.functional import Weights
-from meshonet.solvers.energy.repair import FUTILE, Patience, repair, untangle
+from meshonet.solvers.energy.repair import FUTILE, UnfoldingBudget, repair, untangle
 from meshonet.solvers.energy.untangle import unfold
 
 
@@ -32,7 +32,7 @@ def tangled(boundary: Boundary, amount: float, seed: int = 0) -> Floats:
 def test_random_tangles_unfold(boundary: Boundary) -> None:
     nodes = tangled(boundary, 0.05)
     assert folded(nodes) > 10
-    assert untangle(nodes, boundary.topology == "o", Patience()) == 0
+    assert untangle(nodes, boundary.topology == "o", UnfoldingBudget()) == 0
     assert folded(nodes) == 0
 
 

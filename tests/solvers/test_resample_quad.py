@@ -7,7 +7,7 @@ from random_quads import random_quad
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.grids import thinned
-from meshonet.solvers.algebraic.resample.quad import evaluate, mended
+from meshonet.solvers.algebraic.resample.quad import mended, refine_quad
 from meshonet.solvers.energy.variational import solve
 from meshonet.solvers.neural.quad.coarse_grids import Edges, rims
 
@@ -41,7 +41,7 @@ def test_smooth_grids_are_met_to_fourth_order() -> None:
     full = smooth(129)
     edges = Edges(*(np.ascontiguousarray(side) for side in rims(full[None])))
     errors = [
-        np.abs(evaluate(np.ascontiguousarray(full[None, :, ::step, ::step]), edges.sides) - full).max()
+        np.abs(refine_quad(np.ascontiguousarray(full[None, :, ::step, ::step]), edges.sides) - full).max()
         for step in (16, 8, 4)
     ]
     assert np.log2(errors[0] / errors[1]) > 3.5
@@ -52,7 +52,7 @@ def test_smooth_grids_are_met_to_fourth_order() -> None:
 def test_lines_become_straight_where_a_spline_would_fold(ratio: float) -> None:
     coarse = bunched(17, ratio)
     sides = straight_edges(coarse, 65)
-    (nodes,) = evaluate(coarse[None], (sides[0], sides[1], sides[2], sides[3]))
+    (nodes,) = refine_quad(coarse[None], (sides[0], sides[1], sides[2], sides[3]))
     assert count_folded(np.moveaxis(nodes, 0, -1)) == 0
     swing = nodes[1, 32] - np.interp(np.linspace(0, 16, 65), np.arange(17), coarse[1, 8])
     assert (np.abs(swing[32:41]).max() < 1e-12) == (ratio < 0.1)
@@ -64,14 +64,14 @@ def test_a_valid_variational_grid_between_narrow_walls_stays_valid(seed: int) ->
     assert boundary is not None
     coarse = solve(thinned(boundary, 33, 33)).grid.nodes
     assert count_folded(coarse) == 0
-    (nodes,) = evaluate(planes(coarse)[None], Edges.of([boundary]).sides)
+    (nodes,) = refine_quad(planes(coarse)[None], Edges.of([boundary]).sides)
     assert count_folded(np.moveaxis(nodes, 0, -1)) == 0
 
 
 def test_folded_grids_are_left_as_splines_make_them() -> None:
     coarse = bunched(17, -0.5)
     sides = straight_edges(coarse, 65)
-    (nodes,) = evaluate(coarse[None], (sides[0], sides[1], sides[2], sides[3]))
+    (nodes,) = refine_quad(coarse[None], (sides[0], sides[1], sides[2], sides[3]))
     before = nodes.copy()
     assert mended(coarse, tuple(side[0] for side in sides), nodes) is None
     assert np.array_equal(nodes, before)
@@ -81,9 +81,9 @@ def test_folded_grids_are_left_as_splines_make_them() -> None:
 def test_what_memory_held_before_does_not_matter(m: int) -> None:
     coarse = smooth(m)
     sides = tuple(straight_edges(coarse, 33))
-    expected = evaluate(coarse[None], sides)
+    expected = refine_quad(coarse[None], sides)
     sizes = np.random.default_rng(0).integers(100, 20000, 60)
     for _ in range(10):
         held = [np.full(size, np.nan) for size in sizes]
         del held
-        np.testing.assert_array_equal(evaluate(coarse[None], sides), expected)
+        np.testing.assert_array_equal(refine_quad(coarse[None], sides), expected)

@@ -12,7 +12,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.measure import measure
-from meshonet.solvers.blocking.reuse import carried_over
+from meshonet.solvers.blocking.decomposition.reuse import carried_over
 
 
 def folded(layout: object) -> int:

@@ -32,6 +32,7 @@ def test_straight_uniform_edges_give_the_bilinear_map() -> None:
         np.testing.assert_allclose(tfi(boundary, blending).nodes, bilinear, atol=1e-14)  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(ni=st.integers(2, 9), nj=st.integers(2, 9), seed=st.integers(0, 1000))
 def test_arc_length_blending_puts_nodes_where_lines_between_opposite_nodes_cross(

@@ -14,8 +14,8 @@ from meshonet.geometry import threads
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import folded_cells, measure
-from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.summary import Quality
 from meshonet.geometry.threads import limited_to, threads_for
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest

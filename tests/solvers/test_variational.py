@@ -103,7 +103,7 @@ def test_a_minimum_that_folds_on_finer_levels_gives_way_to_the_other() -> None:
 
 def test_straight_lines_lead_on_where_splines_fold_too_much(monkeypatch: pytest.MonkeyPatch) -> None:
     """Between walls that nearly meet (random domain 171 on 129 nodes), splines leave what no repair mends."""
-    boundary, smooth = arch(33, 33), module.evaluate
+    boundary, smooth = arch(33, 33), module.refine_grid
 
     def swinging(nodes: Floats, boundary: Boundary) -> Floats:
         found = smooth(nodes, boundary)
@@ -111,7 +111,7 @@ def test_straight_lines_lead_on_where_splines_fold_too_much(monkeypatch: pytest.
         return found
 
     goal = solve(boundary, tol=1e-7).grid.nodes
-    monkeypatch.setattr(module, "evaluate", swinging)
+    monkeypatch.setattr(module, "refine_grid", swinging)
     monkeypatch.setattr(descent_module, "_made_valid", lambda *_: False)
     found = solve(boundary, tol=1e-7)
     assert found.notes == ()

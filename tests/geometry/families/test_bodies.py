@@ -34,6 +34,7 @@ def test_the_body_is_inside_and_apart(seed: int) -> None:
     assert gap > 0.7 * CLEARANCE * radius
 
 
+@pytest.mark.slow
 def test_corners_are_nodes_at_any_node_count() -> None:
     for seed in SEEDS:
         coarse, fine = (made(seed, n)[0] for n in (97, 193))
@@ -41,6 +42,7 @@ def test_corners_are_nodes_at_any_node_count() -> None:
         assert lengths[0] == pytest.approx(lengths[1], rel=6e-3)  # a missed corner would cut it short
 
 
+@pytest.mark.slow
 def test_there_are_bodies_with_corners_and_without_and_square_far_fields() -> None:
     def bend(wall: np.ndarray) -> float:
         steps = np.diff(wall[:-1], axis=0, append=wall[:1]) @ np.array([1.0, 1.0j])

@@ -13,7 +13,8 @@ from scipy.spatial import Delaunay
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.domain.domain import Domain
-from meshonet.solvers.blocking.seamless_map import SeamlessMap
+from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
+from meshonet.solvers.blocking.decomposition.surface.surface import TriangleSurface
 
 
 def seamless_of(
@@ -41,12 +42,8 @@ def seamless_of(
         else:
             other = w[near[f, e], edge[f, e]] - w[near[f, e], (edge[f, e] + 1) % 3]
             turns[f, e] = round(np.angle(other / step) / (np.pi / 2)) % 4
-    fans = _fans(triangulation)
-    total = np.zeros(len(points))
-    for v, fan in enumerate(fans):
-        for f, c in (divmod(corner, 3) for corner in fan):
-            total[v] += np.angle((w[f, (c + 2) % 3] - w[f, c]) / (w[f, (c + 1) % 3] - w[f, c]))
-    around = np.round(total / (np.pi / 2)).astype(np.intp)
+    inside = np.angle((np.roll(w, 1, axis=1) - w) / (np.roll(w, -1, axis=1) - w))
+    around = np.round(np.bincount(triangles.ravel(), inside.ravel()) / (np.pi / 2)).astype(np.intp)
     walls = len(triangulation.loop)
     corner_cells = np.zeros(walls, dtype=np.intp)
     for number, loop in enumerate(domain.loops):
@@ -55,20 +52,13 @@ def seamless_of(
             corner_cells[own[np.argmin(np.abs(triangulation.arc[own] - arc))]] = cells
     on_wall = np.arange(len(points)) < walls
     return SeamlessMap(
-        triangulation=cast(Any, triangulation),
-        vertices=triangles,
-        neighbours=near,
-        neighbour_edge=edge,
-        periods=np.zeros_like(near),
+        surface=TriangleSurface(cast(Any, triangulation)),
         corner_coords=np.ascontiguousarray(w),
         turns=turns,
         wall_axis=axis,
-        on_wall=on_wall,
         boundary_cells=around[:walls],
         corner_cells=corner_cells,
         valence=np.where(on_wall, 0, around),
-        fan_start=np.cumsum([0, *(len(fan) for fan in fans)]),
-        fan_corners=np.concatenate([np.array(fan) for fan in fans]),
         sizes=np.ones(len(triangles)),
         jacobians=np.ones(len(triangles)),
     )
@@ -134,27 +124,6 @@ def _neighbours(triangles: Any) -> tuple[Any, Any]:
         if (b, a) in at:
             near[f, e], edge[f, e] = at[b, a]
     return near, edge
-
-
-def _fans(triangulation: Any) -> list[list[int]]:
-    """Return the corners around each vertex, counter-clockwise, at walls from the wall ahead."""
-    near, edge = triangulation.neighbours, triangulation.neighbour_edge
-    start: dict[int, tuple[int, int]] = {}
-    for f, t in enumerate(triangulation.triangles):
-        for c in range(3):
-            if near[f, c] < 0 or int(t[c]) not in start:
-                start[int(t[c])] = (f, c)
-    fans = []
-    for v in range(len(triangulation.points)):
-        f, c = start[v]
-        fan = [3 * f + c]
-        while near[f, (c + 2) % 3] >= 0:
-            f, c = int(near[f, (c + 2) % 3]), int(edge[f, (c + 2) % 3])
-            if 3 * f + c == fan[0]:
-                break
-            fan.append(3 * f + c)
-        fans.append(fan)
-    return fans
 
 
 def flat(z: Complexes, centre: Complexes) -> Complexes:

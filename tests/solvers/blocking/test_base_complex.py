@@ -5,8 +5,8 @@ import pytest
 from known_meshes import annulus, corner, disc, rectangle
 
 from meshonet.geometry.polygon.area import polygon_area
-from meshonet.solvers.blocking.base_complex import base_complex
-from meshonet.solvers.blocking.chords import Chords
+from meshonet.solvers.blocking.decomposition.collapse.base_complex import base_complex
+from meshonet.solvers.blocking.sizes.chords import Chords
 
 
 @pytest.mark.parametrize(

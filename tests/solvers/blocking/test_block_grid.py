@@ -9,11 +9,11 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import SolverError
 from meshonet.solvers.blocking import block_grid as blocks
-from meshonet.solvers.blocking import decompose as decomposition
 from meshonet.solvers.blocking.block_grid import block_grid, cut_off, fine_layout
-from meshonet.solvers.blocking.decompose import decompose
-from meshonet.solvers.blocking.errors import BlockingError
-from meshonet.solvers.blocking.score import largest_turning
+from meshonet.solvers.blocking.decomposition import decompose as decomposition
+from meshonet.solvers.blocking.decomposition.collapse.score import largest_turning
+from meshonet.solvers.blocking.decomposition.decompose import decompose
+from meshonet.solvers.blocking.decomposition.errors import BlockingError
 
 STEP = np.array([[0.0, 1], [3, 1], [3, 0], [12, 0], [12, 2], [0, 2]])
 

@@ -5,8 +5,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from meshonet.solvers.blocking.arc_counts import nearest_whole
-from meshonet.solvers.blocking.errors import BlockingError
+from meshonet.solvers.blocking.decomposition.errors import BlockingError
+from meshonet.solvers.blocking.decomposition.quads.arc_counts import nearest_whole
 
 
 def cost(numbers: np.ndarray, wanted: np.ndarray) -> float:

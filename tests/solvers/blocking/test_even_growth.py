@@ -7,8 +7,8 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
-from meshonet.solvers.blocking.even_line import Measures, evened_places, evened_steps
-from meshonet.solvers.blocking.even_mesh import consecutive_edges, evened_mesh, growth_along
+from meshonet.solvers.blocking.layers.even_line import Measures, evened_places, evened_steps
+from meshonet.solvers.blocking.layers.even_mesh import consecutive_edges, evened_mesh, growth_along
 
 LIMIT = np.log(1.2)
 

@@ -9,9 +9,9 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
-from meshonet.solvers.blocking.folds import smallest_corner
-from meshonet.solvers.blocking.layer_rows import LayerSettings
-from meshonet.solvers.blocking.layered import layered
+from meshonet.solvers.blocking.layers.folds import smallest_corner
+from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+from meshonet.solvers.blocking.layers.layered import layered
 
 
 def cylinder(x, y, radius, points=80):

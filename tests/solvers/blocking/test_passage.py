@@ -9,12 +9,12 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.blocking.cascade import Cascade
-from meshonet.solvers.blocking.cascade_layout import cascade_layout
-from meshonet.solvers.blocking.layer_rows import LayerSettings
-from meshonet.solvers.blocking.passage_flow import PassageFlow
-from meshonet.solvers.blocking.passage_map import PassageMap
-from meshonet.solvers.blocking.score import deviations
+from meshonet.solvers.blocking.cascade.cascade import Cascade
+from meshonet.solvers.blocking.cascade.cascade_layout import cascade_layout
+from meshonet.solvers.blocking.cascade.passage_flow import PassageFlow
+from meshonet.solvers.blocking.cascade.passage_map import PassageMap
+from meshonet.solvers.blocking.decomposition.collapse.score import deviations
+from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 
 CELLS = 4000
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from flat_maps import cone, flat, logarithm, seamless_of
 
-from meshonet.geometry.domain.domain import Domain, Periodic
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.solvers.blocking.motorcycle import motorcycle_graph
-from meshonet.solvers.blocking.quad_mesh import quad_mesh
-from meshonet.solvers.blocking.seamless_map import SeamlessMap, seamless_map
-from meshonet.solvers.blocking.t_mesh import t_mesh
+from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap, seamless_map
+from meshonet.solvers.blocking.decomposition.quads.motorcycle import motorcycle_graph
+from meshonet.solvers.blocking.decomposition.quads.quad_mesh import quad_mesh
+from meshonet.solvers.blocking.decomposition.quads.t_mesh import t_mesh
 
 
 def box(x: float, y: float, width: float, height: float) -> np.ndarray:
@@ -215,26 +215,3 @@ def test_random_polygons_with_holes(seed: int) -> None:
     holes = [circle(-0.5, 0.2, 0.25), box(0.3, -0.4, 0.4, 0.3)][: seed % 3]
     seamless = seamless_map(Domain.of_polygons([outer, *holes]), 900)
     checked(quad_mesh(seamless, 600))
-
-
-def test_periodic_sides_are_one_line_of_the_mesh() -> None:
-    loops = Domain.of_polygons([box(0, 0, 3, 1), circle(1.1, 0.5, 0.2)]).loops
-    domain = Domain(loops, periodic=Periodic((0.0, 3.0), (4.0, 7.0), (0.0, 1.0)))
-    mesh = quad_mesh(seamless_map(domain, 900), 600)
-    second = np.flatnonzero(mesh.places.partner >= 0)
-    first = mesh.places.partner[second]
-    assert len(second) > 20
-    assert np.abs(mesh.nodes[second] - mesh.nodes[first] - [0.0, 1.0]).max() < 1e-12
-    assert sorted(mesh.places.arc[mesh.places.cells > 0]) == pytest.approx([0, 3, 4, 7])
-    # both sides are the same line: edge by edge
-    walls = {tuple(sorted(pair)) for pair in mesh.edges[mesh.on_wall].tolist()}
-    moved = dict(zip(first.tolist(), second.tolist(), strict=True))
-    below = [pair for pair in walls if set(pair) <= set(first.tolist())]
-    assert len(below) == len(first) - 1
-    assert all(tuple(sorted((moved[a], moved[b]))) in walls for a, b in below)
-    # and elsewhere the walls are where they were
-    assert areas(mesh).sum() == pytest.approx(domain.area, rel=2e-3)
-    on_loop = mesh.places.loop >= 0
-    for number in range(2):
-        here = on_loop & (mesh.places.loop == number)
-        assert np.abs(loops[number].at(mesh.places.arc[here]) - mesh.nodes[here]).max() < 1e-9

@@ -5,12 +5,12 @@ import pytest
 from planar_domains import blob, circle, domain
 
 from meshonet.geometry.domain.domain import Domain
-from meshonet.solvers.blocking import decompose as decomposition
 from meshonet.solvers.blocking.block_grid import block_grid
-from meshonet.solvers.blocking.cross_field import CrossField, cross_field
-from meshonet.solvers.blocking.decompose import decompose
-from meshonet.solvers.blocking.surface import Surface
-from meshonet.solvers.blocking.triangulation import triangulate
+from meshonet.solvers.blocking.decomposition import decompose as decomposition
+from meshonet.solvers.blocking.decomposition.decompose import decompose
+from meshonet.solvers.blocking.decomposition.field.cross_field import CrossField, cross_field
+from meshonet.solvers.blocking.decomposition.surface.surface import TriangleSurface
+from meshonet.solvers.blocking.decomposition.surface.triangulation import triangulate
 
 NEXT = np.array([1, 2, 0])
 
@@ -29,7 +29,7 @@ def holes() -> Domain:
 
 def fields(of: Domain) -> tuple[CrossField, CrossField]:
     """Return the field with all its singular points, and that with fewer."""
-    surface = Surface.of(triangulate(of, 1500))
+    surface = TriangleSurface(triangulate(of, 1500))
     return cross_field(surface, fewer=False), cross_field(surface)
 
 

@@ -11,7 +11,7 @@ from scipy.spatial import Delaunay
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError
 from meshonet.kernels._native import DelaunayMesh
-from meshonet.solvers.blocking.triangulation import triangulate
+from meshonet.solvers.blocking.decomposition.surface.triangulation import triangulate
 
 
 def circle(x, y, r, n=120):

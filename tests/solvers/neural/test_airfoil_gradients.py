@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from inferred import infer
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.neural.inference import infer
 
 torch = pytest.importorskip("torch")
 from meshonet.solvers.neural.differentiable import AirfoilGrids  # noqa: E402 - it imports torch

@@ -17,7 +17,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.conformal.strip import across, harmonic, picard
 from meshonet.solvers.neural.fit.loop import Progress
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.strip import Sizes, distance
+from meshonet.solvers.neural.fit.strip import StripSizes, distance
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.fit.train import train
 from meshonet.solvers.neural.model_file import read_tensors
@@ -28,7 +28,7 @@ from meshonet.solvers.neural.strip.operator import StripOperator
 SMALL = Plan(
     epochs=3, batch=8, rate=2e-3, schedule="cosine", warm_up=4, weight_decay=1e-4, clip=1.0, device="cpu"
 )
-REST = {"held_out": 4, "sizes": Sizes(basis=6, width=8, modes=10, layers=1), "recipe": {}}
+REST = {"held_out": 4, "sizes": StripSizes(basis=6, width=8, modes=10, layers=1), "recipe": {}}
 ALONE = Team(torch.device("cpu"))
 
 

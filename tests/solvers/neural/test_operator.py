@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from inferred import infer, infer_many
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
@@ -17,10 +18,10 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.laws import LAWS
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.conformal.solve import Polish
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.neural.inference import infer, infer_many
 
 SECTIONS = ("0012", "0012-sharp", "4412", "23012", "6424-sharp")
 
@@ -47,7 +48,7 @@ def test_any_resolution_is_valid(ni: int, nj: int) -> None:
     assert count_folded(infer(boundary("2412", ni, nj)).grid.nodes) == 0
 
 
-@pytest.mark.parametrize("spacing", ["conformal", "cosine", "tanh", "uniform", "curvature"])
+@pytest.mark.parametrize("spacing", [law for law in LAWS if law != "auto"])
 def test_it_agrees_with_the_elliptic_solver_for_every_spacing(spacing: str) -> None:
     edges = boundary("4412", 160, 160, spacing=spacing)
     reference = solve(edges, tol=1e-8).grid.nodes

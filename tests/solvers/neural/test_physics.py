@@ -17,9 +17,10 @@ from meshonet.solvers.neural.fit.physics_task import PhysicsTask
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.fit.train import train
+from meshonet.solvers.neural.models.architectures import architecture
 from meshonet.solvers.neural.models.mgnet import MGNet
 from meshonet.solvers.neural.models.operator import PaperOperator
-from meshonet.solvers.neural.registry import architecture, load
+from meshonet.solvers.neural.registry import load
 from meshonet.solvers.neural.samples import Samples
 
 PLAN = Plan(epochs=300, points=(60, 40), rate=5e-3, schedule="cosine", device="cpu", log_every=50)

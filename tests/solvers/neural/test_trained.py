@@ -10,17 +10,18 @@ import numpy as np
 import pytest
 import torch
 from families import arches, rings
+from inferred import infer
 from safetensors.numpy import load_file, save_file
 
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.fit.operators import differences
-from meshonet.solvers.neural.inference import infer
 from meshonet.solvers.neural.model_file import HEADER, PAPER, write_model
 from meshonet.solvers.neural.models.architecture import Frame
+from meshonet.solvers.neural.models.architectures import ARCHITECTURES, architecture
 from meshonet.solvers.neural.models.layers import initial
 from meshonet.solvers.neural.models.operator import PaperOperator
 from meshonet.solvers.neural.models.sensors import lift, rim, sensors, square
-from meshonet.solvers.neural.registry import ARCHITECTURES, architecture, load
+from meshonet.solvers.neural.registry import load
 from meshonet.solvers.neural.samples import Samples
 
 FAMILIES = {"quad": arches(), "o": rings()}

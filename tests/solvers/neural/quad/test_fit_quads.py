@@ -17,7 +17,7 @@ from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.neural.differentiable.quad_unet import QuadUNet
 from meshonet.solvers.neural.fit.loop import Progress
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.quad import PARTS, Sizes
+from meshonet.solvers.neural.fit.quad import PARTS, QuadUNetSizes
 from meshonet.solvers.neural.fit.quad_grids import Quads, quads
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.fit.train import train
@@ -30,7 +30,7 @@ from meshonet.solvers.neural.samples import Samples, gathered
 SMALL = Plan(
     epochs=3, batch=6, rate=3e-3, schedule="cosine", warm_up=2, weight_decay=1e-3, clip=1.0, device="cpu"
 )
-SIZES = Sizes((1, 1), (0, 1))
+SIZES = QuadUNetSizes((1, 1), (0, 1))
 ALONE = Team(torch.device("cpu"))
 
 
