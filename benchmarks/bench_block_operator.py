@@ -27,9 +27,9 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.layout.layout import Layout
-from meshonet.solvers.blocking.chords import Chords
-from meshonet.solvers.blocking.decompose import decompose
-from meshonet.solvers.blocking.refine import refine
+from meshonet.solvers.blocking.decomposition.decompose import decompose
+from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.blocking.sizes.refine import refine
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.neural.registry import load
 

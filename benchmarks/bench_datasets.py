@@ -28,12 +28,19 @@ from page import arguments, publish
 from meshonet.formats.hdf5.parts import PartFiles
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.families.draw import draws
-from meshonet_cli.batch.item import Item, Name
-from meshonet_cli.batch.parts import Part, PartDone, PartMaker, deliver_parts, one_after_the_other, parts_of
+from meshonet_cli.batch.item import Item, Pair
+from meshonet_cli.batch.parts import (
+    PartDone,
+    PartMaker,
+    PartTask,
+    deliver_parts,
+    one_after_the_other,
+    parts_of,
+)
 from meshonet_cli.batch.sources import DrawnInputs
-from meshonet_cli.batch.timed import Delivered
-from meshonet_cli.boundary_batch import itself
-from meshonet_cli.session import Session
+from meshonet_cli.report.timed import delivered
+from meshonet_cli.tasks.boundaries import itself
+from meshonet_cli.terminal.session import Session
 
 HEAD = """# Datasets of a million grids
 
@@ -105,14 +112,12 @@ NI, NJ = 5, 4
 class Tiny:
     """Makes tiny grids, each another one, and reports of them."""
 
-    def __call__(
-        self, todo: Iterable[tuple[Item[Any], str]]
-    ) -> Iterator[tuple[Item[Name], str, tuple[Grid, Delivered]]]:
-        """Yield grid and report of each member."""
-        for item, path in todo:
+    def __call__(self, todo: Iterable[Item[Any]]) -> Iterator[Pair]:
+        """Yield each member with grid and report."""
+        for item in todo:
             grid = tiny(item.what.index)
             named = item.without_content()
-            yield named, path, (grid, Delivered(named, grid, {}))
+            yield named, (grid, delivered(named, grid, {}))
 
 
 def tiny(number: int) -> Grid:
@@ -132,11 +137,11 @@ def make(index: Path, members: int, size: int, watched: list[float]) -> dict[str
     """Make a dataset and return figures; `watched` gets the memory after each tenth."""
     files = PartFiles(index, "tiny", size)
     inputs = DrawnInputs(draws("arch", members))
-    maker: PartMaker[Any, Delivered] = PartMaker(files, "grids", itself, Tiny())
+    maker = PartMaker(files, "grids", itself, Tiny())
     begun = time.perf_counter()
     marks = {max(1, members // size) * tenth // 10 for tenth in range(1, 11)}
 
-    def outcomes() -> Iterator[tuple[Part, PartDone[Delivered] | Exception]]:
+    def outcomes() -> Iterator[tuple[PartTask, PartDone | Exception]]:
         for part, done in one_after_the_other(maker, parts_of(inputs, size)):
             yield part, done
             if part.number + 1 in marks:

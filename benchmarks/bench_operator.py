@@ -39,9 +39,10 @@ from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.conformal.harmonic import extend
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.inference import infer
+from meshonet.solvers.pipeline.choose_method import Best
 from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.pipeline.fallback import guard
+from meshonet.solvers.pipeline.methods import method_named
 from meshonet.solvers.solution import Solution
 
 OURS = "**infer, default**"
@@ -54,6 +55,12 @@ LARGEST = {"variational": 800}
 def coarse(method: Way, n: int) -> Way:
     """Return the way that solves on n x n nodes and is evaluated at all."""
     return partial(solve_coarse, solve=method, n=n, smooth=True)
+
+
+def infer(boundary: Boundary, **settings: object) -> Solution:
+    """Return the grid of the operator with `settings`, or what measures best."""
+    method = method_named("operator", **settings) if settings else Best()
+    return method.solve([boundary])[0]
 
 
 COMMON: dict[str, Way] = {

@@ -38,7 +38,7 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.quad.coarse_grids import Edges, evaluate
+from meshonet.solvers.neural.quad.coarse_grids import Edges, refine_coarse
 from meshonet.solvers.neural.quad.encoding import LATENT, frame
 from meshonet.solvers.neural.quad.picard import approach
 from meshonet.solvers.neural.registry import load
@@ -111,12 +111,11 @@ def to_winslow(n: int, boundaries: list[Boundary], network: Callable[..., Soluti
 def near(boundary: Boundary) -> Solution:
     """Return the grid that the network goes out from, evaluated as its own are."""
     edges = Edges.of([boundary])
-    thin = edges.thinned(LATENT, LATENT)
-    base = thin.interpolated(thin.laws())
+    base = edges.transfinite(LATENT, LATENT)
     z = base[:, 0] + 1j * base[:, 1]
     middle, factor = frame(z, np)
     z = approach((z - middle) * factor, np)[0] / factor + middle
-    (planes,) = evaluate(np.stack([z.real, z.imag], axis=1), edges)
+    (planes,) = refine_coarse(np.stack([z.real, z.imag], axis=1), edges)
     return Solution(
         Grid.from_nodes(np.ascontiguousarray(np.moveaxis(planes, 0, -1)), "quad", boundary.patches), "picard"
     )

@@ -31,7 +31,7 @@ from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.geometry.surface.surface import surface_of
 from meshonet.geometry.threads import limited_to
-from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
+from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
 from meshonet.solvers.algebraic.tfi import interpolate, parameters, tfi
 from meshonet.solvers.elliptic.control import thomas_middlecoff
 from meshonet.solvers.elliptic.multigrid import Multigrid
@@ -141,7 +141,7 @@ def planar_cases(n: int) -> Iterator[Case]:
 
     def evaluated() -> Callable[[], object]:
         coarse = tfi(thinned(sides, 65, 65)).nodes
-        return lambda: evaluate(coarse, sides)
+        return lambda: refine_grid(coarse, sides)
 
     def measured() -> Callable[[], object]:
         grid = tfi(sides)

@@ -37,8 +37,8 @@ from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.inference import infer as operate
 from meshonet.solvers.neural.registry import load
+from meshonet.solvers.pipeline.choose_method import Best
 from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 
@@ -153,7 +153,7 @@ def bodies(res: str) -> str:
             around: dict[str, Way] = {"TFI": lambda b: Solution(tfi(b), "tfi")}
             around["winslow"] = lambda b: winslow(thinned(b, b.ni, b.nj))
             if topology == "o":
-                around["operator"] = operate
+                around["operator"] = Best().solve_one
             around["**variational**"] = variational
             for way, solver in around.items():
                 seconds, nodes = best(solver, boundary, 3)

@@ -23,9 +23,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.volumes.evaluate import evaluate, spline_of
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import arc_laws, mean_laws, uniform_laws
+from meshonet.solvers.volumes.refine import refine_volume, spline_of
 from meshonet.solvers.volumes.tfi import tfi
 from meshonet.solvers.volumes.variational import optimum, variational
 from meshonet.solvers.volumes.winslow import winslow
@@ -105,7 +105,7 @@ def times(sizes: list[int]) -> str:
             "interpolation, linear": partial(interpolate, faces, uniform_laws(faces.counts), out=out),
             "interpolation, arc length": partial(interpolate, faces, arc_laws(faces), out=out),
             "evaluation of 33³ nodes": partial(interpolate, faces, laws, spline, out),
-            "the same into fresh memory, with coefficients": partial(evaluate, planes, few, faces, laws),
+            "the same into fresh memory, with coefficients": partial(refine_volume, planes, few, faces, laws),
             "test of all corners": partial(count_folded, np.moveaxis(out, 0, -1)),
             "variational, all of it": partial(variational, faces),
         }

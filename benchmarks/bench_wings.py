@@ -26,10 +26,10 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.path import SplinePath
 from meshonet.geometry.errors import MeshonetError, NoValidGridError
 from meshonet.geometry.quality.measure import measure
-from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.sections.section import Section
 from meshonet.geometry.sections.stack import Kind, Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.summary import Quality
 from meshonet.solvers.pipeline.stacks import make_stack
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.sweeping.butterfly import Disc, butterfly

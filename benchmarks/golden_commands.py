@@ -14,16 +14,23 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import product
 
-FORMATS = ".vts .vtm .vtk .vtu .msh .cgns .foam .geo .nmf .su2 .stl .ply .obj .off .inp .mesh .p3d .bin .ufmt"
-VARIANTS = (
-    ".vtk --to vtk-ascii",
-    ".msh --to gmsh-ascii",
-    ".msh --to gmsh41",
-    ".msh --to gmsh41-ascii",
-)
-EXTRUDED = ".vts .vtk .vtu .msh .cgns .foam .nmf .su2 .p3d .bin"
-METHODS = "winslow thomas-middlecoff steger-sorenson variational"
-FAMILIES = "arch hexagon wrench semicircle airfoil hole procedural four-sided bodies"
+from meshonet.formats.registry import formats
+from meshonet.geometry.families.draw import RANDOM
+from meshonet.geometry.families.family import FAMILIES
+from meshonet.geometry.quality.profiles import PROFILES
+from meshonet.geometry.spacing.laws import LAWS
+from meshonet.solvers.pipeline.methods import METHODS
+
+# of the tables of this checkout, so that what is added to one is compared too
+FORMATS = [
+    row for row in formats() if row.write_grids and row.name not in ("png", "svg", "pdf", "html", "hdf5")
+]
+ENDINGS = [ending for row in FORMATS for ending in row.suffixes]
+WORDS = [(row, word) for row in FORMATS for words in row.choices for word in words]
+VARIANTS = [f"{row.suffixes[0]} --to {row.name}:{word}" for row, word in WORDS]
+EXTRUDED = [row.suffixes[0] for row in FORMATS if "volumes" in row.space]
+SOLVERS = [name for name, row in METHODS.items() if row.solves]
+ALGEBRAIC = [name for name, row in METHODS.items() if row.algebraic]
 AIRFOILS = "naca:0012 naca:23112 naca:4415 sharp.dat"
 
 BOUNDARIES = """
@@ -262,13 +269,12 @@ def commands() -> list[str]:
 
 
 def _boundaries() -> list[str]:
-    laws = ("conformal", "uniform", "cosine", "tanh", "curvature")
     return [
         *(
             f"sample-boundary --family {name} --count 3 --seed 7 --res 33x17 --json"
-            for name in FAMILIES.split()
+            for name in (*FAMILIES, *RANDOM)
         ),
-        *(f"sample-boundary naca:2412 --res 81x31 --spacing {law}" for law in laws),
+        *(f"sample-boundary naca:2412 --res 81x31 --spacing {law}" for law in LAWS),
         *BOUNDARIES.splitlines(),
     ]
 
@@ -276,7 +282,12 @@ def _boundaries() -> list[str]:
 def _interpolated() -> list[str]:
     sources = ("duct.csv", "bend.csv", "channel.csv --res 65x33", "naca:2412 --res 81x31", "c.h5")
     both = product(sources, ("arclength", "linear"))
-    return [*_each("tfi {} --blending {} --json", both), *INTERPOLATED.splitlines()]
+    methods = product(sources, ALGEBRAIC)
+    return [
+        *_each("tfi {} --blending {} --json", both),
+        *_each("tfi {} --method {} --json", methods),
+        *INTERPOLATED.splitlines(),
+    ]
 
 
 def _solved() -> list[str]:
@@ -290,7 +301,7 @@ def _solved() -> list[str]:
         "made/bodies.h5",
     )
     return [
-        *_each("solve-pde {} --method {} --json", product(sources, METHODS.split())),
+        *_each("solve-pde {} --method {} --json", product(sources, SOLVERS)),
         *(f"solve-pde {airfoil} --res 121x61 --json" for airfoil in AIRFOILS.split()),
         *SOLVED.splitlines(),
     ]
@@ -336,16 +347,16 @@ def _trained() -> list[str]:
 
 
 def _quality() -> list[str]:
-    profiles = product(("quad.h5", "c.h5"), ("openfoam", "pointwise", "verdict", "viscous"))
+    profiles = product(("quad.h5", "c.h5"), PROFILES)
     return [*_each("quality {} --profile {} --json", profiles), *QUALITY.splitlines()]
 
 
 def _converted() -> list[str]:
     wakes = (".vts", ".cgns", ".msh --to gmsh-ascii", ".su2", ".foam", ".nmf")
     return [
-        *_each("convert {}.h5 -> {}", product(("quad", "o"), (*FORMATS.split(), *VARIANTS))),
+        *_each("convert {}.h5 -> {}", product(("quad", "o"), (*ENDINGS, *VARIANTS))),
         *(f"convert c.h5 -> {ending}" for ending in wakes),
-        *(f"convert o.h5 --extrude 0.1 -> {ending}" for ending in EXTRUDED.split()),
+        *(f"convert o.h5 --extrude 0.1 -> {ending}" for ending in EXTRUDED),
         *CONVERTED.splitlines(),
     ]
 

@@ -4,6 +4,7 @@
     python benchmarks/same.py --emulated         on emulated processors too, where qemu-x86_64 is installed
     python benchmarks/same.py --record           write benchmarks/same.json, after a change that moves nodes
     python benchmarks/same.py --only 'infer' --machine emulated
+    python benchmarks/same.py --small --machine 'this one'     thirty commands of small grids, here: seconds
 
 Kept of each command is one digest: exit code, nodes, counts, figures and messages of its report, times and
 versions left out. A machine here is this processor with the kernels of BLAS and the functions of NumPy that
@@ -42,7 +43,8 @@ Digests = dict[str, str]
 def main() -> int:
     """Run the commands everywhere, compare or record their digests, and return the exit code."""
     options = _options()
-    chosen = [line for line in LINES if re.search(options.only, line)]
+    lines = EMULATED if options.small else LINES
+    chosen = [line for line in lines if re.search(options.only, line)]
     if options.record:
         KEPT.write_text(json.dumps(_digests(chosen, Machine()), indent=0) + "\n")
         return 0
@@ -110,6 +112,7 @@ def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--record", action="store_true", help="keep the digests of this machine")
     parser.add_argument("--emulated", action="store_true", help="with emulated processors")
+    parser.add_argument("--small", action="store_true", help="commands of small grids alone")
     parser.add_argument("--only", default="", metavar="REGEX", help="commands in which this is found")
     parser.add_argument("--machine", default="", metavar="NAME", help="machines with this in their name")
     options = parser.parse_args()
