@@ -13,7 +13,6 @@ from types import ModuleType
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from reduce_pictures import reduce
 
 import meshonet
 from meshonet.geometry.arrays import SIDES
@@ -70,8 +69,9 @@ def montage(files: list[Path], number: int, rows: list[str]) -> str:
         rows.append(draw(figure.add_subplot(ROWS, COLUMNS, place), grid, path.stem))
     figure.tight_layout()
     picture = DOCS / "img" / f"gallery-{number}.png"
-    figure.savefig(picture, dpi=120)
-    reduce(picture, WIDTH, COLOURS)
+    with tempfile.NamedTemporaryFile(suffix=".png") as file:
+        figure.savefig(file.name, dpi=120)
+        place(Path(file.name), picture, WIDTH, COLOURS)
     return f"\n![{', '.join(path.stem for path in files)}](../img/{picture.name})\n"
 
 

@@ -1,25 +1,22 @@
-"""Make the generated pages and pictures of docs/: python docs/make_pages.py (make docs).
+"""Make the generated pages of docs/: python docs/make_pages.py (make text); seconds.
 
 In reference/: cli.md from the application, formats.md from the registry, models.md from the headers of the
-shipped models, families.md and the pictures from the commands a user would type.
+shipped models, families.md from the families. In development/: blocking.md from the docstrings of modules.
+Pictures: make_pictures.py.
 """
 
 from __future__ import annotations
 
+import ast
 import csv
 import json
-import subprocess
-import sys
-import tempfile
 from pathlib import Path
 from typing import Any
-
-from reduce_pictures import reduce
 
 from meshonet.formats.catalogue import markdown
 from meshonet.geometry.families.family import FAMILIES, family
 from meshonet.solvers.neural.registry import HEADS, described, shipped
-from meshonet_cli.reference import reference
+from meshonet_cli.help.reference import reference
 
 DOCS = Path(__file__).parent
 REFERENCE = DOCS / "reference"
@@ -83,6 +80,14 @@ Worked cases of flow solvers: `examples/naca0012-openfoam`, `examples/cylinder-o
 `examples/pipe-bend-openfoam`, `examples/naca0012-su2`.
 """
 
+BLOCKING_HEAD = """# Files of blocking
+
+<!-- made by python docs/make_pages.py; a test keeps it current -->
+
+Look here for the file that you are after in `solvers/blocking`; in which order they work is said in
+[stages](stages.md). Each line is the first one of the file.
+"""
+
 FAMILIES_HEAD = """# The six test families
 
 <!-- made by python docs/make_pages.py -->
@@ -99,9 +104,28 @@ def main() -> None:
     (DOCS / "benchmarks" / "models.md").write_text(errors_page(), encoding="utf-8")
     (REFERENCE / "cli.md").write_text(reference(), encoding="utf-8")
     (REFERENCE / "formats.md").write_text(formats_page(), encoding="utf-8")
-    with tempfile.TemporaryDirectory() as folder:
-        pictures(Path(folder))
     (REFERENCE / "families.md").write_text(families_page(), encoding="utf-8")
+    (DOCS / "development" / "blocking.md").write_text(blocking_page(), encoding="utf-8")
+
+
+def blocking_page() -> str:
+    """Return development/blocking.md: files and the first lines of their docstrings, folder by folder."""
+    room = DOCS.parent / "solvers" / "blocking"
+    lines = [BLOCKING_HEAD]
+    for folder in sorted({path.parent for path in room.rglob("*.py")}):
+        name = folder.relative_to(room.parents[1]).as_posix()
+        lines += [f"## `{name}/`\n", f"{said_of(folder / '__init__.py')}\n"]
+        files = sorted(path for path in folder.glob("*.py") if path.name != "__init__.py")
+        if files:
+            lines += ["| file | is |", "| --- | --- |"]
+            lines += [*(f"| `{path.name}` | {said_of(path)} |" for path in files), ""]
+    return "\n".join(lines)
+
+
+def said_of(path: Path) -> str:
+    """Return the first paragraph of a module's docstring, on one line."""
+    text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+    return " ".join(text.split("\n\n")[0].split())
 
 
 def formats_page() -> str:
@@ -202,38 +226,6 @@ def families_page() -> str:
             f"![{name}](../img/{name}.png)\n",
         ]
     return "\n".join(lines)
-
-
-def pictures(folder: Path) -> None:
-    """Write docs/img/*.png."""
-    grid = folder / "grid.vts"
-    meshonet("infer", "naca:2412", "--res", "161x81", "-o", grid)
-    meshonet("plot", grid, "--zoom=-0.35,1.35,-0.5,0.5", "-o", DOCS / "img" / "naca2412.png")
-    meshonet("infer", "naca:2412", "--te", "wedge", "--wall-spacing", "1e-5", "--res", "250x100", "-o", grid)
-    meshonet("plot", grid, "--zoom=0.96,1.06,-0.03,0.03", "-o", DOCS / "img" / "c-grid-edge.png")
-    run(sys.executable, str(DOCS.parent / "examples" / "shape-optimisation" / "throat.py"), "-o", str(grid))
-    meshonet("plot", grid, "-o", DOCS / "img" / "throat.png")
-    for name in FAMILIES:
-        boundary = folder / f"{name}.h5"
-        zoom = ["--zoom=-0.6,1.6,-0.8,0.8"] if name == "airfoil" else []
-        meshonet("sample-boundary", "--family", name, "--count", "1", "--res", "61x41", "-o", boundary)
-        meshonet("solve-pde", boundary, "-o", grid)
-        meshonet("plot", grid, *zoom, "-o", DOCS / "img" / f"{name}.png")
-    for path in (DOCS / "img").glob("*.png"):
-        if not path.name.startswith("gallery-"):  # make_gallery.py draws these
-            reduce(path)
-    for path in (DOCS / "benchmarks" / "paper").glob("*.*.png"):  # four in a row
-        reduce(path, 560)
-
-
-def meshonet(*words: object) -> None:
-    """Run the command line quietly."""
-    run(sys.executable, "-m", "meshonet_cli", *(str(word) for word in words), "--quiet")
-
-
-def run(*words: str) -> None:
-    """Run a program; stop when it fails."""
-    subprocess.run(words, check=True)  # noqa: S603 - our own program
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from PIL import Image, ImageChops
-from reduce_pictures import reduce
+from reduce_pictures import place
 
 import meshonet
 from meshonet.geometry.arrays import Floats
@@ -21,7 +21,7 @@ from meshonet.geometry.polygon.corners import Indices
 
 FOLDER = Path(__file__).parent / "img"
 GAP = 40
-PAGES = Path(__file__).parent
+PAGES = Path(__file__).parent / "guide"
 LIGHT = np.array([0.35, -0.5, 0.8]) / np.linalg.norm([0.35, -0.5, 0.8])
 
 
@@ -131,8 +131,9 @@ def save(images: list[Image.Image], name: str) -> None:
     for each in images:
         whole.paste(each, (x, (whole.height - each.height) // 2))
         x += each.width + GAP
-    whole.save(FOLDER / name)
-    reduce(FOLDER / name)
+    with tempfile.NamedTemporaryFile(suffix=".png") as file:
+        whole.save(file.name)
+        place(Path(file.name), FOLDER / name)
 
 
 if __name__ == "__main__":
