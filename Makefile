@@ -5,11 +5,12 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find kernels -name '*.py*' -o -name '*.pxi' -o -name '*.h' -o -name '*.c' ! -name _native.c)
 
-.PHONY: help demo test test-fast test-clients same sanitize fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs tutorials gallery site wheel dist man clean
+.PHONY: help demo check test test-fast test-clients same sanitize fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs text pictures tutorials gallery site wheel dist man clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
-	@echo 'make test    the test suite; make test-fast: its core, in less than a minute'
+	@echo 'make check   before each commit, a minute: lint, and the nodes of thirty commands are where they were'
+	@echo 'make test    the test suite; make test-fast: its core, in a minute'
 	@echo 'make test-clients  files written here, read by cgnscheck and OpenFOAM'
 	@echo 'make same    forty commands as other processors would run them: the same bits everywhere'
 	@echo 'make fuzz    every reader against hostile files, MINUTES=10 each; make kills: commands stopped at random'
@@ -18,7 +19,7 @@ help:
 	@echo 'make train   the shipped models again, from random shapes (resumable; about three hours on one core)'
 	@echo 'make paper   the MeshONet paper again: docs/benchmarks/paper (hours, resumable); make paper-quick: minutes, in build'
 	@echo 'make bench   the benchmarks, and their pages in docs/benchmarks'
-	@echo 'make docs    the generated pages and pictures of docs/'
+	@echo 'make text    the generated pages of docs/, in seconds; make pictures: what is drawn; make docs: both'
 	@echo 'make site    the documentation site: build/site/index.html'
 	@echo 'make tutorials  every page of docs/tutorials, compared with what it prints, and its pictures (needs OpenFOAM)'
 	@echo 'make gallery  docs/gallery/domains.md: the blocks of thirty domains, with pictures'
@@ -55,12 +56,12 @@ demo: $(VENV)/.installed
 test: $(VENV)/.developing
 	$(BIN)/python -m pytest -n 2 $(TESTS)
 
-# the core of it, in less than a minute on two cores
+# the core of it, in less than a minute beside other work; one process, since each of several reads all tests first
 FAST := tests/geometry tests/test_api.py tests/test_architecture.py tests/solvers/test_tfi.py tests/solvers/test_multigrid.py \
   tests/solvers/test_march.py tests/solvers/test_pipeline.py tests/solvers/test_guard.py tests/formats/test_hdf5.py \
   tests/formats/test_vts.py tests/cli/test_cli_infer.py
 test-fast: $(VENV)/.developing
-	$(BIN)/python -m pytest -n 2 $(FAST)
+	$(BIN)/python -m pytest -m 'not slow' $(FAST)
 
 # programs that read what is written here, from Debian: needs to be root, or them installed
 test-clients: $(VENV)/.developing
@@ -116,6 +117,10 @@ lint: $(VENV)/.developing
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# a minute; after a change of the environment mypy reads everything again, which takes one more
+check: lint
+	$(BIN)/python benchmarks/same.py --small --machine 'this one'
 
 # --- the shipped models: the recipes are in their headers and in docs/reference/models.md
 MODELS := solvers/neural/pretrained
@@ -182,6 +187,7 @@ train/holes/variational.h5: train/holes/winslow.h5
 PAPER = $(MAKE) -C examples/paper MESHONET=$(abspath $(BIN))/meshonet PYTHON=$(abspath $(BIN))/python
 paper: $(VENV)/.developing
 	$(PAPER) OUT=$(abspath paper) PAGES=$(abspath docs/benchmarks/paper)
+	$(BIN)/python docs/reduce_pictures.py --width 560 docs/benchmarks/paper/*.*.png
 
 QUICK := COUNT=12 RES=41 EPOCHS=60 EPOCHS_COMPARED=20 EPOCHS_PHYSICS=60 EPOCHS_MODES=60 SEEDS='0 1' SIZES='100 200' SPLITS_semicircle=random
 paper-quick: $(VENV)/.developing
@@ -200,8 +206,15 @@ bench: $(VENV)/.developing
 	$(if $(FILES),$(BIN)/python benchmarks/bench_engines.py --airfoils $(FILES) --page docs/benchmarks/engines.md)
 	$(if $(FILES),$(BIN)/python benchmarks/bench_wings.py --airfoils $(FILES) --page docs/benchmarks/wings.md)
 
-docs: $(VENV)/.developing
+docs: text pictures
+
+text: $(VENV)/.developing
 	$(BIN)/python docs/make_pages.py
+
+pictures: $(VENV)/.developing
+	$(BIN)/python docs/make_pictures.py
+	$(BIN)/python docs/make_drawings.py
+	$(BIN)/python docs/make_volume_pictures.py
 
 tutorials: $(VENV)/.developing
 	$(BIN)/python docs/tutorials/run_tutorials.py --pictures
@@ -231,7 +244,7 @@ dist: wheel man
 
 man: $(VENV)/.installed
 	@mkdir -p dist
-	$(BIN)/python -m meshonet_cli.man > dist/meshonet.1
+	$(BIN)/python -m meshonet_cli.help.man > dist/meshonet.1
 
 clean:
 	rm -rf build demo *.egg-info $(VENV)/.installed $(VENV)/.developing $(VENV)/.documenting
