@@ -46,9 +46,11 @@ _WITH_FOLDER = (".h5", ".hdf5", ".vtm")
 
 
 def readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
-    """Return the endings of files that are taken from folders and archives."""
+    """Return the endings of files that are taken from folders and archives, but those of pictures."""
     read = (
-        f for f in formats() if f.read_grids is not None or (f.read_shapes is not None and not grids_only)
+        f
+        for f in formats()
+        if f.read_grids is not None or (f.read_shapes is not None and not grids_only and f.name != "svg")
     )
     return frozenset(suffix for record in read for suffix in record.suffixes)
 

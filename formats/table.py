@@ -50,6 +50,11 @@ def is_dxf(head: bytes) -> bool:
     return head.split()[:2] == [b"0", b"SECTION"] or head.startswith(b"AutoCAD Binary DXF")
 
 
+def is_svg(head: bytes) -> bool:
+    """Say whether `head` is of an SVG drawing."""
+    return b"<svg" in head[:4096]
+
+
 def is_wkt(head: bytes) -> bool:
     """Say whether `head` starts with the name of a WKT geometry."""
     return bool(_WKT.match(head))
@@ -177,7 +182,10 @@ _FORMATS: tuple[Format, ...] = (
         "text.points:read_shapes text.points:sniff",
     ),
     _format("png", ".png", "picture of a grid", "", write_grids=later(_DRAW, kind="png")),
-    _format("svg", ".svg", "picture of a grid, lines as vectors", "", write_grids=later(_DRAW, kind="svg")),
+    _format(
+        "svg", ".svg", "picture of a grid, lines as vectors; read as outlines, ids as names",
+        "outlines.svg:read_shapes", write_grids=later(_DRAW, kind="svg"), sniff=is_svg, many=True,
+    ),
     _format(
         "html", ".html .htm", "interactive page of a grid, for browsers", "figure.page.page:write_grids",
         blocks="kept", space=_BOTH,

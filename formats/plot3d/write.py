@@ -59,8 +59,8 @@ class StoredBlock:
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the blocks of `grids`; plane ones without z, or with z = 0 if there are others.
 
-    The third direction of volumes is the index of the file that `options` say. Where a grid has several
-    blocks, a neutral map file beside the file says where they join, and what is what.
+    The third direction of volumes is the index of the file that `options` say. A neutral map file beside the
+    file says where blocks join, and what is what: of a grid alone, and of several where one has blocks.
 
     Raises InputError: there is no grid; several in a file without a count; a block that no Fortran record
     can hold; z where there is none.
@@ -83,7 +83,7 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     with path.open("wb") as stream:
         put(stream, blocks, options)
     beside = map_of(path)
-    if beside is not None and any(grid.topology == "blocks" for grid in grids):
+    if beside is not None and (len(grids) == 1 or any(grid.topology == "blocks" for grid in grids)):
         with whole_file(str(beside)) as part:
             write_map(part, grids, _span(options) if space else 2)
 

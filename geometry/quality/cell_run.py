@@ -29,7 +29,7 @@ class CellRun(NamedTuple):
 def run_over(x: Floats, y: Floats, kept: slice = NONE, *, periodic: bool = False, wake: int = 0) -> CellRun:
     """Run over the cells of the planes x, y (ni, nj); values (n, ni-1, nj-1) of the metrics `kept` are kept.
 
-    Column ni-1 of a `periodic` block is column 0; the first `wake` cells of its south side are beside the last.
+    Of a `periodic` block column ni-1 is column 0; the first `wake` cells at south are beside the last ones.
     """
     metrics = len(QUAD_METRICS)
     table, where = np.empty((metrics, 3)), np.empty((metrics, 2, 2), dtype=np.int64)

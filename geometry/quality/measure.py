@@ -159,7 +159,8 @@ def widest_cell(nodes: Floats) -> tuple[int, int]:
 
 def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
     """Return min, mean, max of the cells' largest angles and the places of min and max, without a `Grid`."""
-    run, k = run_over(*_planes(nodes)), NAMES.index("max_angle")
+    x, y = _planes(nodes)
+    run, k = run_over(x, y), NAMES.index("max_angle")
     return run.table[k], run.where[k]
 
 

@@ -48,6 +48,10 @@ TEXTS = {
     "geojson": json.dumps({"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [SQUARE]}}),
 }
 """A good file of each format that this package reads and does not write as grids."""
+TEXTS["svg"] = (
+    '<svg xmlns="http://www.w3.org/2000/svg"><g transform="scale(2)"><rect width="8" height="4"/>'
+    '<path d="M3 2A1 1 0 0 0 5 2C5 1 3 1 3 2z"/></g></svg>'
+)
 TEXTS["layout"] = as_text(step_layout())
 TEXTS["dxf"] = "\n".join(
     ["0", "SECTION", "2", "ENTITIES"]

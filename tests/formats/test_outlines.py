@@ -87,6 +87,7 @@ def test_files_are_known_by_their_start() -> None:
 
 
 ASK = "give a POLYGON or a closed LINESTRING"
+OUTER = [[0, 0], [4, 0], [4, 2], [0, 0]]
 WKT = {
     "prose": ("hello", f"line 1: is not WKT .*; {ASK}"),
     "second line": (f"{HEXAGON}\nPOLYGON ((0 0, 1", "line 2: is not WKT"),
@@ -97,6 +98,8 @@ WKT = {
     "crossing": ("POLYGON ((0 0, 1 1, 1 0, 0 1, 0 0))", "crosses itself at"),
     "nan": ("POLYGON ((0 0, nan 1, 1 0, 0 0))", "is not finite or far too large; check its numbers"),
     "huge": ("POLYGON ((0 0, 1e300 0, 1e300 1e300, 0 1e300, 0 0))", "is not finite or far too large"),
+    "empty hole": ("POLYGON ((0 0, 1 0, 1 1, 0 0), EMPTY)", "has a hole without points; give its points"),
+    "crossing walls": ("LINESTRING (0 0, 2 1)\nLINESTRING (0 1, 2 0)", "crosses itself"),
 }
 GEOJSON = {
     "prose": (b"hello", "is not JSON .*; give a GeoJSON file"),
@@ -109,6 +112,16 @@ GEOJSON = {
     "number": (geojson({"type": "Polygon", "coordinates": 7}), "is not a GeoJSON geometry"),
     "point": (geojson({"type": "Point", "coordinates": [1, 2]}), "which is no outline"),
     "none": (b'{"type": "FeatureCollection", "features": []}', "holds no geometry"),
+    "empty hole": (geojson({"type": "Polygon", "coordinates": [OUTER, []]}), "has a hole without points"),
+    "null hole": (geojson({"type": "Polygon", "coordinates": [OUTER, None]}), "has a hole without points"),
+    "400 digits": (
+        geojson({"type": "Polygon", "coordinates": [[[10**400, 0], *OUTER]]}),
+        "is not a GeoJSON geometry",
+    ),
+    "a corner of 400 digits": (
+        geojson({"type": "Polygon", "coordinates": [OUTER]}, corners=[[10**400]]),
+        "property 'corners' holds no list of point numbers",
+    ),
     "bytes": (b'{"type": "\xff\xfe"}', "byte 10: is not UTF-8 text; save it as UTF-8"),
 }
 
@@ -125,3 +138,36 @@ def test_geojson_that_is_no_outline_is_refused(case: str) -> None:
     data, told = GEOJSON[case]
     with pytest.raises(InputError, match=told):
         list(read_geojson(memory(data)))
+
+
+FLOOR, ROOF = "LINESTRING (0 0, 1 0.1, 3 0)", "LINESTRING (3 1, 0 1)"
+SIDES = {
+    "two walls": (f"{FLOOR}\n{ROOF}", ["wall", "outlet", "wall", "inlet"]),
+    "two walls with names": (f"# floor\n{FLOOR}\n# roof\n{ROOF}", ["floor", "outlet", "roof", "inlet"]),
+    "one geometry": ("MULTILINESTRING ((0 0, 1 0.1, 3 0), (0 1, 3 1))", ["wall", "outlet", "wall", "inlet"]),
+    "four sides": (
+        f"# floor\n{FLOOR}\n# roof\n{ROOF}\n# west\nLINESTRING (0 0, 0 1)\n# east\nLINESTRING (3 0, 3 1)",
+        ["floor", "east", "roof", "west"],
+    ),
+}
+
+
+@pytest.mark.parametrize("case", SIDES)
+def test_open_lines_are_the_sides_of_a_channel(case: str) -> None:
+    text, names = SIDES[case]
+    (shape,) = read_wkt(memory(text.encode(), "duct.wkt"))
+    edges = shape.boundary(Sampling(ni=13, nj=7))
+    assert shape.name == "duct"
+    assert [patch.name for patch in edges.patches] == names
+
+
+def test_features_that_are_open_lines_are_sides_by_their_names() -> None:
+    lines = {"floor": [[0, 0], [1, 0.1], [3, 0]], "roof": [[0, 1], [3, 1]]}
+    members = [
+        {"type": "Feature", "properties": {"name": n}, "geometry": {"type": "LineString", "coordinates": c}}
+        for n, c in lines.items()
+    ]
+    data = json.dumps({"type": "FeatureCollection", "features": members}).encode()
+    (shape,) = read_geojson(memory(data, "duct.geojson"))
+    names = [patch.name for patch in shape.boundary(Sampling(ni=13, nj=7)).patches]
+    assert names == ["floor", "outlet", "roof", "inlet"]

@@ -97,6 +97,19 @@ def test_without_a_map_interfaces_are_found_and_lines_named(make: Make, tmp_path
     assert set(unstructured(found).faces) == {"outer"}
 
 
+@pytest.mark.parametrize("make", [channel, ring, c_grid])
+@pytest.mark.parametrize("words", ["", "binary", "3d"])
+def test_a_grid_of_one_block_has_a_map_too_and_keeps_its_names(
+    make: Make, words: str, tmp_path: Path
+) -> None:
+    grid = make()
+    write_grids(tmp_path / "g.xyz", [grid], options=frozenset(filter(None, [words])))
+    (found,) = back(tmp_path / "g.xyz")
+    assert np.array_equal(found.nodes, grid.nodes)
+    assert (found.topology, found.connections) == (grid.topology, grid.connections)
+    assert unstructured(found).faces.keys() == unstructured(grid).faces.keys()
+
+
 def test_a_hole_is_called_body(tmp_path: Path) -> None:
     half = ring().nodes
     write_grids(tmp_path / "g.p3d", [Grid.from_nodes(half[:7]), Grid.from_nodes(half[6:])])
