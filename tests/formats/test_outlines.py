@@ -7,7 +7,7 @@ import pytest
 from format_shapes import memory
 
 from meshonet.formats.outlines.vector import read_geojson, read_wkt
-from meshonet.formats.table import is_geojson, is_wkt
+from meshonet.formats.table import TABLE
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
 
@@ -80,6 +80,9 @@ def test_geojson_features_are_called_by_their_name() -> None:
 
 
 def test_files_are_known_by_their_start() -> None:
+    is_wkt, is_geojson = TABLE["wkt"].sniff, TABLE["geojson"].sniff
+    assert is_wkt is not None
+    assert is_geojson is not None
     assert is_wkt(b"\n  Polygon ((0 0")
     assert not is_wkt(b"POLYGONAL AIRFOIL\n1 0")
     assert is_geojson(b' {"type": "Feature"')
