@@ -1,7 +1,7 @@
 """Every format that is read or written. Only the functions of those in use are loaded."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -44,9 +44,7 @@ def _format(name: str, endings: str, description: str, functions: str, **more: A
     return Format(name, tuple(endings.split()), description, **more)
 
 
-def _write(
-    write: Callable[..., None], name: str, path: Path, grids: Iterable[Grid], *rest: Any, **more: Any
-) -> None:
+def _write(write: Any, name: str, path: Path, grids: Iterable[Grid], *rest: Any, **more: Any) -> None:
     """Write grids by `write`, of the format `name`, once each of them is one that the format can hold."""
     write(path, (_held(grid, name) for grid in grids), *rest, **more)
 
@@ -100,8 +98,8 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "cgns", ".cgns", "CGNS structured zones in HDF5, with boundary conditions and families",
-        "cgns.read:read_grids cgns.write:write_grids", blocks="kept", names_patches=True, many=True, space=_BOTH,
-        sniff=partial(begins, rb".{0,12}ADF Database Version|" + _HDF5 + rb".*" + _CGNS),
+        "cgns.read:read_grids cgns.write:write_grids", blocks="kept", names_patches=True, many=True,
+        sniff=partial(begins, rb".{0,12}ADF Database Version|" + _HDF5 + rb".*" + _CGNS), space=_BOTH,
     ),
     _format(
         "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file, or the one named",

@@ -125,7 +125,9 @@ def _put_bytes(stream: BinaryIO, blocks: Sequence[StoredBlock], options: Options
     def frame(size: int) -> bytes:
         return struct.pack(_order(options) + "i", size) if framed else b""
 
-    for record in _head(blocks, options):
+    sizes = [size for block in blocks for size in block.dims]
+    count = [] if "single" in options else [struct.pack(f"{_order(options)}i", len(blocks))]
+    for record in (*count, struct.pack(f"{_order(options)}{len(sizes)}i", *sizes)):
         stream.write(frame(len(record)) + record + frame(len(record)))
     for number, block in enumerate(blocks, start=1):
         size = block.nodes * (block.axes * _real(options).itemsize + 4 * int(block.iblank))
@@ -141,14 +143,6 @@ def _put_bytes(stream: BinaryIO, blocks: Sequence[StoredBlock], options: Options
         if block.iblank:
             stream.write(np.ones(block.nodes, _order(options) + "i4").data)
         stream.write(frame(size))
-
-
-def _head(blocks: Sequence[StoredBlock], options: Options) -> Iterator[bytes]:
-    """Yield the count, where there is one, and the dims."""
-    sizes = [size for block in blocks for size in block.dims]
-    if "single" not in options:
-        yield struct.pack(f"{_order(options)}i", len(blocks))
-    yield struct.pack(f"{_order(options)}{len(sizes)}i", *sizes)
 
 
 def _order(options: Options) -> str:

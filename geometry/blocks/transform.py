@@ -120,9 +120,7 @@ def normalised(grid: Grid) -> Grid:
 
 
 def _normalised_blocks(grid: Grid) -> Grid:
-    axes = tuple(range(len(grid.blocks[0].counts)))
-    low = np.min([block.nodes.min(axis=axes) for block in grid.blocks], axis=0)
-    high = np.max([block.nodes.max(axis=axes) for block in grid.blocks], axis=0)
+    low, high = grid.box
     size = float((high - low).max())
     blocks = [Block((block.nodes - low) / size) for block in grid.blocks]
     motions = [_scaled(each.transform, low, size) for each in grid.connections]

@@ -7,7 +7,6 @@ from functools import cached_property
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.blocks.across import rows_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.blocks import BlockFigures, block_figures
@@ -96,10 +95,10 @@ class Figures:
 
     def _far_field(self) -> Figure | None:
         grid = self.grid
-        far = [_nodes(grid, patch) for patch in grid.patches if patch.kind == "farfield"]
+        far = [_points(grid, patch) for patch in grid.patches if patch.kind == "farfield"]
         if not self.walls or not (grid.around_body or (grid.topology == "blocks" and far)):
             return None
-        wall = np.concatenate([_nodes(grid, patch) for patch in self.walls])
+        wall = np.concatenate([_points(grid, patch) for patch in self.walls])
         beyond = grid.nodes[:, -1] if grid.around_body else np.concatenate(far)
         middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))
         start = wall[np.argmax(norms(wall - middle))]
@@ -115,6 +114,6 @@ def _greatest(extremes: Iterable[Extreme]) -> Figure | None:
     return _figure(max(extremes, key=lambda extreme: extreme.max, default=None))
 
 
-def _nodes(grid: Grid, patch: Patch) -> Floats:
-    (nodes,) = rows_at(grid, patch, 1)
+def _points(grid: Grid, patch: Patch) -> Floats:
+    nodes = grid.at(patch)
     return nodes.reshape(-1, nodes.shape[-1])

@@ -171,7 +171,6 @@ def test_a_box_beside_the_grid_is_refused() -> None:
     ("steps", "words"),
     [
         ((1, 5), "every xi and 5th eta line"),
-        ((2, 2), "every 2nd line"),
         ((12, 21), "every 12th xi and 21st eta line"),
         ((4, 3), "every 4th xi and 3rd eta line"),
     ],

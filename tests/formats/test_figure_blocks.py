@@ -22,7 +22,7 @@ from meshonet.geometry.quality.measure import per_cell_of_blocks
 @pytest.mark.parametrize("make", [butterfly, duct, o_ring])
 def test_blocks_are_drawn_twice_the_same(make: type[Grid], tmp_path: Path) -> None:
     for name in ("a.png", "b.png"):
-        Picture("skewness").draw("png", tmp_path / name, [make()])
+        Picture(metric="skewness").draw("png", tmp_path / name, [make()])
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
