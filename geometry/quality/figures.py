@@ -56,7 +56,11 @@ class Figures:
             count = getattr(self.quality, name)
             return None if count is None else Figure(float(count))
         if name in self.quality.metrics:
-            return self._metric(name, statistic)
+            summary = self.quality[name]
+            value = getattr(summary, statistic)
+            end = next(metric.worst for metric in metrics_of(self.grid) if metric.name == name)
+            at = summary.worst if statistic == end else None
+            return None if value is None else Figure(float(value), at)
         if name in FACES:
             return _figure(getattr(self.faces, name))
         if name == "growth":
@@ -69,12 +73,6 @@ class Figures:
         if name == "far_field":
             return self._far_field()
         return self._of_blocks(name) if name in FIGURES else None
-
-    def _metric(self, name: str, statistic: str) -> Figure | None:
-        summary = self.quality[name]
-        value = getattr(summary, statistic)
-        end = next(metric.worst for metric in metrics_of(self.grid) if metric.name == name)
-        return None if value is None else Figure(float(value), summary.worst if statistic == end else None)
 
     def _of_blocks(self, name: str) -> Figure | None:
         blocks = self.blocks

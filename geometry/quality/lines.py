@@ -116,17 +116,13 @@ def _across(grid: Grid, nodes: Vertices) -> Iterator[BlockLines]:
         start, stop = each.range[0]
         regular = nodes.regular[face_of(nodes.numbers[each.block], each.side)[start : stop + 1]]
         axis, end = PLACES[each.side]
-        for first, last in _runs(regular):
+        steps = np.diff(np.concatenate([[False], regular, [False]]).astype(np.int8))
+        ends = zip(np.flatnonzero(steps == 1).tolist(), np.flatnonzero(steps == -1).tolist(), strict=True)
+        for first, last in ends:
             at = [start + first] * 2
             at[axis] = 0 if end == 0 else grid.blocks[each.block].counts[axis] - 1
             values = (np.expand_dims(value[first:last], axis) for value in (growth, bend))
             yield part_of_values((each.block, *at), axis, False, values)
-
-
-def _runs(true: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Iterator[tuple[int, int]]:
-    """Yield first and one behind the last of each stretch of true values."""
-    steps = np.diff(np.concatenate([[False], true, [False]]).astype(np.int8))
-    yield from zip(np.flatnonzero(steps == 1).tolist(), np.flatnonzero(steps == -1).tolist(), strict=True)
 
 
 def bends(nodes: Floats) -> Floats:
