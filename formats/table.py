@@ -11,7 +11,7 @@ from meshonet.formats.plot3d import CHOICES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
-_DRAW = "meshonet.formats.figure.files:write_grids"
+_DRAW = "meshonet.formats.figure.picture:write_grids"
 _BOTH: Any = ("volumes", "surfaces")
 _VOLUMES: Any = ("volumes",)
 _HDF5, _CGNS = rb"\x89HDF\r\n\x1a\n", rb"HDF5 MotherNode"
@@ -89,7 +89,8 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "vtu", ".vtu", "VTK XML unstructured grid, seams merged, patches by number",
-        "vtk.vtu:write_grids", blocks="merged", space=_BOTH,
+        "", write_grids=partial(_write, later("meshonet.formats.meshio_export:write_vtu"), "vtu"),
+        blocks="merged", space=_BOTH,
     ),
     _format(
         "gmsh", ".msh", "Gmsh mesh, patches as physical groups; read as a boundary",

@@ -1,12 +1,12 @@
-"""A grid drawn to a file, its cells coloured by a quality metric."""
+"""A grid drawn to a file, ``.png``, ``.svg`` or ``.pdf``, its cells coloured by a quality metric."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from meshonet.formats.figure.layers import DOTS
-from meshonet.formats.figure.view import View
+from meshonet.formats.figure.layers import DOTS, Colouring
+from meshonet.formats.figure.view import View, check_flat, flat_box
 from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, meant
@@ -34,8 +34,6 @@ class Picture(View):
 
         Pages go to a path only, pictures also to an open file; `dots` are those an inch of a ``png``.
         """
-        from meshonet.formats.figure.files import write
-        from meshonet.formats.figure.layers import Colouring
         from meshonet.formats.figure.page.page import write_page
 
         grid = only_one(grids, "a picture")
@@ -49,3 +47,36 @@ class Picture(View):
             values = tuple(per_cell_of_blocks(grid, metric.name))
             colouring = Colouring(values, label, worst_is_low=metric.worst == "min")
         write(path, grid, kind, colouring, self, dots)
+
+
+def write(
+    path: Path | BinaryIO,
+    grid: Grid,
+    kind: str = "png",
+    colouring: Colouring | None = None,
+    view: View | None = None,
+    dots: int = DOTS,
+) -> None:
+    """Draw `grid` into a file of `kind` ``png``, ``svg`` or ``pdf``; the same input gives the same bytes.
+
+    Raises InputError: a view that shows nothing, or that grids in the plane do not have.
+    """
+    import matplotlib as mpl
+
+    from meshonet.formats.figure.figure import draw
+    from meshonet.formats.figure.space import draw_in_space
+
+    view = view or View()
+    dates: dict[str, dict[str, str | None]] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
+    with mpl.rc_context({"svg.hashsalt": "meshonet", "svg.fonttype": "none"}):
+        if grid.form == "plane":
+            check_flat(view)
+            figure = draw(grid, colouring, flat_box(view.zoom), view.every)
+        else:
+            figure = draw_in_space(grid, colouring, view)
+        figure.savefig(path, format=kind, dpi=dots, metadata=dates.get(kind))
+
+
+def write_grids(path: Path, grids: Iterable[Grid], *, kind: str) -> None:
+    """Draw the only grid of `grids`, lines only."""
+    write(path, only_one(grids, f"a .{kind} file"), kind)

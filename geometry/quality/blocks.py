@@ -8,7 +8,7 @@ from meshonet.geometry.blocks.shared_nodes import node_count
 from meshonet.geometry.blocks.vertices import Vertices, vertices
 from meshonet.geometry.quality.deviation import Deviation, deviation, solid_deviation
 from meshonet.geometry.quality.growth import Extreme
-from meshonet.geometry.quality.lines import Lines, lines
+from meshonet.geometry.quality.lines import Lines, lines, solid_lines
 from meshonet.geometry.summary import Quality
 
 
@@ -60,7 +60,6 @@ def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
     Lines of volumes have percentiles where their quality has.
     """
     if grid.form == "volume":
-        from meshonet.geometry.quality.solid_lines import solid_lines
         from meshonet.geometry.quality.volumes import measure_volumes
 
         angles = solid_deviation(quality or measure_volumes(grid, percentiles=True))

@@ -9,9 +9,8 @@ import pytest
 from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.figure.figure import _drawn_lines, draw
-from meshonet.formats.figure.files import write
 from meshonet.formats.figure.layers import Colouring
-from meshonet.formats.figure.picture import Picture
+from meshonet.formats.figure.picture import Picture, write
 from meshonet.formats.figure.view import View
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError

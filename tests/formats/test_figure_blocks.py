@@ -10,9 +10,8 @@ import pytest
 from block_grids import butterfly, duct, o_ring
 
 from meshonet.formats.figure.figure import draw
-from meshonet.formats.figure.files import write
 from meshonet.formats.figure.layers import Colouring
-from meshonet.formats.figure.picture import Picture
+from meshonet.formats.figure.picture import Picture, write
 from meshonet.formats.figure.view import View
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError

@@ -60,9 +60,9 @@ def test_a_polygon_with_a_hole_is_a_body_in_its_far_field(way: int) -> None:
     hole = [[0.5, 0.3], [1.0, 0.3], [1.0, 0.6], [0.5, 0.6], [0.5, 0.3]]
     text = f"POLYGON (({wkt(SQUARE[::way])}), ({wkt(hole)}))"
     (body,) = read_wkt(memory(text.encode(), "body.wkt"))
-    found = body.boundary(Sampling(ni=33, nj=9))
-    assert (found.topology, found.name) == ("o", "body")
-    for corner, side in [(p, found.south) for p in hole] + [(p, found.north) for p in SQUARE]:
+    result = body.boundary(Sampling(ni=33, nj=9))
+    assert (result.topology, result.name) == ("o", "body")
+    for corner, side in [(p, result.south) for p in hole] + [(p, result.north) for p in SQUARE]:
         assert np.hypot(*(side - corner).T).min() < 1e-12
 
 
@@ -131,15 +131,15 @@ GEOJSON = {
 
 @pytest.mark.parametrize("case", WKT)
 def test_wkt_that_is_no_outline_is_refused(case: str) -> None:
-    text, told = WKT[case]
-    with pytest.raises(InputError, match=told):
+    text, message = WKT[case]
+    with pytest.raises(InputError, match=message):
         list(read_wkt(memory(text.encode())))
 
 
 @pytest.mark.parametrize("case", GEOJSON)
 def test_geojson_that_is_no_outline_is_refused(case: str) -> None:
-    data, told = GEOJSON[case]
-    with pytest.raises(InputError, match=told):
+    data, message = GEOJSON[case]
+    with pytest.raises(InputError, match=message):
         list(read_geojson(memory(data)))
 
 

@@ -53,5 +53,5 @@ def test_they_are_those_of_all_cells_sorted(name: str, monkeypatch: pytest.Monke
     one_by_one = measure(grid, percentiles=True)
     for metric in NAMES:
         low, high = np.percentile(per_cell(grid, metric), [1, 99])
-        for found in (together, one_by_one):
-            assert (found[metric].p01, found[metric].p99) == (low, high), metric
+        for result in (together, one_by_one):
+            assert (result[metric].p01, result[metric].p99) == (low, high), metric
