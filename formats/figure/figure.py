@@ -52,7 +52,9 @@ def draw(
     Of a grid around a small body, one view near it and one of the whole. Each `every`-th grid line is drawn;
     None chooses. Raises InputError for a zoom that shows nothing.
     """
-    singles = _singles(grid)
+    if grid.topology == "blocks":
+        planar(grid)
+    singles = [Grid((block,)) for block in grid.blocks] if grid.topology == "blocks" else [grid]
     views = [zoom] if zoom else _views(grid)
     parts = [_visible(grid, singles, view) for view in views]
     figure, axes, bar = frame(views, colouring is not None)
@@ -85,14 +87,6 @@ def draw(
     title = f"{name}   {size}".strip()
     axes[0].set_title(title, size=10, color=INK, loc="left", pad=4)
     return figure
-
-
-def _singles(grid: Grid) -> list[Grid]:
-    """Return the grid, or those of its blocks."""
-    if grid.topology != "blocks":
-        return [grid]
-    planar(grid)
-    return [Grid((block,)) for block in grid.blocks]
 
 
 def _visible(grid: Grid, singles: list[Grid], view: Box) -> list[CellsInView | None]:

@@ -10,12 +10,11 @@
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import PLACES, Block
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.polygon.corners import Indices
 
@@ -67,27 +66,6 @@ def node_table(
     return nodes, numbers
 
 
-def node_count(counts: Sequence[tuple[int, ...]], connections: Sequence[Connection]) -> int:
-    """Return how many nodes blocks with `counts` nodes have, joined ones, also periodic ones, once.
-
-    Only the nodes of connected sides are looked at, of large volumes a small part.
-    """
-    ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
-
-    def face(block: int, side: Side) -> Indices:
-        axis, end = PLACES[side]
-        at = [np.arange(count) for count in counts[block]]
-        at[axis] = at[axis][end:][:1]
-        return np.ravel_multi_index(np.ix_(*at), counts[block]).squeeze(axis)[..., None] + ends[block]
-
-    pairs = [replace(each, transform=None).nodes(face) for each in connections]
-    if not pairs:
-        return int(ends[-1])
-    used, places = places_among(pairs)
-    label = joined_labels(len(used), places)
-    return int(ends[-1]) - len(used) + len(np.unique(label))
-
-
 def places_among(
     pairs: Sequence[tuple[Indices, Indices]],
 ) -> tuple[Indices, list[tuple[Indices, Indices]]]:
@@ -108,5 +86,6 @@ def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indic
             least = np.minimum(label[own], label[donor])
             np.minimum.at(label, own, least)
             np.minimum.at(label, donor, least)
+        label = label[label]
         changed = not np.array_equal(label, before)
     return label

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.shared_nodes import node_count
+from meshonet.geometry.blocks.shared_nodes import shared_nodes
 from meshonet.geometry.blocks.vertices import Vertices, vertices
 from meshonet.geometry.quality.deviation import Deviation, deviation, solid_deviation
 from meshonet.geometry.quality.growth import Extreme
@@ -64,7 +64,8 @@ def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
 
         angles = solid_deviation(quality or measure_volumes(grid, percentiles=True))
         sizes = tuple(block.counts for block in grid.blocks)
-        count = node_count(sizes, grid.connections)
+        numbers = shared_nodes(sizes, grid.connections, periodic=True)
+        count = 1 + max(int(number.max()) for number in numbers)
         run = solid_lines(grid, percentiles=angles.p99 is not None)
         return BlockFigures(sizes, None, count, len(grid.connections), angles, run)
     nodes = vertices(grid)
