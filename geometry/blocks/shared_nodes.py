@@ -18,6 +18,9 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.polygon.corners import Indices
 
+_PASSES = 9
+"""Periodic sides that end on other ones need one more pass each."""
+
 
 def shared_nodes(
     counts: Sequence[tuple[int, ...]], connections: Sequence[Connection], *, periodic: bool = False
@@ -89,3 +92,48 @@ def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indic
         label = label[label]
         changed = not np.array_equal(label, before)
     return label
+
+
+def with_equal_nodes(blocks: Sequence[Block], connections: Sequence[Connection]) -> tuple[Block, ...]:
+    """Return `blocks` with the nodes that `connections` join made equal, bitwise.
+
+    Joined nodes become the first of them; those of the second of two periodic sides the first ones moved.
+    """
+    if not connections:
+        return tuple(blocks)
+    ends, numbers = numbered([block.counts for block in blocks])
+    used, pairs = places_among([each.pairs(numbers) for each in connections])
+    shared = np.empty((len(used), blocks[0].nodes.shape[-1]))
+    places = []
+    for block, first, last in zip(blocks, ends, ends[1:], strict=False):
+        rows = slice(*np.searchsorted(used, [first, last]))
+        places.append((rows, np.unravel_index(used[rows] - first, block.counts)))
+        shared[rows] = block.nodes[places[-1][1]]
+    equal = _equal(shared, pairs, connections)
+    result = []
+    for block, (rows, at) in zip(blocks, places, strict=True):
+        if np.array_equal(equal[rows], shared[rows]):
+            result.append(block)
+            continue
+        nodes = block.nodes.copy(order="K")
+        nodes[at] = equal[rows]
+        result.append(Block(nodes, finite=True))
+    return tuple(result)
+
+
+def _equal(
+    nodes: Floats, pairs: Sequence[tuple[Indices, Indices]], connections: Sequence[Connection]
+) -> Floats:
+    """Return `nodes` (n, d), each as the first of those that it is joined to, directly or through others."""
+    fixed = [pair for pair, each in zip(pairs, connections, strict=True) if each.transform is None]
+    label = joined_labels(len(nodes), fixed)
+    nodes = nodes[label]
+    for _ in range(_PASSES):
+        old = nodes.copy()
+        for (own, donor), each in zip(pairs, connections, strict=True):
+            if each.transform is not None:
+                nodes[label[donor]] = each.transform(nodes[own])
+                nodes = nodes[label]
+        if np.array_equal(nodes, old):
+            break
+    return nodes

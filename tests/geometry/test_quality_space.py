@@ -11,10 +11,10 @@ from space_grids import lattice, pipe, sphere_patches, turned
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.geometry.blocks.transform import coarser_grid, normalised
 from meshonet.geometry.blocks.transform import turned as quarter_turn
 from meshonet.geometry.errors import InputError
