@@ -40,7 +40,6 @@ def crossing_segments(
 
 # algebraic
 def tfi(x: Floats, y: Floats, xs: Edges, ys: Edges, parameters: Edges, threads: int = 1) -> None: ...
-def tfi_coarse(sides: Edges, thin: tuple[Placed, Placed], nodes: Floats) -> None: ...
 def resample(
     coarse: Floats, sides: Edges, fine: tuple[Placed, Placed], opened: Floats, near: float, far: float,
     reach: float, nodes: Floats, straight: NDArray[np.uint8] | None = None, threads: int = 1,
@@ -134,12 +133,9 @@ def strip_rows(
 LINE: int
 
 def winslow_steps(
-    planes: Floats, turns: Floats, harmonic: bool, steps: int, share: float, growth: float, xi: Edges,
-    eta: Edges, around: bool, last: Floats,
+    planes: Floats, turns: Floats, harmonic: bool, steps: int, share: float, growth: float,
+    xi: tuple[Floats, Floats], eta: tuple[Floats, Floats], around: bool, last: Floats,
 ) -> None: ...  # fmt: skip
-def frame_take_out(planes: Floats, unit: Floats, factors: Floats) -> None: ...
-def frame_put_back(planes: Floats, moved: Floats, unit: Floats, factors: Floats) -> None: ...
-def add_answers(planes: Floats, answers: Reals, head: int, rim: Floats) -> None: ...
 def grid_features(planes: Floats, steps: Floats, out: Reals) -> None: ...
 
 class LayerProgram:

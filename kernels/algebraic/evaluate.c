@@ -13,34 +13,8 @@
 #include "clones.h"
 #include "inwards.h"
 #include "team.h"
-#include "tfi.h"
 
 enum { TILE = 16 };
-
-/* Length up to each node over the whole edge's, 0 to 1. */
-MESHONET_INLINE void law(const double *restrict x, const double *restrict y, ptrdiff_t n, double *restrict along)
-{
-    double sum = 0.0;
-    along[0] = 0.0;
-    for (ptrdiff_t k = 1; k < n; k++) {
-        const double dx = x[k] - x[k - 1], dy = y[k] - y[k - 1];
-        along[k] = sqrt(dx * dx + dy * dy);
-    }
-    for (ptrdiff_t k = 1; k < n; k++)
-        along[k] = sum += along[k];
-    for (ptrdiff_t k = 1; k < n - 1; k++)
-        along[k] /= sum;
-    along[n - 1] = 1.0;
-}
-
-/* Values linear between those at the full number of places. */
-MESHONET_INLINE void thinned(const double *values, const Places *at, ptrdiff_t n, double *restrict out)
-{
-    for (ptrdiff_t k = 0; k < n; k++) {
-        const double *from = values + at->first[k];
-        out[k] = at->weights[4 * k] * from[0] + at->weights[4 * k + 1] * from[1];
-    }
-}
 
 /* Second derivatives along the rows of f (m, n): m_k-1 + 4 m_k + m_k+1 = 6 (f_k-1 - 2 f_k + f_k+1). That the third is
    continuous at the second row makes m_0 - 2 m_1 + m_2 = 0, hence m_1; so at the other end. */
@@ -167,29 +141,6 @@ MESHONET_INLINE void reach_in(double *restrict x, double *restrict y, double dx,
     MESHONET_INDEPENDENT
     for (ptrdiff_t j = range.from; j < range.to; j++)
         x[j] += x0 * low[j] + x1 * high[j], y[j] += y0 * low[j] + y1 * high[j];
-}
-
-MESHONET_CLONES
-void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, double *nodes)
-{
-    const ptrdiff_t m = e->m, n = e->n, half = m + n;
-    const double *given[4] = {edges->south, edges->north, edges->west, edges->east};
-    double *at[3][4]; /* x, y and laws of the four sides */
-    for (int k = 0; k < 3; k++) {
-        double *first = scratch + 2 * k * half;
-        at[k][0] = first, at[k][1] = first + m, at[k][2] = first + 2 * m, at[k][3] = first + 2 * m + n;
-    }
-    for (int side = 0; side < 4; side++) {
-        const int eta = side / 2;
-        const ptrdiff_t count = eta ? n : m, full = eta ? e->nj : e->ni;
-        thinned(given[side], &e->thin[eta], count, at[0][side]);
-        thinned(given[side] + full, &e->thin[eta], count, at[1][side]);
-        law(at[0][side], at[1][side], count, at[2][side]);
-    }
-    TfiEdges three[3];
-    for (int k = 0; k < 3; k++)
-        three[k] = (TfiEdges){at[k][0], at[k][1], at[k][2], at[k][3]};
-    tfi_fill(nodes, nodes + m * n, m, n, &three[0], &three[1], &three[2], 1);
 }
 
 ptrdiff_t evaluate_scratch(const Evaluation *e)

@@ -70,6 +70,11 @@ def as_complex(planes: Tensor) -> Tensor:
     return torch.complex(planes[:, 0], planes[:, 1])
 
 
+def as_planes(z: Tensor) -> Tensor:
+    """Return complex numbers (batch, ...) as planes (batch, 2, ...) of x and y."""
+    return torch.stack([z.real, z.imag], 1)
+
+
 def as_numpy(values: Tensor) -> Any:
     """Return the values as an array of numpy, without gradients."""
     return values.detach().cpu().numpy()

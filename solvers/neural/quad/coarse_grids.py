@@ -12,20 +12,24 @@ Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Complexes, Floats, pairs_of
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import times
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.kernels._native import add_answers, frame_put_back, frame_take_out, grid_features, tfi_coarse
+from meshonet.kernels._native import grid_features, tfi
 from meshonet.solvers.algebraic.resample import quad as evaluation
-from meshonet.solvers.algebraic.resample.spline import between, places
-from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, SCALE, WINSLOW
-from meshonet.solvers.neural.quad.network import CHUNK, Network, rim_factor
-from meshonet.solvers.neural.quad.picard import AFTER, nodes_after, step_all
+from meshonet.solvers.algebraic.resample.spline import between
+from meshonet.solvers.algebraic.tfi import arc_length_fraction
+from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, SCALE, WINSLOW, frame, planes_of
+from meshonet.solvers.neural.quad.network import CHUNK, Network
+from meshonet.solvers.neural.quad.picard import AFTER, approach, nodes_after
 
 SHARES = (0.95, 0.9, 0.8)  # of the way to the network's answer, the first without folds; else all
 Sides = tuple[Floats, Floats, Floats, Floats]  # of south, north, west and east
@@ -69,8 +73,10 @@ class Edges:
 
     def transfinite(self, m: int, n: int) -> Floats:
         """Return the planes (batch, 2, m, n) of transfinite interpolation between edges, by their lengths."""
-        nodes, (ni, nj) = np.empty((len(self), 2, m, n)), self.counts
-        tfi_coarse(self.sides, (places(ni, m), places(nj, n)), nodes)
+        nodes, thin = np.empty((len(self), 2, m, n)), self.thinned(m, n).sides
+        laws = [arc_length_fraction(np.moveaxis(side, 1, -1)) for side in thin]
+        for k, planes in enumerate(nodes):
+            tfi(*planes, *(tuple(side[k, axis] for side in thin) for axis in (0, 1)), tuple(law[k] for law in laws))
         return nodes
 
 
@@ -90,36 +96,52 @@ def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
     `encoding.HEADS`.
     """
     base = edges.transfinite(LATENT, LATENT)
-    room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), network.dtype)
     for k in range(0, len(base), CHUNK):
-        planes = base[k : k + CHUNK]
-        unit, factors = _unit(planes)
-        near = unit.copy()
-        step, seen = step_all(near), room[: len(near)]
-        grid_features(near, step, seen)
-        start = near.copy()
-        add_answers(near, network.answers(seen), head, SCALE * rim_factor(LATENT, LATENT, around=False))
-        for grid, before in () if head == WINSLOW else zip(near, start, strict=True):
-            if (part := share(before, grid)) < 1.0:
-                grid[:] = before + part * (grid - before)
-        frame_put_back(planes, near, unit, factors)
-    return _nearer(base, edges) if head == WINSLOW else base
+        z = base[k : k + CHUNK, 0] + 1j * base[k : k + CHUNK, 1]
+        base[k : k + CHUNK] = planes_of(answered(z, head, partial(_answer, network, head), _shares, np))
+    if head != WINSLOW:
+        return base
+    finer = refine_coarse(base, edges.thinned(*(nodes_after(n) for n in edges.counts)))
+    return planes_of(nearer(finer[:, 0] + 1j * finer[:, 1], np))
 
 
-def _nearer(coarse: Floats, edges: Edges) -> Floats:
-    planes = refine_coarse(coarse, edges.thinned(*(nodes_after(n) for n in edges.counts)))
-    unit, factors = _unit(planes)
-    near = unit.copy()
-    step_all(near, steps=AFTER, harmonic=False)
-    frame_put_back(planes, near, unit, factors)
-    return planes
+def answered(
+    z: Any, head: int, network: Callable[[Any, Any], Any], shares: Callable[[Any, Any], Any], xp: Any
+) -> Any:
+    """Return transfinite grids `z` (batch, n, n), complex, moved as the network says.
+
+    `network`: answers (batch, n, n) to grids near Winslow's and their last step; `shares` (batch, 1, 1) of a
+    move to take from a grid; all of `xp`.
+    """
+    unit, back = _unit(z, xp)
+    near, step = approach(unit, xp)
+    move = SCALE * network(near, step)
+    if head != WINSLOW:
+        move = shares(near, move) * move
+    return z + times(near + move - unit, back)
 
 
-def _unit(planes: Floats) -> tuple[Floats, Floats]:
-    """Return planes at unit size (`encoding.frame`), and the factors (batch, 2) to it."""
-    unit, factors = np.empty_like(planes), np.empty((len(planes), 2))
-    frame_take_out(planes, unit, factors)
-    return unit, factors
+def nearer(z: Any, xp: Any) -> Any:
+    """Return grids `z` (batch, m, n), complex, after the steps that follow the network for Winslow's."""
+    unit, back = _unit(z, xp)
+    return z + times(approach(unit, xp, steps=AFTER, harmonic=False)[0] - unit, back)
+
+
+def _unit(z: Any, xp: Any) -> tuple[Any, Any]:
+    """Return grids at unit size (`encoding.frame`), and the factors (batch, 1, 1) back."""
+    middle, factor = (value[:, None, None] for value in frame(z, xp))
+    return times(z - middle, factor), factor.conj() / (factor.real**2 + factor.imag**2)
+
+
+def _answer(network: Network, head: int, near: Complexes, step: Complexes) -> Complexes:
+    seen = np.empty((*near.shape, FEATURES), network.dtype)
+    grid_features(planes_of(near), planes_of(step), seen)
+    return network(seen, head)
+
+
+def _shares(near: Complexes, move: Complexes) -> Floats:
+    parts = [share(start, start + by) for start, by in zip(near, move, strict=True)]
+    return np.array(parts)[:, None, None]
 
 
 def refine_coarse(coarse: Floats, edges: Edges) -> Floats:
@@ -127,9 +149,7 @@ def refine_coarse(coarse: Floats, edges: Edges) -> Floats:
     return evaluation.refine_quad(coarse, edges.sides)
 
 
-def share(start: Floats, answer: Floats) -> float:
-    """Return the share of the step from `start` to `answer`, planes (2, m, n), to take: 1 unless it folds."""
-    if count_folded(answer.transpose(1, 2, 0)) == 0:
-        return 1.0
-    tried = ((part, start + part * (answer - start)) for part in SHARES)
-    return next((part for part, grid in tried if count_folded(grid.transpose(1, 2, 0)) == 0), 1.0)
+def share(start: Complexes, answer: Complexes) -> float:
+    """Return the share of the way from `start` to `answer`, grids (m, n), to take: 1 unless it folds."""
+    tried = (part for part in (1.0, *SHARES) if not count_folded(pairs_of(start + part * (answer - start))))
+    return next(tried, 1.0)

@@ -22,10 +22,10 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.resample import grids as resample
 from meshonet.solvers.algebraic.resample.spline import between
-from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features
+from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features, planes_of
 from meshonet.solvers.neural.quad.inside import inside
 from meshonet.solvers.neural.quad.network import CHUNK, Network
-from meshonet.solvers.neural.quad.picard import AFTER, approached
+from meshonet.solvers.neural.quad.picard import AFTER, approach
 from meshonet.solvers.neural.quad.unrolled import AROUND, TURN, around_middles, even, factors, rolled
 
 # problem and remedy, the same for numpy and torch
@@ -47,24 +47,16 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
     base, factor = even(strips, LATENT), factors(strips)[:, None, None]
     for k in range(0, len(base), CHUNK):
         chunk = slice(k, k + CHUNK)
-        base[chunk] = answered(base[chunk], factor[chunk], head, partial(network, head=head), _approached)
+        base[chunk] = answered(base[chunk], factor[chunk], head, partial(network, head=head), np)
     grids = rolled(base, centres[:, None, None])
     grids[:, :, [0, -1]] = walls
-    return np.ascontiguousarray(np.stack([grids.real, grids.imag], axis=1))
+    return planes_of(grids)
 
 
-def answered(
-    base: Any,
-    factor: Any,
-    head: int,
-    network: Callable[[Any], Any],
-    approach: Callable[..., Any],
-    xp: Any = np,
-) -> Any:
+def answered(base: Any, factor: Any, head: int, network: Callable[[Any], Any], xp: Any) -> Any:
     """Return strips `base` (batch, m + 1, n) of even steps, moved as the network says and closed.
 
-    `factor`: (batch, 1, 1) to unit size; `network`: answers (batch, m, n) by what it sees; `approach` is that
-    of `picard`; both of `xp`.
+    `factor`: (batch, 1, 1) to unit size; `network`: answers (batch, m, n) by what it sees; all of `xp`.
     """
     z = base * factor
     near, step = approach(z, xp, around=True)
@@ -74,11 +66,6 @@ def answered(
         moved = approach(closed, xp, around=True, steps=AFTER, harmonic=False)[0][:, :-1]
     strip = base[:, :-1] + (moved - z[:, :-1]) / factor
     return xp.concatenate([strip, strip[:, :1]], 1)  # exp(-i strip) closes: a whole turn on is the same
-
-
-def _approached(z: Complexes, _: Any, **settings: Any) -> tuple[Complexes, Complexes]:
-    planes, steps = approached(z, **settings)
-    return _complex(planes), _complex(steps)
 
 
 def _strips(boundaries: Sequence[Boundary]) -> tuple[Complexes, Complexes, Complexes, NDArray[np.bool_]]:
