@@ -70,7 +70,7 @@ def interpolate(x: Floats, y: Floats, edges: Four, along: Four) -> None:
 
 
 def arc_length_fraction(points: Floats) -> Floats:
-    """Return the length along polylines `points` (..., n, 2) up to each point, over the whole: 0 to 1, (..., n).
+    """Return the length along polylines (..., n, 2) up to each point, over the whole: (..., n), 0 to 1.
 
     >>> arc_length_fraction(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 9.0]]))
     array([0. , 0.5, 1. ])

@@ -50,7 +50,7 @@ class Field:
         return moved.T
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the derivative (6, k) by the motions in the plane of Σ pull · displacement, `pull` (m, 2)."""
+        """Return the derivative (6, k) by motions in the plane of Σ pull · displacement, `pull` (m, 2)."""
         gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
         blend_transposed(self.places, self.areas, self.near, self.points, force, gathered)

@@ -26,7 +26,7 @@ class StripFNO(NamedParameters):
 
 
 def _initial(name: str, shape: tuple[int, ...], shapes: dict[str, tuple[int, ...]]) -> Tensor:
-    """Return first values: spectral weights normal over their inputs, others uniform as torch's layers have."""
+    """Return first values: spectral ones normal over their inputs, others uniform as torch's layers have."""
     if name.startswith("spectral"):
         return torch.randn(shape) / shape[1]
     _, inputs, taps = shapes[name.replace("bias", "weight")]

@@ -75,8 +75,9 @@ class Edges:
         """Return the planes (batch, 2, m, n) of transfinite interpolation between edges, by their lengths."""
         nodes, thin = np.empty((len(self), 2, m, n)), self.thinned(m, n).sides
         laws = [arc_length_fraction(np.moveaxis(side, 1, -1)) for side in thin]
-        for k, planes in enumerate(nodes):
-            tfi(*planes, *(tuple(side[k, axis] for side in thin) for axis in (0, 1)), tuple(law[k] for law in laws))
+        for k, (x, y) in enumerate(nodes):
+            along, across = (tuple(side[k, axis] for side in thin) for axis in (0, 1))
+            tfi(x, y, along, across, tuple(law[k] for law in laws))
         return nodes
 
 

@@ -8,8 +8,8 @@ Winslow's equations with the coefficients of the last grid::
 Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha + gamma)
 at their means over the domain. Three quarters of the leading error of differences are taken out. Steps after
 the network, which alone converge slowly or not at all, are extrapolated to where they would vanish if they
-were linear along the last move. For NumPy they are compiled (`kernels/neural/approach.c`); what stands here is
-for torch, which has the gradients.
+were linear along the last move. For NumPy they are compiled (`kernels/neural/approach.c`); the formulas here
+are torch's, which has their gradients.
 Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501; Anderson, J. ACM 12
 (1965) 547-560.
 """
