@@ -107,7 +107,9 @@ def _slit(z: Tensor, sharp: bool, base: list[int]) -> tuple[Tensor, Tensor]:
 def _focus(z: Tensor, tip: int, far_end: Tensor) -> Tensor:
     chord = torch.abs(far_end - z[tip])
     apart = torch.abs(z.detach() - z[tip].detach()) > 0.004 * chord.detach()
-    nearer = torch.arange(1, len(z) // 2, device=z.device)  # nodes ahead and behind, as kernels/conformal/lift.c
+    nearer = torch.arange(
+        1, len(z) // 2, device=z.device
+    )  # nodes ahead and behind, as kernels/conformal/lift.c
     ahead, behind = (int(torch.argmax(apart[(tip + way * nearer) % len(z)].int())) + 1 for way in (1, -1))
     a, b, c = z[(tip + ahead) % len(z)], z[tip], z[tip - behind]
     area = 0.5 * torch.abs(((a - b) * torch.conj(c - b)).imag)

@@ -1,21 +1,65 @@
-"""The quad network in torch: a U-Net on a small grid, equivariant under the eight relabellings of a quad.
+"""The networks in torch, for training and for gradients; the order of their layers is that of inference.
 
-Around a body the same layers go round along xi, where a quad's see zeros outside the grid. The order of the
-layers is that of `meshonet.solvers.neural.quad.network`, the inference in numpy.
+The strip network is `meshonet.solvers.neural.strip.network`. The quad network, a U-Net on a small grid, is
+equivariant under the eight relabellings of a quad (`meshonet.solvers.neural.quad.network`); around a body its
+layers go round along xi, where a quad's see zeros outside the grid.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 from torch.nn import functional
 
-from meshonet.solvers.neural.differentiable.named import NamedParameters
 from meshonet.solvers.neural.quad import symmetry
 from meshonet.solvers.neural.quad.encoding import HEADS
-from meshonet.solvers.neural.quad.network import UNet, rim_factor, shapes
+from meshonet.solvers.neural.quad.network import UNet, rim_factor
+from meshonet.solvers.neural.quad.network import shapes as quad_shapes
 from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
+from meshonet.solvers.neural.strip.network import StripNetwork
+from meshonet.solvers.neural.strip.network import shapes as strip_shapes
+
+
+class NamedParameters(nn.Module):
+    """A network whose parameters are `arrays`; a dot in a name leads into a module of parameters."""
+
+    def __init__(self, arrays: Mapping[str, Tensor]) -> None:
+        super().__init__()
+        for name, array in arrays.items():
+            module: nn.Module = self
+            *path, last = name.split(".")
+            for part in path:
+                if part not in dict(module.named_children()):
+                    module.add_module(part, nn.Module())
+                module = module.get_submodule(part)
+            module.register_parameter(last, nn.Parameter(array))
+
+
+class StripFNO(NamedParameters):
+    """Channels and scalars of `meshonet.solvers.neural.strip.encoding` to `outputs` channels.
+
+    `inputs`, `scalars`, `outputs`: channel counts; `width`, `modes`, `layers`: of the hidden state.
+    """
+
+    def __init__(
+        self, inputs: int, scalars: int, outputs: int, width: int = 32, modes: int = 32, layers: int = 3
+    ) -> None:
+        wanted = strip_shapes(inputs + scalars, outputs, width, (modes,) * (layers + 1))
+        super().__init__({name: _first_of_strip(name, shape, wanted) for name, shape in wanted.items()})
+
+    def forward(self, channels: Tensor, scalars: Tensor) -> Tensor:
+        """(batch, inputs, columns), (batch, scalars) to (batch, outputs, columns)."""
+        out: Tensor = StripNetwork(dict(self.named_parameters()), torch)(channels, scalars)
+        return out
+
+
+def _first_of_strip(name: str, shape: tuple[int, ...], shapes: dict[str, tuple[int, ...]]) -> Tensor:
+    """Return first values: spectral ones normal over their inputs, others uniform as torch's layers have."""
+    if name.startswith("spectral"):
+        return torch.randn(shape) / shape[1]
+    _, inputs, taps = shapes[name.replace("bias", "weight")]
+    return (2.0 * torch.rand(shape) - 1.0) / (inputs * taps) ** 0.5
 
 
 class QuadUNet(NamedParameters, UNet[Tensor]):
@@ -26,8 +70,8 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
     """
 
     def __init__(self, widths: Sequence[int], blocks: Sequence[int], around: bool = False) -> None:
-        wanted = shapes(widths, blocks, len(HEADS))
-        super().__init__({name: _initial(name, shape) for name, shape in wanted.items()})
+        wanted = quad_shapes(widths, blocks, len(HEADS))
+        super().__init__({name: _first_of_quad(name, shape) for name, shape in wanted.items()})
         self.counts, self.around = tuple(blocks), around
         tables = {"seen": torch.tensor(SEEN, dtype=torch.float32)}
         tables |= {"elements": torch.tensor(ELEMENTS, dtype=torch.float32)}
@@ -86,7 +130,7 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
         return (fine[:, :, :-1] if self.around else fine) + skip
 
 
-def _initial(name: str, shape: tuple[int, ...]) -> Tensor:
+def _first_of_quad(name: str, shape: tuple[int, ...]) -> Tensor:
     """Return first values: those of He and others, less in the second half of a residual block."""
     if name.endswith("bias"):
         return torch.zeros(shape)
