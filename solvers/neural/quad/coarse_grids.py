@@ -24,7 +24,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.elementary import times
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.kernels._native import grid_features, tfi
-from meshonet.solvers.algebraic.resample import quad as evaluation
+from meshonet.solvers.algebraic.resample.quad import Sides, refine_quad
 from meshonet.solvers.algebraic.resample.spline import between
 from meshonet.solvers.algebraic.tfi import arc_length_fraction
 from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, SCALE, WINSLOW, frame, planes_of
@@ -32,7 +32,6 @@ from meshonet.solvers.neural.quad.network import CHUNK, Network
 from meshonet.solvers.neural.quad.picard import AFTER, approach, nodes_after
 
 SHARES = (0.95, 0.9, 0.8)  # of the way to the network's answer, the first without folds; else all
-Sides = tuple[Floats, Floats, Floats, Floats]  # of south, north, west and east
 
 
 @dataclass(frozen=True)
@@ -102,7 +101,7 @@ def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
         base[k : k + CHUNK] = planes_of(answered(z, head, partial(_answer, network, head), _shares, np))
     if head != WINSLOW:
         return base
-    finer = refine_coarse(base, edges.thinned(*(nodes_after(n) for n in edges.counts)))
+    finer = refine_quad(base, edges.thinned(*(nodes_after(n) for n in edges.counts)).sides)
     return planes_of(nearer(finer[:, 0] + 1j * finer[:, 1], np))
 
 
@@ -143,11 +142,6 @@ def _answer(network: Network, head: int, near: Complexes, step: Complexes) -> Co
 def _shares(near: Complexes, move: Complexes) -> Floats:
     parts = [share(start, start + by) for start, by in zip(near, move, strict=True)]
     return np.array(parts)[:, None, None]
-
-
-def refine_coarse(coarse: Floats, edges: Edges) -> Floats:
-    """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
-    return evaluation.refine_quad(coarse, edges.sides)
 
 
 def share(start: Complexes, answer: Complexes) -> float:

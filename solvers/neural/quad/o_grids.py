@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.algebraic.resample import grids as resample
 from meshonet.solvers.algebraic.resample.spline import between
 from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features, planes_of
 from meshonet.solvers.neural.quad.inside import inside
@@ -80,13 +79,6 @@ def compact(boundary: Boundary) -> bool:
     _, _, centres, once = _strips([boundary])
     reach = np.abs(_complex(boundary.south.T[None]) - centres)
     return bool(once[0] and reach.min() > COMPACT * reach.max())
-
-
-def refine_o_grids(grids: Floats, boundaries: Sequence[Boundary]) -> Floats:
-    """Return the planes (batch, 2, ni, nj) within `boundaries` of `grids` (batch, 2, m, n) on fewer nodes."""
-    pairs = zip(grids, boundaries, strict=True)
-    nodes = [resample.refine_grid(np.moveaxis(planes, 0, -1), boundary) for planes, boundary in pairs]
-    return np.stack([np.moveaxis(grid, -1, 0) for grid in nodes])
 
 
 def _complex(planes: Floats) -> Complexes:
