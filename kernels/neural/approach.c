@@ -1,4 +1,4 @@
-/* The arithmetic of approach.py on one grid at a time, all of which stays in the caches. */
+/* The arithmetic of solvers/neural/quad/picard.py on one grid at a time, all of which stays in the caches. */
 #include "approach.h"
 #include "clones.h"
 #include <math.h>

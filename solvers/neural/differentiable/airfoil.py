@@ -12,6 +12,7 @@ from meshonet.solvers.conformal import strip
 from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
 from meshonet.solvers.conformal.evaluate import StripGrid
 from meshonet.solvers.conformal.strip import MODES, across, smoothing, wavenumbers
+from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
 from meshonet.solvers.neural.differentiable.sides import as_numpy, check_sides
 from meshonet.solvers.neural.operator import Operator
@@ -108,9 +109,8 @@ def _picard(c: Tensor) -> Tensor:
     parts = (1j * k * levels, -(k**2) * levels, ce, 1j * k * ce, d2 @ levels)
     Wt, Wtt, We, Wte, Wee = (strip.to_columns(part, torch)[:, 1:-1] for part in parts)
     Wt = Wt + 1j
-    alpha, gamma = torch.abs(We) ** 2, torch.abs(Wt) ** 2
-    beta = (torch.conj(Wt) * We).real
-    residual = (alpha * Wtt - 2.0 * beta * Wte + gamma * Wee) * (2.0 / (alpha / (T * T) + gamma))
+    missed, alpha, gamma = left_side((Wt, We, Wtt, Wte, Wee), lambda a, b: (torch.conj(a) * b).real)
+    residual = missed * (2.0 / (alpha / (T * T) + gamma))
     update = vectors @ ((inverse @ strip.from_columns(residual, torch)) * smooth)
     return (levels - torch.nn.functional.pad(update, (0, 0, 1, 1))).mT
 

@@ -22,6 +22,7 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats, array_like, read_only
 from meshonet.geometry.elementary import cos, sin
 from meshonet.kernels._native import LINE, winslow_steps
+from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.neural.quad.encoding import LATENT, planes_of
 
 STEPS = 4  # after the harmonic grid; a fifth takes a tenth of what is left on average
@@ -105,10 +106,9 @@ def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tup
     slopes = _first(p, share, xp, around)
     u, v = slopes[..., 1:-1], _across(_first, body, share, xp)
     twist = _across(_first, slopes, share, xp)
-    alpha, gamma, beta = ((a * b).sum(1)[:, None] for a, b in ((v, v), (u, u), (u, v)))
+    missed, alpha, gamma = left_side((u, v, bends[0], twist, bends[1]), lambda a, b: (a * b).sum(1)[:, None])
     total = alpha + gamma + TINY
-    missed = (alpha * bends[0] - 2.0 * beta * twist + gamma * bends[1]) / total
-    return missed, *((value / total).mean((2, 3))[:, :, None, None] for value in (alpha, gamma))
+    return missed / total, *((value / total).mean((2, 3))[:, :, None, None] for value in (alpha, gamma))
 
 
 def _first(p: Any, share: float, xp: Any, around: bool = False) -> Any:
