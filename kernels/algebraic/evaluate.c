@@ -161,7 +161,8 @@ typedef struct {
 } Parts;
 
 /* Second derivatives, how far edges are felt, and what is missed of west and east. */
-MESHONET_INLINE void prepare(const Evaluation *e, const double *coarse, const Corners *edges, Parts *p, double *spare)
+MESHONET_CLONES
+static void prepare(const Evaluation *e, const double *coarse, const Corners *edges, Parts *p, double *spare)
 {
     const ptrdiff_t m = e->m, n = e->n, nj = e->nj, size = m * n;
     double *share = spare + 2 * size;
@@ -225,12 +226,6 @@ typedef struct {
 } Pass;
 
 MESHONET_CLONES
-static void begin(const Evaluation *e, const double *coarse, const Corners *edges, Parts *p, double *spare)
-{
-    prepare(e, coarse, edges, p, spare);
-}
-
-MESHONET_CLONES
 static void evaluate_rows(const Pass *pass, Parts p, ptrdiff_t start, ptrdiff_t end)
 {
     const Evaluation *e = pass->e;
@@ -275,7 +270,7 @@ void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edg
     double *rows = scratch + 8 * nj, *bends = rows + e->threads * 12 * nj, *x = nodes, *y = nodes + ni * nj;
     Pass pass = {e, coarse, edges, rows, nodes,
                  {scratch, NULL, NULL, scratch + 4 * nj, bends, bends + 6 * size, {{{0, 0}}}}};
-    begin(e, coarse, edges, &pass.parts, bends + 10 * size);
+    prepare(e, coarse, edges, &pass.parts, bends + 10 * size);
     team_run(e->threads, evaluate_share, &pass);
     const size_t line = (size_t)nj * sizeof *x;
     const ptrdiff_t last = (ni - 1) * nj;
@@ -294,8 +289,8 @@ typedef struct {
 MESHONET_CLONES
 static void add_rows(const Combine *c, ptrdiff_t start, ptrdiff_t end)
 {
-    const ptrdiff_t nj = c->nj;
-    for (ptrdiff_t i = start; i < end; i++) {
+    const ptrdiff_t nj = c->nj, from = c->rim ? 0 : 1;
+    for (ptrdiff_t i = start + from; i < end + from; i++) {
         const double *weights = c->weights + 4 * i, w0 = weights[0], w1 = weights[1], w2 = weights[2], w3 = weights[3];
         const double *restrict v0 = c->values + c->first[i] * nj, *restrict v1 = v0 + nj;
         const double *restrict m0 = c->bends + c->first[i] * nj, *restrict m1 = m0 + nj;
@@ -305,14 +300,7 @@ static void add_rows(const Combine *c, ptrdiff_t start, ptrdiff_t end)
     }
 }
 
-static void combine_share(void *data, Member member)
-{
-    const Combine *c = data;
-    const ptrdiff_t start = c->rim ? 0 : 1;
-    ptrdiff_t first, last;
-    team_share(c->ni - 2 * start, member, &first, &last);
-    add_rows(c, first + start, last + start);
-}
+TEAM_ROWS(combine_share, Combine, task->rim ? task->ni : task->ni - 2, add_rows)
 
 void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
                   const double *values, const double *bends, int rim, int threads)

@@ -63,13 +63,7 @@ static void blend_share(const BlendJob *job, ptrdiff_t first, ptrdiff_t last)
     }
 }
 
-static void blend_work(void *data, Member member)
-{
-    const BlendJob *job = data;
-    ptrdiff_t first, last;
-    team_share(job->m, member, &first, &last);
-    blend_share(job, first, last);
-}
+TEAM_ROWS(blend_work, BlendJob, task->m, blend_share)
 
 void blend_motions(const BlendSources *from, const double *x, ptrdiff_t m, int threads, double *moved)
 {

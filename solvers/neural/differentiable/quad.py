@@ -14,8 +14,8 @@ from meshonet.solvers.neural.differentiable.sides import (
     as_planes,
     check_sides,
 )
-from meshonet.solvers.neural.quad.coarse_grids import answered, nearer, share
-from meshonet.solvers.neural.quad.encoding import LATENT, WINSLOW, features
+from meshonet.solvers.neural.quad.coarse_grids import answered, in_frame, nearer, share
+from meshonet.solvers.neural.quad.encoding import LATENT, WINSLOW
 from meshonet.solvers.neural.quad.picard import nodes_after
 
 
@@ -36,14 +36,13 @@ class QuadGrids(NetworkGrids):
         sides = tuple(edge.movedim(-1, 1) for edge in (south, north, west, east))
         thin = tuple(between(side, LATENT) for side in sides)
         base = as_complex(interpolated(thin, _laws(thin)))
-        coarse = as_planes(answered(base, self._head, self._looked, _shares, torch))
+        shares = None if self._head == WINSLOW else _shares
+        coarse = as_planes(answered(base, in_frame(base, torch), self._answer, shares, torch))
         if self._head == WINSLOW:
             few = tuple(between(side, nodes_after(side.shape[-1])) for side in sides)
-            coarse = as_planes(nearer(as_complex(refined(coarse, few)), torch))
+            finer = as_complex(refined(coarse, few))
+            coarse = as_planes(nearer(finer, in_frame(finer, torch), torch))
         return refined(coarse, sides).movedim(1, -1)
-
-    def _looked(self, near: Tensor, step: Tensor) -> Tensor:
-        return self._answer(features(near, step, torch))
 
 
 def _shares(near: Tensor, by: Tensor) -> Tensor:

@@ -9,6 +9,7 @@ from meshonet.geometry.arrays import Topology
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.differentiable.networks import QuadUNet
 from meshonet.solvers.neural.operator import Operator
+from meshonet.solvers.neural.quad.encoding import features
 from meshonet.solvers.neural.quad.operator import QuadOperator
 from meshonet.solvers.neural.registry import load
 
@@ -61,8 +62,8 @@ class NetworkGrids:
         self._network.load_state_dict(state)
         self._network.to(device=device, dtype=dtype).requires_grad_(False)
 
-    def _answer(self, seen: Tensor) -> Tensor:
-        return self._network(seen)[:, self._head]
+    def _answer(self, near: Tensor, step: Tensor) -> Tensor:
+        return self._network(features(near, step, torch, self.topology == "o"))[:, self._head]
 
 
 def as_complex(planes: Tensor) -> Tensor:

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -23,14 +23,15 @@ from meshonet.geometry.arrays import Complexes, Floats, pairs_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.elementary import times
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.kernels._native import grid_features, tfi
+from meshonet.kernels._native import tfi
 from meshonet.solvers.algebraic.resample.quad import Sides, refine_quad
 from meshonet.solvers.algebraic.resample.spline import between
 from meshonet.solvers.algebraic.tfi import arc_length_fraction
-from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, SCALE, WINSLOW, frame, planes_of
+from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, frame, planes_of
 from meshonet.solvers.neural.quad.network import CHUNK, Network
 from meshonet.solvers.neural.quad.picard import AFTER, approach, nodes_after
 
+Moves: TypeAlias = Callable[[Any, Any], Any]  # of grids and steps, or of grids and moves
 SHARES = (0.95, 0.9, 0.8)  # of the way to the network's answer, the first without folds; else all
 
 
@@ -96,47 +97,46 @@ def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
     `encoding.HEADS`.
     """
     base = edges.transfinite(LATENT, LATENT)
+    shares = None if head == WINSLOW else _shares
     for k in range(0, len(base), CHUNK):
         z = base[k : k + CHUNK, 0] + 1j * base[k : k + CHUNK, 1]
-        base[k : k + CHUNK] = planes_of(answered(z, head, partial(_answer, network, head), _shares, np))
+        base[k : k + CHUNK] = planes_of(
+            answered(z, in_frame(z, np), partial(network.moves, head=head), shares, np)
+        )
     if head != WINSLOW:
         return base
     finer = refine_quad(base, edges.thinned(*(nodes_after(n) for n in edges.counts)).sides)
-    return planes_of(nearer(finer[:, 0] + 1j * finer[:, 1], np))
+    z = finer[:, 0] + 1j * finer[:, 1]
+    return planes_of(nearer(z, in_frame(z, np), np))
 
 
-def answered(
-    z: Any, head: int, network: Callable[[Any, Any], Any], shares: Callable[[Any, Any], Any], xp: Any
-) -> Any:
-    """Return transfinite grids `z` (batch, n, n), complex, moved as the network says.
+def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, around: bool = False) -> Any:
+    """Return grids `z` (batch, n, n), or strips (batch, m + 1, n) that go `around`, moved by a network.
 
-    `network`: answers (batch, n, n) to grids near Winslow's and their last step; `shares` (batch, 1, 1) of a
-    move to take from a grid; all of `xp`.
+    `unit`: the same at unit size, and the factors (batch, 1, 1) back; `network`: answers to grids near
+    Winslow's and their last step; `shares` (batch, 1, 1) of a move to take from a grid, or all of it; of
+    `xp`.
     """
-    unit, back = _unit(z, xp)
-    near, step = approach(unit, xp)
+    sized, back = unit
+    near, step = approach(sized, xp, around)
     move = SCALE * network(near, step)
-    if head != WINSLOW:
+    if around:
+        move = xp.concatenate([move, move[:, :1]], 1)
+    if shares is not None:
         move = shares(near, move) * move
-    return z + times(near + move - unit, back)
+    return z + times(near + move - sized, back)
 
 
-def nearer(z: Any, xp: Any) -> Any:
-    """Return grids `z` (batch, m, n), complex, after the steps that follow the network for Winslow's."""
-    unit, back = _unit(z, xp)
-    return z + times(approach(unit, xp, steps=AFTER, harmonic=False)[0] - unit, back)
+def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
+    """Return grids, as in `answered`, after the steps that follow the network for Winslow's."""
+    sized, back = unit
+    return z + times(approach(sized, xp, around, AFTER, harmonic=False)[0] - sized, back)
 
 
-def _unit(z: Any, xp: Any) -> tuple[Any, Any]:
+def in_frame(z: Any, xp: Any) -> tuple[Any, Any]:
     """Return grids at unit size (`encoding.frame`), and the factors (batch, 1, 1) back."""
     middle, factor = (value[:, None, None] for value in frame(z, xp))
     return times(z - middle, factor), factor.conj() / (factor.real**2 + factor.imag**2)
-
-
-def _answer(network: Network, head: int, near: Complexes, step: Complexes) -> Complexes:
-    seen = np.empty((*near.shape, FEATURES), network.dtype)
-    grid_features(planes_of(near), planes_of(step), seen)
-    return network(seen, head)
 
 
 def _shares(near: Complexes, move: Complexes) -> Floats:

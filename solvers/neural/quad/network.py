@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, read_only
-from meshonet.kernels._native import LayerProgram, activate, convolve, upsample
+from meshonet.kernels._native import LayerProgram, activate, convolve, grid_features, upsample
 from meshonet.solvers.neural.quad import symmetry
-from meshonet.solvers.neural.quad.encoding import FEATURES, HEADS
+from meshonet.solvers.neural.quad.encoding import FEATURES, HEADS, features, planes_of
 from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
 
 Reals: TypeAlias = NDArray[Any]
@@ -168,6 +168,14 @@ class Network:
         pairs = np.moveaxis(pairs, 3, 1) if head is None else pairs[..., head, :]
         moved = np.multiply(pairs, rim_factor(m, n, self.around)[..., None], order="C")
         return np.asarray(moved.view(np.complex128)[..., 0])
+
+    def moves(self, near: Complexes, step: Complexes, head: int) -> Complexes:
+        """Return one head's answers (batch, m, n) to grids near Winslow's and their last step."""
+        if self.around:
+            return self(features(near, step, np, around=True), head)
+        seen = np.empty((*near.shape, FEATURES), self.dtype)
+        grid_features(planes_of(near), planes_of(step), seen)
+        return self(seen, head)
 
     def _recorded(self, h: Reals) -> LayerProgram:
         """Return the layers for as many domains as `h` has or fewer, on arrays that no other program has."""

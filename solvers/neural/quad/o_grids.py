@@ -10,7 +10,7 @@ Turning, moving and scaling only move the strip, a mirrored body has the mirrore
 of the way further round shifts it: the network's answer does the same, to rounding.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -21,11 +21,11 @@ from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.resample.spline import between
-from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features, planes_of
+from meshonet.solvers.neural.quad.coarse_grids import Moves, answered, nearer
+from meshonet.solvers.neural.quad.encoding import LATENT, WINSLOW, planes_of
 from meshonet.solvers.neural.quad.inside import inside
 from meshonet.solvers.neural.quad.network import CHUNK, Network
-from meshonet.solvers.neural.quad.picard import AFTER, approach
-from meshonet.solvers.neural.quad.unrolled import AROUND, TURN, around_middles, even, factors, rolled
+from meshonet.solvers.neural.quad.unrolled import AROUND, around_middles, even, factors, rolled
 
 # problem and remedy, the same for numpy and torch
 NOT_ROUND = "its walls do not go once round a middle of the body", "use meshonet solve-pde for this shape"
@@ -46,25 +46,23 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
     base, factor = even(strips, LATENT), factors(strips)[:, None, None]
     for k in range(0, len(base), CHUNK):
         chunk = slice(k, k + CHUNK)
-        base[chunk] = answered(base[chunk], factor[chunk], head, partial(network, head=head), np)
+        base[chunk] = moved(base[chunk], factor[chunk], head, partial(network.moves, head=head), np)
     grids = rolled(base, centres[:, None, None])
     grids[:, :, [0, -1]] = walls
     return planes_of(grids)
 
 
-def answered(base: Any, factor: Any, head: int, network: Callable[[Any], Any], xp: Any) -> Any:
+def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
     """Return strips `base` (batch, m + 1, n) of even steps, moved as the network says and closed.
 
-    `factor`: (batch, 1, 1) to unit size; `network`: answers (batch, m, n) by what it sees; all of `xp`.
+    `factor`: (batch, 1, 1) to unit size; `network` as in `coarse_grids.answered`; all of `xp`.
     """
-    z = base * factor
-    near, step = approach(z, xp, around=True)
-    moved = near[:, :-1] + SCALE * network(features(near, step, xp, around=True))
+    strip = answered(base, (base * factor, 1.0 / factor), network, None, xp, around=True)
     if head == WINSLOW:
-        closed = xp.concatenate([moved, moved[:, :1] + factor * TURN], 1)
-        moved = approach(closed, xp, around=True, steps=AFTER, harmonic=False)[0][:, :-1]
-    strip = base[:, :-1] + (moved - z[:, :-1]) / factor
-    return xp.concatenate([strip, strip[:, :1]], 1)  # exp(-i strip) closes: a whole turn on is the same
+        strip = nearer(strip, (strip * factor, 1.0 / factor), xp, around=True)
+    return xp.concatenate(
+        [strip[:, :-1], strip[:, :1]], 1
+    )  # exp(-i strip) closes: a whole turn on is the same
 
 
 def _strips(boundaries: Sequence[Boundary]) -> tuple[Complexes, Complexes, Complexes, NDArray[np.bool_]]:
