@@ -24,7 +24,7 @@ def count_folded(x: Floats, y: Floats, threads: int = 1) -> int: ...
 def folded_cells(x: Floats, y: Floats) -> Whole: ...
 def measure_cells(
     x: Floats, y: Floats, periodic: bool, wake: int, summary: Floats, where: Whole, keep: int, kept: Floats,
-    brackets: Floats, counts: Whole, caught: Floats, threads: int = 1,
+    threads: int = 1,
 ) -> None: ...  # fmt: skip
 def curve_locate(
     s: Floats, table: Floats, start: Floats, stop: Floats, pieces: int, closed: bool, interval: Indices,
@@ -276,13 +276,11 @@ def solids_places(nodes: Floats, test: int, counts: Whole, places: Whole) -> Non
 def solids_volumes(nodes: Floats, threads: int, volumes: Floats) -> None: ...
 def solids_chunks(nodes: Floats) -> int: ...
 def solids_run(
-    nodes: Floats, volumes: Floats, summary: Floats, where: Whole, keep: int, kept: Floats, brackets: Floats,
-    counts: Whole, caught: Floats, held: Whole, threads: int,
+    nodes: Floats, volumes: Floats, summary: Floats, where: Whole, keep: int, kept: Floats, threads: int,
 ) -> None: ...  # fmt: skip
 def solids_lines(
     nodes: Floats, threads: int, summary: Floats, where: Whole, values: NDArray[np.float32] | None = None,
 ) -> None: ...  # fmt: skip
-def solids_rows(nodes: Floats, volumes: Floats, rows: Whole, values: Floats) -> None: ...
 
 # volumes
 def tfi_volume(
