@@ -17,8 +17,8 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner, corners_of, hex_mesh_of, with_nodes
-from meshonet.solvers.energy.hex_bricks import Targets
-from meshonet.solvers.energy.hexes import HexProblem, Slides, optimise, unfold
+from meshonet.solvers.energy.hex_tables import Targets
+from meshonet.solvers.energy.hexes import HexProblem, Slides, optimise
 from meshonet.solvers.smoothing.slide_planes import slides_of
 from meshonet.solvers.smoothing.volume_judge import VolumeMeasures, cells_below, measures
 from meshonet.solvers.smoothing.volume_layers import VolumeLayers, layers_of, with_first_heights, with_layers
@@ -106,7 +106,7 @@ def _with_fewer(
 ) -> tuple[HexMesh, VolumeMeasures]:
     """Return `start` unfolded, and its measures, where it has fewer folded cells than `mesh`; else that."""
     problem = HexProblem(start, moves, targets, slides)
-    unfold(problem)
+    problem.unfold(problem.smallest())
     tried = start.with_nodes(problem.result())
     now = measures(tried)
     return (tried, now) if now.folded < measured.folded else (mesh, measured)
