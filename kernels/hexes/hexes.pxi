@@ -80,11 +80,11 @@ cdef class HexDescent:
         for k in range(b):
             p = mesh.block[k].n
             if min(p[0], p[1], p[2]) < 4 or (mesh.block[k].places, mesh.block[k].cells, mesh.block[k].rows) != (at, c, r):
-                raise ValueError("blocks beyond their tables")
+                raise ValueError("starts of blocks beyond their tables")
             at, c = at + p[0] * p[1] * p[2], c + (p[0] - 3) * (p[1] - 3) * (p[2] - 3)
             r, mesh.widest = r + (p[0] - 2) * (p[1] - 2), max(mesh.widest, p[2])
         if (at, c, r) != (mesh.places, mesh.cells, len(busy)):
-            raise ValueError("blocks of other tables")
+            raise ValueError("starts of blocks of other tables")
         for k in range(at):
             if not -1 <= mesh.node[k] < n:
                 raise ValueError("places of other nodes")

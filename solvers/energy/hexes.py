@@ -50,6 +50,19 @@ class Slides:
         """Return those of a mesh none of whose nodes do."""
         return cls(np.empty(0, dtype=np.intp), np.empty((0, 3, 3)))
 
+    def among(self, nodes: Indices) -> Slides:
+        """Return those among `nodes` (m,), sorted numbers, by their places there."""
+        place = np.minimum(np.searchsorted(nodes, self.nodes), len(nodes) - 1)
+        some = nodes[place] == self.nodes
+        return Slides(place[some], self.projections[some])
+
+    def kept(self, before: Floats, after: Floats, moves: Bools) -> Floats:
+        """Return nodes (n, 3) `after` moves, of those that may move, and that slide exactly where they may be."""
+        nodes, at = after.copy(), self.nodes
+        nodes[at] = before[at] + (self.projections * (after[at] - before[at])[:, None]).sum(axis=2)
+        nodes[~moves] = before[~moves]
+        return nodes
+
 
 @dataclass(frozen=True, eq=False)
 class HexOptimum:
@@ -115,11 +128,7 @@ class HexProblem:
 
     def result(self) -> Floats:
         """Return the nodes (n, 3) where the descent is; those that slide exactly where they may be."""
-        nodes, before, at = self.nodes.copy(), self.mesh.nodes, self.slides.nodes
-        moved = (self.slides.projections * (nodes[at] - before[at])[:, None]).sum(axis=2)
-        nodes[at] = before[at] + moved
-        nodes[~self.moves] = before[~self.moves]
-        return nodes
+        return self.slides.kept(self.mesh.nodes, self.nodes, self.moves)
 
 
 def descent_of(

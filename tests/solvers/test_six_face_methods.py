@@ -117,9 +117,9 @@ def test_the_gradient_is_that_of_the_functional() -> None:
     for weights in ((0.9, 2e-3, 2), (0.3, 2e-3, 1), (0.02, 2e-3, 1, 0.3), (1.0, 0.0, 0)):
         gradient, spare = np.empty((3, 4 * 5 * 6)), np.empty((3, 4 * 5 * 6))
         value(planes, weights, gradient)
-        ends = [value(planes + h * step, weights, spare) for h in (1e-6, -1e-6)]
+        ends = [value(planes + h * step, weights, spare) for h in (1e-7, -1e-7)]
         slope = (gradient * step[inner].reshape(3, -1)).sum()
-        assert (ends[0] - ends[1]) / 2e-6 == pytest.approx(slope, rel=1e-6)
+        assert (ends[0] - ends[1]) / 2e-7 == pytest.approx(slope, rel=1e-6)
 
 
 def test_the_energy_of_shapes_is_the_inverse_mean_ratio() -> None:
