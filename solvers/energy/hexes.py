@@ -156,15 +156,16 @@ def _sizes(mesh: HexMesh, lengths: list[Floats]) -> Floats:
 
 def optimise(
     mesh: HexMesh, moves: Bools, targets: Targets, *, slides: Slides | None = None, iterations: int = 60,
-    tolerance: float = 1e-5,
+    tolerance: float = 1e-5, rounds: int = ROUNDS,
 ) -> HexOptimum:  # fmt: skip
     """Return the nodes of `mesh`, of which `moves` (n,) are free, where the functional is least.
 
     It ends after so many `iterations`, not counting those of unfolding, or when two in a row gain less than
-    `tolerance` of the value. Cells with no node that moves are left out.
+    `tolerance` of the value. Folded cells are unfolded first, in so many `rounds` at the most. Cells with no
+    node that moves are left out.
     """
     problem = HexProblem(mesh, moves, targets, slides)
-    low = problem.unfold(problem.smallest())
+    low = problem.unfold(problem.smallest(), rounds)
     if low <= 0.0:
         return HexOptimum(problem.result(), low, np.inf, problem.iterations)
     if low < NEARLY:

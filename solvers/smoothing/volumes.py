@@ -28,12 +28,13 @@ from meshonet.solvers.smoothing.volume_spacing import wanted_edges
 from meshonet.solvers.solution import Outcome, Solution, timed
 
 METHOD = "variational"
-ITERATIONS = 100  # of the optimum, at the most
+ITERATIONS = 40  # of the optimum, at the most
 TOLERANCE = 1e-5  # relative gain of the functional at which it ends before
 _AROUND = (2, 4)
 """Cells around folded ones that unfold with them, before all of them do."""
 _SOME = 0.02
 """Part of the cells that is folded up to which cells around these are moved before all are."""
+_FEW_ROUNDS = 5  # of unfolding, where layers at their heights folded what was valid
 _COARSE = 60  # iterations of the optimum of a coarser copy, at the most
 _ROUNDS, _GENTLE = 12, 5
 """Tries to go part of the way at the most, and those after which nodes of bad cells stay at once."""
@@ -104,7 +105,7 @@ def _unfolded(
         start = begin(mesh, moves, targets, slides)
         if start is mesh and begin is not _same:
             continue
-        wanted = targets if begin is _same else wanted_edges(start, moves)
+        wanted = wanted_edges(start, moves) if begin is _anew else targets
         fewer, now = _with_fewer(mesh, start, measured, moves, wanted, slides)
         if fewer is not mesh:
             mesh, measured, targets = fewer, now, wanted
@@ -201,7 +202,7 @@ def _optima(
         return
     for some in (layers, [each.only_first() for each in layers]) if layers else ():
         nodes, held = with_layers(optimum.nodes, some)
-        rest = towards(start.with_nodes(nodes), moves & ~held)
+        rest = towards(start.with_nodes(nodes), moves & ~held, rounds=_FEW_ROUNDS)
         if rest.valid:
             yield start.with_nodes(rest.nodes), True
     yield start.with_nodes(optimum.nodes), not layers
