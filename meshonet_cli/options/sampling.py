@@ -69,6 +69,11 @@ class SamplingOptions:
         help="Nodes of a C grid's wake, the trailing edge included; its cells grow by a constant ratio. "
         "[default: about a fifth of NI]",
     )] = None
+    base_nodes: Annotated[int | None, _option(
+        "--base-nodes", metavar="N",
+        help="Nodes of a blunt trailing edge's base, its corners included; odd in an O grid, which begins in "
+        "the middle of it. [default: by the cells beside it and its width]",
+    )] = None
     corners: Annotated[str, _option(
         "--corners", metavar="auto|I,J,K,L", show_default=True,
         help="Points of an outline, counted from 0, that become the corners of a four-sided grid, "

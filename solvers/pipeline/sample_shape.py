@@ -68,4 +68,7 @@ def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Samp
     wakes = [patch.stop - patch.start for patch in boundary.patches if patch.name == "wake"]
     made = boundary.topology == "c" and wakes and not isinstance(shape, Boundary)
     nodes = k * wakes[0] + 1 if made else sampling.wake_nodes
-    return replace(sampling, ni=k * (boundary.ni - 1) + 1, nj=k * (boundary.nj - 1) + 1, wake_nodes=nodes)
+    ni, nj = (k * (n - 1) + 1 for n in (boundary.ni, boundary.nj))
+    if isinstance(shape, Boundary):  # whose corners stay where they are, k times as far along
+        return replace(sampling, ni=ni, nj=nj)
+    return replace(sampling, ni=ni, nj=nj, wake_nodes=nodes, refined=k)
