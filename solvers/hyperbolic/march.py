@@ -34,6 +34,7 @@ from meshonet.solvers.hyperbolic.settings import (
     SHARP_ATTEMPTS,
     MarchSettings,
 )
+from meshonet.solvers.layers.limited import limit_growth
 from meshonet.solvers.solution import Solution, timed
 from meshonet.solvers.stages import filling
 
@@ -74,9 +75,30 @@ def hyperbolic(
     first = wall_spacing * boundary.chord
     front = Front(boundary)
     cells = _rows(boundary.nj - 1, first, front.outer - front.inner, growth, free_rows, constant)
+    nodes, asked = _unfolded(front, cells, first, growth, constant), cells
+    while growth and not limit_growth(nodes, growth, constant):
+        cells += 1 + (cells - asked) // 8
+        if cells > 2 * asked + 8:
+            raise InputError(
+                f"no number of rows keeps to a growth of {growth:g}", "allow more", parameter="growth"
+            )
+        nodes = _unfolded(front, cells, first, growth, constant)
+    if cells > asked and not free_rows:
+        raise InputError(
+            f"{asked + 1} rows of nodes cannot reach the far field on every line growing by {growth:g} each",
+            f"use {cells + 1} rows or more",
+        )
+    return _solution(boundary, nodes, first)
+
+
+def _unfolded(front: Front, cells: int, first: float, growth: float | None, constant: int) -> Floats:
+    """Return nodes (ni, cells + 1, 2) marched with the settings that fold the fewest cells.
+
+    Raises SolverError: no attempt gave finite nodes.
+    """
     best, least = None, math.inf
     closed = SHARP_ATTEMPTS if front.edge else ATTEMPTS
-    for settings in OPEN_ATTEMPTS if boundary.topology == "c" else closed:
+    for settings in closed if front.ends is None else OPEN_ATTEMPTS:
         nodes = _marched(front, cells, first, settings, constant, even=growth is None)
         folded = math.inf if nodes is None else count_folded(nodes)
         if folded < least:
@@ -85,7 +107,7 @@ def hyperbolic(
             break
     if best is None:
         raise SolverError("the march diverged from every start; use more nodes around the body or fewer rows")
-    return _solution(boundary, best, first)
+    return best
 
 
 def check_layers(wall_spacing: float, growth: float | None = None) -> None:
