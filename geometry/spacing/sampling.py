@@ -46,8 +46,8 @@ class Sampling:
         The points, counted from 0, that become the corners of a quad domain.
     te : {'auto', 'exact', 'round', 'wedge'}, optional
         Blunt trailing edges of airfoils as they are (``exact``), with their corners rounded (``round``) or
-        closed by a wedge behind them (``wedge``); ``auto`` is ``wedge`` for a C boundary, which needs a sharp
-        edge, and ``exact`` otherwise.
+        closed by a wedge behind them (``wedge``); ``auto`` is ``wedge`` for a C boundary of one block, which
+        needs a sharp edge, and ``exact`` otherwise: C grids with layers keep a base.
     wake : float, optional
         Length of a C boundary's wake in chords; None is as long as the far field is away.
     wake_nodes : int, optional

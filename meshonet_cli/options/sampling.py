@@ -52,7 +52,7 @@ class SamplingOptions:
         "--te", metavar="auto|exact|round|wedge", show_default=True,
         help="Blunt trailing edges: exact keeps them, round rounds their two corners (grid angles there "
         "then deviate from 90 degrees by at most 10, not 45), wedge closes them by a wedge up to four "
-        "base heights long. auto is wedge for a C grid, else exact.",
+        "base heights long. auto is exact, but wedge for a C grid without a first cell, which is one block.",
     )] = "auto"
     far_field: Annotated[float | None, _option(
         "--far-field", metavar="R",

@@ -14,6 +14,9 @@ from meshonet.geometry.quality.growth import ratios
 
 PASSES = 8
 """Times at most that nodes are moved: chords of a bent line are not what its arcs are, less so each time."""
+SPARE = 1.08
+"""How much longer than a line its cells must be able to be: with less, one is changed all along where its
+neighbour is not at all."""
 LEFT = 1e-6
 """Part of the growth above 1 that is left out, so that files whose numbers are rounded keep to it as well."""
 HALVINGS = 60  # of the interval of a line's factor
@@ -58,7 +61,7 @@ def _limited(steps: Floats, rate: float, constant: int, last: int) -> Floats | N
         weight = np.minimum(weight, np.maximum(count - last - k, 0.0) / count)
     plain, length = log(steps), steps.sum(axis=1)
     low, high = np.full(len(steps), -_MOST), np.full(len(steps), _MOST)
-    if (_capped(plain + _MOST * weight, k, rate).sum(axis=1) < length).any():
+    if (_capped(plain + _MOST * weight, k, rate).sum(axis=1) < SPARE * length).any():
         return None
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)

@@ -119,6 +119,27 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     return _on_inner_corners(arcs, stations, sampling.corner_steps(ni - 1))
 
 
+def arcs_to_corners(stations: Stations, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
+    """Return arc lengths (cells + 1,) from the lower corner of a base to the upper one, by curvature.
+
+    Cells at the corners are `first` long, unless `te_spacing` says otherwise, and grow by `ratio` at most.
+    """
+    from meshonet.geometry.spacing.size_field import arcs_by_curvature
+
+    plan = _natural(stations, WallCells(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
+    le = sampling.le_spacing * stations.chord if sampling.le_spacing else plan.le
+    te = sampling.te_spacing * stations.chord if sampling.te_spacing else first
+    return arcs_by_curvature(
+        stations.curve,
+        (stations.half_base, stations.nose, stations.upper),
+        cells,
+        chord=stations.chord,
+        steps=(te, le),
+        exact=(True, sampling.le_spacing is not None),
+        at_edge=math.log(ratio),
+    )
+
+
 def _on_inner_corners(arcs: Floats, stations: Stations, steps: tuple[int, ...]) -> Floats:
     """Return the arcs with the corners of the two sides on nodes, if possible multiples of the first step.
 
