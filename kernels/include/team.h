@@ -112,3 +112,13 @@ static inline void team_share(ptrdiff_t count, Member member, ptrdiff_t *first, 
     *first = count * member.rank / member.size;
     *last = count * (member.rank + 1) / member.size;
 }
+
+/* NAME: what a team does to a T, ROWS(task, first, last) by each member for its share of COUNT things. */
+#define TEAM_ROWS(NAME, T, COUNT, ROWS)                \
+    static void NAME(void *data, Member member)        \
+    {                                                  \
+        const T *task = data;                          \
+        ptrdiff_t first, last;                         \
+        team_share(COUNT, member, &first, &last);      \
+        ROWS(task, first, last);                       \
+    }

@@ -35,8 +35,8 @@ towards = [0, 1, 0]
 GRIDS = {
     "wing": "stack wing.toml --around 65 --span 25",
     "blade": "stack blade.toml --around 65 --span 13",
-    "pipe": "sweep circle:0.5 bend.toml --cells 300 --first-cell 0.01",
-    "ring": "sweep circle:0.5 ring.csv --cells 100",
+    "pipe": "sweep circle:0.5 bend.toml --around 40 --first-cell 0.01",
+    "ring": "sweep circle:0.5 ring.csv --around 32",
 }
 PATCHES = {
     "wing": {"wing": "wall", "tip": "wall", "symmetry": "symmetryPlane", "farfield": "patch"},
