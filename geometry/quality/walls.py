@@ -103,7 +103,7 @@ def _wall_part(grid: Grid, patch: Patch) -> _WallPart:
 
 
 def _off_normal(wall: Floats, away: Floats) -> list[Floats]:
-    """Return how far edges (n, m, 3) that leave a wall of a volume are off its normals at corners of cells."""
+    """Return how far edges (n, m, 3) off a wall of a volume are from the normals at its cells' corners."""
     along, across = np.diff(wall, axis=0), np.diff(wall, axis=1)
     off = []
     for a in (0, 1):
