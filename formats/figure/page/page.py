@@ -65,7 +65,7 @@ def page_text(name: str, scene: Scene, start: dict[str, Any]) -> str:
     facts = scene.facts | {"name": name, "start": start, "colours": colours}
     body = _BODY.format(
         body=own_file("body.html"),
-        facts=json.dumps(facts, separators=(",", ":")).replace("</", "<\\/"),
+        facts=json.dumps(facts, separators=(",", ":")).replace("<", "\\u003c"),
         numbers="\n".join(_data(key, value) for key, value in scene.numbers.items()),
         program="\n".join(own_file(part) for part in _PROGRAM),
     )
