@@ -81,7 +81,10 @@ def draw(
         each = sorted({step for pair in steps for step in pair})
         note(ax, _drawn_lines(*steps[0]) if len(steps) == 1 and len(each) > 1 else step_words(each))
     if bar is not None and mesh is not None and colouring:
-        colour_bar(bar, mesh, colouring.label, _beyond(colouring, limits))
+        below = any(bool((values < limits[0]).any()) for values in colouring.parts)
+        above = any(bool((values > limits[1]).any()) for values in colouring.parts)
+        ends = ("neither", "min", "max", "both")[below + 2 * above]  # in matplotlib's words
+        colour_bar(bar, mesh, colouring.label, ends)
     name = grid.name if len(grid.name) <= _NAME else grid.name[: _NAME - 1] + "…"
     size = shown_counts(grid) if grid.topology == "blocks" else f"{grid.ni} × {grid.nj} nodes"
     title = f"{name}   {size}".strip()
@@ -136,13 +139,6 @@ def colour_bar(bar: Axes, colours: ScalarMappable, label: str, extend: str = "ne
     """Draw the scale of colours."""
     bar.figure.colorbar(colours, cax=bar, extend=extend).set_label(label, color=INK, size=9)
     bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
-
-
-def _beyond(colouring: Colouring, limits: tuple[float, float]) -> str:
-    """Return at which ends values lie beyond the colour bar, in matplotlib's words."""
-    below = any(bool((values < limits[0]).any()) for values in colouring.parts)
-    above = any(bool((values > limits[1]).any()) for values in colouring.parts)
-    return ("neither", "min", "max", "both")[below + 2 * above]
 
 
 def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | None]:
