@@ -24,7 +24,7 @@ def count_folded(x: Floats, y: Floats, threads: int = 1) -> int: ...
 def folded_cells(x: Floats, y: Floats) -> Whole: ...
 def measure_cells(
     x: Floats, y: Floats, periodic: bool, wake: int, summary: Floats, where: Whole, keep: int, kept: Floats,
-    brackets: Floats, counts: Whole, caught: Floats, threads: int = 1,
+    threads: int = 1,
 ) -> None: ...  # fmt: skip
 def curve_locate(
     s: Floats, table: Floats, start: Floats, stop: Floats, pieces: int, closed: bool, interval: Indices,
@@ -249,17 +249,19 @@ class DelaunayMesh:
     def triangles(self) -> tuple[Indices, Indices, Indices]: ...
 
 # hexes
-BRICK: tuple[int, int, int]
-
 class HexDescent:
     def __init__(
-        self, nodes: Floats, bricks: Whole, lattices: NDArray[np.int32], moves: NDArray[np.bool_],
-        inverse: Floats, targets: NDArray[np.float32],
+        self, nodes: Floats, blocks: Whole,
+        tables: tuple[NDArray[np.int32], NDArray[np.float32], Floats, NDArray[np.uint8], NDArray[np.bool_]],
         places: tuple[Indices, Indices, NDArray[np.int32], Floats], slides: tuple[Indices, Floats],
-        cells: float, threads: int,
+        cells: float, threads: int, over: tuple[float, float, float] | None = None,
     ) -> None: ...  # fmt: skip
-    def weigh(self, shape: float, smoothness: float, epsilon: float = 0.0, size: float = 0.0) -> None: ...
-    def run(self, gain: float, most: int, renewal: int) -> tuple[float, float, int]: ...
+    def weigh(
+        self, shape: float, smoothness: float, power: int = 2, epsilon: float = 0.0, size: float = 0.0
+    ) -> None: ...  # fmt: skip
+    def run(
+        self, gain: float, most: int, renewal: int, still: float = ..., reach: float = ..., farthest: float = ...
+    ) -> tuple[float, float, int]: ...  # fmt: skip
     def evaluate(self, gradient: Floats) -> tuple[float, float]: ...
 
 # surfaces
@@ -276,35 +278,20 @@ def solids_places(nodes: Floats, test: int, counts: Whole, places: Whole) -> Non
 def solids_volumes(nodes: Floats, threads: int, volumes: Floats) -> None: ...
 def solids_chunks(nodes: Floats) -> int: ...
 def solids_run(
-    nodes: Floats, volumes: Floats, summary: Floats, where: Whole, keep: int, kept: Floats, brackets: Floats,
-    counts: Whole, caught: Floats, held: Whole, threads: int,
+    nodes: Floats, volumes: Floats, summary: Floats, where: Whole, keep: int, kept: Floats, threads: int,
 ) -> None: ...  # fmt: skip
 def solids_lines(
     nodes: Floats, threads: int, summary: Floats, where: Whole, values: NDArray[np.float32] | None = None,
 ) -> None: ...  # fmt: skip
-def solids_rows(nodes: Floats, volumes: Floats, rows: Whole, values: Floats) -> None: ...
 
 # volumes
 def tfi_volume(
     nodes: Floats, faces: tuple[Floats, ...], laws: tuple[Floats, Floats, Floats], threads: int,
     spline: tuple[Floats, tuple[Indices, ...], tuple[Floats, ...]] | None = None,
 ) -> None: ...  # fmt: skip
-def volume_energy(
-    x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
-    threads: int, gradient: Floats,
-) -> tuple[float, float]: ...  # fmt: skip
 def closed_node(
     walls: tuple[tuple[Floats, int, int], ...], ranges: tuple[tuple[int, int], ...], threads: int
 ) -> int: ...
-def volume_jacobians(x: Floats, over: tuple[float, float, float], threads: int, least: Floats) -> None: ...
-
-class VolumeDescent:
-    def __init__(self, counts: tuple[int, ...], threads: int) -> None: ...
-    def run(
-        self, x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
-        most: int, renew: int, still: float, reach: float, gain: float,
-    ) -> tuple[float, float, int]: ...  # fmt: skip
-
 def winslow_room(counts: tuple[int, ...], threads: int) -> int: ...
 def winslow_smooth(x: Floats, right: Floats | None, factor: float, threads: int, room: Floats) -> None: ...
 def winslow_residual(

@@ -15,7 +15,6 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch, kind_of
-from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.shared_sides import Line, connection_of, key_of, shared, shared_in_part
 from meshonet.geometry.polygon.corners import Indices
@@ -30,7 +29,11 @@ def to_grid(layout: Layout, name: str = "") -> Grid:
     """
     domain = layout.mesh.domain
     nodes = _with_partners(layout)
-    lines = [(b, side, line) for b, block in enumerate(layout.blocks) for side, line in _sides(block)]
+    lines = [
+        (number, side, line)
+        for number, block in enumerate(layout.blocks)
+        for side, line in zip(_SIDES, (block[:, 0], block[:, -1], block[0], block[-1]), strict=True)
+    ]
     connections, open_lines = shared(lines)
     periodic, alone = _periodic(layout, open_lines)
     partly, walls = shared_in_part(alone)
@@ -49,10 +52,6 @@ def to_grid(layout: Layout, name: str = "") -> Grid:
         ]
     blocks = tuple(Block(nodes[block]) for block in layout.blocks)
     return Grid(blocks, tuple(patches), tuple(connections), name or domain.name)
-
-
-def _sides(block: Indices) -> list[tuple[Side, Indices]]:
-    return list(zip(_SIDES, (block[:, 0], block[:, -1], block[0], block[-1]), strict=True))
 
 
 def _with_partners(layout: Layout) -> Floats:
@@ -85,8 +84,10 @@ def _patches(layout: Layout, line: Line, start: int) -> list[Patch]:
     """Return the patches of a wall from node `start` of a side on, cut where its name changes."""
     block, side, nodes = line
     places, domain = layout.mesh.places, layout.mesh.domain
-    number = int(places.loop[nodes[0]])
-    names = _names(domain, number, places.arc[nodes])
+    number, arcs = int(places.loop[nodes[0]]), places.arc[nodes]
+    loop = domain.loops[number]
+    step = np.mod(np.diff(arcs) + 0.5 * loop.length, loop.length) - 0.5 * loop.length
+    names = [loop.name_at(float(arc)) for arc in arcs[:-1] + 0.5 * step]
     patches = []
     for name, cells in groupby(names):
         stop = start + len(list(cells))
@@ -95,10 +96,3 @@ def _patches(layout: Layout, line: Line, start: int) -> list[Patch]:
         patches.append(Patch(name, side, start, stop, block=block, kind=kind))
         start = stop
     return patches
-
-
-def _names(domain: Domain, number: int, arcs: Floats) -> list[str]:
-    """Return the name of the wall along each cell between arc lengths (n,)."""
-    loop = domain.loops[number]
-    step = np.mod(np.diff(arcs) + 0.5 * loop.length, loop.length) - 0.5 * loop.length
-    return [loop.name_at(float(arc)) for arc in arcs[:-1] + 0.5 * step]
