@@ -6,7 +6,7 @@ import pytest
 from meshonet.geometry.arrays import Floats
 from meshonet.kernels._native import resample
 from meshonet.solvers.algebraic.resample import corner_damping as acute
-from meshonet.solvers.algebraic.resample.edge_blending import REACH, inwards
+from meshonet.solvers.algebraic.resample.quad import REACH
 from meshonet.solvers.algebraic.resample.spline import bending, places
 from meshonet.solvers.algebraic.tfi import interpolate, parameters
 from meshonet.solvers.neural.quad.coarse_grids import rims, thinned, transfinite
@@ -33,6 +33,13 @@ def matrices(m: int, count: int) -> tuple[Floats, Floats]:
     return 1.0 - off, -off * (1.0 - off) * (2.0 - off) / 6.0
 
 
+def shares_of(coarse: Floats) -> list[Floats]:
+    torch = pytest.importorskip("torch")
+    from meshonet.solvers.neural.differentiable.resample import inwards
+
+    return [share.numpy() for share in inwards(torch.from_numpy(np.ascontiguousarray(coarse)))]
+
+
 @pytest.mark.parametrize(
     ("m", "n", "ni", "nj"),
     [(33, 33, 65, 65), (9, 12, 40, 23), (5, 4, 17, 8), (3, 2, 7, 6), (2, 3, 2, 9), (33, 21, 12, 33)],
@@ -55,7 +62,7 @@ def test_it_is_the_sum_of_matrices(m: int, n: int, ni: int, nj: int, straightene
     values = coarse @ line.T + (left * (coarse @ across)) @ curve.T
     bends = (left * (along @ coarse)) @ line.T + (left * (along @ coarse @ across)) @ curve.T
     expected = low @ values + high @ bends
-    south, north, west, east = ((low @ one @ line.T)[:, None] for one in inwards(coarse, np))
+    south, north, west, east = ((low @ one @ line.T)[:, None] for one in shares_of(coarse))
     missed = [side - own for side, own in zip(sides[2:], rims(expected)[2:], strict=True)]
     expected += west * missed[0][:, :, None] + east * missed[1][:, :, None]
     missed = [side - own for side, own in zip(sides[:2], rims(expected)[:2], strict=True)]
