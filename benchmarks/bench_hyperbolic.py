@@ -74,27 +74,30 @@ sharp trailing edge therefore get a C grid unless `--topology` is given.
 CONSTRUCT2D = """
 ## Compared with Construct2D
 
-The same figures for Construct2D's hyperbolic grids: 250x100, first cell 1e-5, all corners of all cells.
-Construct2D rounds blunt trailing edges, so its O grids compare with ours with the edge rounded.
+The same metrics for the hyperbolic grids of Construct2D: 250x100 nodes, first-cell height 1e-5, all
+corners of all cells. Construct2D rounds blunt trailing edges; its O grids are therefore compared with
+meshonet's grids with rounded edges.
 
-| grid | deviation, max / mean | ours |
+| grid | deviation of Construct2D, max / mean | deviation of meshonet, max / mean |
 | --- | --- | --- |
 | O, NACA 0012, blunt | 18.7 / 3.5 | {0} |
 | O, LS(1)-0417, blunt | 24.8 / 3.3 | see the blunt, rounded files |
 | C, NACA 0012, sharp | 14.2 / 1.8 | {1} |
 
-Construct2D's growth is 0.10 to 0.18 along the wall and 0.13 away from it. Its first cell is exact. It takes
-150 to 270 ms at 250x100 and 1.24 s at 500x200.
+For Construct2D the growth is 0.10 to 0.18 along the wall and 0.13 away from it. The first-cell height is
+exact. Construct2D takes 150 to 270 ms at 250x100 nodes and 1.24 s at 500x200.
 
-The walls of the procedural airfoils are spaced by every law. In some of them neighbouring cells differ by a
-factor of three, and cells at the trailing edge are hardly longer than high.
+The walls of the procedural airfoils use every type of node distribution. In some of them adjacent cells
+differ in length by a factor of three, and cells at the trailing edge are hardly longer than they are
+high.
 """
 DEFAULT_FIRST_CELL = """
-## C grids without a first cell
+## C grids without a prescribed first-cell height
 
-`--topology c` without `--first-cell`. *marched* (`--method auto`) uses a first cell of one twentieth of the
-smallest cell along the wall, or a higher one where rows are few. *variational* is `--method variational`.
-*first cells*: lowest and highest first cell at the wall, in chords. Other columns as above.
+These C grids were generated with `--topology c` and without `--first-cell`. *marched* (`--method auto`)
+uses a first-cell height of one twentieth of the smallest cell along the wall, or a larger one if there
+are few rows. *variational* is `--method variational`. *first cells*: smallest and largest first-cell
+height in chords. The other columns are as above.
 
 """
 SQUARE = (100, 200, 400)
