@@ -58,7 +58,7 @@ the span. The far field is at 15 chords, or at 12 in the first row.
 - *valid*: grids without a folded cell, tested by the Jacobians at the eight corners of every cell and by
   the Bezier coefficients of the Jacobian. The other grids end in an error that names the place.
 - *first cell error*: largest relative error of the first-cell height over all wall nodes.
-- *minimum scaled Jacobian* (*SJ*), *largest angle* (of cell faces, in degrees): median / worst over the grids.
+- *minimum scaled Jacobian* (*SJ*), *largest angle* (of cell faces, degrees): median / worst over the grids.
 - *CPU s*: CPU time from the sections to the grid and its quality report, median / maximum, one thread of
   {machine}, while other programs used the machine.
 
