@@ -92,7 +92,7 @@ differ in length by a factor of three, and cells at the trailing edge are hardly
 high.
 """
 DEFAULT_FIRST_CELL = """
-## C grids without a prescribed first-cell height
+## C grids without a first cell
 
 These C grids were generated with `--topology c` and without `--first-cell`. *marched* (`--method auto`)
 uses a first-cell height of one twentieth of the smallest cell along the wall, or a larger one if there
