@@ -75,7 +75,7 @@ def grid_of_body(boundary: Boundary, why: str) -> Solution | None:
 
 
 def _without_network(boundary: Boundary) -> Solution:
-    """Return the grid of a boundary unsuited to networks, by the conformal or the variational (quad) solver."""
+    """Return the grid of a boundary unsuited to networks: by the conformal solver, for a quad variational."""
     if boundary.topology == "o":
         return conformal.solve([boundary], substitute=grid_of_body)[0]
     from meshonet.solvers.energy.variational import solve

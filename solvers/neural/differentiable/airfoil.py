@@ -70,7 +70,7 @@ class AirfoilGrids:
 
 
 class _Correction:
-    """`StripOperator.residual` in torch: modes of Winslow - harmonic for modes of the walls (batch, modes)."""
+    """`StripOperator.residual` in torch: modes of Winslow - harmonic from modes of walls (batch, modes)."""
 
     def __init__(self, operator: StripOperator, device: str) -> None:
         weights = {name: torch.tensor(array, device=device) for name, array in operator.weights.items()}

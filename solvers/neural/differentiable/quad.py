@@ -46,7 +46,7 @@ class QuadGrids(NetworkGrids):
 
 
 def _shares(near: Tensor, by: Tensor) -> Tensor:
-    """Return fractions (batch, 1, 1) of the displacements `by` to apply to grids `near`, without gradients."""
+    """Return fractions (batch, 1, 1) of displacements `by` to apply to grids `near`, without gradients."""
     start, answer = near.detach(), (near + by).detach()
     where = folded(as_planes(answer)).nonzero()[:, 0]
     parts = [share(*pair) for pair in zip(as_numpy(start[where]), as_numpy(answer[where]), strict=True)]
