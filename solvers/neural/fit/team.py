@@ -13,7 +13,7 @@ from meshonet.solvers.neural.fit.plan import Device
 
 @dataclass(frozen=True)
 class Team:
-    """This process among those that train one model together."""
+    """One of the processes that train a model together."""
 
     device: torch.device  # of this process
     rank: int = 0  # index of this process, and number of processes
