@@ -24,7 +24,7 @@ from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
 _OPENING = 5.0
 _NEAR = 0.3
-"""First cells at a wake, x chords behind the edge, are 1 + `_OPENING` x²/(x + `_NEAR`) times those of the wall."""
+"""First cells at x chords behind the edge are 1 + `_OPENING` x²/(x + `_NEAR`) times those of the wall."""
 
 _CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.016
 """How levels differ from those around a circle, measured on airfoils, where it leaves 1 %. Around slender

@@ -93,7 +93,7 @@ class Smoothing(NamedTuple):
     """Of free edges, and where other than four faces meet (`meshonet.solvers.hyperbolic.volume.graph`)."""
 
     def numbers(self, size: float) -> tuple[float, ...]:
-        """Return the parameters as kernels take them, with the `size` of the surface."""
+        """Return the parameters as kernels take them, with half the extent (`size`) of the surface."""
         return (*self[:4], size, *self[4:11])
 
 
