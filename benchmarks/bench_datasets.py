@@ -28,6 +28,7 @@ from page import arguments, publish
 from meshonet.formats.hdf5.parts import PartFiles
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.families.draw import draws
+from meshonet_cli.batch.drawn import DrawnInputs
 from meshonet_cli.batch.item import Item, Pair
 from meshonet_cli.batch.parts import (
     PartDone,
@@ -37,7 +38,6 @@ from meshonet_cli.batch.parts import (
     one_after_the_other,
     parts_of,
 )
-from meshonet_cli.batch.sources import DrawnInputs
 from meshonet_cli.report.timed import delivered
 from meshonet_cli.tasks.boundaries import itself
 from meshonet_cli.terminal.session import Session

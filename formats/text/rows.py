@@ -7,6 +7,7 @@ separate columns.
 
 import re
 from functools import lru_cache
+from itertools import count
 from typing import Literal, NamedTuple
 
 from meshonet.formats.source import LARGEST
@@ -101,7 +102,7 @@ def _lines(text: str) -> tuple[Line, ...]:
     if len(texts) > MOST_LINES:
         problem = f"{len(texts)} lines are too many for a file of points"
         raise InputError(problem, f"give at most {MOST_LINES}")
-    return tuple(_line(number, line) for number, line in enumerate(texts, start=1))
+    return tuple(map(_line, count(1), texts))
 
 
 def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
@@ -110,9 +111,11 @@ def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
         lines = read_lines(decode(head))
     except InputError:
         return False
-    rows = [line for line in lines if line.kind == "row"]
-    fitting = sum(len(line.values) in counts for line in rows)
-    return fitting >= least and fitting >= 0.8 * len(rows)
+    rows = fitting = 0
+    for line in lines:
+        rows += line.kind == "row"
+        fitting += line.kind == "row" and len(line.values) in counts
+    return fitting >= least and fitting >= 0.8 * rows
 
 
 def table(lines: list[Line]) -> list[list[Line]]:

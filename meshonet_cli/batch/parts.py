@@ -11,9 +11,10 @@ from meshonet.formats.hdf5.parts import Failed, OtherPartsError, PartFiles, Stat
 from meshonet.formats.inputs import Inputs
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet_cli.batch.destination import same_size
+from meshonet_cli.batch.drawn import DrawnInputs
 from meshonet_cli.batch.input_digests import digests_of
-from meshonet_cli.batch.item import Item, Make, Unreadable, made
-from meshonet_cli.batch.sources import DrawnInputs, records
+from meshonet_cli.batch.item import Item, Make, made
+from meshonet_cli.batch.sources import records
 from meshonet_cli.terminal.errors import explained
 
 if TYPE_CHECKING:
@@ -100,8 +101,8 @@ class PartMaker:
 
         def readable() -> Iterator[Item[Any]]:
             for item in records(part.inputs, self.read):
-                if isinstance(item.what, Unreadable):
-                    fail(item, item.what.error)
+                if isinstance(item.what, Exception):
+                    fail(item, item.what)
                 else:
                     yield item
 
@@ -144,7 +145,7 @@ def deliver_parts(
     not to be skipped.
     """
     files.check(skip_existing=skip_existing)
-    session.batch = True
+    session.batch, session.dataset = True, str(files.index)
     last = -1
     for part, done in outcomes:
         last = part.number

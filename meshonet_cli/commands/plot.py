@@ -19,7 +19,7 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 
 # fmt: off
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PictureFiles(o.SectionFiles):
     """Files of pictures."""
 
@@ -35,12 +35,10 @@ class PictureFiles(o.SectionFiles):
     )] = None
 
 
-@o.expanded
 def plot(
     grid: o.Grids,
     files: PictureFiles,
-    many: o.InputOptions,
-    printing: o.PrintOptions,
+    run: o.InputOptions,
     metric: Annotated[str, _option(
         "--metric", metavar="METRIC", show_default=True,
         help="Colour the cells by this metric; none draws lines only.",
@@ -67,5 +65,5 @@ def plot(
 
     box, direction = o.numbers(zoom, (4, 6), *_BOX), o.numbers(seen_from, (2,), *_DIRECTION)
     picture = Picture(None if metric == "none" else metric, box, every, slice_, direction)
-    return plot_grids(printing.batch(many.of(grid, grids=True), files), picture)
+    return plot_grids(run.batch(run.inputs(grid, grids=True), files), picture)
 # fmt: on

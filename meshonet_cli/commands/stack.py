@@ -16,7 +16,6 @@ _layer = o.option_of(o.BOUNDARY_LAYER)
 
 
 # fmt: off
-@o.expanded
 def stack(
     sections: Annotated[list[str], typer.Argument(
         metavar="SECTIONS.toml", show_default=False,
@@ -24,10 +23,8 @@ def stack(
         "and twist, or sweep and dihedral; or - for standard input.",
     )],
     files: o.VolumeFiles,
-    many: o.InputOptions,
-    printing: o.PrintOptions,
+    run: o.RunOptions,
     gates: o.GateOptions,
-    workers: o.EngineOptions,
     around: Annotated[int | None, _sampling(
         "--around", metavar="N", help="Nodes around a section, an odd number. [default: 129]",
     )] = None,
@@ -76,7 +73,7 @@ def stack(
     }
     parameters = {name: value for name, value in chosen.items() if value is not None}
     return write_stacks(
-        printing.batch(many.of(sections, suffixes=(".toml",)), files, workers),
+        run.batch(run.inputs(sections, suffixes=(".toml",)), files),
         parameters | {"allow_invalid": allow_invalid}, gates.criteria(), tip=tip, surface=surface,
     )
 # fmt: on

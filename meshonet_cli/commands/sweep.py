@@ -15,17 +15,14 @@ _sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
 
 
 # fmt: off
-@o.expanded
 def sweep(
     names: Annotated[list[str], typer.Argument(
         metavar="OUTLINE... PATH", show_default=False,
         help="Cross-sections: circle:RADIUS, or a file with a closed curve, a domain, a layout or a planar "
         "grid. Then the path of all: a file of points x y z, one a line, or lines and arcs in TOML.",
     )],
-    many: o.InputOptions,
-    printing: o.PrintOptions,
+    run: o.RunOptions,
     gates: o.GateOptions,
-    workers: o.EngineOptions,
     files: o.SectionFiles,
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ", help="Nodes along the sides of a four-sided section. [default: 65x33]",
@@ -87,6 +84,6 @@ def sweep(
         "allow_invalid": allow_invalid, "threads": threads,
     }
     direction = o.numbers(up, (3,), "a direction", "use X,Y,Z, e.g. 0,0,1", "up")
-    batch = printing.batch(many.of(outlines), files, workers)
+    batch = run.batch(run.inputs(outlines), files)
     return write_sweeps(batch, path, section, Sweep(planes, direction, twist, scale), gates.criteria())
 # fmt: on

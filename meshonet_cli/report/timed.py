@@ -64,16 +64,15 @@ class Timed:
         return self.lines()
 
     def finished(self, path: str | None) -> None:
-        """Note where the result is and add the stages up."""
+        """Note where the result is and add the stages up, in the order of `STAGES`, others behind them."""
         self.output = path
-        known = [stage for stage in STAGES if stage in self.seconds]
-        others = [stage for stage in self.seconds if stage not in STAGES]
-        self.seconds = {stage: self.seconds[stage] for stage in known + others}
+        in_order = sorted(self.seconds, key=(*STAGES, *self.seconds).index)
+        self.seconds = {stage: self.seconds[stage] for stage in in_order}
         self.seconds["total"] = sum(self.seconds.values())
 
     def member_json(self) -> dict[str, Any]:
         """Return for JSON which member this is, and where its result."""
-        return {"input": self.item.source, "name": self.item.what.name, "output": self.output}
+        return {"input": self.item.source, "name": self.item.name, "output": self.output}
 
     def times(self) -> str:
         """Return the stages for people."""

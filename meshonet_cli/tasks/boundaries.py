@@ -13,9 +13,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.draw import Draw
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet_cli.batch.drawn import DrawnInputs
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
-from meshonet_cli.batch.sources import DrawnInputs
 from meshonet_cli.report.timed import Delivered, delivered, part_names
 
 EDGE_NODES = 1000

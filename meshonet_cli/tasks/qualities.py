@@ -47,7 +47,7 @@ def measure_grids(
     for item in members_of(inputs, partial(read_grids, fmt=fmt), session):
         with session.member(item.label, item.source):
             begun = time.perf_counter()
-            reference = references.match(item.what.name) if references else None
+            reference = references.match(item.name) if references else None
             paired = time.perf_counter()
             reached("quality")
             report = quality(item.what, profile=criteria.profiles, compare=reference)

@@ -11,36 +11,24 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet.geometry.notes import advice_in, changes_in
 from meshonet_cli.terminal.errors import explained, with_options
-from meshonet_cli.terminal.stage_line import StageLine
 from meshonet_cli.terminal.stopping import check
-from meshonet_cli.terminal.text import bar
+from meshonet_cli.terminal.text import bar, quoted
 
 if TYPE_CHECKING:
     from meshonet_cli.report.timed import Timed
-    from meshonet_cli.terminal.summary import MemberRow
+    from meshonet_cli.terminal.stage_line import StageLine
+    from meshonet_cli.terminal.summary import BatchSummary, MemberRow
 
 GATE_NOT_MET = 1
 """Exit code where a gate is broken."""
 SAME_ERRORS = 3
 """How many inputs are named that end in the same error; the others are counted."""
-
-
-class Printed(Protocol):
-    """A report of something that is done."""
-
-    def as_json(self) -> Mapping[str, Any]:
-        """Return what ``--json`` prints."""
-        ...
-
-    def lines(self) -> str:
-        """Return it in full."""
-        ...
 
 
 class Session:
@@ -57,14 +45,16 @@ class Session:
         self.batch = False
         self.summary = False
         """Whether a table of all members is the result."""
+        self.dataset = ""
+        """The one file that all members go into."""
         self.rows: list[MemberRow] = []
         self._stdout_is_taken = False
         self._errors: Counter[str] = Counter()
         self.members = self.done = self.failed = self.skipped = self.beyond = self.changed = 0
         self._advice: dict[str, None] = {}  # what is told once, at the end of a batch
         self._begun = time.perf_counter()
-        self._bar = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
-        self._bar_shown = False
+        self.live = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+        self._shown = False
         self._text = ""  # of what goes on
         self._line: StageLine | None = None
         self._writing = threading.RLock()  # the line is drawn by a thread
@@ -129,13 +119,13 @@ class Session:
         if row := report.row():
             self.judge(row)
 
-    def show(self, report: Printed) -> None:
+    def show(self, report: Timed) -> None:
         """Print a report that is itself the result: on standard output, in full, unless quiet."""
         self.done += 1
         if self.as_json or not self.quiet:
             self.conclude(report)
 
-    def conclude(self, total: Printed) -> None:
+    def conclude(self, total: Timed | BatchSummary) -> None:
         """Print the report of all members together: on standard output, even when quiet."""
         if self.as_json:
             self.result(total.as_json())
@@ -155,7 +145,7 @@ class Session:
         """Print on standard output."""
         with self._writing:
             self._clear()
-            print(text, flush=True)  # noqa: T201
+            print(quoted(text), flush=True)  # noqa: T201
 
     def check_output(self, output: str) -> None:
         """Raise InputError when results and JSON would share standard output."""
@@ -165,14 +155,9 @@ class Session:
                 "--json and -o - both want standard output", "write the result to a file", source="-o"
             )
 
-    @property
-    def live(self) -> bool:
-        """Whether progress is shown: on a terminal that can, unless quiet."""
-        return self._bar
-
     def status(self, text: str) -> None:
         """Show on a terminal what is going on, in place of what was shown before."""
-        if self._bar:
+        if self.live:
             self._text = text
             if self._line:
                 self._line.detail = text
@@ -184,7 +169,9 @@ class Session:
         Not with JSON; nor where standard output is a pipe, whose reader may have a line of its own.
         """
         leads = os.environ.get("RANK", "0") == "0"  # of several processes under torchrun
-        if self._bar and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):
+        if self.live and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):
+            from meshonet_cli.terminal.stage_line import StageLine
+
             self._line = StageLine(self._draw, self._clear)
 
     def begin(self, name: str, count: int | None = None) -> None:
@@ -204,7 +191,7 @@ class Session:
     def progress(self, done: int, count: int, text: str) -> bool:
         """Show on a terminal how far one long task is; return whether there is a terminal."""
         self.status(f"{bar(done, count)} {text}")
-        return self._bar
+        return self.live
 
     def skip(self, name: str, path: str, remark: str = "") -> None:
         """Report a member whose result is there already."""
@@ -226,7 +213,8 @@ class Session:
             gates = f" ({self.beyond} of them beyond a gate)" if self.beyond else ""
             parts = [f"{self.done} done{gates}", f"{self.skipped} there already" if self.skipped else "",
                      f"{self.failed} failed" if self.failed else ""]  # fmt: skip
-            self._write(", ".join(part for part in parts if part) + f" in {spent:.2f} s")
+            left_out = f" and not in {self.dataset}" if self.failed and self.done and self.dataset else ""
+            self._write(", ".join(filter(None, parts)) + left_out + f" in {spent:.2f} s")
             if self.changed:
                 changed = "1 shape was" if self.changed == 1 else f"{self.changed} shapes were"
                 self._write(f"{changed} changed, as is said below the line of the grid")
@@ -246,7 +234,7 @@ class Session:
     def _write(self, text: str) -> None:
         with self._writing:
             self._clear()
-            print(text, file=sys.stderr)  # noqa: T201
+            print(quoted(text), file=sys.stderr)  # noqa: T201
 
     def _draw(self) -> None:
         with self._writing:
@@ -255,7 +243,7 @@ class Session:
             width = (os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1
             sys.stderr.write(printable(text)[:width])
             sys.stderr.flush()
-            self._bar_shown = True
+            self._shown = True
 
     def _unwatch(self) -> None:
         if self._line:
@@ -263,10 +251,10 @@ class Session:
             self._line = None
 
     def _clear(self) -> None:
-        if self._bar_shown:
+        if self._shown:
             sys.stderr.write("\r\x1b[2K")
             sys.stderr.flush()
-            self._bar_shown = False
+            self._shown = False
 
 
 def _is_pipe(descriptor: int) -> bool:

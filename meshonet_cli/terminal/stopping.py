@@ -6,7 +6,10 @@ batch, raises what was dropped.
 
 import signal
 from types import FrameType
-from typing import NoReturn
+from typing import Any, NoReturn
+
+LINES: list[Any] = []
+"""Lines on the terminal that are drawn by threads, to be stopped when the program ends, however it does."""
 
 _asked: list[BaseException] = []
 

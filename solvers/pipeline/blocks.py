@@ -16,6 +16,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.blocking.request import BlockRequest
 from meshonet.solvers.pipeline.uses import MANY, SMOOTHED, refuse
 from meshonet.solvers.solution import Solution
+from meshonet.solvers.stages import stage
 
 if TYPE_CHECKING:
     from meshonet.geometry.blocks.grid import Grid
@@ -96,13 +97,13 @@ def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str
     They have as many cells as are asked for, or those that they were found with. Raises InputError: as
     `as_blocks`; SolverError: no blocks are found.
     """
-    begun = perf_counter()
-    from meshonet.solvers.blocking.make import find_layout
-
-    loaded = perf_counter()
-    _check_use(request)
-    layout = find_layout(_domain(shape, request), block_request(request))
-    return layout, {"load": loaded - begun, "layout": perf_counter() - loaded}
+    seconds: dict[str, float] = {}
+    with stage("load", seconds):
+        from meshonet.solvers.blocking.make import find_layout
+    with stage("layout", seconds):
+        _check_use(request)
+        layout = find_layout(_domain(shape, request), block_request(request))
+    return layout, seconds
 
 
 def block_request(request: GridRequest) -> BlockRequest:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING, TypeVar
 
@@ -16,15 +16,15 @@ from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.choose_method import method_of
-from meshonet.solvers.pipeline.methods import Method
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.result import Result, judged, with_changes
 from meshonet.solvers.pipeline.sample_shape import sampled
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.stages import reached
+from meshonet.solvers.stages import reached, stage
 
 if TYPE_CHECKING:
     from meshonet.geometry.shapes.domain_shape import DomainShape
+    from meshonet.solvers.pipeline.methods import Method
     from meshonet.solvers.progress import HistoryRow
 
 K = TypeVar("K")
@@ -102,25 +102,31 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     >>> [result.grid.name for result in results]
     ['NACA 0012', 'NACA 2412']
     """
-    return (result for _, result in make_grids_of(((None, shape) for shape in shapes), request))
+    return (result for _, result in make_grids_of(shapes, request, lambda shape: shape))
 
 
 def make_grids_of(
-    shapes: Iterable[tuple[K, Shape]], request: GridRequest
+    keys: Iterable[K], request: GridRequest, shape_of: Callable[[K], Shape]
 ) -> Iterator[tuple[K, Result | Exception]]:
-    """Yield what each of the shapes belongs to and its grid or error, as `make_grids` does.
+    """Yield each of the keys with the grid of its shape, or the error, as `make_grids` does.
 
     Raises InputError: the method does not have such settings.
     """
     method = method_of(request)
-    shapes = iter(shapes)
-    while group := _group(shapes, request, MOST_TOGETHER if method.together else 1):
+    keys = iter(keys)
+    while group := _group(keys, request, MOST_TOGETHER if method.together else 1, shape_of):
         if len(group) > 1:
             with limited_to(request.threads):
                 _solve_together([member for _, member in group], method)
         while group:
             key, member = group.popleft()
-            yield key, _finished_or_error(member, method, request)
+            result: Result | Exception
+            try:
+                with limited_to(request.threads):
+                    result = _finished(member, method, request)
+            except Exception as error:
+                result = error
+            yield key, result
 
 
 @dataclass
@@ -128,21 +134,24 @@ class _Member:
     """A shape on its way: its boundary or what went wrong, and its solution once it was made with others."""
 
     boundary: Boundary | DomainShape | SpatialShape | Exception
-    seconds: dict[str, float] = field(default_factory=dict)
+    seconds: dict[str, float]
     solution: Solution | None = None
 
 
-def _group(shapes: Iterator[tuple[K, Shape]], request: GridRequest, most: int) -> deque[tuple[K, _Member]]:
+def _group(
+    keys: Iterator[K], request: GridRequest, most: int, shape_of: Callable[[K], Shape]
+) -> deque[tuple[K, _Member]]:
     group: deque[tuple[K, _Member]] = deque()
     nodes = 0
-    for key, shape in islice(shapes, most):
-        reached("boundary")
-        begun = time.perf_counter()
+    for key in islice(keys, most):
+        seconds: dict[str, float] = {}
+        boundary: Boundary | DomainShape | SpatialShape | Exception
         try:
-            boundary: Boundary | DomainShape | SpatialShape | Exception = sampled(shape, request)
+            with stage("boundary", seconds):
+                boundary = sampled(shape_of(key), request)
         except Exception as error:
             boundary = error
-        group.append((key, _Member(boundary, {"boundary": time.perf_counter() - begun})))
+        group.append((key, _Member(boundary, seconds)))
         nodes += boundary.ni * boundary.nj if isinstance(boundary, Boundary) else 0
         if nodes >= MOST_NODES:
             break
@@ -176,14 +185,6 @@ def _solve_together(group: Iterable[_Member], method: Method) -> None:
         _add_times(member.seconds, solution, share)
 
 
-def _finished_or_error(member: _Member, method: Method, request: GridRequest) -> Result | Exception:
-    try:
-        with limited_to(request.threads):
-            return _finished(member, method, request)
-    except Exception as error:
-        return error
-
-
 def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     """Return what comes of a member: solved if it is not yet, checked and measured."""
     boundary, solution, seconds = member.boundary, member.solution, member.seconds
@@ -205,15 +206,13 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
         _add_times(seconds, solution, time.perf_counter() - begun)
     elif request.history:
         _, rows = _with_history(lambda: solution)
-    reached("guard")
-    begun = time.perf_counter()
-    checked = _checked(solution, boundary, request)
-    notes = (*boundary.notes, *solution.notes, *_changed_first_cells(solution, checked))
-    seconds["guard"] = seconds.get("guard", 0.0) + time.perf_counter() - begun
-    reached("quality")
-    begun = time.perf_counter()
-    quality = measure(checked.grid, percentiles=request.percentiles)
-    seconds["quality"] = time.perf_counter() - begun
+    checked, notes = solution, (*boundary.notes, *solution.notes)
+    with stage("guard", seconds):
+        if count_folded(solution.grid.nodes):
+            checked = _mended(solution, boundary, request)
+            notes += _changed_first_cells(solution, checked)
+    with stage("quality", seconds):
+        quality = measure(checked.grid, percentiles=request.percentiles)
     checked = replace(checked, grid=replace(checked.grid, origin=boundary.origin))
     return Result(with_changes(checked, notes), quality, seconds, notes, rows)
 
@@ -260,14 +259,16 @@ def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, flo
 
 def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> None:
     """Add the stages of a solve that took `spent` seconds: what it took beside its grid was loading."""
-    stages = {stage: solution.seconds[stage] for stage in ("grid", "guard") if stage in solution.seconds}
-    rest = "load" if "grid" in stages else "grid"
-    seconds |= stages | {rest: max(spent - sum(stages.values()), 0.0)}
+    rest = "load" if "grid" in solution.seconds else "grid"
+    for name in ("grid", "guard"):
+        if name in solution.seconds:
+            seconds[name] = solution.seconds[name]
+            spent -= seconds[name]
+    seconds[rest] = max(spent, 0.0)
 
 
-def _checked(solution: Solution, boundary: Boundary, request: GridRequest) -> Solution:
-    if not count_folded(solution.grid.nodes):
-        return solution
+def _mended(solution: Solution, boundary: Boundary, request: GridRequest) -> Solution:
+    """Return the solution of a folded grid, repaired where that is asked for."""
     from meshonet.solvers.pipeline.fallback import guard, refuse_folded
 
     if request.repairs():

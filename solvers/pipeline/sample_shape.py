@@ -49,7 +49,7 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | DomainShape | Spat
 
 def check_plane(request: GridRequest) -> None:
     """Raise InputError for parameters that only grids in space have a use for."""
-    refuse((name for name in request.chosen if name in IN_SPACE), ONE)
+    refuse(filter(IN_SPACE.__contains__, request.chosen), ONE)
     if request.sampling.nk is not None:
         problem = f"{request.sampling.nk} nodes along a third direction of a grid in the plane"
         raise InputError(problem, "give NI x NJ", parameter="res")

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeVar
 from meshonet_cli.batch.executors.workers import Warn, Workers
 
 if TYPE_CHECKING:
-    from meshonet_cli.batch.executors.engine import Engine
+    from meshonet_cli.batch.settings import Engine
 
 T = TypeVar("T")
 R = TypeVar("R")
