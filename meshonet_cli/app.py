@@ -19,6 +19,7 @@ import io
 import os
 import re
 import sys
+import warnings
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, Any, NoReturn
@@ -143,6 +144,8 @@ def main() -> NoReturn:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # names from files, on a terminal that lacks them
     words = sys.argv[1:]
+    if not sys.warnoptions and "--debug" not in words:
+        warnings.simplefilter("ignore")  # of Python, about the source: what a user should know is a note
     mpi = "--engine=mpi" in words or ("--engine", "mpi") in pairwise(words)
     code = _on_ranks(words) if mpi else run(words)
     with contextlib.suppress(BrokenPipeError):

@@ -109,6 +109,9 @@ def _views(grid: Grid) -> list[Box]:
     """Return what to show: the whole, and before it the surroundings of a body that is small in it."""
     whole = _whole(grid)
     pad = 0.02 * max(whole[1] - whole[0], whole[3] - whole[2])
+    if not pad > 0:
+        problem = f"all nodes of the grid are at ({whole[0]:g}, {whole[2]:g})"
+        raise InputError(problem, "give a grid whose cells have an area")
     whole = (whole[0] - pad, whole[1] + pad, whole[2] - pad, whole[3] + pad)
     if grid.topology == "blocks":
         walls = [grid.face(p.block, p.side)[p.start : p.stop + 1] for p in grid.walls()]

@@ -30,7 +30,7 @@ _ASK = "give an airfoil as lines of x y from the trailing edge round to it again
 
 def read_shapes(source: Source) -> Iterator[Airfoil]:
     """Yield the airfoil of a file; InputError, with its line, where there is none."""
-    yield parse(decode(source.read_bytes()), source.name, source.stem)
+    yield parse(decode(source.text_bytes()), source.name, source.stem)
 
 
 def parse(text: str, source: str, stem: str = "") -> Airfoil:

@@ -101,7 +101,9 @@ def train(
     try:
         import torch
     except ImportError:
-        raise InputError("training needs torch", "install it: pip install 'meshonet[train]'") from None
+        from meshonet.solvers.neural.devices import INSTALL_TORCH
+
+        raise InputError("training needs torch", INSTALL_TORCH) from None
     from meshonet.solvers.neural.fit.team import team
     from meshonet.solvers.neural.fit.train import standard
     from meshonet.solvers.neural.fit.train import train as fit

@@ -79,7 +79,8 @@ class Report(Timed):
     def lines(self) -> str:
         """Return the report of a single grid for people."""
         angle = self.quality["max_angle"]
-        head = f"{self.item.label} -> {self.output}: {self._size()}, {self.topology} grid"
+        kind = "multi-block" if self.topology == "blocks" else self.topology
+        head = f"{self.item.label} -> {self.output}: {self._size()}, {kind} grid"
         if self.wake:
             counts = self._along_wall()
             head += f" with {counts['body_nodes']} nodes on the body and {counts['wake_nodes']} on the wake"

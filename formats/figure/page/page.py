@@ -80,16 +80,21 @@ def _start(grid: Grid, metric: str | None, view: View) -> dict[str, Any]:
         metric_of(grid, metric)
     return {
         "metric": metric,
-        "zoom": None if view.zoom is None else _zoom(grid, view.zoom),
+        "zoom": None if view.zoom is None else _zoom(grid, view.zoom, view.slice),
         "every": view.every,
         "slice": None if view.slice is None else _slice(grid, view.slice),
         "seen_from": list(view.seen_from or SEEN_FROM),
     }
 
 
-def _zoom(grid: Grid, zoom: tuple[float, ...]) -> list[float]:
-    """Return a box; raise InputError for one of another kind, or that has nothing of the grid."""
+def _zoom(grid: Grid, zoom: tuple[float, ...], at: Slice | None) -> list[float]:
+    """Return a box, of a flat one beside a cut by a plane that in space.
+
+    Raises InputError: one of another kind, or that has nothing of the grid.
+    """
     nodes = [block.nodes.reshape(-1, block.nodes.shape[-1]) for block in grid.blocks]
+    if len(zoom) == 4 and at is not None and at.index is None:
+        zoom = (*zoom[: 2 * at.direction], at.coordinate, at.coordinate, *zoom[2 * at.direction :])
     box_low, box_high = np.array(zoom[::2]), np.array(zoom[1::2])
     if len(box_low) != nodes[0].shape[-1]:
         remedy = "use x0,x1,y0,y1" if grid.form == "plane" else "use x0,x1,y0,y1,z0,z1"
@@ -125,7 +130,8 @@ def _colours() -> str:
 
 
 def _json(facts: dict[str, Any]) -> str:
-    return json.dumps(facts, separators=(",", ":")).replace("</", "<\\/")
+    # no name of a patch may end the element, nor begin a comment or a script inside it
+    return json.dumps(facts, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def _data(name: str, numbers: Packed) -> str:
