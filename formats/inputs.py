@@ -47,10 +47,11 @@ _WITH_FOLDER = (".h5", ".hdf5", ".vtm")
 
 def readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
     """Return the endings of files that are taken from folders and archives."""
-    read = (
-        f for f in formats() if f.read_grids is not None or (f.read_shapes is not None and not grids_only)
-    )
-    return frozenset(suffix for record in read for suffix in record.suffixes)
+    suffixes: set[str] = set()
+    for record in formats():
+        if record.read_grids is not None or (record.read_shapes is not None and not grids_only):
+            suffixes.update(record.suffixes)
+    return frozenset(suffixes)
 
 
 class Numbered(NamedTuple):
@@ -87,7 +88,7 @@ class Inputs:
     shard: tuple[int, int] = (1, 1)
 
     def __post_init__(self) -> None:
-        streams = [word for word in self.words if word in ("-", "@-")]
+        streams = list(filter(("-", "@-").__contains__, self.words))
         if len(streams) > 1:
             raise InputError("standard input is named twice", "name - once", source="-")
         if streams and sys.stdin.isatty():
@@ -151,7 +152,7 @@ class Inputs:
     @cached_property
     def _begun(self) -> int:
         """How many inputs there are, of which no more than `_BEGINNING` are looked for."""
-        return sum(1 for _ in islice(self, _BEGINNING))
+        return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
         """Return how many members the shard has, files that hold several counted once; None from a pipe."""
@@ -199,7 +200,7 @@ class _Walk:
 
     def __init__(self, inputs: Inputs) -> None:
         self._inputs = inputs
-        self._patterns = [pattern.lower() for pattern in inputs.pick]
+        self._patterns = list(map(str.lower, inputs.pick))
         self.seen = self.taken = 0
         self.example = ""
 

@@ -210,7 +210,9 @@ def write_all(folder: Path, seeds: range = range(0)) -> list[Path]:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("folder", type=Path, help="where each domain is written as GeoJSON")
     for path in write_all(parser.parse_args().folder):
         print(path)

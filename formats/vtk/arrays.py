@@ -4,7 +4,7 @@ import base64
 import binascii
 import re
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.source import printable
-from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 
 _KINDS = {
@@ -22,10 +21,6 @@ _KINDS = {
 """NumPy's number types by VTK's names."""
 CUT = "the file is cut short or its sizes are wrong: write it again"
 """The remedy where a file ends too soon."""
-_BLOCK_NODES = 1 << 15
-"""Nodes laid out at a time: 24 bytes each stay in the second-level cache."""
-_PLANES = 8
-"""Planes of a volume laid out at a time: as many numbers as a cache line of its rows has."""
 _MOST_SHRINKING = 1 << 15
 """LZMA shrinks zeros some ten thousand times, zlib a thousand; a claim far beyond is refused."""
 
@@ -148,33 +143,3 @@ def _inflater(compressor: str) -> Callable[[memoryview, int], bytes]:
         return lambda packed, most: LZMADecompressor().decompress(packed, most)
     remedy = "write it with zlib (vtkZLibDataCompressor) or none"
     raise InputError(f"compressor {compressor[:60]!r} cannot be read", remedy)
-
-
-def points_of(nodes: Floats, dtype: str) -> Iterator[NDArray[Any]]:
-    """Yield nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) as points (n, 3), i fastest, some rows at a time.
-
-    Nodes in the plane get z = 0.
-    """
-    if nodes.ndim == 4:
-        for start in range(0, nodes.shape[2], _PLANES):
-            part = nodes[:, :, start : start + _PLANES]
-            block = np.empty((*part.shape[2::-1], 3), dtype)
-            for j in range(nodes.shape[1]):
-                block[:, j] = part[:, j].swapaxes(0, 1)
-            yield block.reshape(-1, 3)
-        return
-    ni, nj, coordinates = nodes.shape
-    rows = max(1, _BLOCK_NODES // ni)
-    block = np.zeros((rows, ni, 3), dtype)
-    for start in range(0, nj, rows):
-        part = block[: nj - start]
-        for axis in range(coordinates):
-            part[..., axis] = nodes[:, start : start + rows, axis].T
-        yield part.reshape(-1, 3)
-
-
-def escaped(text: str) -> str:
-    """Return `text` for an XML attribute; xml.sax has this too, behind 30 ms of network modules."""
-    for plain, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;")):
-        text = text.replace(plain, entity)
-    return printable(text)
