@@ -111,7 +111,9 @@ def open_source(text: str) -> Source:
 
     Raises InputError: no such file, a folder, a file that may not be read, nothing in it.
     """
-    text, split, rows = _selected(text)
+    split, rows = "", None
+    if "#" in text:
+        text, split, rows = _selected(text)
     try:
         source = replace(_opened(text), split=split, rows=rows)
     except FileNotFoundError:

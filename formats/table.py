@@ -79,7 +79,7 @@ def _write(
 def _held(record: Format, grid: Grid) -> Grid:
     """Return the grid, or raise InputError: the format cannot hold it."""
     name = record.name
-    for kind in kinds_in_space(grid):
+    for kind in kinds_in_space(grid) if grid.form != "plane" else ():
         if kind not in record.space:
             able = ", ".join(other.name for other in _FORMATS if kind in other.space and other.write_grids)
             held = ", ".join(("grids in the plane", *record.space))

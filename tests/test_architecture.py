@@ -73,8 +73,8 @@ def test_the_main_job_does_not_grow(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     found = code_objects(
         ["infer", str(airfoil(tmp_path / "a.dat")), "--res", "800", "-o", "g.vts", "--quiet"]
     )
-    assert len(found) <= 124
-    assert sum(map(len, found.values())) <= 775
+    assert len(found) <= 120
+    assert sum(map(len, found.values())) <= 625
 
 
 def test_the_block_blocks() -> None:

@@ -23,6 +23,13 @@ EXAMPLES = [(command.name, example) for command in COMMANDS for example in comma
 SLOW = ("train",)  # an hour; here it only has to get as far as asking for its dataset
 
 
+def test_the_domains_say_how_they_are_written() -> None:
+    program = [sys.executable, "examples/domains/domains.py", "--help"]
+    done = subprocess.run(program, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert "usage: domains.py [-h] folder" in done.stdout
+    assert "writes each as GeoJSON into FOLDER" in done.stdout
+
+
 @pytest.fixture
 def folder(inputs: Path, tmp_path: Path) -> Path:
     """The inputs in a folder of their own, so that one example cannot live on what another left behind."""

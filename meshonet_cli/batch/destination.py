@@ -17,6 +17,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet_cli.batch.item import NO_NUMBER, Item
+from meshonet_cli.batch.settings import Files
 
 if TYPE_CHECKING:
     from meshonet.formats.hdf5.parts import PartFiles
@@ -57,8 +58,8 @@ class Destination:
         self.format = format_for_output(text, fmt, kind)
         self._put = put or getattr(self.format, f"write_{kind}")
         self._taken: dict[str, str] = {}
-        self._can_have_parts = self.format.name == "hdf5" and not self.each and text != "-"
-        if part_size is not None and not self._can_have_parts:
+        self.can_have_parts = self.format.name == "hdf5" and not self.each and text != "-"
+        if part_size is not None and not self.can_have_parts:
             remedy = "write one .h5 file, or leave it out"
             raise InputError("only a dataset has parts", remedy, parameter="part_size")
         if text == "-" and sys.stdout.isatty():
@@ -89,16 +90,16 @@ class Destination:
         self._taken[place] = item.label
         return path
 
-    def check_room(self, *, several: bool) -> None:
+    def check_room(self) -> None:
         """Raise InputError when several inputs would go into a file that holds one."""
-        if several and not (self.each or self.format.many):
+        if not (self.each or self.format.many):
             raise InputError(
                 f"several inputs and one {self.format.name} file, which holds one",
                 f"use -o '{_escaped(_pattern(self.text))}' or one .h5",
                 source=self.text,
             )
 
-    def part_size_for(self, inputs: Inputs | DrawnInputs, *, skip_existing: bool, elsewhere: bool) -> int:
+    def part_size_for(self, inputs: Inputs | DrawnInputs, files: Files, *, elsewhere: bool) -> int:
         """Return how many inputs a part of the dataset has, 0 where it is no dataset in parts.
 
         Parts are written where they are asked for, by jobs that share the work, where parts are to be
@@ -107,8 +108,9 @@ class Destination:
 
         Raises InputError: there is another dataset, which parts would replace or which cannot be continued.
         """
-        if not self._can_have_parts or not inputs.more_than(0):
+        if not inputs.more_than(0):
             return 0
+        skip_existing = files.skip_existing
         index = Path(self.text)
         shared = inputs.shard != (1, 1)
         continued = skip_existing and index.with_suffix("").is_dir()
@@ -131,9 +133,9 @@ class Destination:
         request = digest_of(self.kind, str(size), described(make))
         return PartFiles(Path(self.text), request, size)
 
-    def check_only(self, item: Item[Any]) -> None:
-        """Raise InputError when `item` is one of several and there is room for one."""
-        if not (item.only or self.each or self.format.many):
+    def check_several(self, item: Item[Any]) -> None:
+        """Raise InputError when there is room for one, and `item` is one of several in its file."""
+        if not (self.each or self.format.many):
             raise InputError(
                 f"holds several grids or boundaries, and a {self.format.name} file holds one",
                 f"use -o '{_escaped(_pattern(self.text, 'index'))}' or one .h5",

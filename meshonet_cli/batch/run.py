@@ -90,12 +90,13 @@ class Batch:
             files.output, files.to_format, task.kind, task.put, part_size=files.part_size, nodes=task.nodes
         )
         several = task.assembled is None and self.inputs.more_than(1)
-        destination.check_room(several=several)
+        if several:
+            destination.check_room()
         session.check_output(files.output)
         if task.assembled is not None:
             members = assembly(self.inputs, task.read, task.assembled, session)
-        elif size := destination.part_size_for(
-            self.inputs, skip_existing=files.skip_existing, elsewhere=self.engine.elsewhere
+        elif destination.can_have_parts and (
+            size := destination.part_size_for(self.inputs, files, elsewhere=self.engine.elsewhere)
         ):
             self._deliver_parts(task, destination, size, written)
             return
@@ -104,7 +105,8 @@ class Batch:
         leading = next(members, None)
         if leading is None:
             return
-        destination.check_only(leading)
+        if not leading.only:
+            destination.check_several(leading)
         items: Iterator[Item[Any]] = chain([leading], members)
         single = destination.each or not session.batch
         if single:

@@ -24,7 +24,8 @@ def members_of(
 ) -> Iterator[Item[T]]:
     """Yield the members of every input; one that cannot be read is reported and passed over."""
     session.batch = session.batch or inputs.more_than(1)
-    session.watch()
+    if session.live:
+        session.watch()
     count = inputs.count() if session.live else None
     for item in records(inputs.own(), read, alone=not session.batch):
         session.batch = session.batch or not item.only

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from meshonet_cli import options as o
+from meshonet_cli.batch.settings import Files
 
 EXAMPLES = (
     "meshonet plot grid.vts -o grid.png",
@@ -20,7 +21,7 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 # fmt: off
 @dataclass(frozen=True, kw_only=True)
-class PictureFiles(o.SectionFiles):
+class PictureFiles(Files):
     """Files of pictures."""
 
     output: Annotated[str, _output(
@@ -33,6 +34,8 @@ class PictureFiles(o.SectionFiles):
         "--to", metavar="FORMAT",
         help="png, svg, pdf or html, when the ending does not say. [default on standard output: png]",
     )] = None
+    from_format: o.From = None
+    skip_existing: o.SkipExisting = False
 
 
 def plot(

@@ -1,10 +1,12 @@
 """``meshonet sweep``."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
 
 from meshonet_cli import options as o
+from meshonet_cli.batch.settings import Files
 
 EXAMPLES = (
     "meshonet sweep circle:0.5 bend.toml -o pipe.h5",
@@ -15,6 +17,16 @@ _sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
 
 
 # fmt: off
+@dataclass(frozen=True, kw_only=True)
+class SectionFiles(Files):
+    """Files of volumes, and the format of their sections."""
+
+    output: o.Output
+    from_format: o.From = None
+    to_format: o.To = None
+    skip_existing: o.SkipExisting = False
+
+
 def sweep(
     names: Annotated[list[str], typer.Argument(
         metavar="OUTLINE... PATH", show_default=False,
@@ -23,7 +35,7 @@ def sweep(
     )],
     run: o.RunOptions,
     gates: o.GateOptions,
-    files: o.SectionFiles,
+    files: SectionFiles,
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ", help="Nodes along the sides of a four-sided section. [default: 65x33]",
     )] = None,

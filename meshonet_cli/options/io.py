@@ -58,25 +58,13 @@ Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")
 
 
 @dataclass(frozen=True, kw_only=True)
-class VolumeFiles(Files):
-    """Files of a command whose inputs have one format and which writes no datasets in parts."""
-
-    output: Output
-    to_format: To = None
-    skip_existing: SkipExisting = False
-
-
-@dataclass(frozen=True, kw_only=True)
-class SectionFiles(VolumeFiles):
-    """Files of a command that writes no datasets in parts."""
-
-    from_format: From = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class FileOptions(SectionFiles):
+class FileOptions(Files):
     """Files of a command that turns files into files or datasets."""
 
+    output: Output
+    from_format: From = None
+    to_format: To = None
+    skip_existing: SkipExisting = False
     part_size: PartSize = None
 
 
@@ -120,7 +108,7 @@ class InputOptions(PrintOptions):
         from meshonet.formats.inputs import Inputs, readable_suffixes
 
         endings = frozenset(suffixes) or readable_suffixes(grids_only=grids)
-        return Inputs(tuple(words), endings, tuple(self.pick or ()), self.part())
+        return Inputs(tuple(words), endings, tuple(self.pick or ()), self.part() if self.shard else (1, 1))
 
     def part(self) -> tuple[int, int]:
         """Return K and N of the shard, 1 and 1 for all inputs. Raises InputError: it is none."""

@@ -39,7 +39,8 @@ def measure_grids(
     outputs = [_picture_file(plot)] if plot else []
     outputs += [_metrics_file(per_cell)] if per_cell else []
     for destination in outputs:
-        destination.check_room(several=inputs.more_than(1))
+        if inputs.more_than(1):
+            destination.check_room()
         if destination.text == "-":
             raise InputError("standard output has the table", "write to a file", source="-")
     page = _page(html, gates) if html else None
@@ -57,7 +58,8 @@ def measure_grids(
             if references:
                 measured.seconds["compare"] = paired - begun
             for destination in outputs:
-                destination.check_only(item)
+                if not item.only:
+                    destination.check_several(item)
                 reached("write")
                 with measured.timed("write"):
                     destination.write(destination.path(item), [item.what])

@@ -108,14 +108,15 @@ class Session:
         if report.warning:
             self.warn(report.warning)
         self.done += 1
-        if not self.batch:
+        if self._line and not self.batch:
             self._unwatch()
         if self.as_json:
             self.result(report.as_json())
         else:
             self.note(report.line() if self.batch else report.lines())
-        self.changed += bool(changes_in(report.notes))
-        self._advice |= dict.fromkeys(advice_in(report.notes))
+        if report.notes:
+            self.changed += bool(changes_in(report.notes))
+            self._advice |= dict.fromkeys(advice_in(report.notes))
         if row := report.row():
             self.judge(row)
 
@@ -144,7 +145,8 @@ class Session:
     def print(self, text: str) -> None:
         """Print on standard output."""
         with self._writing:
-            self._clear()
+            if self._shown:
+                self._clear()
             print(quoted(text), flush=True)  # noqa: T201
 
     def check_output(self, output: str) -> None:
@@ -178,7 +180,7 @@ class Session:
         """Show on a terminal which member of how many (None: not known) is at work; stop if asked to."""
         check()
         self.members += 1
-        if self.batch:
+        if self._line and self.batch:
             self._unwatch()
         done = self.members - 1
         if count and done < count > 1:
@@ -200,8 +202,10 @@ class Session:
 
     def finish(self) -> int:
         """Report how a batch went, with a table where it was judged, and return the exit code."""
-        self._unwatch()
-        self._clear()
+        if self._line:
+            self._unwatch()
+        if self._shown:
+            self._clear()
         for problem, count in self._errors.items():
             if problem and count > SAME_ERRORS:
                 more = count - SAME_ERRORS
@@ -233,7 +237,8 @@ class Session:
 
     def _write(self, text: str) -> None:
         with self._writing:
-            self._clear()
+            if self._shown:
+                self._clear()
             print(quoted(text), file=sys.stderr)  # noqa: T201
 
     def _draw(self) -> None:
@@ -251,6 +256,7 @@ class Session:
             self._line = None
 
     def _clear(self) -> None:
+        """Wipe what is shown, if it is still there: the thread of a line may have done so."""
         if self._shown:
             sys.stderr.write("\r\x1b[2K")
             sys.stderr.flush()

@@ -42,25 +42,22 @@ def method_of(request: OneBlock) -> Method:
 
 
 def _base(request: OneBlock) -> Method:
-    """Return the method with its settings, on all nodes."""
+    """Return the method with its settings, on all nodes.
+
+    A network is taken where one is asked for by name or settings, else what measures best without.
+    """
     if request.by_network or request.method == "best":
-        return _network_or_best(request)
+        if ":" in request.method or set(NETWORK_SETTINGS).intersection(request.chosen):
+            return method_named(request.method if request.by_network else "operator", **request.settings)
+        for setting in request.settings:
+            if setting not in (*NETWORK_SETTINGS, "answer"):
+                raise UnknownSettingError("operator", setting)
+        return Best()
     if request.method == "auto":
         return method_named("winslow", **request.settings)
     if request.method == "hyperbolic":  # whose settings are the first cells
         return method_named("hyperbolic")
     return method_named(request.method, **request.settings, **_angle(request))
-
-
-def _network_or_best(request: OneBlock) -> Method:
-    """Return a network where one is asked for by name or settings, else what measures best without."""
-    if ":" in request.method or set(NETWORK_SETTINGS).intersection(request.chosen):
-        name = request.method if request.by_network else "operator"
-        return method_named(name, **request.settings)
-    for setting in request.settings:
-        if setting not in (*NETWORK_SETTINGS, "answer"):
-            raise UnknownSettingError("operator", setting)
-    return Best()
 
 
 def _at_any_resolution(request: OneBlock, base: Method) -> Method:

@@ -214,7 +214,7 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     with stage("quality", seconds):
         quality = measure(checked.grid, percentiles=request.percentiles)
     checked = replace(checked, grid=replace(checked.grid, origin=boundary.origin))
-    return Result(with_changes(checked, notes), quality, seconds, notes, rows)
+    return Result(with_changes(checked, notes) if notes else checked, quality, seconds, notes, rows)
 
 
 def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[HistoryRow, ...]]:
