@@ -206,18 +206,16 @@ class _Walk:
 
     def of(self, words: Iterable[str], lists: tuple[str, ...] = ()) -> Iterator[str | InputError]:
         for word in words:
+            file = bool(lists) and _split(word)[1] in self._inputs.suffixes  # by its ending, in a list
             try:
-                yield from self._of_word(word, lists)
+                if word.startswith("@"):
+                    yield from self._of_list(word[1:], lists)
+                elif not file and _stands_for_many(word):
+                    yield from self._of_archive(word) if is_archive(word) else self._of_folder(word)
+                elif not lists or self._takes(word.replace(":", "") if is_designation(word) else word):
+                    yield word
             except InputError as error:
                 yield error
-
-    def _of_word(self, word: str, lists: tuple[str, ...]) -> Iterator[str | InputError]:
-        if word.startswith("@"):
-            yield from self._of_list(word[1:], lists)
-        elif not (lists and _split(word)[1] in self._inputs.suffixes) and _stands_for_many(word):
-            yield from self._of_archive(word) if is_archive(word) else self._of_folder(word)
-        elif not lists or self._takes(word.replace(":", "") if is_designation(word) else word):
-            yield word
 
     def _of_list(self, name: str, lists: tuple[str, ...]) -> Iterator[str | InputError]:
         if not name:

@@ -8,6 +8,7 @@ separate columns.
 import re
 from functools import lru_cache
 from itertools import count
+from operator import attrgetter
 from typing import Literal, NamedTuple
 
 from meshonet.formats.source import LARGEST
@@ -127,7 +128,7 @@ def table(lines: list[Line]) -> list[list[Line]]:
     Raises InputError: a damaged line with no prose between it and the next row, or a broken one between two
     rows.
     """
-    kinds: list[Kind] = ["blank", *(line.kind for line in lines), "blank"]
+    kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     blocks: list[list[Line]] = [[]]
     for k, line in enumerate(lines):
         beside = kinds[k], kinds[k + 2]
@@ -174,7 +175,7 @@ def _line(number: int, text: str) -> Line:
     if not words:
         return Line(number, "blank", (), text)
     bare = _REMARK.sub("", text).strip() if len(text) <= 4000 else ""
-    if not bare:
+    if not bare or (bare[0].isalpha() and not _MEANT.fullmatch(_SPLIT.split(bare, maxsplit=1)[0])):
         return Line(number, "text", (), text)
     return _difficult(number, text, _words(bare))
 
