@@ -82,7 +82,6 @@ def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
     Returns
     -------
     Grid or shape
-        The grid of a file, or the shape of one without grids or of a designation ``naca:2412``.
 
     Raises
     ------

@@ -63,7 +63,6 @@ def grid(
     Returns
     -------
     Grid
-        A valid grid inside a boundary, around a body, of the blocks of a domain, or of a volume.
 
     Raises
     ------
@@ -106,7 +105,6 @@ def tfi(shape: AnyShape, *, res: Counts | None = None, method: str = "tfi", **pa
     Returns
     -------
     Grid
-        A grid by transfinite interpolation.
 
     Raises
     ------
@@ -136,7 +134,6 @@ def solve_pde(shape: AnyShape, *, res: Counts | None = None, method: str = "auto
     Returns
     -------
     Grid
-        A grid by elliptic equations, a variational method or marching.
 
     Raises
     ------
@@ -166,7 +163,6 @@ def infer(shape: AnyShape, *, res: Counts | None = None, model: str | None = Non
     Returns
     -------
     Grid
-        The grid that measures best, or that of an operator.
 
     Raises
     ------
@@ -202,7 +198,6 @@ def sample_boundary(
     Returns
     -------
     Boundary
-        The four edges of a shape.
 
     Raises
     ------
@@ -252,7 +247,6 @@ def sample_family(
     Returns
     -------
     list of Boundary
-        Boundaries drawn at random from a family, as ``sample-boundary --family`` does.
 
     Raises
     ------

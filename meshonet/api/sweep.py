@@ -59,7 +59,6 @@ def sweep(
     Returns
     -------
     Grid
-        The volume of a cross-section carried along a curve in space.
 
     Raises
     ------

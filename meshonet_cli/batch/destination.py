@@ -183,18 +183,21 @@ def _fields(text: str) -> list[str]:
     if "{" not in text and "}" not in text:
         return []
     fields: list[str] = []
+    problem, remedy = (
+        "has a field that is not known",
+        "use {{stem}}, {{index}} or {{name}}; write {{ and }} for braces",
+    )
     try:
         for _, field, form, _ in string.Formatter().parse(text):
-            if field is not None and (field not in FIELDS or not _FORM.fullmatch(form or "")):
+            if field is not None and field not in FIELDS:
+                raise ValueError
+            if field is not None and not _FORM.fullmatch(form or ""):
+                problem, remedy = "has a field in a format that makes no name", "use e.g. {{index:04d}}"
                 raise ValueError
             fields += [field] if field else []
         text.format(stem="", index=0, name="")
     except ValueError:
-        raise InputError(
-            f"{_escaped(repr(text[:200]))} has a field that is not known, or a format of one",
-            "use {{stem}}, {{index}}, {{index:04d}} or {{name}}; write {{ and }} for braces",
-            source="-o",
-        ) from None
+        raise InputError(f"{_escaped(repr(text[:200]))} {problem}", remedy, source="-o") from None
     return fields
 
 

@@ -56,16 +56,6 @@ def guard(
     raise failure
 
 
-def refuse_folded(solution: Solution) -> None:
-    """Raise NoValidGridError when cells are folded that nobody is to repair."""
-    grid = solution.grid
-    folded = count_folded(grid.nodes)
-    if folded:
-        cells = (grid.ni - 1) * (grid.nj - 1)
-        remedy = "use {repair}, an elliptic method or {allow_invalid}"
-        raise NoValidGridError(f"{folded} of {cells} cells are folded; {remedy}", worst_cells(grid.nodes))
-
-
 def _ways(
     grid: Grid, boundary: Boundary, others: Sequence[Method], margin: int | None
 ) -> Iterator[tuple[tuple[str, ...], Floats]]:

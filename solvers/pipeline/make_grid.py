@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, TypeVar
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import MeshonetError
-from meshonet.geometry.quality.measure import count_folded, measure
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.choose_method import method_of
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.result import Result, judged, with_changes
+from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.pipeline.sample_shape import sampled
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import reached, stage
@@ -31,6 +31,7 @@ K = TypeVar("K")
 MOST_TOGETHER = 64  # shapes that are solved together at the most
 MOST_NODES = 1 << 22  # nodes of grids from which no more are solved together: some hundred MB
 _OTHER_METHODS = "try {method} variational, or {allow_invalid}"  # where cells of a volume fold
+_NOT_REPAIRED = "use {repair}, an elliptic method or {allow_invalid}"  # where cells of one block do
 
 
 def make_grid(shape: Shape, request: GridRequest) -> Result:
@@ -46,7 +47,6 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
     Returns
     -------
     Result
-        The grid of `shape` that `request` describes.
 
     Raises
     ------
@@ -205,16 +205,15 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
             solution = method.solve([boundary], start)[0]
         _add_times(seconds, solution, time.perf_counter() - begun)
     elif request.history:
-        _, rows = _with_history(lambda: solution)
-    checked, notes = solution, (*boundary.notes, *solution.notes)
+        made = solution
+        _, rows = _with_history(lambda: made)
+    notes = (*boundary.notes, *solution.notes)
     with stage("guard", seconds):
-        if count_folded(solution.grid.nodes):
-            checked = _mended(solution, boundary, request)
-            notes += _changed_first_cells(solution, checked)
-    with stage("quality", seconds):
-        quality = measure(checked.grid, percentiles=request.percentiles)
-    checked = replace(checked, grid=replace(checked.grid, origin=boundary.origin))
-    return Result(with_changes(checked, notes) if notes else checked, quality, seconds, notes, rows)
+        if request.repairs() and count_folded(solution.grid.nodes):
+            solution, more = _repaired(solution, boundary, request)
+            notes += more
+    solution = replace(solution, grid=replace(solution.grid, origin=boundary.origin), notes=notes)
+    return judged(solution, seconds, request, remedy=_NOT_REPAIRED, history=rows)
 
 
 def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[HistoryRow, ...]]:
@@ -237,7 +236,7 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
         solution = smoothed(shape.given, request)
         seconds |= {"load": time.perf_counter() - begun - solution.seconds["grid"], **solution.seconds}
         solution = replace(solution, notes=(*shape.notes, *solution.notes))
-        return judged(solution, seconds, request, remedy="")
+        return judged(solution, seconds, request, remedy="find other blocks with {cells}, or {allow_invalid}")
     from meshonet.solvers.blocking.make import make_blocks
 
     loaded = time.perf_counter()
@@ -267,24 +266,15 @@ def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> N
     seconds[rest] = max(spent, 0.0)
 
 
-def _mended(solution: Solution, boundary: Boundary, request: GridRequest) -> Solution:
-    """Return the solution of a folded grid, repaired where that is asked for."""
-    from meshonet.solvers.pipeline.fallback import guard, refuse_folded
-
-    if request.repairs():
-        return guard(solution, boundary, allow_invalid=request.allow_invalid, margin=request.repair_margin)
-    if not request.allow_invalid:
-        refuse_folded(solution)
-    return solution
-
-
-def _changed_first_cells(solution: Solution, checked: Solution) -> tuple[str, ...]:
-    """Return what there is to say of first cells that the guard changed."""
-    if checked.path == solution.path or not solution.first_cells:
-        return ()
+def _repaired(
+    solution: Solution, boundary: Boundary, request: GridRequest
+) -> tuple[Solution, tuple[str, ...]]:
+    """Return the solution of a folded grid made valid by the guard, and what there is to say of it."""
     from meshonet.solvers.layers.redistribute import worst_first_cell
+    from meshonet.solvers.pipeline.fallback import guard
 
-    error = worst_first_cell(checked)
-    if error < 1e-8:
-        return ()
-    return (f"the guard changed first cells: their heights are off by up to {error:.1g} of what was asked",)
+    valid = guard(solution, boundary, allow_invalid=request.allow_invalid, margin=request.repair_margin)
+    if valid.path == solution.path or not solution.first_cells or worst_first_cell(valid) < 1e-8:
+        return valid, ()
+    off = f"their heights are off by up to {worst_first_cell(valid):.1g} of what was asked"
+    return valid, (f"the guard changed first cells: {off}",)

@@ -64,20 +64,19 @@ def judged(
     request: GridRequest | StackRequest | DeformRequest,
     *,
     remedy: str,
+    history: tuple[HistoryRow, ...] = (),
 ) -> Result:
     """Return a solution with its quality, whose time is added to `seconds` by stage.
 
-    Raises NoValidGridError: cells are folded, which is not allowed; `remedy` says what to try.
+    Its grid says, in files too, what was changed of the shape. Raises NoValidGridError: cells are folded,
+    which is not allowed; `remedy` says what to try.
     """
     with stage("quality", seconds):
         quality = measure(solution.grid, percentiles=request.percentiles)
     if quality.folded and not request.allow_invalid:
         problem = f"{quality.folded} of {quality.cells} cells are folded; {remedy}"
         raise NoValidGridError(problem, worst_cells_of(solution.grid))
-    return Result(with_changes(solution, solution.notes), quality, seconds, solution.notes)
-
-
-def with_changes(solution: Solution, notes: tuple[str, ...]) -> Solution:
-    """Return a solution whose grid says, in files too, what was changed of the shape by its `notes`."""
-    facts = change_facts(notes)
-    return replace(solution, grid=solution.grid.with_provenance(**facts)) if facts else solution
+    facts = change_facts(solution.notes) if solution.notes else {}
+    if facts:
+        solution = replace(solution, grid=solution.grid.with_provenance(**facts))
+    return Result(solution, quality, seconds, solution.notes, history)
