@@ -65,6 +65,15 @@ Make: TypeAlias = Callable[[Iterable[Item[Any]]], Iterator[Pair]]
 """Makes members in order; what other processes are to do can be pickled."""
 
 
+def attempted(make: Callable[[T], V], each: Iterable[T]) -> Iterator[tuple[T, V | Exception]]:
+    """Yield each with what `make` makes of it, or the error that it ended in."""
+    for one in each:
+        try:
+            yield one, make(one)
+        except Exception as error:
+            yield one, error
+
+
 def made(outcome: V | Exception) -> V:
     """Return what was made, or raise the error that it ended in."""
     if isinstance(outcome, Exception):

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from itertools import starmap
 from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.hdf5.parts import Failed, OtherPartsError, PartFiles, State
-from meshonet.formats.inputs import Inputs
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet_cli.batch.destination import same_size
-from meshonet_cli.batch.drawn import DrawnInputs
 from meshonet_cli.batch.input_digests import digests_of
 from meshonet_cli.batch.item import Item, Make, made
 from meshonet_cli.batch.sources import records
@@ -32,11 +29,6 @@ class PartTask:
 
     number: int
     inputs: tuple[str | InputError | Draw, ...]
-
-
-def parts_of(inputs: Inputs | DrawnInputs, size: int) -> Iterator[PartTask]:
-    """Yield the tasks that make the parts of a shard, of `size` inputs each, as inputs are found."""
-    return starmap(PartTask, inputs.parts(size))
 
 
 @dataclass
@@ -120,15 +112,6 @@ class PartMaker:
 
 
 Outcomes = Iterator[tuple[PartTask, PartDone | Exception]]
-
-
-def one_after_the_other(make: Callable[[PartTask], PartDone], parts: Iterable[PartTask]) -> Outcomes:
-    """Yield what `make` makes of parts in this process, or the errors that they ended in."""
-    for part in parts:
-        try:
-            yield part, make(part)
-        except Exception as error:
-            yield part, error
 
 
 def deliver_parts(

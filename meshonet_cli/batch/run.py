@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain
+from itertools import chain, starmap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +13,7 @@ from meshonet.formats.registry import Kind
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.stages import reached
 from meshonet_cli.batch.destination import Destination, same_size
-from meshonet_cli.batch.item import Item, Make, Pair, made
+from meshonet_cli.batch.item import Item, Make, Pair, attempted, made
 from meshonet_cli.batch.settings import HERE, Engine, Files
 from meshonet_cli.batch.sources import assembly, members_of
 from meshonet_cli.terminal.session import Session
@@ -28,15 +28,7 @@ Written = Callable[[Any, str], None]
 
 def each(make: Callable[..., tuple[Any, Timed]], **settings: Any) -> Make:
     """Return what makes members one by one by a function of a member and `settings`."""
-    return partial(_one_by_one, make=partial(make, **settings))
-
-
-def _one_by_one(members: Iterable[Item[Any]], make: Callable[..., tuple[Any, Timed]]) -> Iterator[Pair]:
-    for member in members:
-        try:
-            yield member, make(member)
-        except Exception as error:
-            yield member, error
+    return partial(attempted, partial(make, **settings))
 
 
 @dataclass(frozen=True)
@@ -131,17 +123,17 @@ class Batch:
 
     def _deliver_parts(self, task: BatchTask, destination: Destination, size: int, written: Written) -> None:
         """Deliver a dataset in parts of so many inputs, each made by a worker."""
-        from meshonet_cli.batch.parts import PartMaker, deliver_parts, one_after_the_other, parts_of
+        from meshonet_cli.batch.parts import PartMaker, PartTask, deliver_parts
 
         files = destination.part_files(task.make, size)
         skip = self.files.skip_existing
         maker = PartMaker(files, task.kind, task.read, MemberWork(task.make, None), skip)
-        parts, whole = parts_of(self.inputs, size), self.inputs.shard == (1, 1)
+        parts, whole = starmap(PartTask, self.inputs.parts(size)), self.inputs.shard == (1, 1)
         report = partial(
             deliver_parts, files=files, session=self.session, written=written, skip_existing=skip, whole=whole
         )
         if self.engine.here:
-            report(one_after_the_other(maker, parts))
+            report(attempted(maker, parts))
             return
         with self.engine.workers(self.session.warn) as workers:
             report(workers.in_order(maker, parts, workers.count))
