@@ -47,7 +47,8 @@ def plot(
         help="Colour the cells by this metric; none draws lines only.",
     )] = "max_angle",
     zoom: Annotated[str | None, _option(
-        "--zoom", metavar="x0,x1,y0,y1", help="Show this part only; in space x0,x1,y0,y1,z0,z1, of a --slice either.",
+        "--zoom", metavar="x0,x1,y0,y1",
+        help="Show this part only; in space x0,x1,y0,y1,z0,z1, of a --slice either.",
     )] = None,
     slice_: Annotated[str | None, _option(
         "--slice", metavar="SLICE",
