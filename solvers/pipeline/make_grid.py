@@ -23,6 +23,7 @@ from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import reached, stage
 
 if TYPE_CHECKING:
+    from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
     from meshonet.geometry.shapes.domain_shape import DomainShape
     from meshonet.solvers.pipeline.methods import Method
     from meshonet.solvers.progress import HistoryRow
@@ -133,7 +134,7 @@ def make_grids_of(
 class _Member:
     """A shape on its way: its boundary or what went wrong, and its solution once it was made with others."""
 
-    boundary: Boundary | DomainShape | SpatialShape | Exception
+    boundary: Boundary | BaseWake | DomainShape | SpatialShape | Exception
     seconds: dict[str, float]
     solution: Solution | None = None
 
@@ -145,7 +146,7 @@ def _group(
     nodes = 0
     for key in islice(keys, most):
         seconds: dict[str, float] = {}
-        boundary: Boundary | DomainShape | SpatialShape | Exception
+        boundary: Boundary | BaseWake | DomainShape | SpatialShape | Exception
         try:
             with stage("boundary", seconds):
                 boundary = sampled(shape_of(key), request)
@@ -193,7 +194,11 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     if isinstance(boundary, SpatialShape):
         return _of_volume(boundary, request, seconds)
     if not isinstance(boundary, Boundary):
-        return _of_blocks(boundary, request, seconds)
+        from meshonet.geometry.shapes.domain_shape import DomainShape
+
+        if isinstance(boundary, DomainShape):
+            return _of_blocks(boundary, request, seconds)
+        return _of_base(boundary, request, seconds)
     rows: tuple[HistoryRow, ...] = ()
     if solution is None:
         reached("grid")
@@ -243,6 +248,25 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
     solution = make_blocks(shape, block_request(request))
     seconds |= {"load": loaded - begun, **solution.seconds}
     return judged(solution, seconds, request, remedy="use more {cells}")
+
+
+def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -> Result:
+    """Return the C grid around a section with a base, measured."""
+    from meshonet.solvers.hyperbolic.around_base import around_base
+
+    reached("grid")
+    begun = time.perf_counter()
+    solution = around_base(
+        lines,
+        first=(request.height() or 0.0) * lines.chord,
+        growth=request.growth,
+        free_rows=request.growth is not None and request.sampling.nj is None,
+        constant=request.constant_layers or 1,
+    )
+    _add_times(seconds, solution, time.perf_counter() - begun)
+    note = request.height_note(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
+    solution = replace(solution, notes=(note, *solution.notes) if note else solution.notes)
+    return judged(solution, seconds, request, remedy="use another {res}, or {te} wedge")
 
 
 def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, float]) -> Result:
