@@ -17,7 +17,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import SIDES, Side
+from meshonet.geometry.arrays import SIDES, Floats, Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Connection

@@ -17,7 +17,6 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch, kind_of
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.shared_sides import Line, connection_of, key_of, shared, shared_in_part
-from meshonet.geometry.polygon.corners import Indices
 
 _SIDES: tuple[Side, ...] = ("south", "north", "west", "east")
 
