@@ -19,7 +19,6 @@ import io
 import os
 import re
 import sys
-import warnings
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, Any, NoReturn
@@ -29,7 +28,7 @@ import typer.core
 
 from meshonet import __version__
 from meshonet_cli.commands import COMMANDS, Command
-from meshonet_cli.terminal.stopping import LINES, install
+from meshonet_cli.terminal.stopping import LINES, hide_warnings, install
 
 INTERRUPTED, BAD_INPUT = 130, 2
 """Exit codes: of Ctrl-C as shells have it, and of input that cannot be used."""
@@ -144,8 +143,7 @@ def main() -> NoReturn:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # names from files, on a terminal that lacks them
     words = sys.argv[1:]
-    if not sys.warnoptions and "--debug" not in words:
-        warnings.simplefilter("ignore")  # of Python, about the source: what a user should know is a note
+    hide_warnings()
     mpi = "--engine=mpi" in words or ("--engine", "mpi") in pairwise(words)
     code = _on_ranks(words) if mpi else run(words)
     with contextlib.suppress(BrokenPipeError):
