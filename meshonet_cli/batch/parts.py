@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.hdf5.parts import Failed, OtherPartsError, PartFiles, State
 from meshonet.geometry.errors import InputError, MeshonetError
+from meshonet.solvers.stages import stage
 from meshonet_cli.batch.destination import same_size
 from meshonet_cli.batch.input_digests import digests_of
 from meshonet_cli.batch.item import Item, Make, made
@@ -105,7 +106,7 @@ class PartMaker:
             except Exception as error:
                 fail(item, error)
                 continue
-            with report.timed("write"):
+            with stage("write", report.seconds):
                 yield what
             done.members.append((item, report))
         done.members.sort(key=lambda member: member[0].index)

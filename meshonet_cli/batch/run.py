@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.registry import Kind
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.stages import reached
+from meshonet.solvers.stages import stage
 from meshonet_cli.batch.destination import Destination, same_size
 from meshonet_cli.batch.item import Item, Make, Pair, attempted, made
 from meshonet_cli.batch.settings import HERE, Engine, Files
@@ -160,8 +160,7 @@ class Batch:
                 fits = True
             if not fits:
                 continue
-            reached("write")
-            with report.timed("write"):
+            with stage("write", report.seconds):
                 yield what
             written(report, destination.text)
 
@@ -184,8 +183,7 @@ class MemberWork:
                 report.item = bare
                 if self.destination is not None:
                     try:
-                        reached("write")
-                        with report.timed("write"):
+                        with stage("write", report.seconds):
                             self.destination.write(item.path, [what])
                         outcome = None, report
                     except Exception as error:

@@ -17,6 +17,7 @@ from meshonet.solvers.pipeline.choose_method import method_of
 from meshonet.solvers.pipeline.make_grid import MOST_NODES, make_grids_of
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.result import Result
+from meshonet.solvers.stages import stage
 from meshonet_cli.batch.item import Item, Outcome, Pair, made
 from meshonet_cli.batch.provenance import provenance
 from meshonet_cli.batch.run import Batch, BatchTask
@@ -55,13 +56,12 @@ def reported(
         residual=solution.residual, cycles=solution.cycles, notes=result.notes, history=result.history,
     )  # fmt: skip
     report.seconds |= result.seconds
-    if grid.topology == "blocks":
-        from meshonet.geometry.quality.blocks import block_counts, block_figures
+    with stage("quality", report.seconds):
+        if grid.topology == "blocks":
+            from meshonet.geometry.quality.blocks import block_counts, block_figures
 
-        with report.timed("quality"):
             report.blocks = block_figures(grid, result.quality) if detailed else block_counts(grid)
-    if criteria:
-        with report.timed("quality"):
+        if criteria:
             report.judgement = criteria.judge(grid, result.quality)
     return grid.with_provenance(**provenance()), report
 
