@@ -108,12 +108,8 @@ def tfi(shape: AnyShape, *, res: Counts | None = None, method: str = "tfi", **pa
 
     Raises
     ------
-    InputError
-        A shape or parameter that cannot be used.
-    NoValidGridError
-        Cells are folded, and `allow_invalid` was not given.
-    SolverError
-        The method diverged.
+    InputError, NoValidGridError, SolverError
+        As of `grid`.
 
     Examples
     --------
@@ -137,12 +133,8 @@ def solve_pde(shape: AnyShape, *, res: Counts | None = None, method: str = "auto
 
     Raises
     ------
-    InputError
-        A shape or parameter that cannot be used.
-    NoValidGridError
-        Cells are folded, and `allow_invalid` was not given.
-    SolverError
-        The method diverged.
+    InputError, NoValidGridError, SolverError
+        As of `grid`.
 
     Examples
     --------
@@ -166,12 +158,8 @@ def infer(shape: AnyShape, *, res: Counts | None = None, model: str | None = Non
 
     Raises
     ------
-    InputError
-        A shape or parameter that cannot be used.
-    NoValidGridError
-        Cells are folded, and `allow_invalid` was not given.
-    SolverError
-        The method diverged.
+    InputError, NoValidGridError, SolverError
+        As of `grid`.
 
     Examples
     --------
