@@ -56,7 +56,7 @@ def write(
     cells = dict(cell_data or {})
     for name, values in cells.items():
         cells[name] = _cell_values(name, values, nodes)
-    facts = _facts(grid) if facts is None else facts
+    facts = facts_of(grid) if facts is None else facts
     ni, nj, nk = (*grid.blocks[block].counts, 1)[:3]
     with path.open("wb") as stream:
         stream.write(_head((ni, nj, nk), facts, cells).encode())
@@ -72,14 +72,6 @@ def write(
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     """Write the only grid of `grids`, of one block."""
     write(path, only_one(grids, "a .vts file"))
-
-
-def _facts(grid: Grid) -> Facts:
-    if grid.form == "plane":
-        return facts_of(grid)
-    from meshonet.geometry.blocks.extrude import plane_of_extruded
-
-    return facts_of(plane_of_extruded(grid) or grid)
 
 
 def _head(dims: tuple[int, int, int], facts: Facts, cells: Mapping[str, NDArray[Any]]) -> str:
