@@ -104,6 +104,8 @@ def _shape(row: Table, folder: Path) -> Airfoil | Outline:
         problem = "stands beside outline" if keys else "is missing"
         raise row.error("airfoil", problem, remedy)
     text = row.text(keys[0])
+    if not is_designation(text) and (folder / text).exists() and not (folder / text).is_file():
+        raise row.error(keys[0], f"{printable(text)} is no regular file", remedy)
     try:
         shapes = list(read_shapes(text if is_designation(text) else str(folder / text)))
     except InputError as error:

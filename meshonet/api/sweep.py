@@ -62,7 +62,6 @@ def sweep(
     Returns
     -------
     Grid
-        The volume of a cross-section carried along a curve in space.
 
     Raises
     ------
@@ -85,9 +84,7 @@ def sweep(
 
 def _section(outline: AnyShape) -> Any:
     if isinstance(outline, str | File):
-        nothing = "holds nothing", "give a file with a closed curve or a planar grid in it"
-        several = "holds several shapes", "give a file with one"
-        return only(read_sections(str(outline)), str(outline), nothing, several)
+        return only(read_sections(str(outline)), outline, "a closed curve or a planar grid")
     if isinstance(outline, Domain):
         return DomainShape(outline)
     return Outline(outline) if isinstance(outline, np.ndarray) else outline

@@ -21,7 +21,7 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 
 # fmt: off
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ConvertedFiles(o.FileOptions):
     """Files of other formats."""
 
@@ -32,11 +32,9 @@ class ConvertedFiles(o.FileOptions):
     )] = ""
 
 
-@o.expanded
 def convert(
     files: ConvertedFiles,
-    many: o.InputOptions,
-    printing: o.PrintOptions,
+    run: o.InputOptions,
     names: Annotated[list[str] | None, typer.Argument(
         metavar="IN... [OUT]", show_default=False,
         help="Files to read, or - for standard input; without -o the last name is the file to write.",
@@ -79,11 +77,11 @@ def convert(
     from meshonet_cli.tasks.conversions import convert_files, print_formats
 
     if list_formats:
-        return print_formats(printing.session())
+        return print_formats(run.session())
     *sources, target = words = [*(names or []), *([files.output] if files.output else [])] or [""]
     if not sources:
         remedy = f"name it: meshonet convert {words[0] or 'IN'} OUT"
         raise InputError("there is no file to write", remedy, source="convert")
-    batch = printing.batch(many.of(sources), replace(files, output=target))
+    batch = run.batch(run.inputs(sources), replace(files, output=target))
     return convert_files(batch, Conversion(extrude, planes, swap, normalise, coarsen or 1), plot3d)
 # fmt: on

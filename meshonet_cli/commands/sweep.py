@@ -1,10 +1,12 @@
 """``meshonet sweep``."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
 
 from meshonet_cli import options as o
+from meshonet_cli.batch.settings import Files
 
 EXAMPLES = (
     "meshonet sweep circle:0.5 bend.toml -o pipe.h5",
@@ -15,18 +17,25 @@ _sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
 
 
 # fmt: off
-@o.expanded
+@dataclass(frozen=True, kw_only=True)
+class SectionFiles(Files):
+    """Files of volumes, and the format of their sections."""
+
+    output: o.Output
+    from_format: o.From = None
+    to_format: o.To = None
+    skip_existing: o.SkipExisting = False
+
+
 def sweep(
     names: Annotated[list[str], typer.Argument(
         metavar="OUTLINE... PATH", show_default=False,
         help="Cross-sections: circle:RADIUS, or a file with a closed curve, a domain, a layout or a planar "
         "grid. Then the path of all: a file of points x y z, one a line, or lines and arcs in TOML.",
     )],
-    many: o.InputOptions,
-    printing: o.PrintOptions,
+    run: o.RunOptions,
     gates: o.GateOptions,
-    workers: o.EngineOptions,
-    files: o.SectionFiles,
+    files: SectionFiles,
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ", help="Nodes along the sides of a four-sided section. [default: 65x33]",
     )] = None,
@@ -92,7 +101,6 @@ def sweep(
         "allow_invalid": allow_invalid, "threads": threads,
     }
     direction = o.numbers(up, (3,), "a direction", "use X,Y,Z, e.g. 0,0,1", "up")
-    batch = printing.batch(many.of(outlines), files, workers)
-    settings = Sweep(planes, direction, twist, scale)
+    batch, settings = run.batch(run.inputs(outlines), files), Sweep(planes, direction, twist, scale)
     return write_sweeps(batch, path, section, settings, gates.criteria(), around=around)
 # fmt: on

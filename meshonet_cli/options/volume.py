@@ -15,7 +15,7 @@ Layers = Annotated[int | None, _option(
 )]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class VolumeOptions:
     """How a volume is marched from a surface, or filled inside six faces."""
 

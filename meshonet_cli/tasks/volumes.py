@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Any
@@ -23,6 +22,7 @@ from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
 from meshonet.solvers.pipeline.sweeps import make_sweep
 from meshonet.solvers.stacking.request import StackRequest, stack_request
+from meshonet.solvers.stages import stage
 from meshonet.solvers.sweeping.sweep import Sweep
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.provenance import provenance
@@ -57,10 +57,11 @@ def _stacked(item: Item[Stack], request: StackRequest, criteria: Criteria) -> tu
 
 
 def _surface(item: Item[Stack], request: StackRequest) -> tuple[Grid, Delivered]:
-    begun = time.perf_counter()
-    grid, notes = stack_surface(item.what, request)
+    seconds: dict[str, float] = {}
+    with stage("grid", seconds):
+        grid, notes = stack_surface(item.what, request)
     report = delivered(item, grid, part_names(grid), "surface", notes=notes)
-    report.seconds["grid"] = time.perf_counter() - begun
+    report.seconds |= seconds
     return grid.with_provenance(**change_facts(notes), **provenance()), report
 
 

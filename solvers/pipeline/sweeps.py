@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.path import Path
 from meshonet.geometry.shapes.shape import Shape
@@ -12,7 +10,7 @@ from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.pipeline.sections import section_grid
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.stages import reached
+from meshonet.solvers.stages import stage
 from meshonet.solvers.sweeping.sweep import Sweep, reach_of, self_crossing, sweep
 
 _REMEDY = "use a wider bend, a smaller section or more {planes}"  # where cells fold
@@ -31,19 +29,13 @@ def make_sweep(
     """
     seconds: dict[str, float] = {}
     with limited_to(request.threads):
-        begun = time.perf_counter()
-        section, notes = section_grid(shape, request, around)
-        seconds["boundary"] = time.perf_counter() - begun
-        reached("grid")
-        begun = time.perf_counter()
-        grid = sweep(section, path, settings)
-        crossing = self_crossing(path, reach_of(section))
+        with stage("boundary", seconds):
+            section, notes = section_grid(shape, request, around)
+        with stage("grid", seconds):
+            grid = sweep(section, path, settings)
+            crossing = self_crossing(path, reach_of(section))
         if crossing is not None:
             where = "({:.4g}, {:.4g}, {:.4g})".format(*crossing)
-            notes = (
-                *notes,
-                f"the path comes back near itself: the volume may run through itself near {where}",
-            )
-        seconds["grid"] = time.perf_counter() - begun
+            notes += (f"the path comes back near itself: the volume may run through itself near {where}",)
         solution = Solution(grid, "sweep", notes=notes)
         return judged(solution, seconds, request, remedy=_REMEDY)

@@ -95,7 +95,7 @@ def test_a_batch_names_its_failures(meshonet: Meshonet) -> None:
         (("--shift", "wall=1,2,3", "--rotate", "wall=5@0,0"), "is turned in the plane"),
         (("--shift", "tail=1,2"), "has no 'tail'"),
         (("--wall", "missing.dat"), "missing.dat"),
-        (("--wall", "two.csv"), "two.csv: holds several shapes; give a file with one"),
+        (("--wall", "two.csv"), "two.csv: holds several, where the new shape of a wall is asked for; give a"),
     ],
 )
 def test_bad_words_get_a_line(meshonet: Meshonet, words: tuple[str, ...], says: str) -> None:
