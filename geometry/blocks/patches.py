@@ -8,13 +8,16 @@ from meshonet.geometry.arrays import SIDES, Side, Topology
 from meshonet.geometry.blocks.block import PLACES, Range, face_counts, sides_of
 from meshonet.geometry.errors import InputError
 
-Kind: TypeAlias = Literal["wall", "farfield", "inlet", "outlet", "symmetry", "periodic", "interface", "other"]
+Kind: TypeAlias = Literal[
+    "wall", "farfield", "inlet", "outlet", "symmetry", "wedge", "periodic", "interface", "other"
+]
 
 _SIGNS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
     ("farfield", ("far", "freestream")),
     ("inlet", ("inlet", "inflow")),
     ("outlet", ("outlet", "outflow")),
     ("symmetry", ("symm",)),
+    ("wedge", ("wedge",)),
     ("wall", ("wall", "airfoil", "body", "surface", "blade")),
     ("periodic", ("periodic",)),
     ("interface", ("interface", "wake")),
