@@ -77,7 +77,7 @@ class Cap:
         away = np.concatenate([np.zeros((len(loop), 1)), np.cumsum(fine, axis=1)], axis=1)
         length = away[:, -1]
         ends = np.clip(length / self.rows, sizes / _EVEN, sizes * _EVEN)
-        shares = [1.0 / sum(ratio**k for k in range(self.rows)) for ratio in (_RATIO, 1.0 / _RATIO)]
+        shares = [1.0 / sum(math.pow(ratio, k) for k in range(self.rows)) for ratio in (_RATIO, 1.0 / _RATIO)]
         ends = np.clip(ends, shares[0] * length, shares[1] * length)
         places = np.cumsum(ring_steps(length, ends, self.rows, None), axis=1)
         parts = [np.interp(places[k, :-1], away[k], part) for k in range(len(loop))]
