@@ -109,7 +109,7 @@ class Figures:
         """Return the longest extents of closed lines on walls of a volume, which go around sections."""
         if self.grid.form != "volume":
             return []
-        walls = [rows_at(self.grid, patch, 1)[0] for patch in self.walls]
+        walls = [self.grid.at(patch) for patch in self.walls]
         lines = [each for wall in walls for each in (wall, wall.swapaxes(0, 1)) if _closed(each)]
         return [_longest(each) for each in lines]
 
