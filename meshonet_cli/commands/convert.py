@@ -14,7 +14,7 @@ EXAMPLES = (
     "meshonet convert grids/*.vts -o 'plot3d/{stem}.p3d'",
     "meshonet tfi duct.csv --res 41x21 -o - | meshonet convert - coarse.vts --coarsen 2",
     "meshonet convert grid.vts case/case.foam --extrude 0.1",
-    "meshonet convert grid.vts wedge/case.foam --revolve 5 --axis 0,-1,1,0",
+    "meshonet convert grid.vts wedge/case.foam --revolve 5 --axis 0,-40,1,0",
     "meshonet convert grid.vts grid.p3d --plot3d fortran,big,single",
     "meshonet convert --list-formats",
 )
