@@ -8,13 +8,16 @@ from meshonet.geometry.arrays import SIDES, Side, Topology
 from meshonet.geometry.blocks.block import PLACES, Range, face_counts, sides_of
 from meshonet.geometry.errors import InputError
 
-Kind: TypeAlias = Literal["wall", "farfield", "inlet", "outlet", "symmetry", "periodic", "interface", "other"]
+Kind: TypeAlias = Literal[
+    "wall", "farfield", "inlet", "outlet", "symmetry", "wedge", "periodic", "interface", "other"
+]
 
 _SIGNS: tuple[tuple[Kind, str], ...] = (
     ("farfield", "far"), ("farfield", "freestream"),
     ("inlet", "inlet"), ("inlet", "inflow"),
     ("outlet", "outlet"), ("outlet", "outflow"),
     ("symmetry", "symm"),
+    ("wedge", "wedge"),
     ("wall", "wall"), ("wall", "airfoil"), ("wall", "body"), ("wall", "surface"), ("wall", "blade"),
     ("periodic", "periodic"),
     ("interface", "interface"), ("interface", "wake"),

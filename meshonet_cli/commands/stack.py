@@ -55,6 +55,11 @@ def stack(
         help="How a wing ends: half as high as thick, flat, or not closed. [default: what the file says, or "
         "round]",
     )] = None,
+    revolve: Annotated[float | None, _volume(
+        "--revolve", metavar="DEG",
+        help="Have z of blades and ducts turn about an axis, by this from the first section to the last.",
+    )] = None,
+    axis: o.Axis = None,
     surface: Annotated[bool, _volume(
         "--surface", help="Write the patches of the surface only, for other programs or solve-pde.",
     )] = False,
@@ -81,6 +86,7 @@ def stack(
     chosen = {
         "around": around, "span": span, "base": base, "far_field": far_field, "first_cell": first_cell,
         "y_plus": y_plus, "reynolds": reynolds, "layers": layers, "growth": growth, "threads": threads,
+        "revolve": revolve, "axis": o.axis_of(axis),
     }
     parameters = {name: value for name, value in chosen.items() if value is not None}
     return write_stacks(

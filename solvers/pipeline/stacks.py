@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.revolve import bent
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.result import Result, judged
+from meshonet.solvers.pipeline.wall_facts import wall_facts
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.wing_surface import wing_surface
@@ -48,12 +51,18 @@ def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
         from meshonet.solvers.pipeline.lofts import blade_volume, duct_volume
 
         grid, notes = (blade_volume if stack.kind == "blade" else duct_volume)(stack, request)
+        if request.turn is not None:
+            blocks = bent([block.nodes for block in grid.blocks], request.turn)
+            grid = replace(grid, blocks=tuple(map(Block, blocks)))
     note = request.height_note(f"on a chord of {stack.chord:.6g}", stack.chord)
     return Solution(grid, "loft", notes=(*notes, note) if note else notes)
 
 
 def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
     """Return the volume marched from the surface of a wing, whose root lies in a plane of symmetry."""
+    if request.turn is not None:
+        problem = "a wing is not turned about an axis"
+        raise InputError(problem, "leave {revolve} out, or make a blade or duct", parameter="revolve")
     with stage("load", seconds):
         from meshonet.geometry.surface.surface import surface_of
         from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_surface
@@ -68,5 +77,6 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
     with stage("grid", seconds):
         solution = march_surface(surface, settings)
     note = request.height_note(f"on a chord of {chord:.6g}", chord)
-    notes = (*notes, *[note] * bool(note), *solution.notes)
+    facts = wall_facts(solution.grid, settings.limit if request.layers is None else request.growth)
+    notes = (*notes, *[note] * bool(note), *solution.notes, *facts)
     return replace(solution, grid=replace(solution.grid, name=stack.name), notes=notes)
