@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +63,7 @@ def tables_of(mesh: HexMesh, moves: Bools, targets: Targets, lengths: Sequence[F
     for part in parts:
         if part is None:
             continue
-        node, _, _, skip, busy = part
+        node, skip, busy = part[0], part[3], part[4]
         rows.append([*node.shape, *starts.tolist()])
         inner = (slice(1, -1),) * 3
         own.append(node[inner].ravel())
@@ -72,14 +72,16 @@ def tables_of(mesh: HexMesh, moves: Bools, targets: Targets, lengths: Sequence[F
     tables = [[each[k] for each in parts if each is not None] for k in range(5)]
     shapes = ((0,), (3, 0), (3, 0), (0,), (0,))
     kinds = np.int32, np.float32, np.float64, np.uint8, np.bool_
-    joined = [
+    joined: list[Any] = [
         np.concatenate(
             [np.empty(shape, kind), *(np.reshape(e, (*shape[:-1], -1)).astype(kind) for e in each)], axis=-1
         )
         for each, shape, kind in zip(tables, shapes, kinds, strict=True)
     ]
     free, start, place = _forces(moves, np.concatenate(own), np.concatenate(places))
-    return HexTables(np.array(rows, dtype=np.int64).reshape(-1, 6), *joined, free, start, place)
+    node, target, inverse, skip, busy = joined
+    blocks = np.array(rows, dtype=np.int64).reshape(-1, 6)
+    return HexTables(blocks, node, target, inverse, skip, busy, free, start, place)
 
 
 def cell_lengths(edges: Sequence[Floats]) -> Floats:

@@ -36,7 +36,7 @@ class PlanesDescent(HexProblem):
         self.descent = descent_of(self.nodes, tables, sizes, self.mesh.cells, slides, over)
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Take `most` iterations, fewer where little is gained; return the smallest Jacobian and the value."""
+        """Take `most` iterations, fewer without gain; return the smallest Jacobian and the value."""
         found = super().run(weights, most, epsilon)
         self.planes[...] = self.nodes.T.reshape(self.planes.shape)
         return found

@@ -8,6 +8,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.energy.hex_functional import ENERGIES, OPTIMAL, Energy, HexWeights
 from meshonet.solvers.energy.hexes import NEARLY
 from meshonet.solvers.iteration import check_tolerances
 from meshonet.solvers.solution import Outcome, Solution
@@ -15,7 +16,6 @@ from meshonet.solvers.stages import reached
 from meshonet.solvers.volumes.descent import PlanesDescent
 from meshonet.solvers.volumes.edge_corners import check_corners
 from meshonet.solvers.volumes.first_cells import keep_first_cells
-from meshonet.solvers.energy.hex_functional import ENERGIES, OPTIMAL, Energy, HexWeights
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import Laws, arc_laws, mean_laws, uniform_laws
 from meshonet.solvers.volumes.refine import refine_volume
