@@ -269,6 +269,7 @@ class HexDescent:
         self, gain: float, most: int, renewal: int, still: float = ..., reach: float = ...,
         farthest: float = ...,
     ) -> tuple[float, float, int]: ...  # fmt: skip
+    def smallest(self) -> float: ...
     def evaluate(self, gradient: Floats) -> tuple[float, float]: ...
 
 # surfaces

@@ -33,7 +33,7 @@ NARROW = 8  # rounds after which ε is 0.3 of what it would be
 WITHOUT_GAIN = 6
 """Rounds without gain after which unfolding is given up."""
 SIZE = 0.1
-"""Weight of volumes in unfolding, where the size of cells is free."""
+"""Weight of the volumes of cells in unfolding."""
 NEARLY = 0.05
 """Smallest Jacobian, 1 in a cell of wanted lengths, below which cells are opened before all else."""
 OPENED = 20, 10, 10
@@ -86,8 +86,6 @@ class HexOptimum:
 class HexProblem:
     """The descent of a mesh of which nodes `moves` (n,) are free."""
 
-    size = SIZE
-
     def __init__(self, mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides | None = None) -> None:
         self.mesh, self.moves, self.iterations = mesh, moves, 0
         self.slides = Slides.none() if slides is None else slides
@@ -102,7 +100,7 @@ class HexProblem:
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
         """Take `most` iterations, fewer without gain; return the smallest Jacobian and the value."""
-        size = self.size if epsilon > 0.0 else 0.0
+        size = SIZE if epsilon > 0.0 else 0.0
         self.descent.weigh(weights.shape, weights.smoothness, weights.power, epsilon, size)
         value, smallest, done = self.descent.run(weights.gain, most, RENEWED, STILL, REACH)
         self.iterations += done
@@ -110,7 +108,8 @@ class HexProblem:
 
     def smallest(self) -> float:
         """Return the smallest corner Jacobian, 1 in a cell of wanted lengths."""
-        return self.run(UNFOLDING, 0, 1.0)[0]
+        self.descent.weigh(UNFOLDING.shape, 0.0, 1, 1.0)
+        return self.descent.smallest()
 
     def unfold(self, smallest: float, rounds: int = ROUNDS, iterations: int = ROUND) -> float:
         """Lower the regularised functional while a Jacobian is not positive; return the smallest."""
