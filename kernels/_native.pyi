@@ -260,8 +260,10 @@ class HexDescent:
         self, shape: float, smoothness: float, power: int = 2, epsilon: float = 0.0, size: float = 0.0
     ) -> None: ...  # fmt: skip
     def run(
-        self, gain: float, most: int, renewal: int, still: float = ..., reach: float = ..., farthest: float = ...
+        self, gain: float, most: int, renewal: int, still: float = ..., reach: float = ...,
+        farthest: float = ...,
     ) -> tuple[float, float, int]: ...  # fmt: skip
+    def smallest(self) -> float: ...
     def evaluate(self, gradient: Floats) -> tuple[float, float]: ...
 
 # surfaces
