@@ -148,7 +148,7 @@ def _optimised(
 ) -> Layout:  # fmt: skip
     """Return a layout with its nodes optimised for some sizes; `held` (n,) stay."""
     mesh = layout.mesh
-    targets = counts.metric.edges(mesh)
+    targets = counts.metric.gradual(mesh)
     if rows.loops:
         step = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
         targets *= exp(middle(log(np.hypot(*step.T) / targets)))  # cells are larger than they will be

@@ -17,7 +17,7 @@ from meshonet.kernels._native import nearest_points
 GRADING = 0.13
 """How fast edges may grow with the distance from a wall."""
 
-SWEEPS = 20
+SWEEPS = 10
 """Sweeps over wanted lengths that make them change gradually."""
 
 
