@@ -28,7 +28,7 @@ FAILURES = 8
 """Trials without gain, one after another, after which the mesh stays as it is."""
 
 PER_CHORD = 14
-"""Chords, beside the first, of which one is collapsed before an optimum: of few chords each is judged alone."""
+"""Chords for each one that is collapsed beside the first before an optimum: few are judged one by one."""
 ITERATIONS = (6, 12, 22)
 """Iterations of the functional before a trial is judged, and further ones before it is judged again."""
 
@@ -41,7 +41,7 @@ PER_TRIAL, PER_OPTIMUM = 3, 20
 def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None = None) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
-    While that helps, several are collapsed before the next optimum where there are many. `price` is what a block costs, in
+    While that helps, several of many are collapsed before the next optimum. `price` is what a block costs, in
     degrees of mean deviation from 90; `sizes`, if any, are wanted of edges.
     """
 
