@@ -32,8 +32,7 @@ from meshonet.solvers.blocking.cascade.passage import (
 from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
 from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
-from meshonet.solvers.blocking.layers.finished import evened
-from meshonet.solvers.blocking.layers.folds import smallest_corner
+from meshonet.solvers.blocking.layers.finished import evened, smallest_corner
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine

@@ -27,10 +27,9 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.layers.attach import attach
-from meshonet.solvers.blocking.layers.even_loops import evened_loops
+from meshonet.solvers.blocking.layers.even_line import evened_loops
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
-from meshonet.solvers.blocking.layers.finished import finished
-from meshonet.solvers.blocking.layers.folds import smallest_corner, unfolded
+from meshonet.solvers.blocking.layers.finished import finished, smallest_corner, unfolded
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, heights_inside, ring_rows
 from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
 from meshonet.solvers.blocking.layers.placed_rows import held_nodes, layers_of, with_layers
