@@ -75,10 +75,10 @@ def cascade_layout(
                 raise
     with timings.stage("refine"):
         fine = multiplied(coarse, times)
-        flat = laid_out(fine, passage, cut_of(fine))
+        flat, cut = laid_out(fine, passage, cut_of(fine))
     with timings.stage("layers"):
-        rows = _rows(cascade, flat.layout, metric)
-        whole = extended(flat, passage, cascade.blade, rows)
+        rows = _rows(cascade, flat, metric)
+        whole = extended(flat, cut, passage, cascade.blade, rows)
         whole = evened(whole, cascade.layers)
     if smallest_corner(whole.mesh) <= 0.0:
         raise NoValidGridError("cells of the passage are folded")
