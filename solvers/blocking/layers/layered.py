@@ -43,6 +43,8 @@ from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quads import optimise
 
 ITERATIONS, STRIDING = 120, 60
+SWEEPS = 10
+"""Sweeps that make wanted lengths change gradually: with twice as many, cells in slots grow too fast."""
 COUNTINGS = 3
 """How often cells are counted, nodes optimised after each, before nodes on fronts are evened and held."""
 EVEN = math.log(1.24)
@@ -147,7 +149,7 @@ def _optimised(
 ) -> Layout:  # fmt: skip
     """Return a layout with its nodes optimised for some sizes; `held` (n,) stay."""
     mesh = layout.mesh
-    targets = counts.metric.gradual(mesh)
+    targets = counts.metric.gradual(mesh, SWEEPS)
     if rows.loops:
         step = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
         targets *= exp(middle(log(np.hypot(*step.T) / targets)))  # cells are larger than they will be

@@ -27,8 +27,8 @@ from meshonet.solvers.energy.quads import optimise
 FAILURES = 8
 """Trials without gain, one after another, after which the mesh stays as it is."""
 
-PER_CHORD = 14
-"""Chords for each one that is collapsed beside the first before an optimum: few are judged one by one."""
+PER_CHORD = 14, 18
+"""Chords for each one collapsed beside the first, without and with wanted sizes: few are judged alone."""
 ITERATIONS = (6, 12, 22)
 """Iterations of the functional before a trial is judged, and further ones before it is judged again."""
 
@@ -41,8 +41,8 @@ PER_TRIAL, PER_OPTIMUM = 3, 20
 def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None = None) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
-    While that helps, several of many are collapsed before the next optimum. `price` is what a block costs, in
-    degrees of mean deviation from 90; `sizes`, if any, are wanted of edges.
+    Several of many are collapsed before the next optimum. `price` is what a block costs, in degrees of mean
+    deviation from 90; `sizes`, if any, are wanted of edges.
     """
 
     def wanted(mesh: QuadMesh) -> Floats | None:
@@ -63,7 +63,8 @@ def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None =
             if not optimum.valid or less(value, best):
                 break
         if less(value, best):
-            current, best, count, failed = trial, value, min(2 * count, 1 + trial.chords // PER_CHORD), set()
+            current, best, failed = trial, value, set()
+            count = min(2 * count, 1 + trial.chords // PER_CHORD[sizes is not None])
         else:
             failed |= {first} if count == 1 else set()
             count = 1

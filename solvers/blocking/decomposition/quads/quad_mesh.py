@@ -137,10 +137,12 @@ def _lattice(nodes: _Nodes, face: Face, first: int) -> tuple[Indices, Floats]:
     inner[...] = first + np.arange(inner.size).reshape(inner.shape)
     if not inner.size:
         return grid, np.empty((0, 2))
-    lines = grid[:, 0], grid[:, -1], grid[0], grid[-1]
-    sides = tuple(pairs_of(nodes.points[line]) for line in lines)
+    low, high, left, right = (
+        pairs_of(nodes.points[line]) for line in (grid[:, 0], grid[:, -1], grid[0], grid[-1])
+    )
+    sides = low, high, left, right
     filled = np.empty((2, *grid.shape))
-    interpolate(*filled, sides, parameters(sides, "arclength"))
+    interpolate(filled[0], filled[1], sides, parameters(sides, "arclength"))
     return grid, filled[:, 1:-1, 1:-1].reshape(2, -1).T
 
 
