@@ -52,7 +52,9 @@ def draw(
     Of a grid around a small body, one view near it and one of the whole. Each `every`-th grid line is drawn;
     None chooses. Raises InputError for a zoom that shows nothing.
     """
-    singles = _singles(grid)
+    if grid.topology == "blocks":
+        planar(grid)
+    singles = [Grid((block,)) for block in grid.blocks] if grid.topology == "blocks" else [grid]
     views = [zoom] if zoom else _views(grid)
     parts = [_visible(grid, singles, view) for view in views]
     figure, axes, bar = frame(views, colouring is not None)
@@ -63,38 +65,31 @@ def draw(
     for ax, view, seen in zip(axes, views, parts, strict=True):
         pixels = ax.get_window_extent().width / (view[1] - view[0])
         lines = lines_of_blocks(grid, singles, seen, pixels, every)
-        for k, (single, part, (steps, flipped)) in enumerate(zip(singles, seen, lines, strict=True)):
+        for k, (single, part, (step, flipped)) in enumerate(zip(singles, seen, lines, strict=True)):
             if not part:
                 continue
             if colouring:
                 mesh = paint(ax, single, colouring.parts[k], part, pixels, limits, colouring)
-            rule(ax, single, part, steps, faint=colouring is not None, flipped=flipped)
-        _outlines(ax, grid)
+            rule(ax, single, part, step, faint=colouring is not None, flipped=flipped)
+        if grid.topology == "blocks":
+            outline_blocks(ax, grid)
+            mark_vertices(ax, grid)
+        else:
+            outline(ax, grid)
         ax.set(xlim=view[:2], ylim=view[2:])
-        _note_lines(ax, [steps for steps, _ in lines])
+        steps = [pair for pair, _ in lines]
+        each = sorted({step for pair in steps for step in pair})
+        note(ax, _drawn_lines(*steps[0]) if len(steps) == 1 and len(each) > 1 else step_words(each))
     if bar is not None and mesh is not None and colouring:
-        colour_bar(bar, mesh, colouring.label, _beyond(colouring, limits))
+        below = any(bool((values < limits[0]).any()) for values in colouring.parts)
+        above = any(bool((values > limits[1]).any()) for values in colouring.parts)
+        ends = ("neither", "min", "max", "both")[below + 2 * above]  # in matplotlib's words
+        colour_bar(bar, mesh, colouring.label, ends)
     name = grid.name if len(grid.name) <= _NAME else grid.name[: _NAME - 1] + "…"
     size = shown_counts(grid) if grid.topology == "blocks" else f"{grid.ni} × {grid.nj} nodes"
     title = f"{name}   {size}".strip()
     axes[0].set_title(title, size=10, color=INK, loc="left", pad=4)
     return figure
-
-
-def _singles(grid: Grid) -> list[Grid]:
-    """Return the grid, or those of its blocks."""
-    if grid.topology != "blocks":
-        return [grid]
-    planar(grid)
-    return [Grid((block,)) for block in grid.blocks]
-
-
-def _outlines(ax: Axes, grid: Grid) -> None:
-    if grid.topology == "blocks":
-        outline_blocks(ax, grid)
-        mark_vertices(ax, grid)
-    else:
-        outline(ax, grid)
 
 
 def _visible(grid: Grid, singles: list[Grid], view: Box) -> list[CellsInView | None]:
@@ -111,8 +106,7 @@ def _views(grid: Grid) -> list[Box]:
     pad = 0.02 * max(whole[1] - whole[0], whole[3] - whole[2])
     whole = (whole[0] - pad, whole[1] + pad, whole[2] - pad, whole[3] + pad)
     if grid.topology == "blocks":
-        walls = [grid.face(p.block, p.side)[p.start : p.stop + 1] for p in grid.walls()]
-        wall = np.concatenate(walls) if walls else np.empty((0, 2))
+        wall = np.concatenate([np.empty((0, 2)), *map(grid.at, grid.walls())])
     else:
         wall = body(grid) if grid.around_body else np.empty((0, 2))
     if not len(wall):
@@ -126,9 +120,8 @@ def _views(grid: Grid) -> list[Box]:
 
 
 def _whole(grid: Grid) -> Box:
-    low = np.min([block.nodes.min(axis=(0, 1)) for block in grid.blocks], axis=0)
-    high = np.max([block.nodes.max(axis=(0, 1)) for block in grid.blocks], axis=0)
-    return float(low[0]), float(high[0]), float(low[1]), float(high[1])
+    (left, bottom), (right, top) = (corner.tolist() for corner in grid.box)
+    return left, right, bottom, top
 
 
 def _shown(colouring: Colouring | None, parts: list[CellsInView | None]) -> list[NDArray[Any]]:
@@ -146,13 +139,6 @@ def colour_bar(bar: Axes, colours: ScalarMappable, label: str, extend: str = "ne
     """Draw the scale of colours."""
     bar.figure.colorbar(colours, cax=bar, extend=extend).set_label(label, color=INK, size=9)
     bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
-
-
-def _beyond(colouring: Colouring, limits: tuple[float, float]) -> str:
-    """Return at which ends values lie beyond the colour bar, in matplotlib's words."""
-    below = any(bool((values < limits[0]).any()) for values in colouring.parts)
-    above = any(bool((values > limits[1]).any()) for values in colouring.parts)
-    return ("neither", "min", "max", "both")[below + 2 * above]
 
 
 def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | None]:
@@ -183,12 +169,6 @@ def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | N
     return figure, axes, figure.add_axes(place)
 
 
-def _note_lines(ax: Axes, steps: list[tuple[int, int]]) -> None:
-    """Say in the picture which lines are drawn, unless all are."""
-    each = sorted({step for pair in steps for step in pair})
-    note(ax, _drawn_lines(*steps[0]) if len(steps) == 1 and len(each) > 1 else step_words(each))
-
-
 def step_words(steps: list[int]) -> str:
     """Return in words which lines are drawn, of ascending steps; nothing where all are.
 
@@ -197,9 +177,8 @@ def step_words(steps: list[int]) -> str:
     """
     if steps[-1] == 1:
         return ""
-    if len(steps) == 1:
-        return f"every {_ordinal(steps[0])}line"
-    return f"every {_ordinal(steps[0]) or '1st '}to {_ordinal(steps[-1])}line"
+    first = f"{_ordinal(steps[0]) or '1st '}to " if len(steps) > 1 else ""
+    return f"every {first}{_ordinal(steps[-1])}line"
 
 
 def note(ax: Axes, text: str) -> None:
@@ -212,9 +191,7 @@ def note(ax: Axes, text: str) -> None:
 
 
 def _drawn_lines(xi: int, eta: int) -> str:
-    """Return in words which lines are drawn."""
-    if xi == eta:
-        return f"every {_ordinal(xi)}line"
+    """Return in words which lines are drawn, of different steps."""
     return f"every {_ordinal(xi)}xi and {_ordinal(eta)}eta line"
 
 

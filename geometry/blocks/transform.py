@@ -11,18 +11,21 @@
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
+from typing import TypeAlias
 
 import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats, Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.connection import Connection, Motion
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.geometry.errors import InputError, in_place
+from meshonet.geometry.polygon.corners import find_corners
 
 _SIDES: dict[Side, Side] = {"east": "south", "west": "north", "south": "west", "north": "east"}
 _COUNTED_BACK = ("south", "north")
@@ -36,11 +39,13 @@ def coarser_grid(grid: Grid, k: int) -> Grid:
     their nodes.
 
     Raises InputError: `k` does not divide the cells along a direction, or a patch or connection would lose
-    an end.
+    an end, or the outline of a planar grid a corner.
     """
     for number, block in enumerate(grid.blocks):
         with in_place(f"block {number}" if grid.topology == "blocks" else ""):
             _check(block.counts, k)
+    kept = math.gcd(*(n - 1 for block in grid.blocks for n in block.counts))
+    _check_corners(_corners_of_patches(grid), k, kept)
     patches = _coarser_patches(grid.patches, k)
     connections = []
     for each in grid.connections:
@@ -59,8 +64,49 @@ def coarser_grid(grid: Grid, k: int) -> Grid:
 def coarser_boundary(boundary: Boundary, k: int) -> Boundary:
     """Return the boundary of every `k`-th node, as `coarser_grid` does of a grid."""
     _check((boundary.ni, boundary.nj), k)
+    sides = ((side, 0, getattr(boundary, side), boundary.periodic) for side in SIDES)
+    _check_corners(_corners_of(sides), k, math.gcd(boundary.ni - 1, boundary.nj - 1))
     edges = {side: getattr(boundary, side)[::k] for side in SIDES}
     return replace(boundary, **edges, patches=_coarser_patches(boundary.patches, k), sensors=None)
+
+
+_Corners: TypeAlias = list[tuple[str, int, Floats]]
+"""Names of sides, and indices and places of nodes at which they have corners."""
+
+
+def _corners_of_patches(grid: Grid) -> _Corners:
+    """Return the corners inside the patches of a planar grid; ends of patches are looked after as such."""
+    if grid.form != "plane":
+        return []
+    ring = grid.periodic
+    lines = (
+        (patch.side, patch.start, grid.face(patch.block, patch.side)[patch.start : patch.stop + 1], ring)
+        for patch in grid.patches
+    )
+    return _corners_of(lines)
+
+
+def _corners_of(lines: Iterable[tuple[Side, int, Floats, bool]]) -> _Corners:
+    """Return the corners of lines of nodes (n, 2): their sides, first nodes and whether they are closed."""
+    found: _Corners = []
+    for side, first, nodes, ring in lines:
+        closed = ring and side in _COUNTED_BACK and np.array_equal(nodes[0], nodes[-1])
+        line = nodes[:-1] if closed else nodes
+        found += [(side, first + int(k), line[k]) for k in find_corners(line, closed=closed)]
+    return found
+
+
+def _check_corners(corners: _Corners, k: int, kept: int) -> None:
+    """Raise InputError for a corner that every `k`-th node leaves out; `kept` divides all counts of cells."""
+    lost = [each for each in corners if each[1] % k]
+    if not lost:
+        return
+    most = math.gcd(kept, *(node for _, node, _ in corners))
+    side, node, (x, y) = lost[0]
+    corner = f"a corner of {side} at ({x:.6g}, {y:.6g}), node {node}, would be cut: every {k}-th drops it"
+    others = f"; {len(lost) - 1} more" if len(lost) > 1 else ""
+    keeps = f"the largest number that keeps all corners is {most}"
+    raise InputError(corner + others, f"{keeps}; with {{refine}} or more nodes they stand on multiples")
 
 
 def _check(counts: tuple[int, ...], k: int) -> None:
@@ -120,24 +166,18 @@ def normalised(grid: Grid) -> Grid:
 
 
 def _normalised_blocks(grid: Grid) -> Grid:
-    axes = tuple(range(len(grid.blocks[0].counts)))
-    low = np.min([block.nodes.min(axis=axes) for block in grid.blocks], axis=0)
-    high = np.max([block.nodes.max(axis=axes) for block in grid.blocks], axis=0)
+    low, high = grid.box
     size = float((high - low).max())
     blocks = [Block((block.nodes - low) / size) for block in grid.blocks]
-    motions = [_scaled(each.transform, low, size) for each in grid.connections]
-    connections = [replace(each, transform=m) for each, m in zip(grid.connections, motions, strict=True)]
+    connections = []
+    for each in grid.connections:
+        motion = each.transform
+        if motion:  # of these nodes less `low`, over `size`
+            motion = replace(motion, shift=tuple(((motion(low) - low) / size).tolist()))
+        connections.append(replace(each, transform=motion))
     # periodic sides differ by rounding where both were moved and scaled
     equal = with_equal_nodes(blocks, connections)
     return replace(grid, blocks=equal, connections=tuple(connections))
-
-
-def _scaled(motion: Motion | None, origin: Floats, size: float) -> Motion | None:
-    """Return a motion of nodes as that of these nodes less `origin`, over `size`."""
-    if motion is None:
-        return None
-    shift = (motion(origin) - origin) / size
-    return replace(motion, shift=tuple(float(x) for x in shift))
 
 
 def turned(grid: Grid) -> Grid:

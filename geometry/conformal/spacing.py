@@ -22,6 +22,8 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import inner_slopes
 from meshonet.geometry.elementary import cos, exp, power, times
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.spacing.along_curve import first_within
 
 ANGLES = 1024  # points on the circle at which the angle is sought
 ITERATIONS = 40  # of that, at the most
@@ -29,23 +31,29 @@ RELAXATION = 0.7  # part of its change that each makes
 DENSE = 640  # points along the whole wall that stand for the curve
 
 
-def conformal_knots(curve: Curve, marks: Floats, count: int) -> Floats:
+def conformal_knots(
+    curve: Curve, marks: Floats, count: int, at: Indices | None = None, steps: tuple[int, ...] = (1,)
+) -> Floats:
     """Return arc lengths (count,) on a closed curve at equal steps of its circle's angle.
 
     The curve is closed and clockwise, with its arc length 0 at the first node, which is the last again.
-    `marks`, rising arc lengths in (0, length), become nodes, and the angles between are shared out smoothly.
+    `marks`, rising arc lengths in (0, length), become nodes, and the angles between are shared out smoothly:
+    nodes `at` (m,), or multiples of the first of the `steps` that the first mark is as far as.
 
     Raises InputError: the lifted wall is not star-shaped, or the iteration does not settle.
     """
-    clockwise = _one_way(curve, marks, count, mirror=False)
-    mirrored_wall = _one_way(curve, curve.length - marks[::-1], count, mirror=True)
+    back = None if at is None else count - 1 - at[::-1]
+    clockwise = _one_way(curve, marks, count, at, steps, mirror=False)
+    mirrored_wall = _one_way(curve, curve.length - marks[::-1], count, back, steps, mirror=True)
     # the two differ by the accuracy of the iteration; their mean makes a mirrored body's nodes mirror images
     knots = 0.5 * (clockwise + (curve.length - mirrored_wall[::-1]))
     knots[np.searchsorted(knots, marks - 1e-9 * curve.length)] = marks
     return knots
 
 
-def _one_way(curve: Curve, marks: Floats, count: int, *, mirror: bool) -> Floats:
+def _one_way(
+    curve: Curve, marks: Floats, count: int, at: Indices | None, steps: tuple[int, ...], *, mirror: bool
+) -> Floats:
     """Return arc lengths (count,) walking clockwise, or along the mirrored curve walked the other way."""
     s, u = _dense(curve, marks)
     nodes = curve.at(curve.length - s[:-1]) * np.array([1.0, -1.0]) if mirror else curve.at(s[:-1])
@@ -54,7 +62,7 @@ def _one_way(curve: Curve, marks: Floats, count: int, *, mirror: bool) -> Floats
     if np.diff(phi).min() <= 0.0:
         raise InputError("the lifted wall is not star-shaped", "use another spacing")
     t = _circle_angle(phi, np.append(w.real, w.real[0]))
-    index = _shared_out(np.interp(marks, s, t), count)
+    index = _shared_out(np.interp(marks, s, t), count, at, steps)
     return _smooth_inverse(t, u, s, index)
 
 
@@ -94,11 +102,20 @@ def _circle_angle(phi: Floats, psi: Floats) -> Floats:
     return np.asarray(angle - angle[0])
 
 
-def _shared_out(marks: Floats, count: int) -> Floats:
+def _shared_out(marks: Floats, count: int, at: Indices | None, steps: tuple[int, ...]) -> Floats:
     """Return rising angles (count,) from 0 to 2 pi, near equal steps, with every mark on a node."""
     cells = count - 1
     rank = np.arange(len(marks))
-    nodes = np.clip(np.round(marks / (2.0 * np.pi) * cells), 1 + rank, cells - 1 - rank[::-1])
+    nodes: Floats | Indices
+    if at is not None:
+        nodes = at
+    else:
+        ends = marks[[0, -1]] if len(marks) else np.array([2.0 * np.pi, 0.0])
+        least = min(float(ends[0]), 2.0 * np.pi - float(ends[1])) / (2.0 * np.pi) * cells
+        step = first_within(steps, 1.0000001 * least)
+        step = step if cells // step > len(marks) else 1
+        whole = cells // step
+        nodes = np.clip(np.round(marks / (2.0 * np.pi) * whole), 1 + rank, whole - 1 - rank[::-1]) * step
     knots = np.concatenate([[0.0], nodes, [float(cells)]])
     angles = np.concatenate([[0.0], marks, [2.0 * np.pi]])
     return _monotone(knots, angles, np.arange(count, dtype=np.float64), periodic=True)

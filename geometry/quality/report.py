@@ -10,7 +10,7 @@ from meshonet.geometry.quality.blocks import extreme_dict
 from meshonet.geometry.quality.compare import Difference, compare
 from meshonet.geometry.quality.figure import Figure
 from meshonet.geometry.quality.figures import Figures
-from meshonet.geometry.quality.gates import Gate, Judgement
+from meshonet.geometry.quality.gates import Gate, Judgement, beyond
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.profiles import CheckResult, ProfileReport, profile_report
 from meshonet.geometry.quality.walls import Spread, WallRow
@@ -46,17 +46,28 @@ class QualityReport:
     ``report.quality.folded`` is the number of folded cells, ``report.quality["max_angle"].max`` a metric
     (with min, mean, p01, p99 and the worst cell), ``report.figures.wall_rows`` the first cells and their
     angles, ``report.figures.growth`` the growth along xi and eta, ``report.profile.passed`` the verdict of a
-    profile.
-    ``report.as_dict()`` has all of it, as ``meshonet quality --json`` prints it.
+    profile. ``report.as_dict()`` has all of it, as ``meshonet quality --json`` prints it.
+
+    Parameters
+    ----------
+    grid : Grid
+        What was measured.
+    quality : Quality
+        Every metric, with percentiles.
+    worst : tuple of BadCell
+        Folded cells, ten at the most.
+    figures : Figures
+        Walls and growth.
+    profile : ProfileReport, optional
+        The verdicts of profiles.
+    comparison : Comparison, optional
+        How far it is from a reference.
     """
 
     grid: Grid
     quality: Quality
-    """Every metric, with percentiles."""
     worst: tuple[BadCell, ...]
-    """Folded cells, ten at the most."""
     figures: Figures
-    """Walls and growth."""
     profile: ProfileReport | None = None
     comparison: Comparison | None = None
 
@@ -92,7 +103,7 @@ class QualityReport:
         more = self._compared()
         figures = [gate.figure(self.figures, more) for gate in gates]
         pairs = zip(gates, figures, strict=True)
-        return [(gate, figure, gate.beyond(figure.value)) for gate, figure in pairs]
+        return [(gate, figure, beyond(figure.value, gate.compare, gate.limit)) for gate, figure in pairs]
 
     def _compared(self) -> dict[str, Figure]:
         """Return the figures of the comparison."""

@@ -126,7 +126,8 @@ class Outline:
         edges = []
         for a, b, n in zip(corners, (*corners[1:], corners[0]), (ni, nj, ni, nj), strict=True):
             begin, end = float(curve.knots[a]), float(curve.knots[b])
-            edge = curve.at(stretch_arcs(curve, begin, end, n - 1, sampling.spacing, forward=self._left))
+            law, step = sampling.spacing, sampling.refined
+            edge = curve.at(stretch_arcs(curve, begin, end, n - 1, law, forward=self._left, step=step))
             edge[0], edge[-1] = points[a], points[b]
             edges.append(edge)
         south, east, north, west = edges
@@ -205,16 +206,17 @@ class Outline:
     def _around(self, curve: Curve, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:
         """Return the arc lengths (ni,) of the nodes around a body, and a note of another spacing."""
         notes: tuple[str, ...] = ()
+        step = sampling.refined
         if sampling.spacing == "conformal" or (sampling.spacing == "auto" and curve.corners.size == 0):
             try:
                 from meshonet.geometry.conformal.spacing import conformal_knots
 
-                return conformal_knots(curve, curve.corners[curve.corners > 0], ni), ()
+                return conformal_knots(curve, curve.corners[curve.corners > 0], ni, steps=(step,)), ()
             except InputError as error:
                 if sampling.spacing == "conformal":
                     raise
                 notes = (f"spacing uniform is used instead of conformal: {error.problem}",)
-        return stretch_arcs(curve, 0.0, 0.0, ni - 1, sampling.spacing), notes
+        return stretch_arcs(curve, 0.0, 0.0, ni - 1, sampling.spacing, step=step), notes
 
 
 def _on_a_line(points: Floats, extent: float) -> bool:

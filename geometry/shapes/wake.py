@@ -34,7 +34,7 @@ _GROWTH = 1.135  # growth of wake cells that is enough, and below which cells ar
 _SHARES = 0.2, 0.23  # smallest and largest part of all cells that one side of the wake takes by itself
 _RAMP = 3.0  # cells of a wake over which growth sets in: the lines that leave its first ones converge
 _LATE = 0.05  # part by which cells at the outlet grow faster than on average, and those at the edge slower
-_STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
+STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
 _LEAST_WALL = 5  # nodes of a wall, its trailing edge counted twice
 
 
@@ -91,12 +91,12 @@ class WakeLine:
         upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
         along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
         angle = math.atan2(axis[0] * along[1] - axis[1] * along[0], product(axis, along))
-        slope = math.tan(min(max(angle, -_STEEPEST), _STEEPEST))
+        slope = math.tan(min(max(angle, -STEEPEST), STEEPEST))
         return cls(wall[0], axis, slope, chord, length)
 
     def nodes(self, first: float, cells: int) -> Floats:
-        """Return nodes (cells + 1, 2) from the trailing edge on, growing from `first` (`_growing`)."""
-        x = _growing(first / math.hypot(1.0, self.slope), self.length, cells)
+        """Return nodes (cells + 1, 2) from the trailing edge on, growing from `first` (`growing`)."""
+        x = growing(first / math.hypot(1.0, self.slope), self.length, cells)
         x *= self.length / x[-1]
         y = -self.slope * self.relaxation * expm1(-x / self.relaxation)
         nodes = self.begin + x[:, None] * self.axis + y[:, None] * np.array([-self.axis[1], self.axis[0]])
@@ -104,7 +104,7 @@ class WakeLine:
         return np.asarray(nodes)
 
 
-def _growing(first: float, length: float, cells: int) -> Floats:
+def growing(first: float, length: float, cells: int) -> Floats:
     """Return distances (cells + 1,) in units of `first`, of growing cells that fill `length`.
 
     The logarithm of a cell's size grows by g (1 - exp(-k/m)) (1 + b (2k/n - 1)) at cell k of n.
@@ -150,12 +150,12 @@ def c_boundary(
     behind, beside = along_and_across(wake[-1] - centre, axis)
     if behind <= 0 or abs(beside) >= radius:
         raise InputError("the wake does not reach the outlet inside the far field", "use a larger far field")
-    north = _far_field(len(wall) - 1, len(wake) - 1, centre, radius, axis, float(behind))
+    north = c_far_field(len(wall) - 1, len(wake) - 1, centre, radius, axis, float(behind))
     west, east = straight(south[0], north[0], nj), straight(south[-1], north[-1], nj)
     return Boundary(south, north, west, east, "c", name=name, wall=curve, chord=chord, notes=notes)
 
 
-def _far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, behind: float) -> Floats:
+def c_far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, behind: float) -> Floats:
     """Return the far field (body + 2 wake + 1, 2), in equal steps in front, evenly changing ones behind."""
     normal = np.array([-axis[1], axis[0]])
     angle = np.linspace(-0.5 * np.pi, -1.5 * np.pi, body + 1)

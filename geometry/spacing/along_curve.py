@@ -8,6 +8,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.spacing.laws import LAWS, Spacing
 
 MANY = 64
@@ -15,12 +16,20 @@ MANY = 64
 
 
 def stretch_arcs(
-    curve: Curve, begin: float, end: float, cells: int, spacing: Spacing, *, forward: bool = True
+    curve: Curve,
+    begin: float,
+    end: float,
+    cells: int,
+    spacing: Spacing,
+    *,
+    forward: bool = True,
+    step: int = 1,
 ) -> Floats:
     """Return arc lengths (cells + 1,) on a closed curve from `begin` to `end`, all the way round when equal.
 
     They run along the curve's own direction, or against it unless `forward`. ``tanh`` has end cells a quarter
-    of the mean; laws that need more than a curve are equal steps.
+    of the mean; laws that need more than a curve are equal steps. Corners are on multiples of `step` nodes
+    where there is room.
     """
     sign = 1.0 if forward else -1.0
     length = (sign * (end - begin)) % curve.length or curve.length
@@ -39,14 +48,24 @@ def stretch_arcs(
     tiny = 1e-12 * curve.length
     corners = corners[(corners > tiny) & (corners < length - tiny)]
     if len(corners) <= max(MANY, cells // 4):
-        distance = on_corners(distance, corners)
+        distance = on_corners(distance, corners, step=step)
     return begin + sign * distance
 
 
-def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = ()) -> Floats:
+def first_within(steps: tuple[int, ...], most: float) -> int:
+    """Return the first of the falling `steps` that is at most `most`, or the last of them.
+
+    >>> first_within((8, 4, 2, 1), 5.0), first_within((8,), 5.0)
+    (4, 8)
+    """
+    return next((step for step in steps if step <= most), steps[-1])
+
+
+def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), step: int = 1) -> Floats:
     """Return increasing distances (n,) moved along so that every corner (m,) is one of them.
 
-    The nearest goes to each corner; the first, the last and the `fixed` ones stay; the others are shared out.
+    The nearest goes to each corner, of every `step`-th ones where these have room for all; the first, the
+    last and the `fixed` ones stay; the others are shared out.
 
     Raises InputError: more corners than nodes to put on them.
     """
@@ -56,16 +75,11 @@ def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = ()) -
     index = np.arange(last + 1.0)
     place = np.interp(corners, distance, index)
     stays = sorted({0, last, *fixed})
-    node = np.rint(place).astype(np.intp)
-    for low, high in pairwise(stays):
-        mine = np.flatnonzero((place > low) & (place < high))
-        room = high - low - 1
-        if len(mine) > room:
-            raise InputError(f"{len(corners)} corners do not fit on {last + 1} nodes", "use more nodes")
-        rank = np.arange(len(mine))
-        node[mine] = np.maximum.accumulate(np.maximum(node[mine], low + 1) - rank) + rank
-        back = np.minimum(node[mine], high - 1)[::-1] + rank
-        node[mine] = (np.minimum.accumulate(back) - rank)[::-1]
+    node = _nearest(place, stays, step)
+    if node is None and step > 1:
+        node = _nearest(place, stays, 1)
+    if node is None:
+        raise InputError(f"{len(corners)} corners do not fit on {last + 1} nodes", "use more nodes")
     kept = np.concatenate([np.array(stays, dtype=np.float64), node])
     order = np.argsort(kept, kind="stable")
     source = np.concatenate([np.array(stays, dtype=np.float64), place])
@@ -73,3 +87,21 @@ def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = ()) -
     out[node] = corners
     out[stays] = distance[stays]
     return out
+
+
+def _nearest(place: Floats, stays: list[int], step: int) -> Indices | None:
+    """Return the nodes (m,) for corners at places (m,) of the index: multiples of `step` nearest to them.
+
+    They differ from each other and from those that stay; None where there are too few.
+    """
+    node = np.rint(place / step).astype(np.intp)
+    for low, high in pairwise(stays):
+        mine = np.flatnonzero((place > low) & (place < high))
+        first, last = low // step + 1, (high - 1) // step
+        if len(mine) > last - first + 1:
+            return None
+        rank = np.arange(len(mine))
+        node[mine] = np.maximum.accumulate(np.maximum(node[mine], first) - rank) + rank
+        back = np.minimum(node[mine], last)[::-1] + rank
+        node[mine] = (np.minimum.accumulate(back) - rank)[::-1]
+    return node * step

@@ -14,6 +14,9 @@ TRAILING_EDGES: tuple[TrailingEdge, ...] = get_args(TrailingEdge)
 DEFAULT_NI = 200  # nodes where none are asked for
 DEFAULT_NJ = 100
 DEFAULT_FAR_FIELD = 15.0  # chords
+MULTIPLES = (8, 4, 2, 1)
+"""Steps of nodes one of which corners of airfoils stand on, the largest that cells suffice for and that
+divides them, so that grids can be coarsened by it."""
 MOST_NODES = 100_000  # along a direction: more are taken for a slip of the pen
 
 
@@ -43,12 +46,17 @@ class Sampling:
         The points, counted from 0, that become the corners of a quad domain.
     te : {'auto', 'exact', 'round', 'wedge'}, optional
         Blunt trailing edges of airfoils as they are (``exact``), with their corners rounded (``round``) or
-        closed by a wedge behind them (``wedge``); ``auto`` is ``wedge`` for a C boundary, which needs a sharp
-        edge, and ``exact`` otherwise.
+        closed by a wedge behind them (``wedge``); ``auto`` is ``wedge`` for a C boundary of one block, which
+        needs a sharp edge, and ``exact`` otherwise: C grids with layers keep a base.
     wake : float, optional
         Length of a C boundary's wake in chords; None is as long as the far field is away.
     wake_nodes : int, optional
         Nodes of it, the trailing edge included; None derives it from the cell at the edge.
+    base_nodes : int, optional
+        Nodes of a blunt base, both corners included, odd around a body in an O grid; None follows from the
+        cells beside it and its width.
+    refined : int, optional
+        Corners stand on nodes that are multiples of it, as a grid that is to be coarsened by it needs them.
     viscous : bool, optional
         The cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
     normalise : bool, optional
@@ -74,6 +82,8 @@ class Sampling:
     wake_nodes: int | None = None
     viscous: bool = False
     nk: int | None = None
+    base_nodes: int | None = None
+    refined: int = 1
 
     def __post_init__(self) -> None:
         for name, count in (("ni", self.ni), ("nj", self.nj), ("nk", self.nk)):
@@ -95,9 +105,21 @@ class Sampling:
             raise InputError(f"the wake is {self.wake:g} chords long", "use 0.5 to 1e6")
         if self.wake_nodes is not None and not 3 <= self.wake_nodes <= MOST_NODES:
             raise InputError(f"the wake has {self.wake_nodes} nodes", f"use 3 to {MOST_NODES}")
+        if self.base_nodes is not None and not 3 <= self.base_nodes <= MOST_NODES:
+            raise InputError(f"the base has {self.base_nodes} nodes", f"use 3 to {MOST_NODES}")
         if self.corners is not None and len(set(self.corners)) != 4:
             problem = f"corners {self.corners} are not four different points"
             raise InputError(problem, "give four point indices")
+
+    def corner_steps(self, cells: int) -> tuple[int, ...]:
+        """Return steps of nodes, one of which corners stand on along a wall of so many `cells`, best first.
+
+        >>> Sampling().corner_steps(404), Sampling().corner_steps(398), Sampling(refined=8).corner_steps(400)
+        ((4, 2, 1), (2, 1), (8,))
+        """
+        if self.refined > 1:
+            return (self.refined,)
+        return tuple(step for step in MULTIPLES if cells % step == 0)
 
     @property
     def radius(self) -> float:

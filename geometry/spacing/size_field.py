@@ -34,6 +34,7 @@ def arcs_by_curvature(
     steps: tuple[float, float],
     exact: tuple[bool, bool],
     hurried: bool = True,
+    at_edge: float = 0.0,
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge round the nose to the other.
 
@@ -46,13 +47,15 @@ def arcs_by_curvature(
 
     `stations` are the arc lengths of the lower end, of the nose and of the upper end, `steps` the cells at
     the trailing and at the leading edge, `exact` whether these are to be met, to 0.5 % where the adjustment
-    suffices.
+    suffices. From the trailing edge cells grow by exp(`at_edge`) each, where that is more than elsewhere.
     """
     lower, nose, upper = stations
     s = _samples(stations, steps)
     size = TURN / _bend(curve, s, chord)
     hurry = HURRY if hurried else 1.0
-    known = _affordable(cells, s, lambda fewer: _known(s, size, stations, steps, exact[0], fewer, hurry))
+    known = _affordable(
+        cells, s, lambda fewer: _known(s, size, stations, steps, exact[0], fewer, hurry, at_edge)
+    )
     mend = np.zeros(2)
     away = np.minimum(s - lower, upper - s), np.abs(s - nose)
     for _ in range(12):
@@ -144,6 +147,7 @@ def _known(
     ramp: bool,
     fewer: float,
     hurry: float,
+    at_edge: float,
 ) -> Floats:
     """Return the sum of 1/h⁴ over the terms of both edges and of curvature, which alone gives `size`.
 
@@ -161,7 +165,7 @@ def _known(
     size = limited_size(s, size, growth)
     reach = _RAMP * steps[0]
     late = reach * -expm1(-away / reach) if ramp else 0.0
-    trailing = steps[0] + growth * (away - late)
+    trailing = steps[0] + max(growth, at_edge) * (away - late)
     leading = fewer * steps[1] + growth * np.abs(s - nose)
     return np.asarray(_quartic(trailing) + _quartic(leading) + _quartic(size))
 

@@ -66,7 +66,8 @@ def convert(
     )] = False,
     coarsen: Annotated[int | None, _option(
         "--coarsen", metavar="K", min=2, max=10_000,
-        help="Keep every K-th node along xi and eta; K must divide the number of cells along both.",
+        help="Keep every K-th node along xi and eta; K must divide the number of cells along both, and "
+        "the nodes at which walls have corners.",
     )] = None,
     list_formats: Annotated[bool, _output(
         "--list-formats", help="Print what can be read and written, and stop.",

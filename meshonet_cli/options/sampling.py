@@ -52,7 +52,7 @@ class SamplingOptions:
         "--te", metavar="auto|exact|round|wedge", show_default=True,
         help="Blunt trailing edges: exact keeps them, round rounds their two corners (grid angles there "
         "then deviate from 90 degrees by at most 10, not 45), wedge closes them by a wedge up to four "
-        "base heights long. auto is wedge for a C grid, else exact.",
+        "base heights long. auto is exact, but wedge for a C grid without a first cell, which is one block.",
     )] = "auto"
     far_field: Annotated[float | None, _option(
         "--far-field", metavar="R",
@@ -68,6 +68,11 @@ class SamplingOptions:
         "--wake-nodes", metavar="N",
         help="Nodes of a C grid's wake, the trailing edge included; its cells grow by a constant ratio. "
         "[default: about a fifth of NI]",
+    )] = None
+    base_nodes: Annotated[int | None, _option(
+        "--base-nodes", metavar="N",
+        help="Nodes of a blunt trailing edge's base, its corners included; odd in an O grid, which begins in "
+        "the middle of it. [default: by the cells beside it and its width]",
     )] = None
     corners: Annotated[str, _option(
         "--corners", metavar="auto|I,J,K,L", show_default=True,

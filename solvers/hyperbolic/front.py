@@ -42,7 +42,11 @@ class Front:
     widening: Floats | None  # (n,) how much larger than at the wall first steps are, for an open front
     edge: Edge | None  # the sharpest corner of a closed front
 
-    def __init__(self, boundary: Boundary) -> None:
+    def __init__(self, boundary: Boundary, wake: int = 0, widening: Floats | None = None) -> None:
+        """Take an ``o`` or ``c``, or a ``quad`` with a `wake` of so many cells at both ends of south.
+
+        `widening` (wake + 1,), from the edge on, is how much higher first cells are beside that.
+        """
         self._south = boundary.south
         self._closed = boundary.periodic
         self.ends = self.widening = None
@@ -56,13 +60,13 @@ class Front:
             return
         sides = boundary.west[-1] - boundary.west[0], boundary.east[-1] - boundary.east[0]
         self.ends = np.array([side / np.hypot(*side) for side in sides])
-        self._wake = boundary.wake + 1
-        edge = self._south[self._wake - 1]
-        behind = np.hypot(*(self._south[: self._wake] - edge).T) / boundary.chord
-        opening = 1.0 + _OPENING * behind**2 / (behind + _NEAR)
+        self._wake = (wake or boundary.wake) + 1
+        if widening is None:
+            edge = self._south[self._wake - 1]
+            widening = opening(np.hypot(*(self._south[: self._wake] - edge).T) / boundary.chord)[::-1]
         self.widening = np.ones(len(self._south))
-        self.widening[: self._wake] = opening
-        self.widening[len(self._south) - self._wake :] = opening[::-1]
+        self.widening[: self._wake] = widening[::-1]
+        self.widening[len(self._south) - self._wake :] = widening
         body = self._south[self._wake - 1 : len(self._south) - self._wake + 1]
         self.inner = 0.5 * math.sqrt(abs(polygon_area(body)) / math.pi)
         self._middle = _middle(body)
@@ -100,6 +104,11 @@ class Front:
         area = abs(polygon_area(np.concatenate([self._south[[-1]], north[::-1], self._south[[0]]])))
         b = 2.0 * self._behind / math.pi
         return math.sqrt(b * b + 2.0 * area / math.pi) - b
+
+
+def opening(behind: Floats) -> Floats:
+    """Return how much higher than at the wall first cells are `behind` (n,) the edge, in chords."""
+    return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR))
 
 
 def _radius(ring: Floats) -> float:

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.elementary import exp, power
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.elementary import exp, log, power
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.spacing.growth import growing_steps, growth_rate
 
@@ -44,16 +44,43 @@ def sharpest_edge(ring: Floats) -> Edge | None:
     return Edge(size, 1.0 - math.cos(0.5 * turn[k]))
 
 
-def level_steps(first: float, distance: float, cells: int, constant: int, edge: Edge | None) -> Floats:
+def fastest(nodes: Floats) -> Floats:
+    """Return the log (nj - 2,) of the largest ratio of neighbouring cells at levels of nodes (ni, nj, 2)."""
+    heights = norms(np.diff(nodes, axis=1))
+    return np.asarray(log(heights[:, 1:] / heights[:, :-1]).max(axis=0))
+
+
+def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
+    """Return shares (n,) of growth for steps (n,) with which no cells should grow by more than `rate`.
+
+    Where cells of `nodes`, marched by these steps, grow the most at a level, that level's steps grow as much
+    less or more as leads to `rate`, by logarithm.
+    """
+    grown = np.diff(log(steps))
+    shares = np.maximum(grown + rate - fastest(nodes), 0.0)
+    shares[: constant - 1] = 0.0
+    return np.concatenate([[0.0], shares])
+
+
+def level_steps(
+    first: float, distance: float, cells: int, constant: int, edge: Edge | None, shares: Floats | None = None
+) -> Floats:
     """Return `cells` steps from `first` on that add up to `distance`.
 
     The first `constant` ones are equal. The others grow by one ratio, or by its power 1 - q: q is at most
     `_LESS` times the sharpness of `edge`, where that is given. The constants were found
-    by trial on airfoils, so that cells grow alike along all lines.
+    by trial on airfoils, so that cells grow alike along all lines. With `shares` (cells,), the logarithm of
+    each step over the one before is in proportion to these.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]
     """
+    if shares is not None:
+        place = np.cumsum(shares)
+        rate = growth_rate(
+            place, first, distance, max(math.log(distance / first) / max(float(place[-1]), 1e-9), 1.0)
+        )
+        return np.asarray(first * exp(rate * place))
     plain = growing_steps(first, distance, cells, constant)
     if edge is None or cells < 3 or plain[-1] == plain[-2]:
         return plain

@@ -26,7 +26,7 @@ from meshonet.geometry.spacing.y_plus import first_cell_note
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import hyperbolic_march, redistribute
 from meshonet.solvers.hyperbolic.front import Front, distance_to_march
-from meshonet.solvers.hyperbolic.level_spacing import level_steps
+from meshonet.solvers.hyperbolic.level_spacing import Edge, even_shares, fastest, level_steps
 from meshonet.solvers.hyperbolic.settings import (
     ATTEMPTS,
     OPEN_ATTEMPTS,
@@ -44,6 +44,9 @@ aim a quarter of the way from the first to the second."""
 
 MOST_GROWTH = 1.5
 """Ratio of neighbouring cells beyond which no march is begun: it would not get away from the wall."""
+
+EVENINGS = 6  # marches at most in which steps are chosen anew so that growth is even
+WITHIN = 0.998  # part of the growth beyond 1 that these aim at
 
 AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a level
 
@@ -72,12 +75,39 @@ def hyperbolic(
             parameter="method",
         )
     first = wall_spacing * boundary.chord
-    front = Front(boundary)
-    cells = _rows(boundary.nj - 1, first, front.outer - front.inner, growth, free_rows, constant)
+    nodes = marched(Front(boundary), boundary.nj - 1, first, growth, free_rows, constant)
+    return _solution(boundary, nodes, first)
+
+
+def marched(
+    front: Front, asked: int, first: float, growth: float | None, free_rows: bool, constant: int
+) -> Floats:
+    """Return the nodes (ni, nj, 2) of a march of `asked` rows of cells, or of as many as growth needs.
+
+    Raises InputError: rows that do not suffice; SolverError: no attempt gave finite nodes.
+    """
+    least = cells = _rows(asked, first, front.outer - front.inner, growth, free_rows, constant)
+    nodes = _unfolded(front, cells, first, growth, constant)
+    while growth and float(fastest(nodes).max()) > math.log(growth):
+        cells += 1 + (cells - least) // 8
+        if cells > 2 * least + 8:
+            problem = f"no number of rows keeps to a growth of {growth:g}"
+            raise InputError(problem, "allow more", parameter="growth")
+        nodes = _unfolded(front, cells, first, growth, constant)
+    if cells > asked and not free_rows:
+        raise _too_few(asked, cells, growth or MOST_GROWTH)
+    return nodes
+
+
+def _unfolded(front: Front, cells: int, first: float, growth: float | None, constant: int) -> Floats:
+    """Return nodes (ni, cells + 1, 2) marched with the settings that fold the fewest cells.
+
+    Raises SolverError: no attempt gave finite nodes.
+    """
     best, least = None, math.inf
     closed = SHARP_ATTEMPTS if front.edge else ATTEMPTS
-    for settings in OPEN_ATTEMPTS if boundary.topology == "c" else closed:
-        nodes = _marched(front, cells, first, settings, constant, even=growth is None)
+    for settings in closed if front.ends is None else OPEN_ATTEMPTS:
+        nodes = _evened(front, cells, first, settings, constant, growth)
         folded = math.inf if nodes is None else count_folded(nodes)
         if folded < least:
             best, least = nodes, folded
@@ -85,7 +115,7 @@ def hyperbolic(
             break
     if best is None:
         raise SolverError("the march diverged from every start; use more nodes around the body or fewer rows")
-    return _solution(boundary, best, first)
+    return best
 
 
 def check_layers(wall_spacing: float, growth: float | None = None) -> None:
@@ -96,8 +126,14 @@ def check_layers(wall_spacing: float, growth: float | None = None) -> None:
     check_growth(growth, MOST_GROWTH)
 
 
+def _too_few(cells: int, needed: int, growth: float) -> InputError:
+    """Return the error for a march of too few rows of cells."""
+    problem = f"{cells + 1} rows of nodes cannot reach the far field growing by {growth:g} each"
+    return InputError(problem, f"use {needed + 1} rows or more")
+
+
 def _rows(cells: int, first: float, distance: float, growth: float | None, free: bool, constant: int) -> int:
-    """Return the number of cells from the wall to the far field."""
+    """Return the number of cells from the wall to the far field, more than asked for if growth needs it."""
     allowed = growth or MOST_GROWTH
     equal = constant - 1
     if equal * first >= distance:
@@ -105,21 +141,41 @@ def _rows(cells: int, first: float, distance: float, growth: float | None, free:
             f"{constant} layers of {first:.3g} reach the far field", "use fewer", parameter="constant_layers"
         )
     needed = equal + cells_for_growth(first, distance - equal * first, allowed)
-    if free and growth:
+    if growth and (free or needed > cells):
         return needed
     if needed > cells:
-        raise InputError(
-            f"{cells + 1} rows of nodes cannot reach the far field growing by {allowed:g} each",
-            f"use {needed + 1} rows or more",
-        )
+        raise _too_few(cells, needed, allowed)
     growth_ratio(first, distance - equal * first, cells - equal)  # raises when even equal cells reach too far
     return cells
 
 
-def _marched(
-    front: Front, cells: int, first: float, settings: MarchSettings, constant: int, *, even: bool
+def _evened(
+    front: Front, cells: int, first: float, settings: MarchSettings, constant: int, growth: float | None
 ) -> Floats | None:
-    """Return nodes (ni, cells + 1, 2) whose far field is as large as that of `front`, or None."""
+    """Return the nodes of a march whose steps are such that cells grow by `growth` at most, if possible."""
+    nodes, steps = _marched(front, cells, first, settings, constant, edge=None if growth else front.edge)
+    for _ in range(EVENINGS):
+        if nodes is None or growth is None or cells < 3:
+            break
+        if float(fastest(nodes).max()) <= math.log(growth):
+            break
+        rate = math.log(1.0 + (growth - 1.0) * WITHIN)
+        shares = even_shares(nodes, steps, rate, constant)
+        nodes, steps = _marched(front, cells, first, settings, constant, edge=None, shares=shares)
+    return nodes
+
+
+def _marched(
+    front: Front,
+    cells: int,
+    first: float,
+    settings: MarchSettings,
+    constant: int,
+    *,
+    edge: Edge | None,
+    shares: Floats | None = None,
+) -> tuple[Floats | None, Floats]:
+    """Return nodes (ni, cells + 1, 2) with a far field as large as that of `front`, or None, and steps."""
     start = front.start()
     n = len(start)
     levels = np.empty((2, cells + 1, n))
@@ -135,15 +191,14 @@ def _marched(
         round(RISING * cells),
     )
     threads = threads_for(levels[0].size)
-    edge = front.edge if even else None
     distance = distance_to_march(front, first, cells, settings, constant, edge)
     for _ in range(4):
-        steps = level_steps(first, distance, cells, constant, edge)
+        steps = level_steps(first, distance, cells, constant, edge, shares)
         with filling("grid", "row", levels[0, 1:, 0]):
             hyperbolic_march(levels[0], levels[1], steps, *knobs, front.ends, front.widening, None, threads)
         reached = front.reach(levels)
         if not math.isfinite(reached):
-            return None
+            return None, steps
         if NEAREST <= reached / front.outer <= FARTHEST:
             break
         distance *= (0.75 * NEAREST + 0.25 * FARTHEST) * front.outer / reached
@@ -151,7 +206,7 @@ def _marched(
     _snap(nodes, front.heights(first), steps)
     _equalise(nodes, min(constant, cells - 1), front.heights(1.0))
     front.close(nodes)
-    return nodes if np.isfinite(nodes[..., 0].sum() + nodes[..., 1].sum()) else None
+    return (nodes if np.isfinite(nodes[..., 0].sum() + nodes[..., 1].sum()) else None), steps
 
 
 def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:

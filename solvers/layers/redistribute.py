@@ -25,7 +25,7 @@ from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.growth import LARGEST
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import layer_lines, redistribute
-from meshonet.solvers.elliptic.wall_lines import first_heights, lines_from_side
+from meshonet.solvers.elliptic.wall_control import first_heights, lines_from_side
 from meshonet.solvers.layers.first_cells import (
     Heights,
     arcs_in_layers,
@@ -33,11 +33,13 @@ from meshonet.solvers.layers.first_cells import (
     check_fit,
     edge_in_layers,
 )
+from meshonet.solvers.layers.limited import limit_growth
 from meshonet.solvers.solution import Solution
 
 FADE_NODES = 12.0  # nodes over which the last correction of a first cell fades out
 EXACT = 1e-10  # relative error of a first cell that is left
 SLIGHT = 1e-3  # relative error up to which the first node alone is moved
+MORE_ROWS = 40  # that growth may need along bent lines, beyond those that it needs along straight ones
 PASSES = 100  # alternating corrections of first cells off edges that meet, at the most
 
 
@@ -55,8 +57,9 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         nodes = _along_xi(nodes, boundary, heights)
     growth = 1.0
     if heights.south or heights.north:
-        nodes, growth = _along_eta(nodes, boundary, heights)
-    _make_exact(nodes, grid.periodic, heights)
+        nodes, growth = _within_growth(nodes, boundary, heights)
+    else:
+        _make_exact(nodes, grid.periodic, heights)
     edges = replace(
         boundary, south=nodes[:, 0], north=nodes[:, -1], west=nodes[0], east=nodes[-1],
         patches=boundary.patches if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
@@ -82,13 +85,37 @@ def _parts(boundary: Boundary, nodes: Floats) -> tuple:  # type: ignore[type-arg
     return default_patches(boundary.topology, nodes.shape[0], nodes.shape[1], boundary.wake)
 
 
-def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Floats, float]:
-    """Return nodes in layers off south and north, and the largest ratio of neighbouring cells."""
+def _within_growth(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Floats, float]:
+    """Return nodes in layers off south and north, first cells exact, and the largest ratio of their lines.
+
+    Raises InputError: growth is limited, and so many rows cannot keep to it along every line.
+    """
+    ends = [heights.constant if height else 0 for height in (heights.south, heights.north)]
+    for more in range(MORE_ROWS):
+        out, ratio = _along_eta(nodes, boundary, heights, more)
+        _make_exact(out, boundary.periodic, heights)
+        if not heights.growth or limit_growth(out, heights.growth, *ends):
+            break
+        if not heights.free_rows:
+            problem = (
+                f"{out.shape[1]} rows of nodes do not keep to a growth of {heights.growth:g} on every line"
+            )
+            raise InputError(problem, f"use {out.shape[1] + 1} or more")
+    if boundary.periodic:
+        out[-1] = out[0]
+    return out, ratio
+
+
+def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights, more: int) -> tuple[Floats, float]:
+    """Return nodes in layers off south and north, and the largest ratio of neighbouring cells.
+
+    Rows that are free are `more` than the fewest.
+    """
     ni, nj = nodes.shape[:2]
     longest = float(np.hypot(*np.diff(nodes, axis=1).T).sum(axis=0).max())
     count = nj
     if heights.free_rows:
-        count = cells_needed(1.001 * longest, heights.south, heights.north, heights) + 1
+        count = cells_needed(1.001 * longest, heights.south, heights.north, heights) + 1 + more
     out = planar_nodes(ni, count)
     planar = as_planar(nodes)
     ends = heights.south, heights.north

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.quality.measure import count_folded, measure
+from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.threads import limited_to
@@ -127,7 +128,7 @@ def make_grids_of(
 class _Member:
     """A shape on its way: its boundary or what went wrong, and its solution once it was made with others."""
 
-    boundary: Boundary | DomainShape | SpatialShape | Exception
+    boundary: Boundary | BaseWake | DomainShape | SpatialShape | Exception
     seconds: dict[str, float] = field(default_factory=dict)
     solution: Solution | None = None
 
@@ -139,7 +140,7 @@ def _group(shapes: Iterator[tuple[K, Shape]], request: GridRequest, most: int) -
         reached("boundary")
         begun = time.perf_counter()
         try:
-            boundary: Boundary | DomainShape | SpatialShape | Exception = sampled(shape, request)
+            boundary: Boundary | BaseWake | DomainShape | SpatialShape | Exception = sampled(shape, request)
         except Exception as error:
             boundary = error
         group.append((key, _Member(boundary, {"boundary": time.perf_counter() - begun})))
@@ -191,6 +192,8 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
         raise boundary
     if isinstance(boundary, SpatialShape):
         return _of_volume(boundary, request, seconds)
+    if isinstance(boundary, BaseWake):
+        return _of_base(boundary, request, seconds)
     if not isinstance(boundary, Boundary):
         return _of_blocks(boundary, request, seconds)
     rows: tuple[HistoryRow, ...] = ()
@@ -245,6 +248,25 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
     solution = make_blocks(shape, block_request(request))
     seconds |= {"load": loaded - begun, **solution.seconds}
     return judged(solution, seconds, request, remedy="use more {cells}")
+
+
+def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -> Result:
+    """Return the C grid around a section with a base, measured."""
+    from meshonet.solvers.hyperbolic.around_base import around_base
+
+    reached("grid")
+    begun = time.perf_counter()
+    solution = around_base(
+        lines,
+        first=(request.height() or 0.0) * lines.chord,
+        growth=request.growth,
+        free_rows=request.growth is not None and request.sampling.nj is None,
+        constant=request.constant_layers or 1,
+    )
+    _add_times(seconds, solution, time.perf_counter() - begun)
+    note = request.height_note(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
+    solution = replace(solution, notes=(note, *solution.notes) if note else solution.notes)
+    return judged(solution, seconds, request, remedy="use another {res}, or {te} wedge")
 
 
 def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, float]) -> Result:

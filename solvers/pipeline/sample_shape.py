@@ -15,14 +15,24 @@ from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.spacing.sampling import DEFAULT_FAR_FIELD, Sampling
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.uses import IN_SPACE, ONE, refuse
+from meshonet.solvers.pipeline.uses import AROUND_BASE, IN_SPACE, ONE, refuse
 
 if TYPE_CHECKING:
+    from typing import TypeGuard
+
+    from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+    from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
     from meshonet.geometry.shapes.domain_shape import DomainShape
 
+MARCHING = ("best", "auto", "hyperbolic")
+"""Methods by which grids with layers around airfoils are marched."""
 
-def sampled(shape: Shape, request: GridRequest) -> Boundary | DomainShape | SpatialShape:
-    """Return the boundary of a shape, or the shape itself in space and where many blocks are made of it."""
+
+def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainShape | SpatialShape:
+    """Return the boundary of a shape, or the shape itself in space and where many blocks are made of it.
+
+    Of an airfoil whose base a C grid keeps it is what both its blocks begin at.
+    """
     if isinstance(shape, SpatialShape):
         return shape
     if isinstance(shape, (str, Path, np.ndarray)):
@@ -38,6 +48,8 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | DomainShape | Spat
             default = domain.far_field and request.pitch is None
             return domain.noted(*_far_field_advice(request, "extents of the bodies")) if default else domain
     sampling = request.shape_sampling()
+    if keeps_base(shape, request):
+        return _behind_base(shape, sampling, request)
     boundary = edges_of(shape, sampling)
     if request.refine:
         boundary = edges_of(shape, _finer(sampling, shape, boundary, 2**request.refine))
@@ -45,6 +57,29 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | DomainShape | Spat
     if boundary.topology == "quad" or not unit:
         return boundary
     return replace(boundary, notes=(*boundary.notes, *_far_field_advice(request, unit)))
+
+
+def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
+    """Say whether a C grid with layers is wanted of an airfoil whose blunt base is to stay."""
+    sampling = request.sampling
+    marches = request.method in MARCHING and request.at_walls
+    keeps = marches and sampling.topology == "c" and sampling.te in ("auto", "exact")
+    if not keeps:
+        return False
+    from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+
+    return isinstance(shape, Airfoil) and shape.blunt
+
+
+def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> BaseWake:
+    """Return the lines of nodes around an airfoil with a base and behind it."""
+    from meshonet.geometry.shapes.airfoil.base_wake import behind_base
+
+    refuse(request.chosen, AROUND_BASE)
+    body = shape.normalised() if sampling.normalise else shape
+    lines = behind_base(body, sampling, (request.height() or 0.0) * body.unit, request.growth)
+    advice = _far_field_advice(request, shape.far_field_unit)
+    return replace(lines, notes=(*lines.notes, *advice))
 
 
 def check_plane(request: GridRequest) -> None:
@@ -68,4 +103,7 @@ def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Samp
     wakes = [patch.stop - patch.start for patch in boundary.patches if patch.name == "wake"]
     made = boundary.topology == "c" and wakes and not isinstance(shape, Boundary)
     nodes = k * wakes[0] + 1 if made else sampling.wake_nodes
-    return replace(sampling, ni=k * (boundary.ni - 1) + 1, nj=k * (boundary.nj - 1) + 1, wake_nodes=nodes)
+    ni, nj = (k * (n - 1) + 1 for n in (boundary.ni, boundary.nj))
+    if isinstance(shape, Boundary):  # whose corners stay where they are, k times as far along
+        return replace(sampling, ni=ni, nj=nj)
+    return replace(sampling, ni=ni, nj=nj, wake_nodes=nodes, refined=k)

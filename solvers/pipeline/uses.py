@@ -28,11 +28,14 @@ SETTINGS = {"polish": "auto", "answer": "valid", "blending": "arclength"}
 """Values of settings that say nothing; of others None is one."""
 
 
-_SHAPE = "topology spacing le_spacing te_spacing far_field corners normalise te wake wake_nodes"
+_SHAPE = (
+    "topology spacing le_spacing te_spacing far_field corners normalise te wake wake_nodes base_nodes refined"
+)
 _SIDES = "spacing_south spacing_north spacing_west spacing_east"
 _FIRST = "first_cell y_plus reynolds chord_fraction growth"
 
 MARCHED = "a grid marched from the wall"
+AROUND_BASE = "a C grid that keeps a base"
 ONE = "a grid in the plane"
 CHANNEL = "a channel with given wall nodes"
 MANY = "a domain of many blocks"
@@ -49,6 +52,7 @@ _OF_MANY = _row("res far_field te normalise", _FIRST, "constant_layers refine") 
 )
 USES: dict[str, frozenset[str]] = {
     MARCHED: _OF_MARCHED,
+    AROUND_BASE: _OF_MARCHED - _row(_SIDES, "corners repair_margin"),
     ONE: _OF_ONE,  # and the settings of the method, which refuses others itself
     CHANNEL: _OF_ONE,  # with those of methods that are no networks
     MANY: _OF_MANY,

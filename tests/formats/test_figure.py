@@ -9,9 +9,8 @@ import pytest
 from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.figure.figure import _drawn_lines, draw
-from meshonet.formats.figure.files import write
 from meshonet.formats.figure.layers import Colouring
-from meshonet.formats.figure.picture import Picture
+from meshonet.formats.figure.picture import Picture, write
 from meshonet.formats.figure.view import View
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -171,10 +170,15 @@ def test_a_box_beside_the_grid_is_refused() -> None:
     ("steps", "words"),
     [
         ((1, 5), "every xi and 5th eta line"),
-        ((2, 2), "every 2nd line"),
         ((12, 21), "every 12th xi and 21st eta line"),
         ((4, 3), "every 4th xi and 3rd eta line"),
     ],
 )
 def test_lines_left_out_are_told_in_words(steps: tuple[int, int], words: str) -> None:
     assert _drawn_lines(*steps) == words
+
+
+@pytest.mark.parametrize("nodes", [np.zeros((5, 4, 2)), np.ones((3, 3, 3, 3))])
+def test_a_grid_of_one_point_is_refused(nodes: np.ndarray, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="the points have no extent"):
+        Picture().draw("png", tmp_path / "a.png", [Grid.from_nodes(nodes)])

@@ -22,6 +22,7 @@ from meshonet.formats.figure.page.page import write_page
 from meshonet.formats.figure.slices import parse_slice
 from meshonet.formats.figure.view import View
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 
@@ -122,6 +123,15 @@ def test_names_cannot_break_out_of_a_page(tmp_path: Path) -> None:
     assert "</script><b>" not in made.text
 
 
+def test_names_of_patches_cannot_break_out_of_a_page(tmp_path: Path) -> None:
+    names = ["</script>", "<!--<script>"]
+    patches = tuple(Patch(name, side, 0, 4) for name, side in zip(names, ("south", "north"), strict=True))
+    nodes = np.stack(np.meshgrid(np.arange(5.0), np.arange(4.0), indexing="ij"), axis=-1)
+    made = page(Grid.from_nodes(nodes, "quad", patches), tmp_path)
+    assert {edge["name"] for edge in made.facts["edges"]} >= set(names)
+    assert "<!--<script>" not in made.text
+
+
 def test_the_same_grid_gives_the_same_page(tmp_path: Path) -> None:
     assert page(pipe(), tmp_path).text == page(pipe(), tmp_path).text
 
@@ -149,7 +159,7 @@ def test_of_a_large_volume_a_page_has_the_outer_boundary(
 
 
 @pytest.mark.parametrize(
-    ("make", "view", "told"),
+    ("make", "view", "message"),
     [
         (ring, View(slice=parse_slice("k=0")), "slice: the grid is in the plane; leave slice out"),
         (ring, View(seen_from=(0, 0)), "seen_from: the grid is in the plane"),
@@ -161,11 +171,11 @@ def test_of_a_large_volume_a_page_has_the_outer_boundary(
     ],
 )
 def test_a_view_that_the_grid_does_not_have_is_refused(
-    make: Make, view: View, told: str, tmp_path: Path
+    make: Make, view: View, message: str, tmp_path: Path
 ) -> None:
     with pytest.raises(InputError) as refused:
         page(make(), tmp_path, view=view)
-    assert str(refused.value).startswith(told)
+    assert str(refused.value).startswith(message)
     assert not list(tmp_path.iterdir())
 
 

@@ -8,6 +8,10 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.transform import coarser_boundary, coarser_grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.laws import Spacing
+from meshonet.geometry.spacing.sampling import Sampling
 
 
 def lattice(ni: int, nj: int) -> np.ndarray:
@@ -15,7 +19,8 @@ def lattice(ni: int, nj: int) -> np.ndarray:
 
 
 def test_the_kept_nodes_are_bitwise_the_same() -> None:
-    nodes = lattice(13, 7) + np.random.default_rng(1).uniform(-0.2, 0.2, (13, 7, 2))
+    nodes = lattice(13, 7)
+    nodes[1:-1, 1:-1] += np.random.default_rng(1).uniform(-0.2, 0.2, (11, 5, 2))
     once = coarser_grid(Grid.from_nodes(nodes, name="a"), 3)
     np.testing.assert_array_equal(once.nodes, nodes[::3, ::3])
     assert (once.name, once.provenance["coarsened"]) == ("a", 3)
@@ -57,7 +62,7 @@ def test_boundaries_are_those_of_their_grids() -> None:
 
 
 @pytest.mark.parametrize(
-    ("ni", "nj", "k", "told"),
+    ("ni", "nj", "k", "message"),
     [
         (13, 7, 4, "13x7 nodes are 12x6 cells, which 4 does not divide; use a number that divides 6, or make "
                    "the grid with 13x5 nodes, say"),
@@ -66,6 +71,47 @@ def test_boundaries_are_those_of_their_grids() -> None:
         (5, 5, 0, "which 0 does not divide"),
     ],
 )  # fmt: skip
-def test_counts_that_do_not_divide_are_told_with_a_remedy(ni: int, nj: int, k: int, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_counts_that_do_not_divide_are_told_with_a_remedy(ni: int, nj: int, k: int, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         coarser_grid(Grid.from_nodes(lattice(ni, nj)), k)
+
+
+def flatback() -> Airfoil:
+    """A section with a base of 4 % of the chord, square to it."""
+    half = 0.02 + 0.1 * np.sin(np.pi * np.linspace(0.0, 1.0, 60) ** 0.5) * np.linspace(1.0, 0.2, 60)
+    half[0] = 0.0
+    x = np.linspace(0.0, 1.0, 60) ** 2
+    upper = np.stack([x, half], axis=1)
+    return Airfoil(np.concatenate([upper[::-1], upper[1:] * [1.0, -1.0]]), "flatback")
+
+
+@pytest.mark.parametrize("spacing", ["auto", "curvature", "tanh"])
+@pytest.mark.parametrize("k", [2, 4, 8])
+def test_corners_of_a_base_survive_every_level(spacing: Spacing, k: int) -> None:
+    body = flatback()
+    fine = body.boundary(Sampling(401, 65, "o", spacing))
+    coarse = coarser_boundary(fine, k).south
+    corners = body.curve.points[[1, -1]]
+    for corner in corners:
+        assert np.hypot(*(coarse - corner).T).min() < 1e-12
+
+
+def test_what_would_cut_a_corner_is_refused_with_the_largest_number_that_does_not() -> None:
+    boundary = flatback().boundary(Sampling(401, 65, "o", base_nodes=13))
+    nodes = np.linspace(boundary.south, boundary.north, 65, axis=1)
+    grid = Grid.from_nodes(nodes, "o")
+    with pytest.raises(
+        InputError, match=r"a corner of south at .*, node 6, would be cut: .* all corners is 2;"
+    ):
+        coarser_grid(grid, 4)
+    assert coarser_grid(grid, 2).ni == 201
+
+
+def test_corners_asked_for_at_multiples_stand_there() -> None:
+    star = np.array([[0, 0], [4, 0], [4, 2], [2.3, 2], [2, 1.2], [1.1, 2], [0, 2]], dtype=float)
+    for sampling in (Sampling(129, 33, "quad", refined=4), Sampling(257, 33, "o", "tanh", refined=8)):
+        outline = Outline(star, corners=(0, 1, 2, 6) if sampling.topology == "quad" else None)
+        boundary = outline.boundary(sampling)
+        coarse = coarser_boundary(boundary, sampling.refined)
+        for corner in star:
+            assert np.hypot(*(coarse.outline() - corner).T).min() < 1e-9

@@ -11,11 +11,10 @@ from space_grids import lattice, pipe, sphere_patches, turned
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.blocks.shared_nodes import node_count, shared_nodes
+from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.geometry.blocks.transform import coarser_grid, normalised
 from meshonet.geometry.blocks.transform import turned as quarter_turn
 from meshonet.geometry.errors import InputError
@@ -86,18 +85,18 @@ def test_growth_and_bend_are_those_of_numpy() -> None:
     nodes = nodes + np.random.default_rng(0).uniform(-0.3, 0.3, nodes.shape)
     lines = block_figures(Grid.from_nodes(nodes)).lines
     every = []
-    for axis, found in enumerate((lines.growth.xi, lines.growth.eta, lines.growth.zeta)):
+    for axis, actual in enumerate((lines.growth.xi, lines.growth.eta, lines.growth.zeta)):
         step = np.diff(np.moveaxis(nodes, axis, 0), axis=0)
         length = np.linalg.norm(step, axis=-1)
         ratio = np.maximum(length[1:] / length[:-1], length[:-1] / length[1:])
-        assert (found.max, found.mean) == (pytest.approx(ratio.max()), pytest.approx(ratio.mean()))
+        assert (actual.max, actual.mean) == (pytest.approx(ratio.max()), pytest.approx(ratio.mean()))
         at = [1, 1, 1]
         place = (
             list(np.moveaxis(ratio, 0, axis).shape)
             and np.argwhere(np.moveaxis(ratio, 0, axis) == ratio.max())[0]
         )
         place[axis] += at[axis]
-        assert found.at == (0, *place)
+        assert actual.at == (0, *place)
         cosine = (step[1:] * step[:-1]).sum(axis=-1) / (length[1:] * length[:-1])
         every.append(np.degrees(np.arccos(cosine)).ravel())
     assert lines.bend_inside.max == pytest.approx(np.concatenate(every).max())
@@ -106,9 +105,8 @@ def test_growth_and_bend_are_those_of_numpy() -> None:
 
 def test_nodes_are_counted_once() -> None:
     for grid in (shell(split=3), joined([pipe(inner=0.2)]), joined(sphere_patches())):
-        counts = [block.counts for block in grid.blocks]
-        numbers = shared_nodes(counts, grid.connections)
-        assert node_count(counts, grid.connections) == 1 + max(int(number.max()) for number in numbers)
+        points = np.concatenate([block.nodes.reshape(-1, 3) for block in grid.blocks])
+        assert block_figures(grid).nodes == len(np.unique(points, axis=0))
 
 
 def test_the_report_of_a_volume_is_json_with_both_tests_and_places_in_space() -> None:

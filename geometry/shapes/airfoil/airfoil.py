@@ -126,6 +126,11 @@ class Airfoil:
         return (0.5 * (sides[1] - sides[0])) ** 2 / (0.04 * self.chord)
 
     @property
+    def outline_notes(self) -> tuple[str, ...]:
+        """What there is to say of the outline: `notes`, an oblique base, a curve far off its points."""
+        return self.notes + shape_notes(self._section, self.curve, self.chord)
+
+    @property
     def stations(self) -> Stations:
         """Where its base, its sides and its nose are along the curve."""
         from meshonet.geometry.shapes.airfoil.wall_nodes import Stations
@@ -227,7 +232,7 @@ class Airfoil:
         if topology == "o" and (sampling.wake or sampling.wake_nodes):
             remedy = "leave {wake} out, or use {topology} c"
             raise InputError("an O grid has no wake", remedy, source=self.name)
-        notes = body.notes + shape_notes(self._section, self.curve, self.chord)
+        notes = body.notes + self.outline_notes[len(self.notes) :]
         notes += self._edge_notes(body, te, sampling)
         if topology == "c":
             if sampling.topology == "auto":
@@ -263,7 +268,7 @@ class Airfoil:
         from meshonet.geometry.shapes.wake import C_EDGE, WakeLine, c_boundary, cells_of_wake, wake_axis
 
         if self.blunt or self._round:
-            remedy = "close it with {te} wedge, or use {topology} o"
+            remedy = "give {first_cell} or {y_plus}, close it with {te} wedge, or use {topology} o"
             raise InputError("a C grid needs a sharp trailing edge", remedy)
         chord, ni = original.chord, sampling.ni or DEFAULT_NI
         length = (sampling.wake or sampling.radius) * chord

@@ -19,7 +19,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.conformal.spacing import conformal_knots
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.along_curve import on_corners
+from meshonet.geometry.spacing.along_curve import first_within, on_corners
 from meshonet.geometry.spacing.laws import LAWS
 from meshonet.geometry.spacing.sampling import Sampling
 
@@ -28,7 +28,9 @@ _EDGE_STEP = 20.0
 grids: with smaller cells they are less orthogonal, with larger ones more of them fold at the edge."""
 _EDGE_PART = 0.24
 """The same cell, in mean cells, where spacing follows curvature, the law of marched grids."""
-_BASE_GROWTH = 1.15  # ratio of neighbouring cells on a base up to which it needs no more of them
+_BASE_GROWTH = 1.06
+"""Ratio of neighbouring cells on a base up to which it needs no more of them: a base of 8 % of the chord has
+46 cells of 400 then, which its wake is resolved by."""
 _BASE_JUMP = 4.0
 """Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
 _ROUND_CELLS = 14  # fewest cells on half a rounded base, when there are 16 times as many in all
@@ -86,7 +88,10 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     if sampling.spacing == "conformal":
         blunt = stations.half_base and not stations.rounded
         corners = np.array([stations.half_base, stations.upper]) if blunt else np.zeros(0)
-        return _on_inner_corners(conformal_knots(stations.curve, corners, ni), stations)
+        half = _asked_half(stations, ni - 1, sampling)
+        at = np.array([half, ni - 1 - half]) if half else None
+        steps = sampling.corner_steps(ni - 1)
+        return _on_inner_corners(conformal_knots(stations.curve, corners, ni, at, steps), stations, steps)
     plan = _plan(stations, ni - 1, sampling)
     if sampling.spacing == "curvature":
         from meshonet.geometry.spacing.size_field import arcs_by_curvature
@@ -111,15 +116,61 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     else:
         lower, upper = plan.base or (_half_base(plan, stations.half_base),) * 2
         arcs = np.concatenate([lower[:-1], sides, stations.curve.length - upper[-2::-1]])
-    return _on_inner_corners(arcs, stations)
+    return _on_inner_corners(arcs, stations, sampling.corner_steps(ni - 1))
 
 
-def _on_inner_corners(arcs: Floats, stations: Stations) -> Floats:
-    """Return the arcs with the corners of the two sides on nodes; the trailing edge's are there already."""
+def arcs_to_corners(stations: Stations, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
+    """Return arc lengths (cells + 1,) from the lower corner of a base to the upper one, by curvature.
+
+    Cells at the corners are `first` long, unless `te_spacing` says otherwise, and grow by `ratio` at most.
+    """
+    from meshonet.geometry.spacing.size_field import arcs_by_curvature
+
+    plan = _natural(stations, WallCells(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
+    le = sampling.le_spacing * stations.chord if sampling.le_spacing else plan.le
+    te = sampling.te_spacing * stations.chord if sampling.te_spacing else first
+    return arcs_by_curvature(
+        stations.curve,
+        (stations.half_base, stations.nose, stations.upper),
+        cells,
+        chord=stations.chord,
+        steps=(te, le),
+        exact=(True, sampling.le_spacing is not None),
+        at_edge=math.log(ratio),
+    )
+
+
+def _on_inner_corners(arcs: Floats, stations: Stations, steps: tuple[int, ...]) -> Floats:
+    """Return the arcs with the corners of the two sides on nodes, if possible multiples of the first step.
+
+    Those of the trailing edge are there already.
+    """
     corners = stations.curve.corners
     inside = corners[(corners > stations.half_base) & (corners < stations.upper)]
     ends = np.searchsorted(arcs, [stations.half_base, stations.upper])
-    return on_corners(arcs, inside, fixed=(int(ends[0]), int(ends[1])))
+    return on_corners(arcs, inside, (int(ends[0]), int(ends[1])), steps[0])
+
+
+def _asked_half(stations: Stations, cells: int, sampling: Sampling) -> int:
+    """Return the cells asked for on half the base, 0 where none are.
+
+    Raises InputError: there is no base, no node in its middle, or its cells leave too few for the sides.
+    """
+    if sampling.base_nodes is None:
+        return 0
+    if not stations.half_base or stations.rounded:
+        raise InputError("the trailing edge has no base", "leave {base_nodes} out", parameter="base_nodes")
+    base = sampling.base_nodes - 1
+    if base % (2 * sampling.refined):
+        every = 2 * sampling.refined
+        less = base // every * every + 1
+        near = f"{less} or {less + every}" if less > 1 else f"{less + every}"
+        problem = f"a base of {base + 1} nodes has none in its middle, where an O grid begins"
+        raise InputError(problem, f"use {near}", parameter="base_nodes")
+    if base + 4 > cells:
+        problem = f"{base + 1} of {cells + 1} nodes on the base leave too few for the sides"
+        raise InputError(problem, f"use at most {cells - 3} or a finer {{res}}", parameter="base_nodes")
+    return base // 2
 
 
 def _plan(stations: Stations, cells: int, sampling: Sampling) -> WallCells:
@@ -130,6 +181,9 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> WallCells:
     if stations.half_base:
         fixed = bool(wanted_te) or not LAWS[sampling.spacing].sets_ends
         half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, fixed=fixed)
+        if not stations.rounded:
+            asked = _asked_half(stations, cells, sampling)
+            half, step = _whole_base(stations.half_base, step, asked, half, sampling.corner_steps(cells))
         if stations.rounded and not wanted_te and half < min(_ROUND_CELLS, cells // 16):
             half = min(_ROUND_CELLS, cells // 16)
             step = stations.half_base / half
@@ -197,6 +251,15 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
         if d / half * math.tanh(0.5 * d) < math.log(_BASE_GROWTH):
             return half, step
     return most, step
+
+
+def _whole_base(
+    half_base: float, step: float, asked: int, half: int, steps: tuple[int, ...]
+) -> tuple[int, float]:
+    """Return the cells of half a base, those `asked` for or a multiple of a step, and the corner one."""
+    every = first_within(steps, half)
+    cells = asked or max(every, round(half / every) * every)
+    return cells, min(step, half_base / cells) if cells > 1 else half_base
 
 
 def _half_base(plan: WallCells, half_base: float) -> Floats:

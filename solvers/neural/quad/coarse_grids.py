@@ -12,124 +12,115 @@ Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Complexes, Floats, pairs_of
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import times
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.kernels._native import add_answers, frame_put_back, frame_take_out, grid_features, tfi_coarse
-from meshonet.solvers.algebraic.resample import quad as evaluation
-from meshonet.solvers.algebraic.resample.spline import between, places
-from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, SCALE, WINSLOW
-from meshonet.solvers.neural.quad.network import CHUNK, Network, rim_factor
-from meshonet.solvers.neural.quad.picard import AFTER, nodes_after, step_all
+from meshonet.kernels._native import tfi
+from meshonet.solvers.algebraic.resample.quad import Sides, refine_quad
+from meshonet.solvers.algebraic.resample.spline import between
+from meshonet.solvers.algebraic.tfi import arc_length_fraction
+from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, frame, planes_of
+from meshonet.solvers.neural.quad.network import CHUNK, Network
+from meshonet.solvers.neural.quad.picard import AFTER, approach, nodes_after
 
+Moves: TypeAlias = Callable[[Any, Any], Any]  # of grids and steps, or of grids and moves
 SHARES = (0.95, 0.9, 0.8)  # of the way to the network's answer, the first without folds; else all
-Sides = tuple[Floats, Floats, Floats, Floats]  # of south, north, west and east
 
 
-@dataclass(frozen=True)
-class Edges:
-    """South, north (batch, 2, ni), west and east (batch, 2, nj) of a batch of domains."""
-
-    south: Floats
-    north: Floats
-    west: Floats
-    east: Floats
-
-    @classmethod
-    def of(cls, boundaries: Sequence[Boundary]) -> Edges:
-        """Return the edges of boundaries that have the same node counts."""
-        names = ("south", "north", "west", "east")
-        return cls(*(_planes([getattr(boundary, name) for boundary in boundaries]) for name in names))
-
-    def __len__(self) -> int:
-        return len(self.south)
-
-    def __getitem__(self, rows: slice) -> Edges:
-        return Edges(*(side[rows] for side in self.sides))
-
-    @property
-    def sides(self) -> Sides:
-        """South, north, west and east."""
-        return self.south, self.north, self.west, self.east
-
-    @property
-    def counts(self) -> tuple[int, int]:
-        """Nodes along xi and eta."""
-        return self.south.shape[-1], self.west.shape[-1]
-
-    def thinned(self, ni: int, nj: int) -> Edges:
-        """Return the edges with ni and nj nodes, at equal steps of the index of the given ones."""
-        south, north = between(self.south, ni), between(self.north, ni)
-        return Edges(south, north, between(self.west, nj), between(self.east, nj))
-
-    def transfinite(self, m: int, n: int) -> Floats:
-        """Return the planes (batch, 2, m, n) of transfinite interpolation between edges, by their lengths."""
-        nodes, (ni, nj) = np.empty((len(self), 2, m, n)), self.counts
-        tfi_coarse(self.sides, (places(ni, m), places(nj, n)), nodes)
-        return nodes
+def sides_of(boundaries: Sequence[Boundary]) -> Sides:
+    """Return the sides of boundaries that have the same node counts."""
+    names = ("south", "north", "west", "east")
+    south, north, west, east = (
+        np.ascontiguousarray(np.stack([getattr(boundary, name).T for boundary in boundaries]))
+        for name in names
+    )
+    return south, north, west, east
 
 
 def rims(planes: Floats) -> Sides:
-    """Return south, north, west and east of grids (batch, 2, m, n)."""
-    return planes[..., 0], planes[..., -1], planes[:, :, 0], planes[:, :, -1]
+    """Return the sides of grids (batch, 2, m, n)."""
+    south, north = np.ascontiguousarray(planes[..., 0]), np.ascontiguousarray(planes[..., -1])
+    return south, north, np.ascontiguousarray(planes[:, :, 0]), np.ascontiguousarray(planes[:, :, -1])
 
 
-def _planes(edges: Sequence[Floats]) -> Floats:
-    return np.ascontiguousarray(np.moveaxis(np.stack(edges), -1, 1))
+def thinned(sides: Sides, ni: int, nj: int) -> Sides:
+    """Return the sides with ni and nj nodes, at equal steps of the index of the given ones."""
+    return between(sides[0], ni), between(sides[1], ni), between(sides[2], nj), between(sides[3], nj)
 
 
-def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
-    """Return the planes (batch, 2, m, n) of the network's grids inside the `edges`: 33 x 33 nodes.
+def transfinite(sides: Sides) -> Floats:
+    """Return the planes (batch, 2, ni, nj) of transfinite interpolation between sides, by their lengths."""
+    nodes = np.empty((*sides[0].shape, sides[2].shape[-1]))
+    laws = [arc_length_fraction(np.moveaxis(side, 1, -1)) for side in sides]
+    for k, (x, y) in enumerate(nodes):
+        along, across = (tuple(side[k, axis] for side in sides) for axis in (0, 1))
+        tfi(x, y, along, across, tuple(law[k] for law in laws))
+    return nodes
 
-    Winslow's have up to 65 along a direction, where the edges have as many. `head`: index into
+
+def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
+    """Return the planes (batch, 2, m, n) of the network's grids inside the `sides`: 33 x 33 nodes.
+
+    Winslow's have up to 65 along a direction, where the sides have as many. `head`: index into
     `encoding.HEADS`.
     """
-    base = edges.transfinite(LATENT, LATENT)
-    room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), network.dtype)
+    base = transfinite(thinned(sides, LATENT, LATENT))
+    shares = None if head == WINSLOW else _shares
     for k in range(0, len(base), CHUNK):
-        planes = base[k : k + CHUNK]
-        unit, factors = _unit(planes)
-        near = unit.copy()
-        step, seen = step_all(near), room[: len(near)]
-        grid_features(near, step, seen)
-        start = near.copy()
-        add_answers(near, network.answers(seen), head, SCALE * rim_factor(LATENT, LATENT, around=False))
-        for grid, before in () if head == WINSLOW else zip(near, start, strict=True):
-            if (part := share(before, grid)) < 1.0:
-                grid[:] = before + part * (grid - before)
-        frame_put_back(planes, near, unit, factors)
-    return _nearer(base, edges) if head == WINSLOW else base
+        z = base[k : k + CHUNK, 0] + 1j * base[k : k + CHUNK, 1]
+        base[k : k + CHUNK] = planes_of(
+            answered(z, in_frame(z, np), partial(network.moves, head=head), shares, np)
+        )
+    if head != WINSLOW:
+        return base
+    counts = (nodes_after(side.shape[-1]) for side in (sides[0], sides[2]))
+    finer = refine_quad(base, thinned(sides, *counts))
+    z = finer[:, 0] + 1j * finer[:, 1]
+    return planes_of(nearer(z, in_frame(z, np), np))
 
 
-def _nearer(coarse: Floats, edges: Edges) -> Floats:
-    planes = refine_coarse(coarse, edges.thinned(*(nodes_after(n) for n in edges.counts)))
-    unit, factors = _unit(planes)
-    near = unit.copy()
-    step_all(near, steps=AFTER, harmonic=False)
-    frame_put_back(planes, near, unit, factors)
-    return planes
+def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, around: bool = False) -> Any:
+    """Return grids `z` (batch, n, n), or strips (batch, m + 1, n) that go `around`, moved by a network.
+
+    `unit`: the same at unit size, and the factors (batch, 1, 1) back; `network`: answers to grids near
+    Winslow's and their last step; `shares` (batch, 1, 1) of a move to take from a grid, or all of it; of
+    `xp`.
+    """
+    sized, back = unit
+    near, step = approach(sized, xp, around)
+    move = SCALE * network(near, step)
+    if around:
+        move = xp.concatenate([move, move[:, :1]], 1)
+    if shares is not None:
+        move = shares(near, move) * move
+    return z + times(near + move - sized, back)
 
 
-def _unit(planes: Floats) -> tuple[Floats, Floats]:
-    """Return planes at unit size (`encoding.frame`), and the factors (batch, 2) to it."""
-    unit, factors = np.empty_like(planes), np.empty((len(planes), 2))
-    frame_take_out(planes, unit, factors)
-    return unit, factors
+def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
+    """Return grids, as in `answered`, after the steps that follow the network for Winslow's."""
+    sized, back = unit
+    return z + times(approach(sized, xp, around, AFTER, harmonic=False)[0] - sized, back)
 
 
-def refine_coarse(coarse: Floats, edges: Edges) -> Floats:
-    """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
-    return evaluation.refine_quad(coarse, edges.sides)
+def in_frame(z: Any, xp: Any) -> tuple[Any, Any]:
+    """Return grids at unit size (`encoding.frame`), and the factors (batch, 1, 1) back."""
+    middle, factor = (value[:, None, None] for value in frame(z, xp))
+    return times(z - middle, factor), factor.conj() / (factor.real**2 + factor.imag**2)
 
 
-def share(start: Floats, answer: Floats) -> float:
-    """Return the share of the step from `start` to `answer`, planes (2, m, n), to take: 1 unless it folds."""
-    if count_folded(answer.transpose(1, 2, 0)) == 0:
-        return 1.0
-    tried = ((part, start + part * (answer - start)) for part in SHARES)
-    return next((part for part, grid in tried if count_folded(grid.transpose(1, 2, 0)) == 0), 1.0)
+def _shares(near: Complexes, move: Complexes) -> Floats:
+    parts = [share(start, start + by) for start, by in zip(near, move, strict=True)]
+    return np.array(parts)[:, None, None]
+
+
+def share(start: Complexes, answer: Complexes) -> float:
+    """Return the share of the way from `start` to `answer`, grids (m, n), to take: 1 unless it folds."""
+    tried = (part for part in (1.0, *SHARES) if not count_folded(pairs_of(start + part * (answer - start))))
+    return next(tried, 1.0)

@@ -1,0 +1,217 @@
+"""What a C grid begins at around a section that keeps its base: wall, base, and wake lines from both corners.
+
+::
+
+         .-----------------------.______          upper wake
+        (           wall          upper |=========================|
+         '-----------------------.______| base        H block     | outlet
+                                  lower  =========================|
+                                                  lower wake
+
+Both lines leave along their surfaces and turn into the wake's axis: their middle like the line behind a sharp
+edge (`meshonet.geometry.shapes.wake.WakeLine`), their distance within so short a way that it stays near the
+width of the base.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, along_and_across
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.elementary import expm1
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.self_intersection import find_crossing
+from meshonet.geometry.shapes.airfoil.wall_nodes import arcs_to_corners
+from meshonet.geometry.shapes.wake import STEEPEST, c_far_field, growing, wake_axis
+from meshonet.geometry.spacing.along_curve import first_within
+from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth
+from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, MULTIPLES, Sampling
+from meshonet.kernels._native import layer_steps
+
+if TYPE_CHECKING:
+    from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+
+GROWTH = 1.2  # of cells along wake and base where none is asked for
+_WITHIN = 0.92  # part of the growth beyond 1 that wake and base use: their lines bend, and meet the march's
+_LOST = 0.35  # largest part of the base's width by which both lines come nearer or go apart
+_COARSEST = 1.0 / 12.0  # largest cell on a base, in its width
+LEAST_BASE = 4  # cells of a base
+_LEAST_WALL = 24  # cells of a wall
+
+
+@dataclass(frozen=True, eq=False)
+class BaseWake:
+    """Lines of nodes around a section with a base and behind it; see the drawing.
+
+    The `wall` (n, 2) runs clockwise from the lower corner, the `base` (m, 2) from there to the upper one, the
+    wakes (k, 2) from their corners to the outlet; corners are shared bitwise.
+    """
+
+    wall: Floats
+    base: Floats
+    lower: Floats
+    upper: Floats
+    north: Floats
+    nj: int
+    curve: Curve
+    name: str
+    chord: float
+    notes: tuple[str, ...]
+
+
+def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float | None) -> BaseWake:
+    """Return what the C grid of a `body` with a blunt trailing edge begins at.
+
+    First cells off wall and base are `first` high, in the unit of the body, and cells along the base and the
+    wake grow by `growth` at most.
+
+    Raises InputError: counts of nodes that do not suffice.
+    """
+    ratio = 1.0 + _WITHIN * ((growth or GROWTH) - 1.0)
+    points = body.curve.points
+    corners = points[1], points[-1]
+    steps = sampling.corner_steps((sampling.ni or DEFAULT_NI + 1) - 1)
+    base = _base(corners, first, ratio, sampling.base_nodes, steps, growth)
+    length = (sampling.wake or sampling.radius) * body.chord
+    cells = _wake_cells(sampling, first, length, ratio, steps, growth)
+    ni = sampling.ni or DEFAULT_NI + 1 + 2 * cells
+    if ni - 1 - 2 * cells < _LEAST_WALL:
+        raise InputError(
+            f"{ni} nodes along a C grid, twice {cells + 1} of them behind a base, leave too few for the wall",
+            f"use at least {2 * _whole(cells, MULTIPLES) + _LEAST_WALL + 1} or fewer {{wake_nodes}}",
+        )
+    wall = _wall(body, ni - 1 - 2 * cells, sampling, first, ratio)
+    axis = wake_axis(body.leading_edge, body.trailing_edge)
+    lower, upper = _lines(wall, axis, body.chord, length, first, cells)
+    centre = 0.5 * (body.leading_edge + body.trailing_edge)
+    radius = sampling.radius * body.chord
+    behind, beside = along_and_across(0.5 * (lower[-1] + upper[-1]) - centre, axis)
+    if behind <= 0 or abs(beside) >= radius:
+        raise InputError("the wake does not reach the outlet inside the far field", "use a larger far field")
+    north = c_far_field(len(wall) - 1, cells, centre, radius, axis, float(behind))
+    nj = sampling.nj or DEFAULT_NJ
+    return BaseWake(wall, base, lower, upper, north, nj, body.curve, body.name, body.unit, body.outline_notes)
+
+
+def _wall(body: Airfoil, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
+    """Return the nodes (cells + 1, 2) of the wall, from the lower corner of the base round to the upper one.
+
+    Cells at the corners are as long as those of the wake behind them, and grow by `ratio`.
+    """
+    if sampling.spacing not in ("auto", "curvature"):
+        problem = f"{sampling.spacing} spacing around a base, from which a C grid has two wakes"
+        raise InputError(problem, "use curvature, or {te} wedge", parameter="spacing")
+    arcs = arcs_to_corners(body.stations, cells, sampling, first, ratio)
+    nodes = body.curve.at(arcs)
+    nodes[0], nodes[-1] = body.curve.points[1], body.curve.points[-1]
+    crossing = find_crossing(nodes)
+    if crossing is not None:
+        problem = f"the wall of {cells + 1} nodes crosses itself at ({crossing.x:.6g}, {crossing.y:.6g})"
+        raise InputError(problem, "use more nodes where the section is thin")
+    return nodes
+
+
+def _base(
+    corners: tuple[Floats, Floats],
+    first: float,
+    ratio: float,
+    nodes: int | None,
+    every: tuple[int, ...],
+    growth: float | None,
+) -> Floats:
+    """Return the nodes (m, 2) of the base from its lower corner, growing from `first` at both of them."""
+    a, b = corners
+    width = float(np.hypot(*(b - a)))
+    fewest = _fewest(width, first, ratio)
+    cells = fewest
+    if nodes is not None:
+        cells = nodes - 1
+        needed = layer_steps(np.empty(cells), width, min(first, width / cells), min(first, width / cells), 1)
+        if needed > (growth or LARGEST):
+            problem = f"{nodes} nodes on the base, {width:.3g} wide, grow by {needed:.3g} from first cells of"
+            raise InputError(f"{problem} {first:.3g}", f"use {fewest + 1} or more", parameter="base_nodes")
+    else:
+        cells = _whole(cells, every)
+    t = end_fractions(np.array([min(first / width, 1.0 / cells)]), cells)[0]
+    out = (1.0 - t)[:, None] * a + t[:, None] * b
+    out[0], out[-1] = a, b
+    return np.asarray(out)
+
+
+def _fewest(width: float, first: float, ratio: float) -> int:
+    """Return the fewest cells of a base that grow by at most `ratio`, none larger than `_COARSEST`."""
+    cells = LEAST_BASE
+    while True:
+        steps = np.empty(cells)
+        end = min(first, width / cells)
+        grown = layer_steps(steps, width, end, end, 1)
+        if end < first or (grown <= ratio and steps.max() <= max(_COARSEST * width, first)):
+            return cells
+        cells = max(cells + 1, int(1.03 * cells))
+
+
+def end_fractions(ends: Floats, cells: int) -> Floats:
+    """Return places (m, cells + 1) from 0 to 1 with first and last steps `ends` (m,), at most 1/cells."""
+    out = np.zeros((len(ends), cells + 1))
+    steps = np.empty(cells)
+    for row, end in zip(out, ends.tolist(), strict=True):
+        layer_steps(steps, 1.0, end, end, 1)
+        half = cells // 2
+        row[1 : half + 1] = np.cumsum(steps[:half])
+        row[half + 1 :] = 1.0 - np.concatenate([np.cumsum(steps[:half:-1])[::-1], [0.0]])
+    return out
+
+
+def _wake_cells(
+    sampling: Sampling,
+    first: float,
+    length: float,
+    ratio: float,
+    every: tuple[int, ...],
+    growth: float | None,
+) -> int:
+    """Return the cells of each wake line."""
+    if sampling.wake_nodes is not None:
+        return sampling.wake_nodes - 1
+    cells = cells_for_growth(first, length, ratio) + 6  # growth sets in slowly, and ends a little faster
+    if growth is None and sampling.ni is not None:
+        cells = min(cells, round(0.3 * (sampling.ni - 1)))
+    return _whole(cells, every)
+
+
+def _whole(cells: int, steps: tuple[int, ...]) -> int:
+    """Return at least so many cells, a multiple of one of the `steps`."""
+    step = first_within(steps, 0.25 * cells)
+    return -(-cells // step) * step
+
+
+def _lines(
+    wall: Floats, axis: Floats, chord: float, length: float, first: float, cells: int
+) -> tuple[Floats, Floats]:
+    """Return the lower and the upper wake line (cells + 1, 2), both of which end at the outlet."""
+    normal = np.array([-axis[1], axis[0]])
+    corners, ways = (wall[0], wall[-1]), (wall[0] - wall[1], wall[-1] - wall[-2])
+    slopes = []
+    for way in ways:
+        along, across = (float(x) for x in along_and_across(way, axis))
+        slopes.append(math.tan(min(max(math.atan2(across, along), -STEEPEST), STEEPEST)))
+    mean, closing = 0.5 * (slopes[0] + slopes[1]), slopes[0] - slopes[1]
+    gap = float(np.hypot(*(wall[-1] - wall[0])))
+    near = min(chord, _LOST * gap / max(abs(closing), 1e-9))
+    outlet = max(float(along_and_across(corner, axis)[0]) for corner in corners) + length
+    lines = []
+    for corner, slope in zip(corners, slopes, strict=True):
+        own = outlet - float(along_and_across(corner, axis)[0])
+        x = growing(first / math.hypot(1.0, slope), own, cells)
+        x *= own / x[-1]
+        y = -mean * chord * expm1(-x / chord) - (slope - mean) * near * expm1(-x / near)
+        line = corner + x[:, None] * axis + y[:, None] * normal
+        line[0] = corner
+        line[1] = corner + (line[1] - corner) * (first / float(np.hypot(*(line[1] - corner))))
+        lines.append(line)
+    return lines[0], lines[1]

@@ -1,0 +1,99 @@
+"""C grids that keep a base: a block marched around the section and both wake lines, and one between these.
+
+::
+
+    C block: south is lower wake, wall, upper wake; marched from there
+    H block: west is the base, south the lower wake, north the upper one, east the outlet
+
+Across both wake lines first cells are equally high: off the line those of the march, which are higher farther
+behind, as far as the H block's cells are.
+"""
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms, planar_nodes
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.elementary import exp
+from meshonet.geometry.shapes.airfoil.base_wake import BaseWake, end_fractions
+from meshonet.geometry.shapes.far_field import straight
+from meshonet.geometry.threads import threads_for
+from meshonet.kernels._native import redistribute
+from meshonet.solvers.hyperbolic.front import Front, opening
+from meshonet.solvers.hyperbolic.march import check_layers, marched
+from meshonet.solvers.solution import Solution, timed
+
+_FULL = 0.95  # part of the H block's mean cell that its first ones reach, far behind
+_FADE = 8.0  # cells over which the correction of first cells off the base fades out
+
+
+@timed
+def around_base(
+    lines: BaseWake, *, first: float, growth: float | None, free_rows: bool, constant: int
+) -> Solution:
+    """Return the grid of two blocks around `lines`, first cells `first` high in their unit.
+
+    Rows are as for `hyperbolic`.
+
+    Raises InputError: as `hyperbolic`; SolverError: the march diverged.
+    """
+    check_layers(first / lines.chord, growth)
+    ends, between = _h_block(lines, first)
+    wake = len(lines.lower) - 1
+    south = np.concatenate([lines.lower[:0:-1], lines.wall[:-1], lines.upper])
+    west, east = (straight(south[k], lines.north[k], lines.nj) for k in (0, -1))
+    boundary = Boundary(south, lines.north, west, east, "quad", name=lines.name, chord=lines.chord)
+    front = Front(boundary, wake, ends / first)
+    nodes = marched(front, lines.nj - 1, first, growth, free_rows, constant)
+    grid = _joined(nodes, between, wake, lines.name, first)
+    heights = norms(
+        np.concatenate([nodes[wake : len(nodes) - wake, 1] - lines.wall, between[1] - between[0]])
+    )
+    off = float(np.abs(heights / first - 1.0).max())
+    note = f"first cell {first:.6g} at every node of wall and base, to {off:.1g}"
+    base = f"the base has {len(lines.base)} nodes, the H block behind it {wake + 1} x {len(lines.base)}"
+    return Solution(grid, "hyperbolic", notes=(*lines.notes, note, base))
+
+
+def _h_block(lines: BaseWake, first: float) -> tuple[Floats, Floats]:
+    """Return the steps (k,) at both wake lines and the nodes (k, m, 2) of the block between them."""
+    ways = lines.upper - lines.lower
+    width, cells = norms(ways), len(lines.base) - 1
+    behind = norms(lines.lower - lines.lower[0]) / lines.chord
+    ends = np.minimum(first * opening(behind), _FULL * width / cells)
+    ends[0] = float(norms(lines.base[1] - lines.base[0]))
+    t = end_fractions(ends / width, cells)[..., None]
+    nodes = planar_nodes(len(lines.lower), cells + 1)
+    nodes[...] = lines.lower[:, None] + t * ways[:, None]
+    nodes[:, 0], nodes[:, -1], nodes[0] = lines.lower, lines.upper, lines.base
+    inner = nodes[:, 1:-1]
+    x, y = (np.ascontiguousarray(inner[..., axis].T) for axis in (0, 1))
+    fade = exp(-np.maximum(np.arange(len(nodes)) - 1.0, 0.0) / _FADE)
+    redistribute(x, y, np.full(len(x), first), fade, threads_for(x.size))
+    inner[..., 0], inner[..., 1] = x.T, y.T
+    nodes[-1, 1:-1] = (lines.lower[-1] + t[-1] * ways[-1])[1:-1]
+    return ends, nodes
+
+
+def _joined(nodes: Floats, between: Floats, wake: int, name: str, first: float) -> Grid:
+    """Return the grid of both blocks."""
+    ni, nj = nodes.shape[:2]
+    cells, across = len(between) - 1, between.shape[1] - 1
+    whole = ((0, cells),)
+    connections = (
+        Connection(0, "south", ((0, wake),), 1, "south", whole, (-1,)),
+        Connection(0, "south", ((ni - 1 - wake, ni - 1),), 1, "north", whole, (1,)),
+    )
+    patches = (
+        Patch("wall", "south", wake, ni - 1 - wake),
+        Patch("farfield", "north", 0, ni - 1),
+        Patch("farfield", "east", 0, nj - 1),
+        Patch("farfield", "west", 0, nj - 1),
+        Patch("wall", "west", 0, across, block=1),
+        Patch("farfield", "east", 0, across, block=1),
+    )
+    facts = {"method": "hyperbolic", "wall_spacing": first}
+    return Grid((Block(nodes), Block(between)), patches, connections, name, facts)

@@ -1,0 +1,101 @@
+"""C grids that keep a base: a C block, and an H block behind it, whose nodes on the wake lines are one."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import meshonet
+from meshonet.formats.registry import read_grids
+from meshonet.geometry.blocks.transform import coarser_grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.report import quality_report
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.pipeline.make_grid import make_grid
+from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.pipeline.result import Result
+
+
+def blunt(base: float, slant: float = 0.0) -> Airfoil:
+    """A section 18 % thick with a base of `base` chords, its upper corner `slant` of it farther aft."""
+    x = 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 81)))
+    half = (
+        0.9 * (0.2969 * np.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+        + 0.5 * base * x**3
+    )
+    upper, lower = np.stack([x + slant * base * x**9, half], axis=1), np.stack([x, -half], axis=1)
+    return Airfoil(np.concatenate([upper[::-1], lower[1:]]), f"blunt {base:g}")
+
+
+def made(body: Airfoil, first: float = 1e-5, growth: float | None = 1.2, **sampling: int) -> Result:
+    return make_grid(
+        body,
+        GridRequest(sampling=Sampling(topology="c", **sampling), first_cell=first, growth=growth),  # type: ignore[arg-type]
+    )
+
+
+@pytest.mark.parametrize("growth", [1.1, 1.2, 1.3])
+@pytest.mark.parametrize(("base", "slant"), [(0.0025, 0.0), (0.02, 0.2), (0.08, 0.0), (0.1, -0.05)])
+def test_cells_grow_as_asked_off_walls_and_across_the_wake(base: float, slant: float, growth: float) -> None:
+    result = made(blunt(base, slant), growth=growth)
+    report = quality_report(result.grid)
+    assert result.quality.folded == 0
+    for figure in ("wall_growth", "growth_across"):
+        value = report.figures(figure)
+        assert value is not None
+        assert value.value <= growth
+    rows = report.figures.wall_rows
+    for row in rows:
+        assert row.height.min == pytest.approx(1e-5, rel=1e-7)
+        assert row.height.max == pytest.approx(1e-5, rel=1e-7)
+
+
+def test_both_corners_of_the_base_are_those_of_the_file_on_every_level() -> None:
+    body = blunt(0.08)
+    grid = made(body, ni=401, nj=97).grid
+    for k in (1, 2, 4, 8):
+        wall = coarser_grid(grid, k).blocks[1].nodes[0]
+        np.testing.assert_allclose(wall[[0, -1]], body.curve.points[[1, -1]], atol=1e-15)
+        assert np.ptp(wall[:, 0]) < 1e-12  # straight, and nothing of a wedge
+
+
+def test_the_outlet_is_straight_and_the_wake_as_long_as_asked_for() -> None:
+    grid = made(blunt(0.04)).grid
+    outlet = np.concatenate([grid.blocks[0].nodes[0], grid.blocks[1].nodes[-1], grid.blocks[0].nodes[-1]])
+    assert np.ptp(outlet[:, 0]) < 1e-9
+    assert outlet[0, 0] == pytest.approx(16.0, abs=1e-6)
+
+
+def test_so_many_nodes_as_are_asked_for_are_on_the_base() -> None:
+    assert made(blunt(0.08), first=1e-4, base_nodes=70).grid.blocks[1].counts[1] == 70
+    with pytest.raises(InputError, match=r"base_nodes: 11 nodes on the base, .* grow by .*; use \d+ or more"):
+        made(blunt(0.08), base_nodes=11)
+
+
+def test_too_few_nodes_are_refused_with_a_number_that_suffices() -> None:
+    with pytest.raises(InputError, match="leave too few for the wall; use at least") as told:
+        made(blunt(0.08), ni=101)
+    least = re.search(r"at least (\d+)", str(told.value))
+    assert least is not None
+    made(blunt(0.08), ni=int(least[1]))
+
+
+@pytest.mark.parametrize("ending", ["vtm", "cgns", "p3d", "h5"])
+def test_formats_hold_both_blocks(ending: str, tmp_path: Path) -> None:
+    grid = made(blunt(0.02), first=1e-3, growth=None, ni=201, nj=40).grid
+    path = tmp_path / "case" / f"grid.{ending}"
+    path.parent.mkdir()
+    grid.write(path)
+    (again,) = read_grids(str(path))
+    cells, wanted = (sum(int(np.prod(np.array(b.counts) - 1)) for b in each.blocks) for each in (again, grid))
+    assert cells == wanted
+
+
+def test_a_wedge_is_made_where_it_is_asked_for_only() -> None:
+    asked = meshonet.grid("naca:0012", topology="c", first_cell=1e-4, te="wedge")
+    assert asked.topology == "c"
+    kept = meshonet.grid("naca:0012", topology="c", first_cell=1e-4)
+    assert len(kept.blocks) == 2
+    assert "changes" not in kept.provenance
