@@ -177,10 +177,6 @@ def trace_rays(
     tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
     limit: int, room: int,
 ) -> tuple[Indices, Floats, Indices, Floats] | None: ...  # fmt: skip
-def walk_map(
-    tables: TriangleMap, corners: Indices, points: Floats, start: Indices, at: Floats, first: Indices,
-    targets: Floats, limit: int,
-) -> Floats: ...  # fmt: skip
 def nearest_points(places: Floats, points: Floats) -> tuple[Indices, Floats]: ...
 
 # quads
