@@ -119,7 +119,7 @@ class Sampling:
         """
         if self.refined > 1:
             return (self.refined,)
-        return tuple(step for step in MULTIPLES if cells % step == 0)
+        return MULTIPLES[MULTIPLES.index(math.gcd(cells, MULTIPLES[0])) :]
 
     @property
     def radius(self) -> float:

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, TypeVar
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.quality.measure import count_folded, measure
-from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.threads import limited_to
@@ -25,6 +24,7 @@ from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import reached
 
 if TYPE_CHECKING:
+    from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
     from meshonet.geometry.shapes.domain_shape import DomainShape
     from meshonet.solvers.progress import HistoryRow
 
@@ -192,10 +192,8 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
         raise boundary
     if isinstance(boundary, SpatialShape):
         return _of_volume(boundary, request, seconds)
-    if isinstance(boundary, BaseWake):
-        return _of_base(boundary, request, seconds)
     if not isinstance(boundary, Boundary):
-        return _of_blocks(boundary, request, seconds)
+        return _of_many(boundary, request, seconds)
     rows: tuple[HistoryRow, ...] = ()
     if solution is None:
         reached("grid")
@@ -229,6 +227,15 @@ def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[Histor
     with listening(history):
         solution = solve()
     return solution, history.of(solution)
+
+
+def _of_many(shape: BaseWake | DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
+    """Return the grid of blocks around a base or of a domain, measured."""
+    from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
+
+    if isinstance(shape, BaseWake):
+        return _of_base(shape, request, seconds)
+    return _of_blocks(shape, request, seconds)
 
 
 def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:

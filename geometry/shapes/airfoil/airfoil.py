@@ -226,6 +226,9 @@ class Airfoil:
         if te == "auto":
             te = "wedge" if topology == "c" else "exact"
         body = self.rounded() if te == "round" else self.wedged() if te == "wedge" else self
+        if sampling.base_nodes and not body.blunt:
+            remedy = "leave {base_nodes} out"
+            raise InputError("the trailing edge has no base", remedy, parameter="base_nodes")
         if topology == "auto":
             sharp = not (body.blunt or body._round) and body.wedge <= _WIDEST_WEDGE
             topology = "c" if sampling.viscous and sharp else "o"
