@@ -31,6 +31,8 @@ _EDGE_PART = 0.24
 _BASE_GROWTH = 1.06
 """Ratio of neighbouring cells on a base up to which it needs no more of them: a base of 8 % of the chord has
 46 cells of 400 then, which its wake is resolved by."""
+_MANY = 192
+"""Cells from which on half a base has at least four: a grid coarsened by four then has the base's corners."""
 _BASE_JUMP = 4.0
 """Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
 _ROUND_CELLS = 14  # fewest cells on half a rounded base, when there are 16 times as many in all
@@ -232,7 +234,8 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
     the base are `fixed`, those on it are not much smaller: cells fold at a corner between very unlike steps.
     """
     enough = cells >= 48
-    least = max(2, round(2 * math.cbrt(half_base / 1.2e-4))) if enough else 1
+    fewest = 4 if cells >= _MANY else 2
+    least = max(fewest, round(2 * math.cbrt(half_base / 1.2e-4))) if enough else 1
     least = min(least, max(cells // 24, 1), 12)
     if fixed:
         least = min(least, math.ceil(_BASE_JUMP * half_base / step))
