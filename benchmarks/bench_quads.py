@@ -35,10 +35,11 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.solvers.algebraic.resample.quad import refine_quad
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.quad.coarse_grids import Edges, refine_coarse
+from meshonet.solvers.neural.quad.coarse_grids import Edges
 from meshonet.solvers.neural.quad.encoding import LATENT, frame
 from meshonet.solvers.neural.quad.picard import approach
 from meshonet.solvers.neural.registry import load
@@ -115,7 +116,7 @@ def near(boundary: Boundary) -> Solution:
     z = base[:, 0] + 1j * base[:, 1]
     middle, factor = frame(z, np)
     z = approach((z - middle) * factor, np)[0] / factor + middle
-    (planes,) = refine_coarse(np.stack([z.real, z.imag], axis=1), edges)
+    (planes,) = refine_quad(np.stack([z.real, z.imag], axis=1), edges.sides)
     return Solution(
         Grid.from_nodes(np.ascontiguousarray(np.moveaxis(planes, 0, -1)), "quad", boundary.patches), "picard"
     )

@@ -32,7 +32,7 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.summary import Quality
 from meshonet.solvers.pipeline.stacks import make_stack
 from meshonet.solvers.stacking.request import StackRequest
-from meshonet.solvers.sweeping.butterfly import Disc, butterfly
+from meshonet.solvers.sweeping.disc import Disc, butterfly
 from meshonet.solvers.sweeping.sweep import Sweep, sweep
 
 SEED = 1

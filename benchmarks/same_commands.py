@@ -37,7 +37,7 @@ convert c.h5 --coarsen 4 --json
 convert quad.h5 --extrude 1 --planes 7 --json -> box.h5
 solve-pde made/box.h5 --json
 stack wing.toml --wall-spacing 1e-3 --around 33 --span 9 --far-field 5 --json -> .cgns
-sweep circle bend.toml --cells 160 --planes 9 --json -> .cgns
+sweep circle bend.toml --around 32 --planes 9 --json -> .cgns
 """
 LARGE = """
 solve-pde bend.csv --res 400 --json
@@ -55,7 +55,7 @@ solve-pde channel.geojson --cells 5000 --json -> .vtm
 infer naca:0012 --normalise --y-plus 1 --reynolds 6e6 --res 250x110 --far-field 500 --json -> .vts
 infer naca:0012-sharp --y-plus 1 --reynolds 6e6 --res 300x100 --constant-layers 2 --json -> .vts
 infer main.dat flap.dat --assemble --y-plus 1 --reynolds 5e6 --far-field 50 --cells 30000 --json
-sweep circle:0.5 bend.toml --cells 160 --planes 41 --json -> .cgns
+sweep circle:0.5 bend.toml --around 32 --planes 41 --json -> .cgns
 stack wing.toml --y-plus 30 --reynolds 1e6 --around 65 --span 25 --far-field 10 --json -> .cgns
 """
 """As on the pages of `docs/tutorials`; their inputs are made as there."""

@@ -97,7 +97,7 @@ def pipe() -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bend.toml"
         path.write_text(toml_of("pipes.md"))
-        volume = meshonet.sweep("circle:0.5", path, cells=600, first_cell=0.01)
+        volume = meshonet.sweep("circle:0.5", path, around=40, first_cell=0.01)
     wall = [(block.nodes[:, 0], "#9db8d9") for block in volume.blocks[1:]]
     colours = "#e39a8f", *["#f2c572"] * 4
     ends = [

@@ -20,27 +20,23 @@ def markdown() -> str:
 
 def plain() -> str:
     """Return the table in columns, for a terminal; long lists of endings are cut short."""
-    lines = [_HEAD, *(tuple(map(_short, _row(record)[:2])) + _row(record)[2:] for record in formats())]
+
+    def short(words: str, most: int = 40) -> str:
+        return words if len(words) <= most else words[: words.rindex(" ", 0, most - 4)] + " ..."
+
+    lines = [_HEAD, *(tuple(map(short, _row(record)[:2])) + _row(record)[2:] for record in formats())]
     widths = [max(len(line[k]) for line in lines) for k in range(len(_HEAD))]
     return "\n".join(
         "  ".join(f"{word:<{n}}" for word, n in zip(line, widths, strict=True)).rstrip() for line in lines
     )
 
 
-def _short(words: str, most: int = 40) -> str:
-    return words if len(words) <= most else words[: words.rindex(" ", 0, most - 4)] + " ..."
-
-
 def _row(record: Format) -> tuple[str, ...]:
     return (
         record.name,
         " ".join(record.suffixes),
-        _what(record.read_grids is not None, record.read_shapes is not None),
-        _what(
-            record.write_grids is not None,
-            record.write_boundaries is not None,
-            record.write_layouts is not None,
-        ),
+        _what(record.read_grids, record.read_shapes),
+        _what(record.write_grids, record.write_boundaries, record.write_layouts),
         "yes" if record.names_patches else "",
         ", ".join(record.space),
         record.blocks,
@@ -50,6 +46,6 @@ def _row(record: Format) -> tuple[str, ...]:
     )
 
 
-def _what(grids: bool, boundaries: bool, layouts: bool = False) -> str:
-    each = ("grids", grids), ("boundaries", boundaries), ("layouts", layouts)
-    return ", ".join(word for word, can in each if can)
+def _what(*functions: object) -> str:
+    words = zip(("grids", "boundaries", "layouts"), functions, strict=False)
+    return ", ".join(word for word, can in words if can)

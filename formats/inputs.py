@@ -46,9 +46,11 @@ _WITH_FOLDER = (".h5", ".hdf5", ".vtm")
 
 
 def readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
-    """Return the endings of files that are taken from folders and archives."""
+    """Return the endings of files that are taken from folders and archives, but those of pictures."""
     read = (
-        f for f in formats() if f.read_grids is not None or (f.read_shapes is not None and not grids_only)
+        f
+        for f in formats()
+        if f.read_grids is not None or (f.read_shapes is not None and not grids_only and f.name != "svg")
     )
     return frozenset(suffix for record in read for suffix in record.suffixes)
 
@@ -105,7 +107,11 @@ class Inputs:
         walk = _Walk(self)
         yield from walk.of(self.words)
         if self.pick and not walk.taken:
-            yield self._nothing(walk)
+            pattern = " or ".join(printable(pattern) for pattern in self.pick)
+            files = f"{walk.seen} files" if walk.seen > 1 else "1 file"
+            like = f"names are like {printable(walk.example)!r}"
+            remedy = f"{like}; quote the pattern, so that the shell leaves it"
+            yield InputError(f"{pattern!r} matches none of {files}", remedy, parameter="pick")
 
     def own(self) -> Iterator[Numbered]:
         """Yield the inputs of the shard; of a dataset every n-th sample is taken."""
@@ -187,12 +193,6 @@ class Inputs:
         except OSError as error:
             raise _unreadable(name, error, "check the path of the list") from error
 
-    def _nothing(self, walk: _Walk) -> InputError:
-        pattern = " or ".join(printable(pattern) for pattern in self.pick)
-        files = f"{walk.seen} files" if walk.seen > 1 else "1 file"
-        remedy = f"names are like {printable(walk.example)!r}; quote the pattern, so that the shell leaves it"
-        return InputError(f"{pattern!r} matches none of {files}", remedy, parameter="pick")
-
 
 class _Walk:
     """One walk through inputs: how many were seen in folders, archives and lists, and how many taken."""
@@ -214,7 +214,12 @@ class _Walk:
         if word.startswith("@"):
             yield from self._of_list(word[1:], lists)
         elif not (lists and _split(word)[1] in self._inputs.suffixes) and _stands_for_many(word):
-            yield from self._of_archive(word) if is_archive(word) else self._of_folder(word)
+            before = self.seen
+            yield from self._of_archive(word) if is_archive(word) else self._below(word, "")
+            if self.seen == before:
+                known = " ".join(sorted(self._inputs.suffixes))
+                problem, place = "holds no file that can be read", printable(word)
+                raise InputError(problem, f"endings are {known}", source=place)
         elif not lists or self._takes(word.replace(":", "") if is_designation(word) else word):
             yield word
 
@@ -229,12 +234,6 @@ class _Walk:
             yield entry
         if empty and not self._patterns:
             raise InputError("holds no inputs", "write one a line", source=f"@{printable(name)}")
-
-    def _of_folder(self, folder: str) -> Iterator[str | InputError]:
-        before = self.seen
-        yield from self._below(folder, "")
-        if self.seen == before:
-            raise self._without_files(folder)
 
     def _below(self, folder: str, inside: str) -> Iterator[str | InputError]:
         """Yield the files of `folder` and its folders; `inside` is its path below the one that was named."""
@@ -268,19 +267,12 @@ class _Walk:
         return sorted(name for name in names if name not in owners)
 
     def _of_archive(self, path: str) -> Iterator[str]:
-        before = self.seen
         with in_source(printable(path)):
             names = member_names(path)
         for name in names:
             hidden = any(map(_is_hidden, name.split("/")))
             if not hidden and _split(name)[1] in self._inputs.suffixes and self._takes(name):
                 yield f"{path}/{name}"
-        if self.seen == before:
-            raise self._without_files(path)
-
-    def _without_files(self, place: str) -> InputError:
-        known = " ".join(sorted(self._inputs.suffixes))
-        return InputError("holds no file that can be read", f"endings are {known}", source=printable(place))
 
     def _takes(self, path: str) -> bool:
         """Note a file of a folder, an archive or a list, and return whether it is picked."""

@@ -1,4 +1,4 @@
-"""Unstructured meshes that meshio writes and nothing here reads: surfaces for viewers, decks for solids.
+"""Unstructured meshes that meshio writes: VTK's, surfaces for viewers, decks for solids. None are read.
 
 Seams are merged and cells counter-clockwise; formats of triangles get every quadrilateral cut along its
 shorter diagonal. https://github.com/nschloe/meshio
@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from meshonet.formats.format import Options, only_one
-from meshonet.formats.mesh.unstructured import Indices, Unstructured, unstructured, with_z
+from meshonet.formats.mesh.unstructured import CELLS, Indices, Unstructured, unstructured, with_z
 from meshonet.geometry.blocks.grid import Grid
 
 _TRIANGLES = {"stl", "off"}
@@ -32,6 +32,20 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     cells, nodes = ("triangle", _triangles(mesh)) if kind in _TRIANGLES else ("quad", mesh.cells)
     made = meshio.Mesh(with_z(mesh.points), [(cells, nodes.astype(np.int32))])
     getattr(meshio, kind).write(str(path), made, **_SETTINGS.get(kind, {}))
+
+
+def write_vtu(path: Path, grids: Iterable[Grid]) -> None:
+    """Write the only grid of `grids`: quads and lines, or of a volume hexahedra and quads.
+
+    The cell array ``part`` is 0 inside and counts the boundary's parts from 1, in the order of the grid's
+    sides south, east, north, west.
+    """
+    import meshio
+
+    mesh = unstructured(only_one(grids, "a .vtu file"))
+    cells = [(CELLS[nodes.shape[1]], nodes) for nodes in (mesh.cells, *mesh.faces.values())]
+    numbers = [np.full(len(nodes), k) for k, (_, nodes) in enumerate(cells)]
+    meshio.vtu.write(str(path), meshio.Mesh(with_z(mesh.points), cells, cell_data={"part": numbers}))
 
 
 def _triangles(mesh: Unstructured) -> Indices:

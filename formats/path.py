@@ -41,7 +41,13 @@ def path_of(text: str) -> Path:
     """
     source = open_source(text)
     with in_source(source.name):
-        return _pieces(toml_table(source)) if source.suffix == ".toml" else SplinePath(_points(source))
+        if source.suffix != ".toml":
+            return SplinePath(_points(source))
+        data = toml_table(source)
+        data.only("start", "direction", "pieces")
+        pieces = tuple(map(_piece, data.rows("pieces")))
+        start, direction = data.vector("start", (0.0, 0.0, 0.0)), data.vector("direction", (1.0, 0.0, 0.0))
+        return PiecedPath(pieces, np.array(start), np.array(direction))
 
 
 def _points(source: Source) -> Floats:
@@ -56,13 +62,6 @@ def _points(source: Source) -> Floats:
     if len(rows) < 2:
         raise InputError(f"holds {len(rows)} points", "give x, y and z of two or more, one a line")
     return np.array([line.values[:3] for line in rows])
-
-
-def _pieces(data: Table) -> PiecedPath:
-    data.only("start", "direction", "pieces")
-    pieces = tuple(_piece(row) for row in data.rows("pieces"))
-    start, direction = data.vector("start", (0.0, 0.0, 0.0)), data.vector("direction", (1.0, 0.0, 0.0))
-    return PiecedPath(pieces, np.array(start), np.array(direction))
 
 
 def _piece(row: Table) -> Bend:

@@ -8,7 +8,7 @@ import stat
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from meshonet.formats.archive import read_member, split_member
 from meshonet.geometry.errors import InputError, in_source, meant
@@ -133,13 +133,12 @@ def _selected(text: str) -> tuple[str, str, slice | None]:
     match = _SELECTION.fullmatch(words)
     if not (mark and name and match) or Path(text).exists():
         return text, "", None
-    return name, match["split"] or match["kind"] or "", _rows(match["number"], match["range"])
-
-
-def _rows(number: str | None, words: str | None) -> slice | None:
-    if number is not None:
-        return slice(int(number), int(number) + 1)
-    return None if words is None else slice(*(int(word) if word else None for word in words.split(":")))
+    rows: slice[Any, Any, Any] | None = None
+    if match["number"]:
+        rows = slice(int(match["number"]), int(match["number"]) + 1)
+    elif match["range"]:
+        rows = slice(*[int(word) if word else None for word in match["range"].split(":")])
+    return name, match["split"] or match["kind"] or "", rows
 
 
 def _missing(text: str) -> InputError:

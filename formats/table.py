@@ -1,7 +1,7 @@
 """Every format that is read or written. Only the functions of those in use are loaded."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,11 +11,11 @@ from meshonet.formats.plot3d import CHOICES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
-_DRAW = "meshonet.formats.figure.files:write_grids"
+_DRAW = "meshonet.formats.figure.picture:write_grids"
 _BOTH: Any = ("volumes", "surfaces")
 _VOLUMES: Any = ("volumes",)
-_HDF5 = b"\x89HDF\r\n\x1a\n"
-_WKT = re.compile(rb"\s*(?:POLYGON|LINESTRING|LINEARRING|MULTI\w+|GEOMETRYCOLLECTION)\b", re.IGNORECASE)
+_HDF5, _CGNS = rb"\x89HDF\r\n\x1a\n", rb"HDF5 MotherNode"
+_WKT = rb"\s*(?:POLYGON|LINESTRING|LINEARRING|MULTI\w+|GEOMETRYCOLLECTION)\b"
 _MESHIO = {
     ".stl": "stl", ".ply": "ply", ".obj": "obj", ".off": "off", ".inp": "abaqus", ".mesh": "medit",
     ".avs": "avsucd", ".tec": "tecplot",
@@ -30,34 +30,9 @@ def holds(marks: tuple[bytes, ...], head: bytes) -> bool:
     return all(mark in head[:4096] for mark in marks)
 
 
-def is_legacy_vtk(head: bytes) -> bool:
-    """Say whether `head` is the start of a legacy VTK file."""
-    return head.startswith(b"# vtk DataFile")
-
-
-def is_hdf5(head: bytes) -> bool:
-    """Say whether `head` starts as HDF5 files do; those of CGNS have a reader of their own."""
-    return head.startswith(_HDF5) and b"HDF5 MotherNode" not in head
-
-
-def is_cgns(head: bytes) -> bool:
-    """Say whether `head` is of a CGNS file, in HDF5 or in the container before it."""
-    return b"ADF Database Version" in head[:32] or (head.startswith(_HDF5) and b"HDF5 MotherNode" in head)
-
-
-def is_dxf(head: bytes) -> bool:
-    """Say whether `head` is of a DXF drawing."""
-    return head.split()[:2] == [b"0", b"SECTION"] or head.startswith(b"AutoCAD Binary DXF")
-
-
-def is_wkt(head: bytes) -> bool:
-    """Say whether `head` starts with the name of a WKT geometry."""
-    return bool(_WKT.match(head))
-
-
-def is_geojson(head: bytes) -> bool:
-    """Say whether `head` starts as a JSON object that names a GeoJSON type."""
-    return head.lstrip()[:1] == b"{" and b'"type"' in head
+def begins(pattern: bytes, head: bytes) -> bool:
+    """Say whether the start of a file matches a regular expression."""
+    return re.match(pattern, head, re.DOTALL | re.IGNORECASE) is not None
 
 
 def _format(name: str, endings: str, description: str, functions: str, **more: Any) -> Format:
@@ -69,9 +44,7 @@ def _format(name: str, endings: str, description: str, functions: str, **more: A
     return Format(name, tuple(endings.split()), description, **more)
 
 
-def _write(
-    write: Callable[..., None], name: str, path: Path, grids: Iterable[Grid], *rest: Any, **more: Any
-) -> None:
+def _write(write: Any, name: str, path: Path, grids: Iterable[Grid], *rest: Any, **more: Any) -> None:
     """Write grids by `write`, of the format `name`, once each of them is one that the format can hold."""
     write(path, (_held(grid, name) for grid in grids), *rest, **more)
 
@@ -95,7 +68,8 @@ _FORMATS: tuple[Format, ...] = (
     _format(
         "hdf5", ".h5 .hdf5", "HDF5 dataset of boundaries or grids",
         "hdf5.read:read_shapes hdf5.read:read_grids hdf5.write:write_grids hdf5.write:write_boundaries",
-        sniff=is_hdf5, names_patches=True, many=True, one_size=True, blocks="kept", space=_BOTH,
+        sniff=partial(begins, _HDF5 + rb"(?!.*" + _CGNS + rb")"), names_patches=True, many=True,
+        one_size=True, blocks="kept", space=_BOTH,
     ),
     _format(
         "vts", ".vts", "VTK XML structured grid", "vtk.vts_read:read_grids vtk.vts:write_grids",
@@ -110,11 +84,13 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "vtk", ".vtk", "legacy VTK structured grid", "vtk.legacy:read_grids vtk.legacy:write_grids",
-        sniff=is_legacy_vtk, names_patches=True, choices=(("binary", "ascii"),), space=_BOTH,
+        sniff=partial(begins, rb"# vtk DataFile"), names_patches=True, choices=(("binary", "ascii"),),
+        space=_BOTH,
     ),
     _format(
         "vtu", ".vtu", "VTK XML unstructured grid, seams merged, patches by number",
-        "vtk.vtu:write_grids", blocks="merged", space=_BOTH,
+        "", write_grids=partial(_write, later("meshonet.formats.meshio_export:write_vtu"), "vtu"),
+        blocks="merged", space=_BOTH,
     ),
     _format(
         "gmsh", ".msh", "Gmsh mesh, patches as physical groups; read as a boundary",
@@ -123,8 +99,8 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "cgns", ".cgns", "CGNS structured zones in HDF5, with boundary conditions and families",
-        "cgns.read:read_grids cgns.write:write_grids", blocks="kept",
-        sniff=is_cgns, names_patches=True, many=True, space=_BOTH,
+        "cgns.read:read_grids cgns.write:write_grids", blocks="kept", names_patches=True, many=True,
+        sniff=partial(begins, rb".{0,12}ADF Database Version|" + _HDF5 + rb".*" + _CGNS), space=_BOTH,
     ),
     _format(
         "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file, or the one named",
@@ -153,11 +129,11 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "dxf", ".dxf", "DXF drawing, layers as names (needs the extra dxf)", "outlines.dxf:read_shapes",
-        sniff=is_dxf, many=True,
+        sniff=partial(begins, rb"\s*0\s+SECTION\s|AutoCAD Binary DXF"), many=True,
     ),
     _format(
-        "wkt", ".wkt", "outlines as well-known text", "",
-        read_shapes=later("meshonet.formats.outlines.vector:read_wkt"), sniff=is_wkt, many=True,
+        "wkt", ".wkt", "outlines as well-known text", "", sniff=partial(begins, _WKT), many=True,
+        read_shapes=later("meshonet.formats.outlines.vector:read_wkt"),
     ),
     _format(
         "layout", ".json", "layout of blocks as JSON; read as its coarse grid or its domain",
@@ -165,8 +141,8 @@ _FORMATS: tuple[Format, ...] = (
         sniff=partial(holds, (b'"meshonet-layout"',)), names_patches=True,
     ),
     _format(
-        "geojson", ".geojson .json", "outlines as GeoJSON", "",
-        read_shapes=later("meshonet.formats.outlines.vector:read_geojson"), sniff=is_geojson, many=True,
+        "geojson", ".geojson .json", "outlines as GeoJSON", "", sniff=partial(begins, rb'\s*\{.*"type"'),
+        read_shapes=later("meshonet.formats.outlines.vector:read_geojson"), many=True,
     ),
     _format(
         "airfoil", ".dat", "airfoil coordinates, Selig or Lednicer",
@@ -177,7 +153,11 @@ _FORMATS: tuple[Format, ...] = (
         "text.points:read_shapes text.points:sniff",
     ),
     _format("png", ".png", "picture of a grid", "", write_grids=later(_DRAW, kind="png")),
-    _format("svg", ".svg", "picture of a grid, lines as vectors", "", write_grids=later(_DRAW, kind="svg")),
+    _format(
+        "svg", ".svg", "picture of a grid, lines as vectors; read as outlines, ids as names",
+        "outlines.svg:read_shapes", write_grids=later(_DRAW, kind="svg"), many=True,
+        sniff=partial(holds, (b"<svg",)),
+    ),
     _format(
         "html", ".html .htm", "interactive page of a grid, for browsers", "figure.page.page:write_grids",
         blocks="kept", space=_BOTH,

@@ -13,6 +13,8 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,94 +23,26 @@ from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.kernels import _native
 
 
-def exp(x: Any) -> Any:
-    """Return e to the power `x`, to 2 units in the last place."""
-    return _function(b"exp", x)
+def _function(name: bytes, x: Any) -> Any:
+    values = np.asarray(x)
+    if np.iscomplexobj(values):
+        return getattr(np, name.decode())(values)
+    flat = _doubles(values).reshape(-1)
+    out = np.empty(flat.shape)
+    if out.size:
+        _native.elementary(name, flat, out)
+    return _shaped(out, values.shape, values.dtype)
 
 
-def log(x: Any) -> Any:
-    """Return the natural logarithm of `x`, to 2 units in the last place."""
-    return _function(b"log", x)
+def _kernel(name: str) -> Callable[[Any], Any]:
+    return partial(_function, name.encode())
 
 
-def sin(x: Any) -> Any:
-    """Return the sine of `x` in radians, to 2 units in the last place."""
-    return _function(b"sin", x)
-
-
-def cos(x: Any) -> Any:
-    """Return the cosine of `x` in radians, to 2 units in the last place."""
-    return _function(b"cos", x)
-
-
-def expm1(x: Any) -> Any:
-    """Return exp(x) - 1."""
-    return _function(b"expm1", x)
-
-
-def log1p(x: Any) -> Any:
-    """Return log(1 + x)."""
-    return _function(b"log1p", x)
-
-
-def log2(x: Any) -> Any:
-    """Return the logarithm of `x` to the base 2."""
-    return _function(b"log2", x)
-
-
-def log10(x: Any) -> Any:
-    """Return the logarithm of `x` to the base 10."""
-    return _function(b"log10", x)
-
-
-def tan(x: Any) -> Any:
-    """Return the tangent of `x` in radians."""
-    return _function(b"tan", x)
-
-
-def arcsin(x: Any) -> Any:
-    """Return the angle in radians whose sine is `x`."""
-    return _function(b"arcsin", x)
-
-
-def arccos(x: Any) -> Any:
-    """Return the angle in radians whose cosine is `x`."""
-    return _function(b"arccos", x)
-
-
-def arctan(x: Any) -> Any:
-    """Return the angle in radians whose tangent is `x`."""
-    return _function(b"arctan", x)
-
-
-def sinh(x: Any) -> Any:
-    """Return the hyperbolic sine of `x`."""
-    return _function(b"sinh", x)
-
-
-def cosh(x: Any) -> Any:
-    """Return the hyperbolic cosine of `x`."""
-    return _function(b"cosh", x)
-
-
-def tanh(x: Any) -> Any:
-    """Return the hyperbolic tangent of `x`."""
-    return _function(b"tanh", x)
-
-
-def arcsinh(x: Any) -> Any:
-    """Return the number whose hyperbolic sine is `x`."""
-    return _function(b"arcsinh", x)
-
-
-def arccosh(x: Any) -> Any:
-    """Return the number whose hyperbolic cosine is `x`."""
-    return _function(b"arccosh", x)
-
-
-def cbrt(x: Any) -> Any:
-    """Return the cube root of `x`."""
-    return _function(b"cbrt", x)
+exp, log, sin, cos = map(_kernel, ("exp", "log", "sin", "cos"))
+"""To 2 units in the last place; angles are in radians here and below."""
+expm1, log1p, log2, log10, cbrt = map(_kernel, ("expm1", "log1p", "log2", "log10", "cbrt"))
+tan, arcsin, arccos, arctan = map(_kernel, ("tan", "arcsin", "arccos", "arctan"))
+sinh, cosh, tanh, arcsinh, arccosh = map(_kernel, ("sinh", "cosh", "tanh", "arcsinh", "arccosh"))
 
 
 def arctan2(y: Any, x: Any) -> Any:
@@ -205,17 +139,6 @@ def _stacked_product(left: Floats, right: Floats) -> Floats:
 def _complex_product(a: Complexes, b: Complexes) -> Any:
     real = product(a.real, b.real) - product(a.imag, b.imag)
     return real + 1j * (product(a.real, b.imag) + product(a.imag, b.real))
-
-
-def _function(name: bytes, x: Any) -> Any:
-    values = np.asarray(x)
-    if np.iscomplexobj(values):
-        return getattr(np, name.decode())(values)
-    flat = _doubles(values).reshape(-1)
-    out = np.empty(flat.shape)
-    if out.size:
-        _native.elementary(name, flat, out)
-    return _shaped(out, values.shape, values.dtype)
 
 
 def _function_of_two(kernel: Any, x: Any, y: Any) -> Any:

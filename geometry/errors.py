@@ -23,11 +23,24 @@ class MeshonetError(Exception):
 class InputError(MeshonetError):
     """Input that cannot be used; its message reads ``place: problem; remedy``.
 
-    `problem` has the offending value, `remedy` is what the user can do, `source` a file (which a caller may
-    set later), `place` one in it, ``line 12``, and `parameter` the Python name of the parameter concerned.
     Problem and remedy refer to parameters in braces, ``{far_field}``: in Python these read ``far_field``, on
     the command line ``--far-field`` (`spelled`).
 
+    Parameters
+    ----------
+    problem : str
+        What is wrong, with the offending value.
+    remedy : str, optional
+        What the user can do.
+    source : str, optional
+        A file, which a caller may set later.
+    place : str, optional
+        A place in it, ``line 12``.
+    parameter : str, optional
+        Python name of the parameter concerned.
+
+    Examples
+    --------
     >>> print(InputError("'abc' is not a number", "remove the line", source="a.dat", place="line 12"))
     a.dat: line 12: 'abc' is not a number; remove the line
     """
@@ -130,7 +143,15 @@ class BadCell:
 
 
 class NoValidGridError(MeshonetError):
-    """Every way tried ended in folded cells: what was tried, how many are left, and the worst of them."""
+    """Every way tried ended in folded cells.
+
+    Parameters
+    ----------
+    problem : str
+        What was tried, and how many cells are folded.
+    worst : sequence of BadCell, optional
+        The worst of them.
+    """
 
     exit_code = 3
 

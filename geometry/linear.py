@@ -14,7 +14,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import product
-from meshonet.kernels import _native
 
 _SWEEPS = 60
 """Most sweeps of Jacobi rotations; they converge quadratically, in 4 to 10."""
@@ -99,18 +98,6 @@ def symmetric_eigen(matrix: Any) -> tuple[Floats, Floats]:
     values = np.diagonal(a, axis1=-2, axis2=-1)
     order = np.argsort(values, axis=-1, kind="stable")
     return np.take_along_axis(values, order, -1), np.take_along_axis(vectors, order[..., None, :], -1)
-
-
-def real_eigen(matrix: Any) -> tuple[Floats, Floats, Floats]:
-    """Return w (m,), v and u (m, m) of ``matrix = v @ diag(w) @ u``, a matrix (m, m) with m real eigenvalues.
-
-    They must be distinct. Columns of v have unit size, and u is its inverse. By QR iteration (Golub & Van
-    Loan, Matrix Computations, 2013, chapter 7). Raises ValueError: eigenvalues are not real.
-    """
-    square = np.array(matrix, np.float64, order="C")
-    values, vectors, inverses = np.empty(len(square)), np.empty_like(square), np.empty_like(square)
-    _native.real_eigen(square, values, vectors, inverses)
-    return values, vectors, inverses
 
 
 def singular_values(matrix: Any) -> tuple[Floats, Floats, Floats]:

@@ -14,7 +14,7 @@ turn = np.linspace(0.0, np.pi / 2, 20)
 arc = np.stack([2.0 * np.sin(turn), 2.0 - 2.0 * np.cos(turn), 0.0 * turn], axis=1)
 path = np.concatenate([[[-2.0, 0.0, 0.0]], arc, [[2.0, 4.0, 0.0]]])
 
-grid = meshonet.sweep("circle:0.5", path, cells=300, first_cell=0.01)
+grid = meshonet.sweep("circle:0.5", path, around=40, first_cell=0.01)
 meshonet.plot(grid, "bend.png")
 
 # %%

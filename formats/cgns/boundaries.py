@@ -41,9 +41,13 @@ def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[F
             family = next((text(node) for _, node in children(condition, "FamilyName_t")), "")
             if kind in _NOTHING and not family:
                 continue
+            own = family.rpartition("/")[2]
             if kind == "FamilySpecified":
-                kind = _family_kind(base, family)
-            name = printable(family.rpartition("/")[2] or title).strip() or "part"
+                kinds = [node for name, node in children(base, "Family_t") if name == own]
+                kind = next(
+                    (_text(node) for each in kinds[:1] for _, node in children(each, "FamilyBC_t")), ""
+                )
+            name = printable(own or title).strip() or "part"
             for first, last in _covered(condition, counts):
                 yield Face(FaceWindow(block, first, last), name, kind_said(name, kind, _KINDS))
 
@@ -153,13 +157,6 @@ def _listed(points: Points, counts: Triple) -> Iterator[tuple[Triple, Triple]]:
                 ]
                 first, last = zip(*ranges, strict=True)
                 yield first, last
-
-
-def _family_kind(base: Node, family: str) -> str:
-    for name, node in children(base, "Family_t"):
-        if name == family.rpartition("/")[2]:
-            return next((_text(below) for _, below in children(node, "FamilyBC_t")), "")
-    return ""
 
 
 def _text(node: Node) -> str:

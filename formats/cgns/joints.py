@@ -42,18 +42,14 @@ def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid) -
                 group = child(zones[way.block], "ZoneGridConnectivity", "ZoneGridConnectivity_t")
                 groups[way.block], taken[way.block] = group, set()
             group = groups[way.block]
-            title = _title(grid, way, names)
+            title = patch_on(grid, way) or ("Cut" if way.block == way.donor else f"to_{names[way.donor]}")
             word = words([title], NAME_LENGTH, taken[way.block])[title]
             taken[way.block].add(word)
             joint = child(group, word, "GridConnectivity1to1_t", names[way.donor])
             own = range_of(way.side, way.range, counts[way.block])
+            donor = range_of(way.donor_side, donor_range(way), counts[way.donor])
             child(joint, "PointRange", "IndexRange_t", own)
-            child(
-                joint,
-                "PointRangeDonor",
-                "IndexRange_t",
-                range_of(way.donor_side, donor_range(way), counts[way.donor]),
-            )
+            child(joint, "PointRangeDonor", "IndexRange_t", donor)
             child(joint, "Transform", '"int[IndexDimension]"', _transform(way))
             if way.transform is not None:
                 _write_motion(joint, way.transform, grid.blocks[way.block].nodes.shape[-1])
@@ -72,21 +68,14 @@ def _transform(each: Connection) -> Integers:
     return transform
 
 
-def _title(grid: Grid, connection: Connection, names: Sequence[str]) -> str:
-    """Return what to call an interface: as the patch that lies on it, if any."""
-    own = "Cut" if connection.block == connection.donor else f"to_{names[connection.donor]}"
-    return patch_on(grid, connection) or own
-
-
 def _write_motion(joint: Node, motion: Motion, dimension: int) -> None:
     """Add the rotation in radians and the shift that carry the nodes of an interface to the donor's.
 
     Of two dimensions there is no axis to turn about; the angle is written as the last number all the same.
     """
     screw = screw_of(motion)
-    node = child(
-        child(joint, "GridConnectivityProperty", "GridConnectivityProperty_t"), "Periodic", "Periodic_t"
-    )
+    outer = child(joint, "GridConnectivityProperty", "GridConnectivityProperty_t")
+    node = child(outer, "Periodic", "Periodic_t")
     values = {"RotationCenter": screw.centre, "RotationAngle": screw.angles, "Translation": screw.shift}
     for name, numbers in values.items():
         turns = name == "RotationAngle"

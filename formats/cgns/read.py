@@ -5,7 +5,7 @@ joined one to one in the file or found to coincide, whatever bases they are in.
 """
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from meshonet.formats.hdf5.check import opened
 from meshonet.formats.mesh.metadata import Facts
 from meshonet.formats.mesh.metadata_read import number_of_grid
 from meshonet.formats.mesh.structured import FileBlock, described_grids, grids_of_file
-from meshonet.formats.mesh.windows import Face, Pair, Triple
+from meshonet.formats.mesh.windows import Face, Pair
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
@@ -56,7 +56,11 @@ def read_grids(source: Source) -> Iterator[Grid]:
             for _, base in children(file, "CGNSBase_t")
             for name, node in children(base, "Zone_t")
         ]
-        structured = [zone for zone in zones if _kind(zone.node) == "Structured"]
+        structured = [
+            zone
+            for zone in zones
+            if all(text(kind) == "Structured" for _, kind in children(zone.node, "ZoneType_t"))
+        ]
         if not structured:
             problem = "its zones are unstructured" if zones else "holds no CGNS zone"
             raise InputError(problem, "give a CGNS file with a structured zone")
@@ -76,7 +80,7 @@ def _foreign(zones: Sequence[_Zone], stem: str) -> Iterator[Grid]:
     """Yield the grids of zones that others wrote."""
     faces, pairs = list[Face](), list[Pair]()
     blocks = [zone.block(zone.title) for zone in zones]
-    counts = [_counts(block) for block in blocks]
+    counts: list[Any] = [block.coordinates[0].shape for block in blocks]
     numbers = {str(zone.node.name): k for k, zone in enumerate(zones)}
     for k, (zone, block) in enumerate(zip(zones, blocks, strict=True)):
         with in_place(block.place):
@@ -90,12 +94,6 @@ def _foreign(zones: Sequence[_Zone], stem: str) -> Iterator[Grid]:
                     raise InputError(f"interface {title!r} leaves its donor", "correct its PointRangeDonor")
                 pairs.append(Pair(own, end, partner, title))
     yield from grids_of_file(blocks, faces, pairs, stem)
-
-
-def _counts(block: FileBlock) -> Triple:
-    """Return the counts of nodes along the three indices, 1 along the third of a plane zone."""
-    ni, nj, nk = block.coordinates[0].shape
-    return ni, nj, nk
 
 
 def _facts(zone: Node) -> Facts:
@@ -127,7 +125,3 @@ def _coordinates(zone: Node) -> list[Floats]:
         rest = f", only {named}" if named else ""
         raise InputError(f"has no CoordinateX and CoordinateY{rest}", "write Cartesian coordinates")
     return coordinates
-
-
-def _kind(zone: Node) -> str:
-    return next((text(node) for _, node in children(zone, "ZoneType_t")), "Structured")

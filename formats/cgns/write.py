@@ -47,7 +47,10 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
         for number, grid in enumerate(chain([first], rest)):
             dimensions = grid.blocks[0].nodes.ndim - 1, grid.blocks[0].nodes.shape[-1]
             if dimensions not in bases:
-                bases[dimensions] = _base(top, dimensions, len(bases)), {}
+                title = f"Base{len(bases) + 1}" if bases else "Base"
+                made = child(top, title, "CGNSBase_t", np.array(dimensions, np.int32))
+                child(made, "DataClass", "DataClass_t", "NormalizedByUnknownDimensional")
+                bases[dimensions] = made, {}
             base, families = bases[dimensions]
             names = _zone_names(grid, {"DataClass", *zones, *families})
             zones |= set(names)
@@ -63,13 +66,6 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
             for family, kind in families.items():
                 node = child(base, family, "Family_t")
                 child(node, "FamilyBC", "FamilyBC_t", _CONDITIONS.get(kind, "BCGeneral"))
-
-
-def _base(top: Node, dimensions: tuple[int, int], number: int) -> Node:
-    """Add a base of zones of these `dimensions`: counts of indices and of coordinates."""
-    base = child(top, f"Base{number + 1}" if number else "Base", "CGNSBase_t", np.array(dimensions, np.int32))
-    child(base, "DataClass", "DataClass_t", "NormalizedByUnknownDimensional")
-    return base
 
 
 def _zone_names(grid: Grid, taken: set[str]) -> list[str]:

@@ -52,7 +52,7 @@ def outline_blocks(ax: Axes, grid: Grid) -> None:
 
     sides = [block.face(side) for block in grid.blocks for side in SIDES]
     ax.add_collection(LineCollection(sides, colors=INK, linewidths=0.8, zorder=4))
-    outer = [grid.face(p.block, p.side)[p.start : p.stop + 1] for p in grid.outer_patches()]
+    outer = list(map(grid.at, grid.outer_patches()))
     ax.add_collection(LineCollection(outer, colors=INK, linewidths=1.4, zorder=4))
 
 

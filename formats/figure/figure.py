@@ -63,15 +63,21 @@ def draw(
     for ax, view, seen in zip(axes, views, parts, strict=True):
         pixels = ax.get_window_extent().width / (view[1] - view[0])
         lines = lines_of_blocks(grid, singles, seen, pixels, every)
-        for k, (single, part, (steps, flipped)) in enumerate(zip(singles, seen, lines, strict=True)):
+        for k, (single, part, (step, flipped)) in enumerate(zip(singles, seen, lines, strict=True)):
             if not part:
                 continue
             if colouring:
                 mesh = paint(ax, single, colouring.parts[k], part, pixels, limits, colouring)
-            rule(ax, single, part, steps, faint=colouring is not None, flipped=flipped)
-        _outlines(ax, grid)
+            rule(ax, single, part, step, faint=colouring is not None, flipped=flipped)
+        if grid.topology == "blocks":
+            outline_blocks(ax, grid)
+            mark_vertices(ax, grid)
+        else:
+            outline(ax, grid)
         ax.set(xlim=view[:2], ylim=view[2:])
-        _note_lines(ax, [steps for steps, _ in lines])
+        steps = [pair for pair, _ in lines]
+        each = sorted({step for pair in steps for step in pair})
+        note(ax, _drawn_lines(*steps[0]) if len(steps) == 1 and len(each) > 1 else step_words(each))
     if bar is not None and mesh is not None and colouring:
         colour_bar(bar, mesh, colouring.label, _beyond(colouring, limits))
     name = grid.name if len(grid.name) <= _NAME else grid.name[: _NAME - 1] + "…"
@@ -89,14 +95,6 @@ def _singles(grid: Grid) -> list[Grid]:
     return [Grid((block,)) for block in grid.blocks]
 
 
-def _outlines(ax: Axes, grid: Grid) -> None:
-    if grid.topology == "blocks":
-        outline_blocks(ax, grid)
-        mark_vertices(ax, grid)
-    else:
-        outline(ax, grid)
-
-
 def _visible(grid: Grid, singles: list[Grid], view: Box) -> list[CellsInView | None]:
     parts = [in_view(single, view) for single in singles]
     if not any(parts):
@@ -111,8 +109,7 @@ def _views(grid: Grid) -> list[Box]:
     pad = 0.02 * max(whole[1] - whole[0], whole[3] - whole[2])
     whole = (whole[0] - pad, whole[1] + pad, whole[2] - pad, whole[3] + pad)
     if grid.topology == "blocks":
-        walls = [grid.face(p.block, p.side)[p.start : p.stop + 1] for p in grid.walls()]
-        wall = np.concatenate(walls) if walls else np.empty((0, 2))
+        wall = np.concatenate([np.empty((0, 2)), *map(grid.at, grid.walls())])
     else:
         wall = body(grid) if grid.around_body else np.empty((0, 2))
     if not len(wall):
@@ -126,9 +123,8 @@ def _views(grid: Grid) -> list[Box]:
 
 
 def _whole(grid: Grid) -> Box:
-    low = np.min([block.nodes.min(axis=(0, 1)) for block in grid.blocks], axis=0)
-    high = np.max([block.nodes.max(axis=(0, 1)) for block in grid.blocks], axis=0)
-    return float(low[0]), float(high[0]), float(low[1]), float(high[1])
+    (left, bottom), (right, top) = (corner.tolist() for corner in grid.box)
+    return left, right, bottom, top
 
 
 def _shown(colouring: Colouring | None, parts: list[CellsInView | None]) -> list[NDArray[Any]]:
@@ -183,12 +179,6 @@ def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | N
     return figure, axes, figure.add_axes(place)
 
 
-def _note_lines(ax: Axes, steps: list[tuple[int, int]]) -> None:
-    """Say in the picture which lines are drawn, unless all are."""
-    each = sorted({step for pair in steps for step in pair})
-    note(ax, _drawn_lines(*steps[0]) if len(steps) == 1 and len(each) > 1 else step_words(each))
-
-
 def step_words(steps: list[int]) -> str:
     """Return in words which lines are drawn, of ascending steps; nothing where all are.
 
@@ -197,9 +187,8 @@ def step_words(steps: list[int]) -> str:
     """
     if steps[-1] == 1:
         return ""
-    if len(steps) == 1:
-        return f"every {_ordinal(steps[0])}line"
-    return f"every {_ordinal(steps[0]) or '1st '}to {_ordinal(steps[-1])}line"
+    first = f"{_ordinal(steps[0]) or '1st '}to " if len(steps) > 1 else ""
+    return f"every {first}{_ordinal(steps[-1])}line"
 
 
 def note(ax: Axes, text: str) -> None:
@@ -212,9 +201,7 @@ def note(ax: Axes, text: str) -> None:
 
 
 def _drawn_lines(xi: int, eta: int) -> str:
-    """Return in words which lines are drawn."""
-    if xi == eta:
-        return f"every {_ordinal(xi)}line"
+    """Return in words which lines are drawn, of different steps."""
     return f"every {_ordinal(xi)}xi and {_ordinal(eta)}eta line"
 
 

@@ -207,17 +207,16 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 
 
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
-    """Return how many-th lines keep `_LINE_GAP` where half of the coloured area lies, from `line_gaps`."""
+    """Return how many-th lines keep `_LINE_GAP` where half of the coloured area lies, from `line_gaps`.
+
+    It is the next of 1, 2, 5, 10, 20, 50 ...
+    """
     length = length * pixels
     order = np.argsort(length)
     weight = np.cumsum(area[order])
     typical = length[order[min(int(np.searchsorted(weight, weight[-1] / 2)), len(order) - 1)]]
-    return max(1, _round(_LINE_GAP / typical)) if typical > 0 else 1
-
-
-def _round(step: float) -> int:
-    """Return the next of 1, 2, 5, 10, 20, 50 ... that is not below `step`."""
-    if step <= 1:
+    step = _LINE_GAP / typical if typical > 0 else 1.0
+    if step <= 1.0:
         return 1
     power = 10.0 ** np.floor(np.log10(step))
     return int(next(m * power for m in (1, 2, 5, 10) if m * power >= step * 0.999))

@@ -57,7 +57,10 @@ def painted(
     """Return the cells of a sheet in `mask` (n-1, m-1), `steps` of them as one, as seen along `axes`."""
     import matplotlib as mpl
 
-    marks = [_marks(count, step) for count, step in zip(sheet.nodes.shape[:2], steps, strict=True)]
+    marks = [
+        np.append(np.arange(0, count - 1, step), count - 1)
+        for count, step in zip(sheet.nodes.shape[:2], steps, strict=True)
+    ]
     nodes = sheet.nodes[np.ix_(*marks)]
     keep = reduced(np.logical_or, mask, *marks)
     ring = np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]], axis=2)[keep]
@@ -81,12 +84,6 @@ def painted(
     return Painted(
         flat[..., :2], flat[..., 2].mean(axis=1), colours, outline[..., :2], outline[..., 2].mean(axis=1)
     )
-
-
-def _marks(count: int, step: int) -> NDArray[np.intp]:
-    """Return every `step`-th of `count` nodes and the last."""
-    marks = np.arange(0, count - 1, step)
-    return np.append(marks, count - 1)
 
 
 def paint(ax: Axes, painted: Sequence[Painted]) -> None:

@@ -1,13 +1,12 @@
-"""A grid drawn to a file, its cells coloured by a quality metric."""
+"""A grid drawn to a file, ``.png``, ``.svg`` or ``.pdf``, its cells coloured by a quality metric."""
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from meshonet.formats.figure.layers import DOTS
-from meshonet.formats.figure.slices import parse_slice
+from meshonet.formats.figure.layers import DOTS, Colouring
+from meshonet.formats.figure.view import View, check_flat, flat_box
 from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, meant
@@ -16,60 +15,30 @@ from meshonet.geometry.quality.metrics import ALL_NAMES, metric_of
 
 
 @dataclass(frozen=True)
-class Picture:
-    """How a grid is drawn.
+class Picture(View):
+    """How a grid is drawn: what of it, and the `metric` that colours its cells; None draws lines only.
 
-    Parameters
-    ----------
-    metric : colours the cells; None draws lines only.
-    zoom : x0, x1, y0, y1 of the part to show, with z0, z1 of one in space; None shows all.
-    every : draw every so many-th grid line; None chooses by the resolution of the picture.
-    slice : of a volume, ``i=10``, ``k=-1`` or ``x=.5``; None draws walls, or the outer boundary without any.
-    seen_from : azimuth and elevation in degrees, of pictures in space.
-
-    Raises InputError: a metric or a slice that is none, a box without extent, `every` below 1.
+    Raises InputError: as `View`; a metric that is none.
     """
 
     metric: str | None = "max_angle"
-    zoom: tuple[float, ...] | None = None
-    every: int | None = None
-    slice: str | None = None
-    seen_from: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         if self.metric not in (*ALL_NAMES, None):
             known = meant(str(self.metric), ALL_NAMES) + "use none or one of " + ", ".join(ALL_NAMES)
             raise InputError(f"metric {self.metric!r} is not known", known, parameter="metric")
-        zoom = self.zoom or (0, 1, 0, 1)
-        pairs = list(zip(zoom[::2], zoom[1::2], strict=False))
-        if len(zoom) not in (4, 6) or not all(math.isfinite(a + b) and a < b for a, b in pairs):
-            box = ",".join(f"{x:g}" for x in zoom)
-            remedy = "use x0,x1,y0,y1 with x0 < x1 and y0 < y1, e.g. 0.9,1.1,-0.1,0.1"
-            raise InputError(f"{box!r} is not a box", remedy, parameter="zoom")
-        if self.slice is not None:
-            parse_slice(self.slice)
-        if self.seen_from is not None and not all(map(math.isfinite, self.seen_from)):
-            remedy = "use azimuth and elevation in degrees, e.g. -125,25"
-            raise InputError(f"{self.seen_from} is no direction", remedy, parameter="seen_from")
-        if self.every is not None and self.every < 1:
-            problem = f"every {self.every}-th line cannot be drawn"
-            raise InputError(problem, "use 1 or more", parameter="every")
+        super().__post_init__()
 
     def draw(self, kind: str, path: Path | BinaryIO, grids: Iterable[Grid], dots: int = DOTS) -> None:
         """Draw the only grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``, or as an ``html`` page.
 
         Pages go to a path only, pictures also to an open file; `dots` are those an inch of a ``png``.
         """
-        from meshonet.formats.figure.files import write
-        from meshonet.formats.figure.layers import Colouring
         from meshonet.formats.figure.page.page import write_page
-        from meshonet.formats.figure.view import View
 
         grid = only_one(grids, "a picture")
-        part = None if self.slice is None else parse_slice(self.slice)
-        view = View(self.zoom, self.every, part, self.seen_from)
         if kind == "html" and isinstance(path, Path):
-            write_page(path, grid, self.metric, view)
+            write_page(path, grid, self.metric, self)
             return
         colouring = None
         if self.metric is not None:
@@ -77,4 +46,37 @@ class Picture:
             label = f"{metric.name} ({metric.unit})" if metric.unit else metric.name
             values = tuple(per_cell_of_blocks(grid, metric.name))
             colouring = Colouring(values, label, worst_is_low=metric.worst == "min")
-        write(path, grid, kind, colouring, view, dots)
+        write(path, grid, kind, colouring, self, dots)
+
+
+def write(
+    path: Path | BinaryIO,
+    grid: Grid,
+    kind: str = "png",
+    colouring: Colouring | None = None,
+    view: View | None = None,
+    dots: int = DOTS,
+) -> None:
+    """Draw `grid` into a file of `kind` ``png``, ``svg`` or ``pdf``; the same input gives the same bytes.
+
+    Raises InputError: a view that shows nothing, or that grids in the plane do not have.
+    """
+    import matplotlib as mpl
+
+    from meshonet.formats.figure.figure import draw
+    from meshonet.formats.figure.space import draw_in_space
+
+    view = view or View()
+    dates: dict[str, dict[str, str | None]] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
+    with mpl.rc_context({"svg.hashsalt": "meshonet", "svg.fonttype": "none"}):
+        if grid.form == "plane":
+            check_flat(view)
+            figure = draw(grid, colouring, flat_box(view.zoom), view.every)
+        else:
+            figure = draw_in_space(grid, colouring, view)
+        figure.savefig(path, format=kind, dpi=dots, metadata=dates.get(kind))
+
+
+def write_grids(path: Path, grids: Iterable[Grid], *, kind: str) -> None:
+    """Draw the only grid of `grids`, lines only."""
+    write(path, only_one(grids, f"a .{kind} file"), kind)

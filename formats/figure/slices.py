@@ -107,8 +107,7 @@ def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
             shown.append(values[number][tuple(cells.T)])
     joined = np.concatenate(polygons)
     if not len(joined):
-        spans = [block.nodes[..., at.direction] for block in grid.blocks]
-        low, high = min(float(x.min()) for x in spans), max(float(x.max()) for x in spans)
+        low, high = (float(corner[at.direction]) for corner in grid.box)
         problem = f"the plane {at} cuts no cell"
         remedy = f"the grid is from {'xyz'[at.direction]} = {low:.6g} to {high:.6g}"
         raise InputError(problem, remedy, parameter="slice")

@@ -21,7 +21,6 @@ from meshonet.formats.figure.view import View, flat_box
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block, face_of
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
@@ -39,7 +38,7 @@ def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure
     of another kind.
     """
     values = [np.asarray(part) for part in colouring.parts] if colouring else None
-    where = view.slice
+    where = view.part
     if where is None:
         return _seen(grid, _surface(grid, values), colouring, view)
     if grid.form != "volume":
@@ -62,17 +61,13 @@ def _surface(grid: Grid, values: list[Floats] | None) -> list[CellSheet]:
     """Return the patches of a surface, or the walls of a volume, all of its outer boundary without any."""
     if grid.form == "surface":
         return [CellSheet(block.nodes, values[k] if values else None) for k, block in enumerate(grid.blocks)]
-    return [_sheet(grid, patch, values) for patch in grid.walls() or grid.outer_patches()]
-
-
-def _sheet(grid: Grid, patch: Patch, values: list[Floats] | None) -> CellSheet:
-    nodes = grid.face(patch.block, patch.side)
-    spans = patch.range(nodes.shape[:-1])
-    shown = None
-    if values:
-        cells = face_of(values[patch.block], patch.side)
-        shown = cells[tuple(slice(first, last) for first, last in spans)]
-    return CellSheet(nodes[tuple(slice(first, last + 1) for first, last in spans)], shown)
+    sheets = []
+    for patch in grid.walls() or grid.outer_patches():
+        spans = patch.range(grid.face(patch.block, patch.side).shape[:-1])
+        cells = face_of(values[patch.block], patch.side) if values else None
+        shown = None if cells is None else cells[tuple(slice(*span) for span in spans)]
+        sheets.append(CellSheet(grid.at(patch), shown))
+    return sheets
 
 
 def _flattened(sheets: Sequence[CellSheet]) -> list[Floats] | None:
@@ -158,10 +153,10 @@ def _cut_figure(grid: Grid, polygons: Cut, colouring: Colouring | None, view: Vi
         list(points), edgecolors=faint_ink(0.6), linewidths=widths, rasterized=True, zorder=1, **fills
     )
     ax.add_collection(collection)
-    names = [name for k, name in enumerate("xyz") if view.slice is None or k != view.slice.direction]
+    names = [name for k, name in enumerate("xyz") if view.part is None or k != view.part.direction]
     ax.set(xlim=box[:2], ylim=box[2:])
     note(ax, f"{names[0]} to the right, {names[1]} upwards")
-    _finish(ax, bar, replace(grid, name=f"{grid.name}   {view.slice}".strip()), colouring, limits)
+    _finish(ax, bar, replace(grid, name=f"{grid.name}   {view.part}".strip()), colouring, limits)
     return figure
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshonet.formats.figure.layers import Box
-from meshonet.formats.figure.slices import Slice
+from meshonet.formats.figure.slices import Slice, parse_slice
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 
@@ -22,15 +23,38 @@ class View:
     Parameters
     ----------
     zoom : x0, x1, y0, y1 of a flat picture; of one in space with z0, z1, where what is outside is left out.
-    every : draw every so many-th line; None chooses.
-    slice : a layer or a cut of a volume; None draws its walls, or all of its outer boundary without any.
-    seen_from : azimuth and elevation in degrees; None is `SEEN_FROM`.
+    every : draw every so many-th line; None chooses by the resolution of the picture.
+    slice : of a volume, ``i=10``, ``k=-1`` or ``x=.5``; None draws its walls, or all of its outer boundary
+        without any.
+    seen_from : azimuth and elevation in degrees, of pictures in space; None is `SEEN_FROM`.
+
+    Raises InputError: a slice that is none, a box without extent, `every` below 1.
     """
 
     zoom: tuple[float, ...] | None = None
     every: int | None = None
-    slice: Slice | None = None
+    slice: Slice | str | None = None
     seen_from: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        zoom = self.zoom or (0, 1, 0, 1)
+        pairs = list(zip(zoom[::2], zoom[1::2], strict=False))
+        if len(zoom) not in (4, 6) or not all(math.isfinite(a + b) and a < b for a, b in pairs):
+            box = ",".join(f"{x:g}" for x in zoom)
+            remedy = "use x0,x1,y0,y1 with x0 < x1 and y0 < y1, e.g. 0.9,1.1,-0.1,0.1"
+            raise InputError(f"{box!r} is not a box", remedy, parameter="zoom")
+        if self.seen_from is not None and not all(map(math.isfinite, self.seen_from)):
+            remedy = "use azimuth and elevation in degrees, e.g. -125,25"
+            raise InputError(f"{self.seen_from} is no direction", remedy, parameter="seen_from")
+        if self.every is not None and self.every < 1:
+            problem = f"every {self.every}-th line cannot be drawn"
+            raise InputError(problem, "use 1 or more", parameter="every")
+        _ = self.part
+
+    @property
+    def part(self) -> Slice | None:
+        """The slice."""
+        return parse_slice(self.slice) if isinstance(self.slice, str) else self.slice
 
     @property
     def axes(self) -> Floats:

@@ -65,14 +65,10 @@ def _samples_of_part(
         with in_source(part.source.name), checked(part.source) as data:
             part.check(data)
             _check_holds(data, read)
-            yield from (partial(_of_part, part, read, data, k - part.start) for k in kept)
+            named = in_source(part.source.name)(read)
+            yield from (partial(named, data, k - part.start) for k in kept)
     except InputError as error:
         yield partial(_raise, error)
-
-
-def _of_part(part: Part, read: Callable[[Checked, int], T], data: Checked, k: int) -> T:
-    with in_source(part.source.name):
-        return read(data, k)
 
 
 def _raise(error: Exception) -> NoReturn:

@@ -17,7 +17,6 @@ from meshonet.formats.mesh.metadata import connections_text, plain
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
@@ -69,7 +68,8 @@ class Writer:
                 problem = f"{name} of sample {self._count} has shape {values.shape}"
                 raise InputError(problem, f"the first has {shape}")
         texts = {"names": sample.name, "split": sample.origin.split}
-        texts["parts"] = json.dumps([_row_of(patch, _is_of_blocks(sample)) for patch in sample.patches])
+        rows = [[p.name, p.side, p.start, p.stop, p.block, p.across, p.kind] for p in sample.patches]
+        texts["parts"] = json.dumps([row if _is_of_blocks(sample) else row[:4] for row in rows])
         if isinstance(sample, Grid) and sample.provenance:
             texts["provenance"] = json.dumps(sample.provenance, default=plain)
         for name, entry in (arrays | texts).items():
@@ -143,15 +143,14 @@ class Writer:
             text, shape = name in TEXTS, self._shapes.get(name, ())
             some = 64 if text else max(1, CHUNK // max(8 * int(np.prod(shape)), 1))
             kind: Any = h5py.string_dtype() if text else "f8"
-            size = {"maxshape": (None, *shape), "chunks": (some, *_chunk(shape))}
+            row = 8 * int(np.prod(shape[1:]))
+            whole = (
+                row * (shape or (1,))[0] <= 4 * BLOCK
+            )  # else some `BLOCK` bytes of rows are stored together
+            chunk = shape if whole else (max(1, BLOCK // row), *shape[1:])
+            size = {"maxshape": (None, *shape), "chunks": (some, *chunk)}
             self._data[name] = self._file.create_dataset(name, (0, *shape), kind, **size)
         return self._data[name]
-
-
-def _chunk(shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the part of a sample that is stored together: all of it, or some `BLOCK` bytes of rows."""
-    row = 8 * int(np.prod(shape[1:]))
-    return shape if row * (shape or (1,))[0] <= 4 * BLOCK else (max(1, BLOCK // row), *shape[1:])
 
 
 def _put(data: h5py.Dataset, row: int, value: Floats) -> None:
@@ -208,8 +207,3 @@ def _arrays_of(sample: Boundary | Grid) -> dict[str, Floats]:
     # the edges are those of the nodes: a grid of any quality is written, also one that is no valid boundary
     faces: dict[str, Floats] = {side: sample.face(0, side) for side in SIDES}
     return faces | {"nodes": sample.nodes}
-
-
-def _row_of(patch: Patch, several: bool) -> list[object]:
-    row: list[object] = [patch.name, patch.side, patch.start, patch.stop]
-    return [*row, patch.block, patch.across, patch.kind] if several else row

@@ -49,7 +49,10 @@ def read_layout(source: Source) -> Layout:
         raise InputError(problem, f"this program reads version {VERSION}")
     file = Values(data)
     loops = tuple(_loop(values) for values in file.rows("loops"))
-    periodic = _periodic(file) if "periodic" in data else None
+    periodic = None
+    if "periodic" in data:
+        sides = file.row("periodic")
+        periodic = Periodic(sides.pair("first"), sides.pair("second"), sides.pair("shift"))
     domain = Domain(loops, printable(file.text("name")), periodic=periodic)
     layout = _LayoutNodes(domain, file.rows("vertices"), file.rows("edges"), file.rows("faces")).layout()
     fronts = [k for k, values in enumerate(file.rows("loops")) if values.data.get("front") is True]
@@ -90,12 +93,6 @@ def _loop(values: Values) -> Loop:
     if (polygon_area(curve.points) > 0) != (values.place == "loops[0]"):
         raise values.error("has the domain on its right")
     return loop
-
-
-def _periodic(file: Values) -> Periodic:
-    values = file.row("periodic")
-    first, second, shift = (values.pair(name) for name in ("first", "second", "shift"))
-    return Periodic(first, second, shift)
 
 
 class _LayoutNodes:

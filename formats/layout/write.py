@@ -107,13 +107,12 @@ class _WrittenLayout:
         return facts
 
     def _sides(self, block: Indices) -> dict[str, list[int]]:
+        """Return the numbers of the edges of each side, which is cut at vertices."""
         lines = {"south": block[:, 0], "east": block[-1], "north": block[:, -1], "west": block[0]}
-        return {side: self._cut(line) for side, line in lines.items()}
-
-    def _cut(self, line: Indices) -> list[int]:
-        """Return the numbers of the edges of a side, which is cut at vertices."""
-        ends = np.flatnonzero(self.is_vertex[line])
-        return [self._numbered(line[a : b + 1]) for a, b in pairwise(ends)]
+        return {
+            side: [self._numbered(line[a : b + 1]) for a, b in pairwise(np.flatnonzero(self.is_vertex[line]))]
+            for side, line in lines.items()
+        }
 
     def _numbered(self, line: Indices) -> int:
         same, turned = line.tobytes(), line[::-1].tobytes()

@@ -80,7 +80,14 @@ def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[EdgeLo
 def with_loop_names(grid: Grid) -> Grid:
     """Return a grid of planar blocks with patches on all its outer edges."""
     outer = grid.outer_patches()
-    unnamed = [patch for patch in outer if not any(_covers(named, patch) for named in grid.patches)]
+    unnamed = [
+        p
+        for p in outer
+        if not any(
+            (n.block, n.side, n.name) == (p.block, p.side, p.name) and n.start <= p.start and p.stop <= n.stop
+            for n in grid.patches
+        )
+    ]
     if not unnamed:
         return grid
     numbers = node_numbers(grid)
@@ -92,11 +99,6 @@ def with_loop_names(grid: Grid) -> Grid:
         title = titles.get(int(line[0]), titles.get(int(line[-1]), "outer"))
         new.append(replace(patch, name=title if title not in taken else f"{title}-unnamed", kind="other"))
     return replace(grid, patches=(*grid.patches, *new))
-
-
-def _covers(named: Patch, part: Patch) -> bool:
-    same = (named.block, named.side, named.name) == (part.block, part.side, part.name)
-    return same and named.start <= part.start and part.stop <= named.stop
 
 
 def _titles(grid: Grid, numbers: list[Indices], outer: list[Patch]) -> dict[int, str]:

@@ -131,7 +131,16 @@ def connections_from(text: str) -> tuple[Connection, ...]:
     try:
         rows = json.loads(text or "[]")
         return tuple(
-            Connection(k, side, _range(span), donor, face, _range(other), tuple(ways), _motion(move))
+            Connection(
+                k,
+                side,
+                _range(span),
+                donor,
+                face,
+                _range(other),
+                tuple(ways),
+                Motion(tuple(move["shift"]), tuple(map(tuple, move["turn"]))) if move else None,
+            )
             for k, side, span, donor, face, other, ways, move in rows
         )
     except (ValueError, TypeError, KeyError, RecursionError):
@@ -140,7 +149,3 @@ def connections_from(text: str) -> tuple[Connection, ...]:
 
 def _range(span: list[list[int]]) -> Range:
     return tuple((int(first), int(last)) for first, last in span)
-
-
-def _motion(move: dict[str, Any] | None) -> Motion | None:
-    return Motion(tuple(move["shift"]), tuple(map(tuple, move["turn"]))) if move else None

@@ -19,16 +19,21 @@ _SEAM = 1e-6
 def boundary_of(grid: Grid) -> Shape:
     """Return the four outer edges of `grid`, with its topology, parts and name; of many blocks, their domain.
 
-    A grid in space is a shape as it is.
+    The blocks can be used again where each shares whole sides. A grid in space is a shape as it is.
 
-    Raises InputError: the edges are no boundary, e.g. two neighbouring nodes are the same point.
+    Raises InputError: the edges are no boundary, e.g. two neighbouring nodes are the same point; as
+    `layout_of`.
     """
     if in_space(grid):
         return SpatialShape(grid)
     if grid.topology == "blocks":
-        from meshonet.geometry.shapes.given_blocks import given_blocks
+        from meshonet.geometry.blocks.families import joins_whole_sides
+        from meshonet.geometry.layout.from_grid import layout_of
+        from meshonet.geometry.shapes.domain_shape import DomainShape
 
-        return given_blocks(grid)
+        layout = layout_of(grid)
+        whole = all(joins_whole_sides(grid, each) for each in grid.connections)
+        return DomainShape(layout.mesh.domain, layout=layout if whole else None, given=grid)
     nodes = grid.nodes
     edges = nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1]
     return Boundary(*edges, grid.topology, grid.patches, grid.name, origin=grid.origin)

@@ -49,7 +49,7 @@ class FileBlock:
 def described_grids(blocks: Iterable[FileBlock], name: str) -> Iterator[Grid]:
     """Yield the grids of blocks whose facts say their topology, those of a grid of several side by side."""
     for number, group in groupby(blocks, key=lambda block: number_of_grid(block.facts)):
-        read = ((block, _described(block)) for block in group)
+        read = ((block, in_place(block.place)(_described)(block)) for block in group)
         if number is not None:
             yield grid_of_blocks([(nodes, block.facts) for block, nodes in read], name)
             continue
@@ -59,8 +59,7 @@ def described_grids(blocks: Iterable[FileBlock], name: str) -> Iterator[Grid]:
 
 
 def _described(block: FileBlock) -> Floats:
-    with in_place(block.place):
-        return usable(nodes_by_facts(block.coordinates, block.facts))
+    return usable(nodes_by_facts(block.coordinates, block.facts))
 
 
 def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Grid:

@@ -13,9 +13,8 @@ import numpy as np
 from meshonet.formats.mesh.loops import EdgeLoop, closed_loops
 from meshonet.formats.mesh.unstructured import Indices
 from meshonet.formats.source import LARGEST, printable
-from meshonet.geometry.arrays import SIDES, Floats, Side
+from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.domain.loop import CORNER_DEG
 from meshonet.geometry.domain.nesting import nested
 from meshonet.geometry.errors import InputError
@@ -93,17 +92,16 @@ def _with_holes(outer: EdgeLoop, holes: list[EdgeLoop], surface: MeshBoundary, n
     """Return the domain of curves; the nodes of an O grid are kept, west and east with them."""
     points = surface.points
     if len(holes) == 1 and len(outer.nodes) == len(holes[0].nodes):
-        inner, around = (_clockwise(loop, points) for loop in (holes[0], outer))
+        inner, around = (
+            loop.reversed() if polygon_area(points[loop.nodes]) > 0 else loop for loop in (holes[0], outer)
+        )
         cut = _cut(inner, around, surface)
         if cut:
             around = around.begun_at(int(np.flatnonzero(around.nodes == cut[-1])[0]))
             south, north = (points[np.append(loop.nodes, loop.nodes[0])] for loop in (inner, around))
-            return Boundary(south, north, points[cut], points[cut], "o", _o_parts(inner, around), name)
+            parts = (*runs("south", inner.names), *runs("north", around.names))
+            return Boundary(south, north, points[cut], points[cut], "o", parts, name)
     return polygon_shape([_ring(loop, points) for loop in (outer, *holes)], name)
-
-
-def _clockwise(loop: EdgeLoop, points: Floats) -> EdgeLoop:
-    return loop.reversed() if polygon_area(points[loop.nodes]) > 0 else loop
 
 
 def _ring(loop: EdgeLoop, points: Floats) -> PolygonRing:
@@ -154,12 +152,6 @@ def _line_across(quads: Indices, start: int, count: int) -> list[int]:
             return []
         shared = set(beside(line[-1], ahead[0])) & set(beside(line[-1], ahead[1]))
     return []
-
-
-def _o_parts(inner: EdgeLoop, outer: EdgeLoop) -> tuple[Patch, ...]:
-    """Return the parts of both curves, or none when nothing is named."""
-    sides: tuple[tuple[Side, EdgeLoop], ...] = (("south", inner), ("north", outer))
-    return tuple(part for side, loop in sides for part in runs(side, loop.names))
 
 
 def _domain(loop: EdgeLoop, surface: MeshBoundary, name: str) -> Shape:

@@ -10,21 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.formats.mesh.surface import MOST_EDGES, MeshBoundary, shapes_of
-from meshonet.formats.mesh.unstructured import Indices
-from meshonet.formats.source import LARGEST, Source, printable
-from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.formats.mesh.surface import shapes_of
+from meshonet.formats.outlines.joined import MOST_BYTES, SAG, extent_checked, joined
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
 _KINDS = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
 """Entities that are curves."""
-_MOST_BYTES = 64 << 20
-"""Larger drawings take too long to read: no outline needs so many curves."""
-_MEET = 1e-6
-"""How far apart, in extents, two ends may lie and still meet."""
-_SAG = 1e-5
-"""Largest distance of a chord from its curve, in extents."""
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
@@ -37,7 +31,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         from ezdxf.filemanagement import read
     except ImportError:
         raise InputError("needs the package ezdxf", "install it: pip install 'meshonet[dxf]'") from None
-    if source.size > _MOST_BYTES:
+    if source.size > MOST_BYTES:
         raise InputError(f"{source.size >> 20} MB are too much for a drawing", "give a file below 64 MB")
     data = source.read_bytes()
     if data.startswith(b"AutoCAD Binary DXF"):
@@ -60,7 +54,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         raise InputError(problem, "save it again as ASCII DXF") from error
     if not lines:
         raise InputError("has no curves in its model space", "draw lines, polylines, arcs or splines")
-    yield from shapes_of(_joined(lines), source.stem)
+    yield from shapes_of(joined(lines), source.stem)
 
 
 def _lines(curves: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
@@ -68,45 +62,9 @@ def _lines(curves: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
     curves = [(layer, curve) for layer, curve in curves if len(curve)]
     if not curves:
         return []
-    every = np.array([(v.x, v.y) for _, curve in curves for v in curve.control_vertices()])
-    extent = extent_of(every)
-    if not (np.abs(every) < LARGEST).all() or extent == 0:
-        raise InputError("its curves have no size, or one that is not finite", "check the drawing")
-    lines, count = [], 0
+    extent = extent_checked(np.array([(v.x, v.y) for _, curve in curves for v in curve.control_vertices()]))
+    lines = []
     for layer, curve in curves:
-        chords = curve.control_vertices()
-        if curve.has_curves:
-            chords = curve.flattening(_SAG * extent, segments=16)
-        points = np.array([(v.x, v.y) for v in chords])
-        keep = np.append(True, (np.diff(points, axis=0) != 0).any(axis=1))
-        count += len(points)
-        if count > MOST_EDGES:
-            raise InputError(f"has more than {MOST_EDGES} points", "simplify the drawing")
-        if keep.sum() > 1:
-            lines.append(("" if layer == "0" else layer, points[keep]))
+        chords = curve.flattening(SAG * extent, segments=16) if curve.has_curves else curve.control_vertices()
+        lines.append(("" if layer == "0" else layer, np.array([(v.x, v.y) for v in chords])))
     return lines
-
-
-def _joined(lines: list[tuple[str, Floats]]) -> MeshBoundary:
-    """Return the curves as edges between points, ends that meet being one point."""
-    points = np.concatenate([line for _, line in lines])
-    reach = _MEET * extent_of(points)
-    counts = [len(line) for _, line in lines]
-    stops = np.cumsum(counts)
-    starts = stops - counts
-    same = np.arange(len(points))
-    ends = np.concatenate([starts, stops - 1])
-    order = ends[np.argsort(points[ends, 0], kind="stable")].tolist()
-    for k, end in enumerate(order):
-        if same[end] != end:
-            continue
-        for later in order[k + 1 :]:
-            if points[later, 0] - points[end, 0] > reach:
-                break
-            if same[later] == later and abs(points[later, 1] - points[end, 1]) <= reach:
-                same[later] = end
-    edges: dict[str, list[Indices]] = {}
-    for (layer, _), start, stop in zip(lines, starts, stops, strict=True):
-        nodes = same[start:stop]
-        edges.setdefault(layer, []).append(np.stack([nodes[:-1], nodes[1:]], axis=1))
-    return MeshBoundary(points, {layer: np.concatenate(pieces) for layer, pieces in edges.items()})

@@ -1,9 +1,10 @@
 """Domains and outlines from vector geometry: WKT (one geometry a file or a line) and GeoJSON.
 
-A polygon is a domain, with its holes; a closed line is a body, or an outline with corners; collections hold
-several. A third coordinate is dropped. Properties of a GeoJSON feature besides ``name``: ``names``, for each
-ring one name or a list of one for each stretch between corners, and ``corners``, for each ring a list of
-numbers of its points, counted from 0.
+A polygon is a domain, with its holes; a closed line is a body, or an outline with corners; two open lines are
+the walls of a channel, four the edges of a domain, and a line ``# name`` above one of WKT names it.
+Collections hold several. A third coordinate is dropped. Properties of a GeoJSON feature besides ``name``:
+``names``, for each ring one name or a list of one for each stretch between corners, and ``corners``, for each
+ring a list of numbers of its points, counted from 0.
 https://www.ogc.org/standards/sfa , https://www.rfc-editor.org/rfc/rfc7946
 """
 
@@ -19,6 +20,7 @@ import numpy as np
 from meshonet.formats.source import LARGEST, Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.edges import DrawnEdge, channel, four_edges
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
@@ -46,7 +48,8 @@ def read_wkt(source: Source) -> Iterator[Shape]:
     Raises InputError: text that is no WKT, a geometry that is no outline; with its line.
     """
     geometries = _geometries(_text(source))
-    yield from _named([_Geometry(source.stem, place, geometry, {}) for place, geometry in geometries])
+    drawn = [_Geometry(source.stem, place, each, {"name": called}) for place, each, called in geometries]
+    yield from _named(drawn, source.stem)
 
 
 def read_geojson(source: Source) -> Iterator[Shape]:
@@ -71,34 +74,52 @@ def read_geojson(source: Source) -> Iterator[Shape]:
         try:
             with np.errstate(all="ignore"):  # of NaN and infinity, which are refused later
                 drawn.append(_Geometry(name, place, shape(geometry), properties))
-        except (ShapelyError, ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
+        except (
+            ShapelyError,
+            ArithmeticError,
+            AttributeError,
+            LookupError,
+            RecursionError,
+            TypeError,
+            ValueError,
+        ) as error:
             raise InputError(f"is not a GeoJSON geometry ({_short(error)})", _ASK, place=place) from None
-    yield from _named(drawn)
+    yield from _named(drawn, source.stem)
 
 
-def _geometries(text: str) -> list[tuple[str, BaseGeometry]]:
-    """Return (place, geometry) of a text that is one geometry, or else of each of its lines."""
+def _geometries(text: str) -> list[tuple[str, BaseGeometry, str]]:
+    """Return place, geometry and name of a text that is one geometry, or else of each of its lines.
+
+    A line ``# name`` names the next one.
+    """
     from shapely import from_wkt
     from shapely.errors import ShapelyError
 
-    geometries: list[tuple[str, BaseGeometry]] = []
+    geometries: list[tuple[str, BaseGeometry, str]] = []
     with np.errstate(all="ignore"):  # shapely lets numpy warn of NaN and infinity; they are refused later
         try:
-            return [("", from_wkt(text))]
+            return [("", from_wkt(text), "")]
         except ShapelyError:
             pass
-        for number, line in enumerate(text.splitlines(), start=1):
-            if not line.strip() or line.lstrip().startswith("#"):
+        name = ""
+        for number, line in enumerate(map(str.strip, text.splitlines()), start=1):
+            if not line or line.startswith("#"):
+                name = printable(line.strip("# "))
                 continue
             try:
-                geometries.append((f"line {number}", from_wkt(line)))
+                geometries.append((f"line {number}", from_wkt(line), name))
+                name = ""
             except ShapelyError as error:
                 raise InputError(f"is not WKT ({_short(error)})", _ASK, place=f"line {number}") from None
     return geometries
 
 
-def _named(drawn: list[_Geometry]) -> Iterator[Shape]:
-    """Yield the shapes of what is drawn, numbered where several share a name."""
+def _named(drawn: list[_Geometry], stem: str) -> Iterator[Shape]:
+    """Yield the shapes of what is drawn, numbered where several share a name; of open lines, one."""
+    edges = _edges(drawn)
+    if len(edges) == 4 or (len(edges) == 2 and all(edge.is_wall for edge in edges)):
+        yield (four_edges if len(edges) == 4 else channel)(edges, stem)
+        return
     parts = [(each, rings) for each in drawn for rings in _rings(each.geometry, each.place)]
     if not parts:
         raise InputError("holds no geometry", _ASK)
@@ -111,9 +132,22 @@ def _named(drawn: list[_Geometry]) -> Iterator[Shape]:
             raise
 
 
+def _edges(drawn: list[_Geometry]) -> list[DrawnEdge]:
+    """Return open lines as edges with their names; nothing where there is something else too."""
+    edges = []
+    for each in drawn:
+        for line in getattr(each.geometry, "geoms", [each.geometry]):
+            if line.geom_type != "LineString" or line.is_empty or line.is_closed:
+                return []
+            points = _points(line)
+            places = [", ".join(filter(None, (each.place, f"point {k}"))) for k in range(len(points))]
+            edges.append(DrawnEdge(points, places, printable(str(each.properties.get("name") or ""))))
+    return edges
+
+
 def _shape(drawn: _Geometry, rings: list[Any], name: str) -> Shape:
     """Return the domain of a polygon, or the body or outline that a closed line is."""
-    points = [_points(ring) for ring in rings]
+    points = [_points(ring)[:-1] for ring in rings]
     if rings[0].geom_type == "LineString":
         return domain_or_body(Outline(points[0], name))
     corners = _of_rings(drawn.properties, "corners", len(rings))
@@ -142,7 +176,7 @@ def _of_rings(properties: Mapping[str, Any], key: str, count: int) -> list[Any]:
 def _corners(values: Any, ring: int) -> list[int] | None:
     if values is None:
         return None
-    if not isinstance(values, list) or not all(type(value) is int for value in values):
+    if not isinstance(values, list) or not all(type(k) is int and abs(k) < LARGEST for k in values):
         problem = "property 'corners' holds no list of point numbers"
         raise InputError(problem, "give e.g. [[0, 4, 8, 12]], counted from 0", place=f"ring {ring}")
     return values
@@ -157,11 +191,11 @@ def _names(values: Any, ring: int) -> list[str]:
 
 
 def _points(ring: Any) -> Floats:
-    """Return the points (n, 2) of a closed line, the first not repeated."""
+    """Return the points (n, 2) of a line."""
     points = np.array([point[:2] for point in ring.coords], dtype=np.float64)
     if not (np.abs(points) < LARGEST).all():
         raise InputError("a coordinate is not finite or far too large", "check its numbers")
-    return points[:-1]
+    return points
 
 
 def _rings(geometry: BaseGeometry, place: str) -> Iterator[list[Any]]:
@@ -177,6 +211,8 @@ def _rings(geometry: BaseGeometry, place: str) -> Iterator[list[Any]]:
         raise InputError(f"has an empty {kind} or a {kind}, which is no outline", _ASK, place=place)
     holes = list(geometry.interiors) if kind == "Polygon" else []
     ring = geometry.exterior if kind == "Polygon" else LineString(geometry.coords)
+    if any(hole.is_empty for hole in holes):
+        raise InputError("has a hole without points", "give its points, or leave it out", place=place)
     if ring.coords[0] != ring.coords[-1]:
         raise InputError("line is not closed", "repeat its first point at its end", place=place)
     yield [ring, *holes]

@@ -39,7 +39,11 @@ def sniff(head: bytes) -> bool:
     if textual and not _INTEGER_FIRST.match(head):
         return False
     if len(head) == HEAD_BYTES:
-        return bool(_INTEGER_LINE.match(head)) if textual else _could_be_binary(head)
+        if textual:
+            return bool(_INTEGER_LINE.match(head))
+        # dims, or the length of a record of them
+        words = np.frombuffer(head, "<i4", 3), np.frombuffer(head, ">i4", 3)
+        return any(bool(((first >= 1) & (first <= 100_000)).all()) for first in words)
     from meshonet.formats.plot3d import binary, text  # which most files that are no Plot3D do not need
 
     try:
@@ -51,9 +55,3 @@ def sniff(head: bytes) -> bool:
 def is_text(head: bytes) -> bool:
     """Say whether `head` is text; binary integers below 2^24 always have a zero byte."""
     return b"\0" not in head[:64]
-
-
-def _could_be_binary(head: bytes) -> bool:
-    """Say whether the first integers of a long file can be dims, or the length of a record of them."""
-    words = np.frombuffer(head, "<i4", 3), np.frombuffer(head, ">i4", 3)
-    return any(bool(((first >= 1) & (first <= 100_000)).all()) for first in words)

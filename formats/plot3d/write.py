@@ -59,8 +59,8 @@ class StoredBlock:
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the blocks of `grids`; plane ones without z, or with z = 0 if there are others.
 
-    The third direction of volumes is the index of the file that `options` say. Where a grid has several
-    blocks, a neutral map file beside the file says where they join, and what is what.
+    The third direction of volumes is the index of the file that `options` say. A neutral map file beside the
+    file says where blocks join, and what is what: of a grid alone, and of several where one has blocks.
 
     Raises InputError: there is no grid; several in a file without a count; a block that no Fortran record
     can hold; z where there is none.
@@ -83,7 +83,7 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     with path.open("wb") as stream:
         put(stream, blocks, options)
     beside = map_of(path)
-    if beside is not None and any(grid.topology == "blocks" for grid in grids):
+    if beside is not None and (len(grids) == 1 or any(grid.topology == "blocks" for grid in grids)):
         with whole_file(str(beside)) as part:
             write_map(part, grids, _span(options) if space else 2)
 
@@ -125,7 +125,9 @@ def _put_bytes(stream: BinaryIO, blocks: Sequence[StoredBlock], options: Options
     def frame(size: int) -> bytes:
         return struct.pack(_order(options) + "i", size) if framed else b""
 
-    for record in _head(blocks, options):
+    sizes = [size for block in blocks for size in block.dims]
+    count = [] if "single" in options else [struct.pack(f"{_order(options)}i", len(blocks))]
+    for record in (*count, struct.pack(f"{_order(options)}{len(sizes)}i", *sizes)):
         stream.write(frame(len(record)) + record + frame(len(record)))
     for number, block in enumerate(blocks, start=1):
         size = block.nodes * (block.axes * _real(options).itemsize + 4 * int(block.iblank))
@@ -141,14 +143,6 @@ def _put_bytes(stream: BinaryIO, blocks: Sequence[StoredBlock], options: Options
         if block.iblank:
             stream.write(np.ones(block.nodes, _order(options) + "i4").data)
         stream.write(frame(size))
-
-
-def _head(blocks: Sequence[StoredBlock], options: Options) -> Iterator[bytes]:
-    """Yield the count, where there is one, and the dims."""
-    sizes = [size for block in blocks for size in block.dims]
-    if "single" not in options:
-        yield struct.pack(f"{_order(options)}i", len(blocks))
-    yield struct.pack(f"{_order(options)}{len(sizes)}i", *sizes)
 
 
 def _order(options: Options) -> str:

@@ -1,40 +1,36 @@
-"""Lists of points: closed curves, or the four edges of a domain in four blocks divided by blank lines.
+"""Lists of points: closed curves, or the edges of a domain in four or two blocks divided by blank lines.
 
 Columns are divided by commas, semicolons, blanks or tabs; a header line and lines that start with ``#`` are
 allowed; a third column is z and is left out. An open curve is closed by a straight line.
 
 Four blocks are edges in any order and direction as long as they meet; the first is south. Where opposite
 edges have equal counts, the points are the nodes of the boundary as they stand; otherwise curves to sample.
+Two blocks that lead from one place to another are the walls of a channel, whose ends straight lines join. A
+line ``# name`` above each block names the sides.
 A single curve that ends in one trailing edge is taken for an airfoil. Several closed curves are divided by
 blank lines, or each repeats its first point; those in another one are holes in the domain that it bounds.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
-from meshonet.formats.source import Source
+from meshonet.formats.source import Source, printable
 from meshonet.formats.text.rows import Line, decode, left_out, mostly_rows, read_lines, table
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.domain.nesting import nested
 from meshonet.geometry.errors import InputError, in_source
-from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.polygon.self_intersection import check_outline
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.closed_curve import closed_curve
+from meshonet.geometry.shapes.edges import DrawnEdge, channel, four_edges
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
 
-AnyOutline = TypeVar("AnyOutline", bound=Boundary | Outline | Airfoil)
+AnyOutline = TypeVar("AnyOutline", bound=Outline | Airfoil)
 MOST_POINTS = 100_000
 """A curve of more points is a mistake."""
-_JOIN = 1e-6
-"""How far apart, in extents, the ends of two edges may lie and still meet."""
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
@@ -60,8 +56,16 @@ def parse(text: str, source: str, stem: str = "") -> list[Shape]:
             blocks = [[line for block in blocks for line in block]]  # a blank line behind each
         notes = left_out(lines)
         rings = [ring for block in blocks for ring in _rings(block)]
-        if len(blocks) == 4 == len(rings) and min(map(len, blocks)) >= 2 and not all(map(_closed, rings)):
-            return [_with_notes(_four_edges(blocks, name), notes)]
+        if (
+            len(blocks) == len(rings) in (2, 4)
+            and min(map(len, blocks)) >= 2
+            and not all(map(_closed, rings))
+        ):
+            edges = _edges(blocks, lines)
+            if len(edges) == 4:
+                return [four_edges(edges, name, notes)]
+            if all(edge.is_wall for edge in edges):
+                return [channel(edges, name, notes)]
         if not rings:
             raise InputError("0 blocks of points", "give closed curves, or four edges divided by blank lines")
         if len(rings) == 1:
@@ -75,10 +79,20 @@ def sniff(head: bytes) -> bool:
 
 
 def _with_notes(shape: AnyOutline, notes: tuple[str, ...]) -> AnyOutline:
-    if isinstance(shape, Boundary):
-        return replace(shape, notes=(*notes, *shape.notes))
     shape.notes = (*notes, *shape.notes)
     return shape
+
+
+def _edges(blocks: list[list[Line]], lines: list[Line]) -> list[DrawnEdge]:
+    """Return the edges that blocks are, called as the ``# name`` above each says where all have one."""
+    above = [lines[block[0].number - 2].text.strip() if block[0].number > 1 else "" for block in blocks]
+    names = [printable(text.strip("#").strip()) if text.startswith("#") else "" for text in above]
+    return [
+        DrawnEdge(
+            np.array([line.values[:2] for line in block]), [f"line {line.number}" for line in block], called
+        )
+        for block, called in zip(blocks, names if all(names) else [""] * len(names), strict=True)
+    ]
 
 
 def _closed(rows: list[Line]) -> bool:
@@ -124,56 +138,3 @@ def _domains(rings: list[list[Line]], name: str, notes: tuple[str, ...]) -> list
 def _closed_curve(rows: list[Line], name: str) -> Outline | Airfoil:
     points = np.array([line.values[:2] for line in rows])
     return closed_curve(points, name, [f"line {line.number}" for line in rows])
-
-
-def _four_edges(blocks: list[list[Line]], name: str) -> Boundary | Outline:
-    """Return the domain of four edges, chained end to end from the first."""
-    chain = _chained([_edge(block) for block in blocks])
-    ring = np.concatenate([edge[:-1] for edge in chain])
-    check_outline(ring[:, :2], [f"line {number:.0f}" for number in ring[:, 2]])
-    if polygon_area(ring[:, :2]) < 0:  # the first edge stays south, so it is walked the other way
-        chain = [chain[0][::-1], *(edge[::-1] for edge in chain[:0:-1])]
-        ring = np.concatenate([edge[:-1] for edge in chain])
-    counts = [len(edge) for edge in chain]
-    if counts[0] == counts[2] and counts[1] == counts[3]:
-        south, east, north, west = (edge[:, :2] for edge in chain)
-        return Boundary(south, north[::-1], west[::-1], east, name=name)
-    a, b, c = np.cumsum(np.array(counts[:3]) - 1).tolist()
-    return Outline(ring[:, :2], name, corners=(0, a, b, c))
-
-
-def _edge(block: list[Line]) -> Floats:
-    """Return the points of a block and the number of each one's line (n, 3)."""
-    edge = np.array([[*line.values[:2], line.number] for line in block])
-    same = np.flatnonzero((np.diff(edge[:, :2], axis=0) == 0).all(axis=1))
-    if len(same) == len(edge) - 1:
-        place = f"line {block[0].number}"
-        raise InputError("an edge is one point", "give two or more points of every edge", place=place)
-    if same.size:
-        x, y, _ = edge[same[0]]
-        place = f"line {block[same[0] + 1].number}"
-        raise InputError(f"repeats the point ({x:.6g}, {y:.6g}) of the line before", "remove it", place=place)
-    return edge
-
-
-def _chained(edges: list[Floats]) -> list[Floats]:
-    """Return four edges (n, 3) in an order and directions in which each begins where the last one ends."""
-    reach = _JOIN * float(np.hypot(*np.ptp(np.concatenate(edges)[:, :2], axis=0)))
-    chain, left = [edges[0]], {1, 2, 3}
-    while left:
-        end = chain[-1][-1, :2]
-        gaps = {(k, way): float(np.hypot(*(edges[k][::way][0, :2] - end))) for k in left for way in (1, -1)}
-        (k, way), gap = min(gaps.items(), key=lambda item: item[1])
-        if gap > reach:
-            x, y = end
-            problem = f"no other edge starts or ends at ({x:g}, {y:g}); the nearest is {gap:.3g} away"
-            place = f"line {edges[k][::way][0, 2]:.0f}"
-            raise InputError(problem, "make the four edges meet", place=place)
-        chain.append(edges[k][::way].copy())
-        chain[-1][0, :2] = end
-        left.remove(k)
-    gap = float(np.hypot(*(chain[3][-1, :2] - chain[0][0, :2])))
-    if gap > reach:
-        raise InputError(f"the four edges do not close: {gap:.3g} are left open", "make the four edges meet")
-    chain[3][-1, :2] = chain[0][0, :2]
-    return chain

@@ -40,6 +40,8 @@ _MEANT = re.compile(
     re.IGNORECASE,
 )
 """A word that was meant as a number: not finite, Fortran's stars, digits and a point with something else."""
+_HTML = re.compile(r"</?[a-z!][^<>]*>|&#?\w+;", re.IGNORECASE)
+"""A tag or an entity."""
 _REMARK = re.compile(r"\s(?:#|!|//|<-).*$|^\s*(?:#|!|//).*$")
 
 
@@ -149,13 +151,22 @@ def _next_kind(kinds: list[Kind], k: int, step: int) -> Kind:
 
 
 def left_out(lines: list[Line]) -> tuple[str, ...]:
-    """Return a note for each line beside a row that begins like one and has no second number."""
+    """Return a note for each line beside a row that begins like one and has no second number.
+
+    And for each of HTML between rows, which a page that was saved as a file has where rows may be missing.
+    """
     kinds: list[Kind] = ["blank", *(line.kind for line in lines), "blank"]
-    return tuple(
-        Change(f"line {line.number}, {line.text.strip()[:40]!r}, is no pair of numbers and is left out")
-        for k, line in enumerate(lines)
-        if line.kind in ("gap", "broken") and "row" in (kinds[k], kinds[k + 2])
-    )
+    rows = [line.number for line in lines if line.kind == "row"] or [0]
+    notes = []
+    for k, line in enumerate(lines):
+        what = ""
+        if line.kind in ("gap", "broken") and "row" in (kinds[k], kinds[k + 2]):
+            what = "no pair of numbers"
+        elif line.kind == "text" and rows[0] < line.number < rows[-1] and _HTML.search(line.text):
+            what = "HTML"
+        if what:
+            notes.append(Change(f"line {line.number}, {line.text.strip()[:40]!r}, is {what} and is left out"))
+    return tuple(notes)
 
 
 def _line(number: int, text: str) -> Line:

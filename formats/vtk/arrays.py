@@ -2,6 +2,7 @@
 
 import base64
 import binascii
+import math
 import re
 import zlib
 from collections.abc import Callable, Iterator
@@ -24,8 +25,6 @@ CUT = "the file is cut short or its sizes are wrong: write it again"
 """The remedy where a file ends too soon."""
 _BLOCK_NODES = 1 << 15
 """Nodes laid out at a time: 24 bytes each stay in the second-level cache."""
-_PLANES = 8
-"""Planes of a volume laid out at a time: as many numbers as a cache line of its rows has."""
 _MOST_SHRINKING = 1 << 15
 """LZMA shrinks zeros some ten thousand times, zlib a thousand; a claim far beyond is refused."""
 
@@ -155,22 +154,14 @@ def points_of(nodes: Floats, dtype: str) -> Iterator[NDArray[Any]]:
 
     Nodes in the plane get z = 0.
     """
-    if nodes.ndim == 4:
-        for start in range(0, nodes.shape[2], _PLANES):
-            part = nodes[:, :, start : start + _PLANES]
-            block = np.empty((*part.shape[2::-1], 3), dtype)
-            for j in range(nodes.shape[1]):
-                block[:, j] = part[:, j].swapaxes(0, 1)
-            yield block.reshape(-1, 3)
-        return
-    ni, nj, coordinates = nodes.shape
-    rows = max(1, _BLOCK_NODES // ni)
-    block = np.zeros((rows, ni, 3), dtype)
-    for start in range(0, nj, rows):
-        part = block[: nj - start]
-        for axis in range(coordinates):
-            part[..., axis] = nodes[:, start : start + rows, axis].T
-        yield part.reshape(-1, 3)
+    *counts, coordinates = nodes.shape
+    last = len(counts) - 1
+    step = max(1, _BLOCK_NODES * counts[-1] // math.prod(counts))
+    for start in range(0, counts[-1], step):
+        part = nodes[(slice(None),) * last + (slice(start, start + step),)]
+        points = np.zeros((*part.shape[last::-1], 3), dtype)
+        points[..., :coordinates] = part.transpose(*range(last, -1, -1), last + 1)
+        yield points.reshape(-1, 3)
 
 
 def escaped(text: str) -> str:

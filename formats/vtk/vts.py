@@ -12,7 +12,7 @@ import math
 import struct
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +23,6 @@ from meshonet.formats.vtk.arrays import escaped, points_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-
-if TYPE_CHECKING:
-    pass
 
 _HEAD = """\
 <?xml version="1.0"?>

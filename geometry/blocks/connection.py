@@ -35,7 +35,12 @@ Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
 class Motion:
     """Rigid motion that carries one of two periodic sides to the other: x -> turn x + shift.
 
-    `shift` is that of every coordinate, `turn` a rotation matrix row by row; empty ones do nothing.
+    Parameters
+    ----------
+    shift : tuple of float, optional
+        Of every coordinate; an empty one does nothing.
+    turn : tuple of tuple of float, optional
+        Rows of a rotation matrix; an empty one does nothing.
     """
 
     shift: tuple[float, ...] = ()

@@ -98,7 +98,9 @@ def plane_of_extruded(grid: Grid) -> Grid | None:
     connections = tuple(_flat(each) for each in grid.connections)
     flat = replace(grid, blocks=blocks, patches=(), connections=connections)
     if flat.around_body:
-        patches = [_by_name(p) if p.side == "south" and p.kind == "wall" else p for p in patches]
+        patches = [
+            replace(p, kind=kind_of(p.name)) if p.side == "south" and p.kind == "wall" else p for p in patches
+        ]
         patches = [p for p in patches if p != Patch("south", "south", p.start, p.stop)]
     return replace(flat, patches=tuple(patches))
 
@@ -123,10 +125,6 @@ def _with_walls(grid: Grid) -> list[Patch]:
     return [*patches, *(replace(p, kind="wall") for p in body if p.name not in named)]
 
 
-def _by_name(patch: Patch) -> Patch:
-    return replace(patch, kind=kind_of(patch.name))
-
-
 def _renamed(patches: Sequence[Patch], ends: Sequence[str]) -> list[Patch]:
     """Return `patches`, none of them called as the planes at the `ends` are."""
     taken = {*ends, *(patch.name for patch in patches)}
@@ -138,18 +136,13 @@ def _thick(each: Connection, planes: int) -> Connection:
     """Return a connection of planar blocks over all planes."""
     whole = (0, planes - 1)
     ranges = (*each.range, whole), (*each.donor_range, whole)
-    motion = each.transform and Motion(_longer(each.transform.shift), _with_axis(each.transform.turn))
+    motion = each.transform
+    if motion:
+        turn = (*((*row, 0.0) for row in motion.turn), (0.0, 0.0, 1.0)) if motion.turn else ()
+        motion = Motion((*motion.shift, 0.0) if motion.shift else (), turn)
     return replace(
         each, range=ranges[0], donor_range=ranges[1], orientation=(*each.orientation, 2), transform=motion
     )
-
-
-def _longer(shift: tuple[float, ...]) -> tuple[float, ...]:
-    return (*shift, 0.0) if shift else ()
-
-
-def _with_axis(turn: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
-    return (*((*row, 0.0) for row in turn), (0.0, 0.0, 1.0)) if turn else ()
 
 
 def _flat(each: Connection) -> Connection:

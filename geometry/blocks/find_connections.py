@@ -37,10 +37,10 @@ def find_connections(
     """Return the connections of right-handed `blocks`, sorted by block and side.
 
     Nodes are the same when they are no farther apart than `tolerance` edges, or than the digits tell that
-    their coordinates were rounded to (`meshonet.geometry.blocks.rounding`). Nodes of a connection need not be
-    equal yet: `with_equal_nodes` (`meshonet.geometry.blocks.equal_nodes`) makes them. `without` has stretches
-    that are known to be no interface. Where more than two sides lie on each other, a block is joined to
-    itself first, then one to the next.
+    their coordinates were rounded to (`rounding`). Nodes of a connection need not be equal yet:
+    `with_equal_nodes` (`meshonet.geometry.blocks.equal_nodes`) makes them. `without` has stretches that are
+    known to be no interface. Where more than two sides lie on each other, a block is joined to itself first,
+    then one to the next.
 
     Raises InputError: blocks in the plane and in space mixed.
     """

@@ -22,7 +22,7 @@ import numpy as np
 
 from meshonet.above import ABOVE
 from meshonet.geometry.arrays import Floats, Side, Topology
-from meshonet.geometry.blocks.block import Block, Form, Range, check_alike, form_of
+from meshonet.geometry.blocks.block import Block, Form, Range, check_alike, form_of, part_of
 from meshonet.geometry.blocks.connection import (
     Connected,
     Connection,
@@ -181,6 +181,18 @@ class Grid(Connected):
     def face(self, block: int, side: Side) -> Floats:
         """Return the nodes of a side of a block."""
         return self.blocks[block].face(side)
+
+    def at(self, patch: Patch) -> Floats:
+        """Return the nodes (n, d) or (n, m, d) of a patch."""
+        face = self.face(patch.block, patch.side)
+        return part_of(face, patch.range(face.shape[:-1]))
+
+    @cached_property
+    def box(self) -> tuple[Floats, Floats]:
+        """Lowest and highest coordinates (d,) of all nodes."""
+        axes = tuple(range(self.blocks[0].nodes.ndim - 1))
+        low = np.min([block.nodes.min(axis=axes) for block in self.blocks], axis=0)
+        return low, np.max([block.nodes.max(axis=axes) for block in self.blocks], axis=0)
 
     def outer_patches(self) -> list[Patch]:
         """Return the outer boundary, each cell at it in one patch (`outer_patches`)."""

@@ -29,7 +29,10 @@ class GridMatcher:
         """
         if self._pairing == "auto":
             self._pairing = self._decided(name)
-        grid = self._named(name) if self._pairing == "name" else self._following()
+        if self._pairing == "name":
+            grid = self._named(name)
+        else:
+            grid = self._passed.pop(0) if self._passed else next(self._grids, None)
         if grid is None:
             remedy = "compare with one grid, or with as many"
             if self._pairing == "name":
@@ -50,9 +53,6 @@ class GridMatcher:
             return "order"
         self._passed.insert(0, match)
         return "name"
-
-    def _following(self) -> Grid | None:
-        return self._passed.pop(0) if self._passed else next(self._grids, None)
 
     def _named(self, name: str) -> Grid | None:
         for k, grid in enumerate(self._passed):

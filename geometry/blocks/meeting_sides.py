@@ -16,7 +16,7 @@ grid is.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations, product
 
@@ -28,7 +28,6 @@ from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import PLACES, Block, Range, form_of, sides_of
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.outer_patches import JOINED, rectangles
-from meshonet.geometry.blocks.rounding import rounding
 from meshonet.geometry.polygon.corners import Indices
 
 AROUND: Mapping[Side, int] = {"west": -1, "east": 1, "south": 1, "north": -1}
@@ -39,6 +38,11 @@ _MOST = 0.25
 """Nodes farther apart than this part of an edge are different, however coarsely they were rounded."""
 _FLAT = 1e-12
 """Area of a cell, over the square of its longest edge, up to which it is a line."""
+
+_DECIMALS = range(3, 13)  # places behind the point that numbers may have been written with
+_DIGITS = range(5, 14)  # significant digits that numbers may have been written with
+_COUNTED = 400
+"""Values of which digits are counted, one after the other."""
 
 
 def meeting_sides(
@@ -238,3 +242,25 @@ def _connection(cells: _SideCells, group: _Group, part: Indices) -> Connection:
     joined = Connection(*ends[0], *ends[1], group.orientation)
     first, second = ((number, list(PLACES).index(side), span) for number, side, span in ends)
     return joined if first <= second else joined.reversed()
+
+
+def rounding(values: Floats) -> Callable[[Floats], Floats]:
+    """Return the function from magnitudes (n,) to the last unit (n,) of coordinates like `values` (m,).
+
+    It is estimated from their digits. Files have numbers in single precision, with so many digits, or with so
+    many decimals: the same point of two blocks, computed twice and rounded then, differs by a unit of the
+    last digit, which next to walls can be a large part of a cell.
+
+    >>> unit = rounding(np.array([0.123457, 12.345679, 3.0]))  # written by %.6f
+    >>> unit(np.array([1.0, 2.0])).tolist()
+    [1e-06, 1e-06]
+    """
+    with np.errstate(over="ignore"):
+        odd = values[values != values.astype(np.float32)]
+    if not len(odd):
+        return lambda size: np.asarray(size * 2**-23)
+    numbers = odd[:: max(1, len(odd) // _COUNTED)].tolist()
+    fixed = (10**-k for k in _DECIMALS if (values == np.round(values, k)).all())
+    relative = (10 ** (1 - k) for k in _DIGITS if all(v == float(f"{v:.{k - 1}e}") for v in numbers))
+    unit, part = next(fixed, 0.0), next(relative, 2**-50)
+    return lambda size: np.maximum(unit, size * part)

@@ -68,7 +68,9 @@ def _vertices(patches: list[Floats]) -> Indices:
     Raises InputError: corners do not meet in threes.
     """
     corners = np.array([patch[:: len(patch) - 1, :: patch.shape[1] - 1] for patch in patches])
-    shortest = min(_shortest(four.reshape(4, 3)) for four in corners)
+    first, second = np.triu_indices(4, 1)
+    fours = corners.reshape(6, 4, 3)
+    shortest = float(norms(fours[:, first] - fours[:, second]).min())
     points = corners.reshape(24, 3)
     apart = norms(points[:, None] - points[None])
     label = (apart <= _NEAR * shortest).argmax(axis=1)
@@ -80,12 +82,6 @@ def _vertices(patches: list[Floats]) -> Indices:
         remedy = "give the six faces of one volume, with all their corners"
         raise InputError(problem, remedy, place=place_of(points[at]))
     return np.searchsorted(np.flatnonzero(meeting), label).reshape(6, 2, 2)
-
-
-def _shortest(points: Floats) -> float:
-    """Return the least distance of different points of (4, 3)."""
-    first, second = np.triu_indices(4, 1)
-    return float(norms(points[first] - points[second]).min())
 
 
 def _opposite(vertices: Indices, patch: int) -> int:

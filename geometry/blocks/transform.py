@@ -20,7 +20,7 @@ import numpy as np
 from meshonet.geometry.arrays import SIDES, Floats, Side
 from meshonet.geometry.blocks.block import Block, part_of
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
@@ -186,24 +186,18 @@ def normalised(grid: Grid) -> Grid:
 
 
 def _normalised_blocks(grid: Grid) -> Grid:
-    axes = tuple(range(len(grid.blocks[0].counts)))
-    low = np.min([block.nodes.min(axis=axes) for block in grid.blocks], axis=0)
-    high = np.max([block.nodes.max(axis=axes) for block in grid.blocks], axis=0)
+    low, high = grid.box
     size = float((high - low).max())
     blocks = [Block((block.nodes - low) / size) for block in grid.blocks]
-    motions = [_scaled(each.transform, low, size) for each in grid.connections]
-    connections = [replace(each, transform=m) for each, m in zip(grid.connections, motions, strict=True)]
+    connections = []
+    for each in grid.connections:
+        motion = each.transform
+        if motion:  # of these nodes less `low`, over `size`
+            motion = replace(motion, shift=tuple(((motion(low) - low) / size).tolist()))
+        connections.append(replace(each, transform=motion))
     # periodic sides differ by rounding where both were moved and scaled
     equal = with_equal_nodes(blocks, connections)
     return replace(grid, blocks=equal, connections=tuple(connections))
-
-
-def _scaled(motion: Motion | None, origin: Floats, size: float) -> Motion | None:
-    """Return a motion of nodes as that of these nodes less `origin`, over `size`."""
-    if motion is None:
-        return None
-    shift = (motion(origin) - origin) / size
-    return replace(motion, shift=tuple(float(x) for x in shift))
 
 
 def turned(grid: Grid) -> Grid:

@@ -105,12 +105,6 @@ def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
     return _native.lift_follow(np.ascontiguousarray(wall, complex), centre, quarter)
 
 
-def beside(wall: Complexes, tip: int, other: complex) -> tuple[int, int, int]:
-    """Return the nodes ahead of `tip`, at it and behind it, .004 of the chord to `other` away from it."""
-    ahead, behind = _native.lift_beside(np.ascontiguousarray(wall, complex), tip, other)
-    return ahead, tip, behind
-
-
 def removable(k: float) -> bool:
     """Return whether a corner of exterior angle k pi is one that is straightened."""
     return 0.55 < k < 0.995 or 1.03 < k < 1.9

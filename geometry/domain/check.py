@@ -35,7 +35,9 @@ def check_domain(domain: Domain) -> None:
     if crossing is not None:
         _raise_crossing(domain, crossing)
     for number, loop in enumerate(domain.loops):
-        _check_way(domain, number, loop)
+        if (polygon_area(loop.curve.points) > 0) != (number == 0):
+            way = "clockwise" if number == 0 else "counter-clockwise"
+            raise InputError(f"{describe(domain, number)} runs {way}", "reverse its points")
     _check_nesting(domain)
 
 
@@ -71,12 +73,6 @@ def _check_points(domain: Domain, number: int, loop: Loop) -> None:
     if width <= _NO_AREA * extent_of(points) ** 2:
         what = f"{describe(domain, number)} from {_at(points[0])} on is a line, which encloses no area"
         raise InputError(what, "correct its points")
-
-
-def _check_way(domain: Domain, number: int, loop: Loop) -> None:
-    if (polygon_area(loop.curve.points) > 0) != (number == 0):
-        way = "clockwise" if number == 0 else "counter-clockwise"
-        raise InputError(f"{describe(domain, number)} runs {way}", "reverse its points")
 
 
 def _first_crossing(domain: Domain) -> Crossing | None:

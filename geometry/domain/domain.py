@@ -25,9 +25,23 @@ class Periodic:
 
 @dataclass(frozen=True, eq=False)
 class Domain:
-    """Loops, the outer one first; the domain is on the left of each.
+    """A region of the plane; whether loops cross or touch is looked at by `meshonet.geometry.domain.check`.
 
-    Whether loops cross, touch or lie in one another is looked at by `meshonet.geometry.domain.check`.
+    Parameters
+    ----------
+    loops : tuple of Loop
+        The outer one first; the domain is on the left of each.
+    name : str, optional
+        What the input called it.
+    notes : tuple of str, optional
+        What a reader passed over in its file, sentences for users.
+    periodic : Periodic, optional
+        Two stretches of the outer loop that are periodic.
+
+    Raises
+    ------
+    InputError
+        No loop.
     """
 
     loops: tuple[Loop, ...]

@@ -26,7 +26,10 @@ def nested(polygons: Sequence[Floats]) -> list[tuple[int, list[int]]]:
         around = [
             j
             for j in range(len(polygons))
-            if areas[j] > areas[k] and _box_within(boxes[k], boxes[j]) and _inside(polygon, polygons[j])
+            if areas[j] > areas[k]
+            and (boxes[k][0] >= boxes[j][0]).all()
+            and (boxes[k][1] <= boxes[j][1]).all()
+            and _inside(polygon, polygons[j])
         ]
         parent.append(min(around, key=lambda j: areas[j], default=None))
 
@@ -36,10 +39,6 @@ def nested(polygons: Sequence[Floats]) -> list[tuple[int, list[int]]]:
 
     outer = [k for k in range(len(polygons)) if depth(k) % 2 == 0]
     return [(k, [j for j in range(len(polygons)) if parent[j] == k]) for k in outer]
-
-
-def _box_within(inner: tuple[Floats, Floats], outer: tuple[Floats, Floats]) -> bool:
-    return bool((inner[0] >= outer[0]).all() and (inner[1] <= outer[1]).all())
 
 
 def _inside(polygon: Floats, around: Floats) -> bool:

@@ -43,7 +43,8 @@ def layout_of(grid: Grid) -> Layout:
     loops = tuple(_loop(ring, nodes, valence) for ring in rings)
     domain = Domain(loops, grid.name, periodic=_period(grid, numbers, rings, loops))
     places = _places(rings, loops, valence, len(nodes))
-    _set_partners(places, grid, numbers)
+    _, first, second = _pairs(grid, numbers)
+    places.partner[second] = first
     return Layout(QuadMesh(domain, nodes, quads, places), numbers)
 
 
@@ -178,8 +179,3 @@ def _stretch(ring: _Ring, loop: Loop, nodes: Indices) -> tuple[float, float]:
     if len(begins) != 1:
         raise InputError("periodic sides are not one stretch of the outer boundary", "connect all of them")
     return float(loop.curve.knots[begins[0]]), float(loop.curve.knots[ends[0]])
-
-
-def _set_partners(places: Places, grid: Grid, numbers: tuple[Indices, ...]) -> None:
-    _, first, second = _pairs(grid, numbers)
-    places.partner[second] = first

@@ -8,7 +8,7 @@ from meshonet.geometry.blocks.shared_nodes import node_count
 from meshonet.geometry.blocks.vertices import Vertices, vertices
 from meshonet.geometry.quality.deviation import Deviation, deviation, solid_deviation
 from meshonet.geometry.quality.growth import Extreme
-from meshonet.geometry.quality.lines import Lines, lines
+from meshonet.geometry.quality.lines import Lines, lines, solid_lines
 from meshonet.geometry.summary import Quality
 
 
@@ -35,21 +35,19 @@ class BlockFigures(BlockCounts):
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as what JSON can hold."""
-        return {
+        facts: dict[str, Any] = {
             "blocks": len(self.sizes),
             "interfaces": self.interfaces,
             "nodes": self.nodes,
             "sizes": [list(size) for size in self.sizes],
-            **self._irregular_dict(),
+        }
+        if self.irregular is not None:
+            places = [{"at": list(at), "cells": cells} for at, cells in self.irregular]
+            facts |= {"irregular": len(self.irregular), "irregular_vertices": places}
+        return facts | {
             "deviation": vars(self.deviation) | {"at": list(self.deviation.at)},
             "lines": {name: extreme_dict(getattr(self.lines, name)) for name in LINES},
         }
-
-    def _irregular_dict(self) -> dict[str, Any]:
-        if self.irregular is None:
-            return {}
-        places = [{"at": list(at), "cells": cells} for at, cells in self.irregular]
-        return {"irregular": len(self.irregular), "irregular_vertices": places}
 
 
 LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")
@@ -62,7 +60,6 @@ def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
     Lines of volumes have percentiles where their quality has.
     """
     if grid.form == "volume":
-        from meshonet.geometry.quality.solid_lines import solid_lines
         from meshonet.geometry.quality.volumes import measure_volumes
 
         angles = solid_deviation(quality or measure_volumes(grid, percentiles=True))
@@ -71,21 +68,17 @@ def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
         run = solid_lines(grid, percentiles=angles.p99 is not None)
         return BlockFigures(sizes, None, count, len(grid.connections), angles, run)
     nodes = vertices(grid)
-    counts, angles = _counts(grid, nodes), deviation(grid)
-    return BlockFigures(
-        counts.sizes, counts.irregular, len(nodes.valence), len(grid.connections), angles, lines(grid, nodes)
-    )
+    counts, count = block_counts(grid, nodes), len(nodes.valence)
+    more = count, len(grid.connections), deviation(grid), lines(grid, nodes)
+    return BlockFigures(counts.sizes, counts.irregular, *more)
 
 
-def block_counts(grid: Grid) -> BlockCounts:
-    """Return the blocks and irregular vertices of a grid in the plane, on a surface or of volumes."""
-    return _counts(grid, None if grid.form == "volume" else vertices(grid))
-
-
-def _counts(grid: Grid, nodes: Vertices | None) -> BlockCounts:
+def block_counts(grid: Grid, nodes: Vertices | None = None) -> BlockCounts:
+    """Return the blocks and irregular vertices of a grid; its vertices are `nodes`, found unless given."""
     sizes = tuple(block.counts for block in grid.blocks)
-    if nodes is None:
+    if grid.form == "volume":
         return BlockCounts(sizes, None)
+    nodes = nodes or vertices(grid)
     irregular = [(nodes.place(int(node)), int(nodes.valence[node])) for node in nodes.irregular]
     return BlockCounts(sizes, tuple(irregular))
 

@@ -112,14 +112,10 @@ def _summed(faces: Iterable[Values], box_ratios: Iterable[tuple[tuple[int, ...],
             cosines.add(place, cos(np.radians(angle)))
     for place, ratio in box_ratios:
         boxes.add(place, ratio)
-    return FaceMeasures(_of_cosines(angles.extreme, cosines.extreme), skews.extreme, boxes.extreme)
-
-
-def _of_cosines(angle: Extreme | None, cosine: Extreme | None) -> Extreme | None:
-    """Return an angle whose mean is that of the mean cosine."""
-    if angle is None or cosine is None:
-        return None
-    return replace(angle, mean=math.degrees(math.acos(min(1.0, max(-1.0, cosine.mean)))))
+    largest, cosine = angles.extreme, cosines.extreme
+    if largest and cosine:
+        largest = replace(largest, mean=math.degrees(math.acos(min(1.0, max(-1.0, cosine.mean)))))
+    return FaceMeasures(largest, skews.extreme, boxes.extreme)
 
 
 def _inside(grid: Grid) -> Iterator[Values]:

@@ -48,7 +48,9 @@ def compare(grid: Grid, reference: Grid) -> Difference:
             outer += [away[0][0], away[0][-1]]
     worst = int(np.argmax([distances.max() for distances in away]))
     at = tuple(int(k) for k in np.unravel_index(int(away[worst].argmax()), away[worst].shape))
-    extent = _spread(np.concatenate([b.nodes.reshape(-1, b.nodes.shape[-1]) for b in reference.blocks]))
+    nodes = np.concatenate([b.nodes.reshape(-1, b.nodes.shape[-1]) for b in reference.blocks])
+    spread = _root_mean_square(norms(nodes - nodes.mean(axis=0)))
+    extent = max(spread, float(np.finfo(float).tiny))  # all nodes in one place
     every = np.concatenate([distances.ravel() for distances in away])
     return Difference(
         max=float(every.max()),
@@ -82,11 +84,6 @@ def _beside(values: Floats, patch: Patch, part: float) -> Floats:
     spans = patch.range(rows.shape[1:])
     inside = tuple(slice(first, last + 1) for first, last in spans)
     return rows[(slice(max(1, round(part * len(rows)))), *inside)].ravel()
-
-
-def _spread(nodes: Floats) -> float:
-    spread = _root_mean_square(norms(nodes - nodes.mean(axis=0)))
-    return max(spread, float(np.finfo(float).tiny))  # all nodes in one place
 
 
 def _root_mean_square(values: Floats) -> float:

@@ -7,7 +7,6 @@ from functools import cached_property
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.blocks.across import rows_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.blocks import BlockFigures, block_figures
@@ -57,7 +56,11 @@ class Figures:
             count = getattr(self.quality, name)
             return None if count is None else Figure(float(count))
         if name in self.quality.metrics:
-            return self._metric(name, statistic)
+            summary = self.quality[name]
+            value = getattr(summary, statistic)
+            end = next(metric.worst for metric in metrics_of(self.grid) if metric.name == name)
+            at = summary.worst if statistic == end else None
+            return None if value is None else Figure(float(value), at)
         if name in FACES:
             return _figure(getattr(self.faces, name))
         if name == "growth":
@@ -70,12 +73,6 @@ class Figures:
         if name == "far_field":
             return self._far_field()
         return self._of_blocks(name) if name in FIGURES else None
-
-    def _metric(self, name: str, statistic: str) -> Figure | None:
-        summary = self.quality[name]
-        value = getattr(summary, statistic)
-        end = next(metric.worst for metric in metrics_of(self.grid) if metric.name == name)
-        return None if value is None else Figure(float(value), summary.worst if statistic == end else None)
 
     def _of_blocks(self, name: str) -> Figure | None:
         blocks = self.blocks
@@ -96,10 +93,10 @@ class Figures:
 
     def _far_field(self) -> Figure | None:
         grid = self.grid
-        far = [_nodes(grid, patch) for patch in grid.patches if patch.kind == "farfield"]
+        far = [_points(grid, patch) for patch in grid.patches if patch.kind == "farfield"]
         if not self.walls or not (grid.around_body or (grid.topology == "blocks" and far)):
             return None
-        wall = np.concatenate([_nodes(grid, patch) for patch in self.walls])
+        wall = np.concatenate([_points(grid, patch) for patch in self.walls])
         beyond = grid.nodes[:, -1] if grid.around_body else np.concatenate(far)
         middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))
         start = wall[np.argmax(norms(wall - middle))]
@@ -115,6 +112,6 @@ def _greatest(extremes: Iterable[Extreme]) -> Figure | None:
     return _figure(max(extremes, key=lambda extreme: extreme.max, default=None))
 
 
-def _nodes(grid: Grid, patch: Patch) -> Floats:
-    (nodes,) = rows_at(grid, patch, 1)
+def _points(grid: Grid, patch: Patch) -> Floats:
+    nodes = grid.at(patch)
     return nodes.reshape(-1, nodes.shape[-1])

@@ -1,8 +1,8 @@
-"""Growth and bending of the grid lines of planar blocks and surface patches, also across connections.
+"""Growth and bending of grid lines, also across connections.
 
 The growth at a node is that of `meshonet.geometry.quality.growth`; the bend is the angle in degrees by which
 a line turns there, 0 where it is straight. Across a side both are taken at its nodes, but for irregular ones,
-through which no line runs.
+through which no line runs; across a face of a volume at the nodes inside it, whose edges may be irregular.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -18,6 +18,8 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.vertices import Vertices
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.quality.growth import DIRECTIONS, Extreme, Growth, Tally, ratios
+from meshonet.geometry.threads import threads_for
+from meshonet.kernels import _native
 
 
 @dataclass(frozen=True)
@@ -116,20 +118,59 @@ def _across(grid: Grid, nodes: Vertices) -> Iterator[BlockLines]:
         start, stop = each.range[0]
         regular = nodes.regular[face_of(nodes.numbers[each.block], each.side)[start : stop + 1]]
         axis, end = PLACES[each.side]
-        for first, last in _runs(regular):
+        steps = np.diff(np.concatenate([[False], regular, [False]]).astype(np.int8))
+        ends = zip(np.flatnonzero(steps == 1).tolist(), np.flatnonzero(steps == -1).tolist(), strict=True)
+        for first, last in ends:
             at = [start + first] * 2
             at[axis] = 0 if end == 0 else grid.blocks[each.block].counts[axis] - 1
             values = (np.expand_dims(value[first:last], axis) for value in (growth, bend))
             yield part_of_values((each.block, *at), axis, False, values)
 
 
-def _runs(true: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Iterator[tuple[int, int]]:
-    """Yield first and one behind the last of each stretch of true values."""
-    steps = np.diff(np.concatenate([[False], true, [False]]).astype(np.int8))
-    yield from zip(np.flatnonzero(steps == 1).tolist(), np.flatnonzero(steps == -1).tolist(), strict=True)
-
-
 def bends(nodes: Floats) -> Floats:
     """Return the angles (m-2, ...) in degrees by which lines along the first axis (m, ..., d) turn."""
     step = np.diff(nodes, axis=0)
     return np.degrees(np.abs(angle_between(step[:-1], step[1:])))
+
+
+def solid_lines(grid: Grid, *, percentiles: bool = True) -> Lines:
+    """Return growth and bend of the lines of blocks of volume.
+
+    The `percentiles`, inside blocks and across faces, are of values in single precision.
+    """
+    parts = [*_solid_inside(grid, percentiles), *_solid_across(grid, percentiles)]
+    return lines_of(grid, parts, along=False, places=percentiles)
+
+
+def _solid_inside(grid: Grid, kept: bool) -> Iterator[BlockLines]:
+    for number, block in enumerate(grid.blocks):
+        ni = block.counts[0]
+        summary, where = np.empty((ni, 3, 2, 2)), np.empty((ni, 3, 2, 3), dtype=np.int64)
+        values = np.empty((3, 2, *block.counts), dtype=np.float32) if kept else None
+        _native.solids_lines(block.nodes, threads_for(block.nodes[..., 0].size), summary, where, values)
+        for axis, count in enumerate(block.counts):
+            size = int(np.prod(block.counts)) // count * (count - 2)
+            measures = [Tally(kept=kept), Tally(kept=kept)]
+            inner = tuple(slice(1, -1) if each == axis else slice(None) for each in range(3))
+            for m, tally in enumerate(measures):
+                plane = int(summary[:, axis, m, 0].argmax())
+                at = number, *(int(k) for k in where[plane, axis, m])
+                high, total = float(summary[plane, axis, m, 0]), float(summary[:, axis, m, 1].sum())
+                if size:
+                    tally.add_summed(high, total, size, at, DIRECTIONS[axis])
+                    if values is not None:
+                        tally.keep(values[axis, m][inner])
+            yield BlockLines(number, axis, True, *measures)
+
+
+def _solid_across(grid: Grid, kept: bool) -> Iterator[BlockLines]:
+    for each in grid.connections:
+        own, donor = across(grid, each, 2)
+        line = np.stack([own[1], own[0], donor[1]])
+        inner = [slice(1, -1) if n > 2 else slice(None) for n in line.shape[1:3]]
+        line = line[:, inner[0], inner[1]]
+        axis, end = PLACES[each.side]
+        at = [first + (part.start or 0) for (first, _), part in zip(each.range, inner, strict=True)]
+        at.insert(axis, 0 if end == 0 else grid.blocks[each.block].counts[axis] - 1)
+        values = (np.expand_dims(measure(line)[0], axis) for measure in (ratios, bends))
+        yield part_of_values((each.block, *at), axis, False, values, kept=kept)

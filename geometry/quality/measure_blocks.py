@@ -11,8 +11,8 @@ from meshonet.geometry.arrays import Floats, percentiles_of
 from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.cell_run import PERCENTS, run_over
 from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS, Metric
-from meshonet.geometry.quality.percentiles import PERCENTS, no_run
 from meshonet.geometry.quality.surfaces import areas, quad_metrics
 from meshonet.geometry.summary import Quality, Summary
 
@@ -35,15 +35,11 @@ def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Qua
 
 def metrics_of_blocks(grid: Grid) -> list[Floats]:
     """Return every metric of `QUAD_METRICS` of every cell, (metrics, ni-1, nj-1) for each block."""
-    values = []
-    for block in grid.blocks:
-        if grid.form == "surface":
-            values.append(quad_metrics(block.nodes))
-            continue
-        ni, nj = block.counts
-        cells = np.empty((len(QUAD_METRICS), ni - 1, nj - 1))
-        no_run().over(block.nodes[..., 0], block.nodes[..., 1], cells)
-        values.append(cells)
+    nodes = [block.nodes for block in grid.blocks]
+    if grid.form == "surface":
+        values = [quad_metrics(each) for each in nodes]
+    else:
+        values = [run_over(each[..., 0], each[..., 1], slice(None)).values for each in nodes]
     _area_ratios_across(grid, [cells[NAMES.index("area_ratio")] for cells in values])
     return values
 

@@ -77,8 +77,14 @@ class CheckResult:
         """The worst that a limit says."""
         if self.figure is None:
             return "none"
-        broken = [limit.level for limit in self.check.limits if limit.broken(self.figure.value)]
-        return "fail" if "fail" in broken else "warn" if broken else "pass"
+        return self.worst.level if self.worst else "pass"
+
+    @property
+    def worst(self) -> Limit | None:
+        """The limit that the figure is beyond, the one that fails it where it is beyond several."""
+        limits = self.check.limits if self.figure else ()
+        broken = [limit for limit in limits if self.figure and limit.broken(self.figure.value)]
+        return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
         """Return the outcome with the limits of those `gates` that look at the same figure."""
@@ -123,9 +129,9 @@ class ProfileReport:
     def beyond(self) -> list[str]:
         """Return in short which limits are exceeded, those that warn too: ``face_skewness 5.2 > 4``."""
         return [
-            _in_short(result.check, result.figure)
+            in_short(result.check.figure, result.figure, limit.compare, limit.value)
             for result in self.results
-            if result.figure and result.verdict in ("warn", "fail")
+            if result.figure and (limit := result.worst)
         ]
 
     def failures(self) -> list[str]:
@@ -147,13 +153,6 @@ def _once(results: Iterable[CheckResult]) -> tuple[CheckResult, ...]:
     for result in results:
         checks.setdefault(result.check, result)
     return tuple(checks.values())
-
-
-def _in_short(check: Check, figure: Figure) -> str:
-    """Return which limit a figure is beyond, the one that fails it where it is beyond several."""
-    broken = [limit for limit in check.limits if limit.broken(figure.value)]
-    limit = max(broken, key=lambda limit: limit.level == "fail")
-    return in_short(check.figure, figure, limit.compare, limit.value)
 
 
 def _check(figure: str, *limits: tuple[Level, str, float]) -> Check:
@@ -193,9 +192,10 @@ def profile_report(figures: Figures, *profiles: str) -> ProfileReport:
             raise InputError(f"profile {profile!r} is not known", known, parameter="profile")
     names = tuple(dict.fromkeys(profiles))
     return ProfileReport(
-        names, _once(_result(check, figures, name) for name in names for check in PROFILES[name])
+        names,
+        _once(
+            CheckResult(check, figures(check.figure, end_of(check.limits[0].compare)), name)
+            for name in names
+            for check in PROFILES[name]
+        ),
     )
-
-
-def _result(check: Check, figures: Figures, profile: str) -> CheckResult:
-    return CheckResult(check, figures(check.figure, end_of(check.limits[0].compare)), profile)

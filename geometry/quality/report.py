@@ -46,17 +46,28 @@ class QualityReport:
     ``report.quality.folded`` is the number of folded cells, ``report.quality["max_angle"].max`` a metric
     (with min, mean, p01, p99 and the worst cell), ``report.figures.wall_rows`` the first cells and their
     angles, ``report.figures.growth`` the growth along xi and eta, ``report.profile.passed`` the verdict of a
-    profile.
-    ``report.as_dict()`` has all of it, as ``meshonet quality --json`` prints it.
+    profile. ``report.as_dict()`` has all of it, as ``meshonet quality --json`` prints it.
+
+    Parameters
+    ----------
+    grid : Grid
+        What was measured.
+    quality : Quality
+        Every metric, with percentiles.
+    worst : tuple of BadCell
+        Folded cells, ten at the most.
+    figures : Figures
+        Walls and growth.
+    profile : ProfileReport, optional
+        The verdicts of profiles.
+    comparison : Comparison, optional
+        How far it is from a reference.
     """
 
     grid: Grid
     quality: Quality
-    """Every metric, with percentiles."""
     worst: tuple[BadCell, ...]
-    """Folded cells, ten at the most."""
     figures: Figures
-    """Walls and growth."""
     profile: ProfileReport | None = None
     comparison: Comparison | None = None
 

@@ -7,19 +7,18 @@ corners at which an edge has no length are left out of both tests. Kernels work 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, Side, as_planar
-from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.arrays import Floats, Side, as_planar, percentiles_of
+from meshonet.geometry.blocks.block import PLACES, Block
 from meshonet.geometry.blocks.connection import cells_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
+from meshonet.geometry.quality.cell_run import FEW, NONE, PERCENTS
 from meshonet.geometry.quality.metrics import SOLID_METRICS, SOLID_NAMES
-from meshonet.geometry.quality.percentiles import FEW, PERCENTS, CellPass, brackets_of
 from meshonet.geometry.quality.surfaces import bad_cell
 from meshonet.geometry.summary import Quality, Summary
 from meshonet.geometry.threads import threads_for
@@ -27,11 +26,6 @@ from meshonet.kernels import _native
 
 CORNERS, BEZIER = 0, 1
 """Tests that cells have to pass."""
-
-_SAMPLE = 1 << 17
-"""Cells looked at to bracket percentiles."""
-_MARGIN, _ROOM = 1.0, 0.06
-"""Percent of the cells that a bracket reaches to each side, and part of all cells there is room for in it."""
 _MOST = 1 << 16
 """Folded cells that are looked at for the worst."""
 
@@ -85,21 +79,22 @@ def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[Ba
 def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
     """Return the quality of all cells of blocks of volume; worst cells are (block, i, j, k)."""
     volumes = padded_volumes(grid)
-    cells = sum(_cells(block.nodes) for block in grid.blocks)
-    keep = percentiles and cells <= FEW
-    run = _Cells(grid, volumes, _brackets(grid, volumes, cells) if percentiles and not keep else None)
-    parts = [run.over(number, kept=slice(None) if keep else slice(0)) for number in range(len(grid.blocks))]
+    sizes = [int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks]
+    cells = sum(sizes)
+    kept = slice(None) if percentiles and cells <= FEW else NONE
+    runs = [_run_over(*each, kept) for each in zip(grid.blocks, volumes, strict=True)]
     metrics = {}
     for k, metric in enumerate(SOLID_METRICS):
-        low = min(range(len(parts)), key=lambda n: float(parts[n].low[k]))
-        high = max(range(len(parts)), key=lambda n: float(parts[n].high[k]))
+        low = min(range(len(runs)), key=lambda n: float(runs[n].low[k]))
+        high = max(range(len(runs)), key=lambda n: float(runs[n].high[k]))
         block = low if metric.worst == "min" else high
-        where = parts[block].where[k, 0 if metric.worst == "min" else 1]
+        where = runs[block].where[k, 0 if metric.worst == "min" else 1]
         ends: list[float | None] = [None, None]
         if percentiles:
-            ends = run.percentiles(k, cells, [part.kept[k] for part in parts] if keep else None)
-        mean = float(sum(float(part.total[k]) for part in parts)) / cells
-        span = float(parts[low].low[k]), mean, float(parts[high].high[k])
+            parts = [run.values[k] for run in runs] if kept != NONE else _metric(grid, volumes, k)
+            ends = [*percentiles_of(np.concatenate([part.ravel() for part in parts]), PERCENTS)]
+        mean = float(sum(float(run.total[k]) for run in runs)) / cells
+        span = float(runs[low].low[k]), mean, float(runs[high].high[k])
         metrics[metric.name] = Summary(*span, (block, *map(int, where)), *ends)
     folded = sum(count_folded_solids(block.nodes) for block in grid.blocks)
     doubtful = folded
@@ -110,9 +105,12 @@ def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
 
 def solid_metric(grid: Grid, name: str) -> list[Floats]:
     """Return the metric `name` of every cell, (ni-1, nj-1, nk-1) for each block of volume."""
-    k = SOLID_NAMES.index(name)
-    run = _Cells(grid, padded_volumes(grid), None)
-    return [run.over(number, kept=slice(k, k + 1)).kept[0] for number in range(len(grid.blocks))]
+    return _metric(grid, padded_volumes(grid), SOLID_NAMES.index(name))
+
+
+def _metric(grid: Grid, volumes: Sequence[Floats], k: int) -> list[Floats]:
+    pairs = zip(grid.blocks, volumes, strict=True)
+    return [_run_over(block, own, slice(k, k + 1)).values[0] for block, own in pairs]
 
 
 def padded_volumes(grid: Grid) -> list[Floats]:
@@ -145,76 +143,26 @@ def padded_volumes(grid: Grid) -> list[Floats]:
     return padded
 
 
-@dataclass(frozen=True)
-class _BlockRange:
+class _BlockRun(NamedTuple):
     """What one run over a block leaves, for each metric: ends, sum, place of the ends (2, 3), kept values."""
 
     low: Floats
     total: Floats
     high: Floats
     where: NDArray[np.int64]
-    kept: Floats
+    values: Floats
 
 
-class _Cells:
-    """Runs over the cells of blocks; they keep values between brackets (metrics, percentiles, 2)."""
-
-    def __init__(self, grid: Grid, volumes: Sequence[Floats], brackets: Floats | None) -> None:
-        self._grid, self._volumes = grid, volumes
-        metrics = len(SOLID_METRICS)
-        self._brackets = np.empty((metrics, 0, 2)) if brackets is None else brackets
-        size = self._brackets.shape[:2]
-        cells = sum(_cells(block.nodes) for block in grid.blocks)
-        self._caught = np.empty((*size, int(_ROOM * cells) + 1 if size[1] else 1))
-        self._held = np.zeros(size, dtype=np.int64)
-        self._counts = np.zeros((*size, 4), dtype=np.int64)
-
-    def over(self, number: int, kept: slice = slice(0)) -> _BlockRange:
-        """Run over a block and keep the values of some metrics, (n, ni-1, nj-1, nk-1)."""
-        nodes = self._grid.blocks[number].nodes
-        chunks, metrics = _native.solids_chunks(nodes), len(SOLID_METRICS)
-        summary = np.empty((chunks, metrics, 3))
-        where = np.empty((chunks, metrics, 2, 3), dtype=np.int64)
-        counts = np.zeros((chunks, *self._counts.shape), dtype=np.int64)
-        first, last, _ = kept.indices(metrics)
-        values = np.empty((last - first, *(count - 1 for count in nodes.shape[:3])))
-        _native.solids_run(
-            nodes, self._volumes[number], summary, where, first, values,
-            self._brackets, counts, self._caught, self._held, threads_for(nodes[..., 0].size),
-        )  # fmt: skip
-        self._counts += counts.sum(axis=0)
-        low, high = summary[..., 0].argmin(axis=0), summary[..., 2].argmax(axis=0)
-        every = np.arange(metrics)
-        places = np.stack([where[low, every, 0], where[high, every, 1]], axis=1)
-        ends = summary[low, every, 0], summary[..., 1].sum(axis=0), summary[high, every, 2]
-        return _BlockRange(*ends, places, values)
-
-    def percentiles(self, k: int, cells: int, values: Sequence[Floats] | None) -> list[float | None]:
-        """Return the percentiles of metric `k`, from all of its values where these are known."""
-        if values is None:
-            run = CellPass(self._brackets, self._counts, self._caught)
-            ends = [run.percentile(k, m, cells, percent) for m, percent in enumerate(PERCENTS)]
-            if None not in ends:
-                return ends
-            values = solid_metric(self._grid, SOLID_NAMES[k])
-        every = np.concatenate([part.ravel() for part in values])
-        return [float(value) for value in np.percentile(every, PERCENTS, overwrite_input=True)]
-
-
-def _brackets(grid: Grid, volumes: Sequence[Floats], cells: int) -> Floats:
-    """Return pairs of values (metrics, percentiles, 2) of which each percentile is probably between."""
-    share = min(1.0, _SAMPLE / cells)
-    samples = []
-    for block, sizes in zip(grid.blocks, volumes, strict=True):
-        ni, nj, nk = (count - 1 for count in block.counts)
-        n = max(1, int(share * ni * nj))
-        i = np.linspace(0, ni - 1, n).round().astype(np.int64)
-        j = (np.arange(n) * 0.6180339887498949 % 1.0 * nj).astype(np.int64)
-        values = np.empty((len(SOLID_METRICS), n, nk))
-        _native.solids_rows(block.nodes, sizes, np.stack([i, j], axis=1), values)
-        samples.append(values.reshape(len(SOLID_METRICS), -1))
-    return brackets_of(np.concatenate(samples, axis=1), PERCENTS, _MARGIN)
-
-
-def _cells(nodes: Floats) -> int:
-    return int(np.prod([count - 1 for count in nodes.shape[:3]]))
+def _run_over(block: Block, volumes: Floats, kept: slice) -> _BlockRun:
+    """Run over the cells of a block; values (n, ni-1, nj-1, nk-1) of the metrics `kept` are kept."""
+    chunks, metrics = _native.solids_chunks(block.nodes), len(SOLID_METRICS)
+    summary, where = np.empty((chunks, metrics, 3)), np.empty((chunks, metrics, 2, 3), dtype=np.int64)
+    first, last, _ = kept.indices(metrics)
+    values = np.empty((last - first, *(count - 1 for count in block.counts)))
+    threads = threads_for(block.nodes[..., 0].size)
+    _native.solids_run(block.nodes, volumes, summary, where, first, values, threads)
+    low, high, every = summary[..., 0].argmin(axis=0), summary[..., 2].argmax(axis=0), np.arange(metrics)
+    places = np.stack([where[low, every, 0], where[high, every, 1]], axis=1)
+    return _BlockRun(
+        summary[low, every, 0], summary[..., 1].sum(axis=0), summary[high, every, 2], places, values
+    )

@@ -54,7 +54,8 @@ def assembled(
             raise InputError("bodies lie within bodies", "give one loop that encloses the others, or none")
         if sampling.far_field is not None:
             raise InputError(f"{bodies[outer].names[0]} encloses the others", "leave {far_field} out")
-        loops = tuple(_facing(body, hole=k != outer) for k, body in _outer_first(bodies, outer))
+        others = (_facing(body, hole=True) for k, body in enumerate(bodies) if k != outer)
+        loops = (_facing(bodies[outer], hole=False), *others)
         return DomainShape(Domain(loops, name, notes), unit=loops_extent(loops[1:]))
     if any(holes for _, holes in groups):
         raise InputError("some bodies lie within others", "give one loop that encloses the others, or none")
@@ -93,11 +94,6 @@ def far_loop(middle: Floats, radius: float) -> Loop:
 def _inside(shape: Outline, sampling: Sampling) -> bool:
     topology = shape.topology if sampling.topology == "auto" else sampling.topology
     return topology == "quad"
-
-
-def _outer_first(bodies: list[Loop], outer: int) -> list[tuple[int, Loop]]:
-    order = [outer, *(k for k in range(len(bodies)) if k != outer)]
-    return [(k, bodies[k]) for k in order]
 
 
 def _bodies(shape: Shape, name: str, sampling: Sampling) -> list[Loop]:

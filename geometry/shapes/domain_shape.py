@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.arrays import extent_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
@@ -117,10 +117,7 @@ def in_far_field(domain: Domain) -> bool:
     """Say whether a domain is a hole in a smooth loop that is `FAR` away from it."""
     if len(domain.loops) != 2 or (domain.loops[0].corner_cells != 2).any():
         return False
-    outer, hole = (_some(loop.curve.points) for loop in domain.loops)
+    every = (loop.curve.points for loop in domain.loops)
+    outer, hole = (points[:: max(1, len(points) // _SAMPLES)] for points in every)
     gap = np.hypot(*np.moveaxis(outer[:, None] - hole, -1, 0)).min()
     return bool(gap >= FAR * loops_extent(domain.loops[1:]))
-
-
-def _some(points: Floats) -> Floats:
-    return points[:: max(1, len(points) // _SAMPLES)]

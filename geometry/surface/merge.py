@@ -42,8 +42,10 @@ def merged(patches: Sequence[Floats], tolerance: float = TOLERANCE) -> tuple[Flo
     first of them; numbers ascend in the order in which nodes first appear.
     """
     points = np.concatenate([np.ascontiguousarray(patch).reshape(-1, 3) for patch in patches])
-    edge = np.concatenate([_edge(patch.shape[:2]).ravel() for patch in patches])
-    on_edge = np.flatnonzero(edge)
+    edges = [
+        np.pad(np.zeros([n - 2 for n in patch.shape[:2]], bool), 1, constant_values=True) for patch in patches
+    ]
+    on_edge = np.flatnonzero(np.concatenate([edge.ravel() for edge in edges]))
     pairs = on_edge[near_pairs(points[on_edge], tolerance * extent_of(points))]
     first = joined_labels(len(points), [(pairs[:, 0], pairs[:, 1])])
     kept = first == np.arange(len(points))
@@ -54,9 +56,3 @@ def merged(patches: Sequence[Floats], tolerance: float = TOLERANCE) -> tuple[Flo
         for start, end, patch in zip(ends, ends[1:], patches, strict=False)
     )
     return points[kept], lattices
-
-
-def _edge(counts: tuple[int, ...]) -> Indices:
-    edge = np.ones(counts, dtype=bool)
-    edge[1:-1, 1:-1] = False
-    return edge

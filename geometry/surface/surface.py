@@ -103,15 +103,10 @@ def surface_of(grid: Grid) -> Surface:
     twin, _ = paired(quads, len(nodes))
     ring, valence = rings(quads, twin, len(nodes))
     check_sides(nodes, lattices, quads, twin, valence)
-    names = _names(grid)
+    zones = grid.provenance.get("zones") or ()
+    named = len(zones) == len(grid.blocks) and all(isinstance(name, str) and name for name in zones)
+    names = tuple(zones) if named else ("wall",) * len(grid.blocks)
     return Surface(nodes, lattices, names, twin, ring, valence, planes, notes)
-
-
-def _names(grid: Grid) -> tuple[str, ...]:
-    named = grid.provenance.get("zones") or ()
-    if len(named) == len(grid.blocks) and all(isinstance(name, str) and name for name in named):
-        return tuple(named)
-    return ("wall",) * len(grid.blocks)
 
 
 def _turned(

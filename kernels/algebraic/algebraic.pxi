@@ -11,13 +11,11 @@ cdef extern from "algebraic/evaluate.h":
     ctypedef struct Evaluation:
         ptrdiff_t m, n, ni, nj
         Places fine[2]
-        Places thin[2]
         double near, far, reach
         int threads
     ctypedef struct Corners:
         Read south, north, west, east, opened
         const unsigned char *straight
-    void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, double *nodes) nogil
     ptrdiff_t evaluate_scratch(const Evaluation *e) nogil
     void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch,
                        double *nodes) nogil
@@ -76,24 +74,6 @@ cdef Corners corners_of(tuple sides, ptrdiff_t batch, ptrdiff_t ni, ptrdiff_t nj
 cdef void next_grid(const Evaluation *e, Corners *c) noexcept nogil:
     """Go on to the edges of the next grid of a batch."""
     c.south, c.north, c.west, c.east = c.south + 2 * e.ni, c.north + 2 * e.ni, c.west + 2 * e.nj, c.east + 2 * e.nj
-
-
-def tfi_coarse(tuple sides, tuple thin, nodes):
-    """Fill the planes `nodes` (batch, 2, m, n) by transfinite interpolation of `sides` (batch, 2, ni or nj), by
-    their own arc lengths; `thin` are the places of m nodes in ni and of n in nj."""
-    cdef ptrdiff_t batch = len(nodes), b
-    cdef Evaluation e
-    e.m, e.n, e.ni, e.nj = nodes.shape[2], nodes.shape[3], sides[0].shape[2], sides[2].shape[2]
-    cdef Corners edges = corners_of(sides, batch, e.ni, e.nj)
-    e.thin[0], e.thin[1] = places(thin[0], e.m, e.ni), places(thin[1], e.n, e.nj)
-    cdef Written to = fills(nodes, (batch, 2, e.m, e.n))
-    scratch = np.empty(6 * (e.m + e.n))
-    cdef Written room = fills(scratch, scratch.shape)
-    with nogil:
-        for b in range(batch):
-            evaluate_begin(&e, &edges, room, to)
-            next_grid(&e, &edges)
-            to += 2 * e.m * e.n
 
 
 def resample(coarse, tuple sides, tuple fine, opened, double near, double far, double reach, nodes, straight=None,

@@ -13,34 +13,8 @@
 #include "clones.h"
 #include "inwards.h"
 #include "team.h"
-#include "tfi.h"
 
 enum { TILE = 16 };
-
-/* Length up to each node over the whole edge's, 0 to 1. */
-MESHONET_INLINE void law(const double *restrict x, const double *restrict y, ptrdiff_t n, double *restrict along)
-{
-    double sum = 0.0;
-    along[0] = 0.0;
-    for (ptrdiff_t k = 1; k < n; k++) {
-        const double dx = x[k] - x[k - 1], dy = y[k] - y[k - 1];
-        along[k] = sqrt(dx * dx + dy * dy);
-    }
-    for (ptrdiff_t k = 1; k < n; k++)
-        along[k] = sum += along[k];
-    for (ptrdiff_t k = 1; k < n - 1; k++)
-        along[k] /= sum;
-    along[n - 1] = 1.0;
-}
-
-/* Values linear between those at the full number of places. */
-MESHONET_INLINE void thinned(const double *values, const Places *at, ptrdiff_t n, double *restrict out)
-{
-    for (ptrdiff_t k = 0; k < n; k++) {
-        const double *from = values + at->first[k];
-        out[k] = at->weights[4 * k] * from[0] + at->weights[4 * k + 1] * from[1];
-    }
-}
 
 /* Second derivatives along the rows of f (m, n): m_k-1 + 4 m_k + m_k+1 = 6 (f_k-1 - 2 f_k + f_k+1). That the third is
    continuous at the second row makes m_0 - 2 m_1 + m_2 = 0, hence m_1; so at the other end. */
@@ -169,29 +143,6 @@ MESHONET_INLINE void reach_in(double *restrict x, double *restrict y, double dx,
         x[j] += x0 * low[j] + x1 * high[j], y[j] += y0 * low[j] + y1 * high[j];
 }
 
-MESHONET_CLONES
-void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, double *nodes)
-{
-    const ptrdiff_t m = e->m, n = e->n, half = m + n;
-    const double *given[4] = {edges->south, edges->north, edges->west, edges->east};
-    double *at[3][4]; /* x, y and laws of the four sides */
-    for (int k = 0; k < 3; k++) {
-        double *first = scratch + 2 * k * half;
-        at[k][0] = first, at[k][1] = first + m, at[k][2] = first + 2 * m, at[k][3] = first + 2 * m + n;
-    }
-    for (int side = 0; side < 4; side++) {
-        const int eta = side / 2;
-        const ptrdiff_t count = eta ? n : m, full = eta ? e->nj : e->ni;
-        thinned(given[side], &e->thin[eta], count, at[0][side]);
-        thinned(given[side] + full, &e->thin[eta], count, at[1][side]);
-        law(at[0][side], at[1][side], count, at[2][side]);
-    }
-    TfiEdges three[3];
-    for (int k = 0; k < 3; k++)
-        three[k] = (TfiEdges){at[k][0], at[k][1], at[k][2], at[k][3]};
-    tfi_fill(nodes, nodes + m * n, m, n, &three[0], &three[1], &three[2], 1);
-}
-
 ptrdiff_t evaluate_scratch(const Evaluation *e)
 {
     const ptrdiff_t size = e->m * e->n, most = e->m > e->n ? e->m : e->n;
@@ -210,7 +161,8 @@ typedef struct {
 } Parts;
 
 /* Second derivatives, how far edges are felt, and what is missed of west and east. */
-MESHONET_INLINE void prepare(const Evaluation *e, const double *coarse, const Corners *edges, Parts *p, double *spare)
+MESHONET_CLONES
+static void prepare(const Evaluation *e, const double *coarse, const Corners *edges, Parts *p, double *spare)
 {
     const ptrdiff_t m = e->m, n = e->n, nj = e->nj, size = m * n;
     double *share = spare + 2 * size;
@@ -274,12 +226,6 @@ typedef struct {
 } Pass;
 
 MESHONET_CLONES
-static void begin(const Evaluation *e, const double *coarse, const Corners *edges, Parts *p, double *spare)
-{
-    prepare(e, coarse, edges, p, spare);
-}
-
-MESHONET_CLONES
 static void evaluate_rows(const Pass *pass, Parts p, ptrdiff_t start, ptrdiff_t end)
 {
     const Evaluation *e = pass->e;
@@ -324,7 +270,7 @@ void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edg
     double *rows = scratch + 8 * nj, *bends = rows + e->threads * 12 * nj, *x = nodes, *y = nodes + ni * nj;
     Pass pass = {e, coarse, edges, rows, nodes,
                  {scratch, NULL, NULL, scratch + 4 * nj, bends, bends + 6 * size, {{{0, 0}}}}};
-    begin(e, coarse, edges, &pass.parts, bends + 10 * size);
+    prepare(e, coarse, edges, &pass.parts, bends + 10 * size);
     team_run(e->threads, evaluate_share, &pass);
     const size_t line = (size_t)nj * sizeof *x;
     const ptrdiff_t last = (ni - 1) * nj;
@@ -343,8 +289,8 @@ typedef struct {
 MESHONET_CLONES
 static void add_rows(const Combine *c, ptrdiff_t start, ptrdiff_t end)
 {
-    const ptrdiff_t nj = c->nj;
-    for (ptrdiff_t i = start; i < end; i++) {
+    const ptrdiff_t nj = c->nj, from = c->rim ? 0 : 1;
+    for (ptrdiff_t i = start + from; i < end + from; i++) {
         const double *weights = c->weights + 4 * i, w0 = weights[0], w1 = weights[1], w2 = weights[2], w3 = weights[3];
         const double *restrict v0 = c->values + c->first[i] * nj, *restrict v1 = v0 + nj;
         const double *restrict m0 = c->bends + c->first[i] * nj, *restrict m1 = m0 + nj;
@@ -354,14 +300,7 @@ static void add_rows(const Combine *c, ptrdiff_t start, ptrdiff_t end)
     }
 }
 
-static void combine_share(void *data, Member member)
-{
-    const Combine *c = data;
-    const ptrdiff_t start = c->rim ? 0 : 1;
-    ptrdiff_t first, last;
-    team_share(c->ni - 2 * start, member, &first, &last);
-    add_rows(c, first + start, last + start);
-}
+TEAM_ROWS(combine_share, Combine, task->rim ? task->ni : task->ni - 2, add_rows)
 
 void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
                   const double *values, const double *bends, int rim, int threads)

@@ -9,12 +9,12 @@ typedef struct {
     const double *weights;
 } Places;
 
-/* Grids (m, n) and (ni, nj), the places of each axis of the second in the first, and the other way round; shares of
-   second derivatives are taken out up to `near` coarse cells from a corner, none from `far` on. What is missed of an
-   edge is felt along `reach` of its steps. */
+/* Grids (m, n) and (ni, nj), the places of each axis of the second in the first; shares of second derivatives are taken
+   out up to `near` coarse cells from a corner, none from `far` on. What is missed of an edge is felt along `reach` of
+   its steps. */
 typedef struct {
     ptrdiff_t m, n, ni, nj;
-    Places fine[2], thin[2];
+    Places fine[2];
     double near, far, reach;
     int threads; /* that evaluate the fine grid, with the same result for any number */
 } Evaluation;
@@ -25,10 +25,6 @@ typedef struct {
     const double *south, *north, *west, *east, *opened;
     const unsigned char *straight;
 } Corners;
-
-/* Fill the planes nodes (2, m, n) by transfinite interpolation of edges with ni and nj nodes, of which `thin` are the
-   places; scratch of 6 (m + n). */
-void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, double *nodes);
 
 /* How many numbers evaluate_grid needs as scratch. */
 ptrdiff_t evaluate_scratch(const Evaluation *e);

@@ -51,17 +51,11 @@ typedef struct {
 MESHONET_CLONES
 static void fill_rows(const Fill *f, ptrdiff_t first, ptrdiff_t last)
 {
-    for (ptrdiff_t i = first; i < last; i++)
+    for (ptrdiff_t i = first + 1; i <= last; i++)
         fill_row(f->x + i * f->nj, f->y + i * f->nj, i, f->ni, f->nj, f->ex, f->ey, f->parameter);
 }
 
-static void fill_share(void *data, Member member)
-{
-    const Fill *f = data;
-    ptrdiff_t first, last;
-    team_share(f->ni - 2, member, &first, &last);
-    fill_rows(f, first + 1, last + 1);
-}
+TEAM_ROWS(fill_share, Fill, task->ni - 2, fill_rows)
 
 void tfi_fill(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const TfiEdges *ex, const TfiEdges *ey,
               const TfiEdges *parameter, int threads)

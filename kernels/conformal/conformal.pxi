@@ -18,8 +18,6 @@ cdef extern from "conformal/lift.h":
                   double *winding, double *scratch) nogil
     void c_lift_to_strip "lift_to_strip"(const BodyLift *lift, const Cplx *z, ptrdiff_t n, Cplx *w) nogil
     void c_lift_follow "lift_follow"(const Cplx *wall, ptrdiff_t n, Cplx centre, Cplx quarter, Cplx *zeta) nogil
-    void c_lift_beside "lift_beside"(const Cplx *wall, ptrdiff_t n, ptrdiff_t tip, Cplx other, ptrdiff_t *ahead,
-                                     ptrdiff_t *behind) nogil
     void lift_expand(LiftCorner *corner) nogil
     double c_lift_bisect "lift_bisect"(const BodyLift *lift, const LineOff *line, double start, double limit) nogil
 
@@ -123,15 +121,6 @@ def lift_follow(wall, centre, quarter):
         raise ValueError("fewer than 2 nodes")
     c_lift_follow(reads_complex(wall, (n,)), n, pair(centre), pair(quarter), fills_complex(zeta))
     return zeta
-
-
-def lift_beside(wall, ptrdiff_t tip, other):
-    """Return the nodes ahead of `tip` and behind it, .004 of the distance to `other` away from it."""
-    cdef ptrdiff_t ahead, behind, n = len(wall)
-    if not 0 <= tip < n:
-        raise ValueError("no such node")
-    c_lift_beside(reads_complex(wall, (n,)), n, tip, pair(other), &ahead, &behind)
-    return ahead, behind
 
 
 def lift_bisect(maps, corner, ahead, behind, w, double start, double limit):

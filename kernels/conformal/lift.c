@@ -96,25 +96,17 @@ static ptrdiff_t base_corner(const Cplx *wall, ptrdiff_t n, const double *turn, 
     return best;
 }
 
-void lift_beside(const Cplx *wall, ptrdiff_t n, ptrdiff_t tip, Cplx other, ptrdiff_t *ahead, ptrdiff_t *behind)
-{
-    const double apart = 0.004 * size(less(other, wall[tip]));
-    ptrdiff_t a = 1, b = 1;
-    for (ptrdiff_t m = n / 2 - 1; m > 0; m--) {
-        if (size(less(wall[(tip + m) % n], wall[tip])) > apart) a = m;
-        if (size(less(wall[(tip - m + n) % n], wall[tip])) > apart) b = m;
-    }
-    *ahead = (tip + a) % n;
-    *behind = (tip - b + n) % n;
-}
-
 /* The focus behind node `tip`: the circle through it and the nodes beside it tells. */
 static Cplx focus(const Cplx *wall, ptrdiff_t n, ptrdiff_t tip, Cplx other)
 {
-    ptrdiff_t ahead, behind;
-    lift_beside(wall, n, tip, other, &ahead, &behind);
-    const Cplx a = wall[ahead], b = wall[tip], c = wall[behind];
+    const Cplx b = wall[tip];
     const double chord = size(less(other, b));
+    ptrdiff_t ahead = 1, behind = 1; /* nodes .004 of the chord away */
+    for (ptrdiff_t m = n / 2 - 1; m > 0; m--) {
+        if (size(less(wall[(tip + m) % n], b)) > 0.004 * chord) ahead = m;
+        if (size(less(wall[(tip - m + n) % n], b)) > 0.004 * chord) behind = m;
+    }
+    const Cplx a = wall[(tip + ahead) % n], c = wall[(tip - behind + n) % n];
     const double area = 0.5 * fabs(turned_back(less(c, b), less(a, b)).im);
     const double sides = size(less(a, b)) * size(less(c, b)) * size(less(a, c));
     const double part = 2.0 * sides / (4.0 * area + 1e-12 * chord * chord) / chord;

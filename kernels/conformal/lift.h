@@ -41,6 +41,3 @@ typedef struct { Cplx corner, ahead, behind, w; } LineOff;
 /* The shift of phi, at most `limit`, with which a line leaves a corner of the wall at equal angles; `start` when none is
    found. See bisector.py. */
 double lift_bisect(const BodyLift *lift, const LineOff *line, double start, double limit);
-
-/* The nodes ahead of and behind `tip` that are .004 of the distance to `other` away from it. */
-void lift_beside(const Cplx *wall, ptrdiff_t n, ptrdiff_t tip, Cplx other, ptrdiff_t *ahead, ptrdiff_t *behind);

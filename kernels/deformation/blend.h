@@ -15,7 +15,7 @@ typedef struct {
 /* Means of the motions at m points x (axes, m), weighted by nearness. */
 void blend_motions(const BlendSources *from, const double *x, ptrdiff_t m, int threads, double *moved);
 
-/* The transposed map: `gathered` (axes + axes*axes, n) gets what `pull` (axes, m) does to a and B of every place.
-   `weight` has room for n numbers. */
+/* The transposed map in the plane: `gathered` (6, n) gets what `pull` (2, m) does to a and B of every place. `weight`
+   has room for n numbers. */
 void blend_transposed(const BlendSources *from, const double *x, const double *pull, ptrdiff_t m, double *weight,
                       double *gathered);

@@ -36,11 +36,13 @@ def blend_motions(places, areas, motions, double near, points, int threads, move
 
 
 def blend_transposed(places, areas, double near, points, pull, gathered):
-    """Fill gathered (d + d², n) with what pull (d, m) at points (d, m) does to the motions; see `blend_motions`."""
+    """Fill gathered (6, n) with what pull (2, m) at points (2, m) does to the motions; see `blend_motions`."""
     cdef BlendSources sources = blend_sources(places, areas, near)
     cdef ptrdiff_t m = points.shape[1]
-    cdef Read x = reads(points, (sources.axes, m)), force = reads(pull, (sources.axes, m))
-    cdef Written to = fills(gathered, (sources.axes * (sources.axes + 1), sources.n))
+    cdef Read x = reads(points, (2, m)), force = reads(pull, (2, m))
+    if sources.axes != 2:
+        raise ValueError("places in space")
+    cdef Written to = fills(gathered, (6, sources.n))
     room = np.empty(sources.n)
     cdef Written weight = fills(room, (sources.n,))
     with nogil:

@@ -6,9 +6,6 @@ cdef extern from "elementary/functions.h":
     void c_matrix_product "matrix_product"(const double *a, const double *b, ptrdiff_t rows, ptrdiff_t inner,
                                            ptrdiff_t columns, double *out) nogil
 
-cdef extern from "elementary/eigen.h":
-    int c_real_eigen "real_eigen"(double *a, ptrdiff_t n, double *values, double *vectors, double *inverse) nogil
-
 
 def elementary(bytes name, x, out):
     """Fill `out` with the function `name` of `x`; both are one-dimensional, of one length."""
@@ -48,20 +45,3 @@ def matrix_product(a, b, out):
     cdef Written to = fills(out, (rows, columns))
     with nogil:
         c_matrix_product(pa, pb, rows, inner, columns, to)
-
-
-def real_eigen(a, values, vectors, inverse):
-    """Fill `values` (n,), `vectors` and `inverse` (n, n) with those of `a` (n, n), which is overwritten.
-
-    Raises ValueError: eigenvalues are not real; MemoryError.
-    """
-    cdef ptrdiff_t n = len(a)
-    cdef Written pa = fills(a, (n, n)), pw = fills(values, (n,))
-    cdef Written pv = fills(vectors, (n, n)), pi = fills(inverse, (n, n))
-    cdef int failed
-    with nogil:
-        failed = c_real_eigen(pa, n, pw, pv, pi)
-    if failed == 2:
-        raise MemoryError
-    if failed:
-        raise ValueError("eigenvalues that are not real")

@@ -11,59 +11,25 @@
         if (!(inside))                      \
             out[k] = function;
 
-MESHONET_CLONES
-static void exp_of(const double *restrict x, ptrdiff_t n, double *restrict out)
-{
-    for (ptrdiff_t k = 0; k < n; k++) {
-        const double most = x[k] < 700.0 ? x[k] : 700.0;
-        out[k] = exp_double(most > -700.0 ? most : -700.0);
+#define BY_VECTORS(name, form, inside)                                                      \
+    MESHONET_CLONES                                                                         \
+    static void name##_of(const double *restrict x, ptrdiff_t n, double *restrict out)      \
+    {                                                                                       \
+        for (ptrdiff_t k = 0; k < n; k++)                                                   \
+            out[k] = form;                                                                  \
+        REST(inside, name(x[k]))                                                            \
     }
-    REST(fabs(x[k]) < 700.0, exp(x[k]))
-}
 
-MESHONET_CLONES
-static void expm1_of(const double *restrict x, ptrdiff_t n, double *restrict out)
-{
-    for (ptrdiff_t k = 0; k < n; k++)
-        out[k] = expm1_double(fabs(x[k]) < 700.0 ? x[k] : 0.0);
-    REST(fabs(x[k]) < 700.0 && x[k] != 0.0, expm1(x[k]))
-}
+MESHONET_INLINE double limited(double x, double most) { return x < -most ? -most : x < most ? x : most; }
+MESHONET_INLINE double sine(double x) { double s, c; sincos_double(x, &s, &c); return s; }
+MESHONET_INLINE double cosine(double x) { double s, c; sincos_double(x, &s, &c); return c; }
 
-MESHONET_CLONES
-static void tanh_of(const double *restrict x, ptrdiff_t n, double *restrict out)
-{
-    for (ptrdiff_t k = 0; k < n; k++)
-        out[k] = tanh_double(fabs(x[k]) < 300.0 ? x[k] : 0.0);
-    REST(fabs(x[k]) < 300.0 && x[k] != 0.0, tanh(x[k]))
-}
-
-MESHONET_CLONES
-static void log_of(const double *restrict x, ptrdiff_t n, double *restrict out)
-{
-    for (ptrdiff_t k = 0; k < n; k++)
-        out[k] = log_double(x[k]);
-    REST(x[k] > 1e-307 && x[k] < 1e308, log(x[k]))
-}
-
-MESHONET_CLONES
-static void sin_of(const double *restrict x, ptrdiff_t n, double *restrict out)
-{
-    for (ptrdiff_t k = 0; k < n; k++) {
-        double cosine;
-        sincos_double(fabs(x[k]) < 1e5 ? x[k] : 0.0, out + k, &cosine);
-    }
-    REST(fabs(x[k]) < 1e5 && x[k] != 0.0, sin(x[k])) /* which has the sign of 0 */
-}
-
-MESHONET_CLONES
-static void cos_of(const double *restrict x, ptrdiff_t n, double *restrict out)
-{
-    for (ptrdiff_t k = 0; k < n; k++) {
-        double sine;
-        sincos_double(fabs(x[k]) < 1e5 ? x[k] : 0.0, &sine, out + k);
-    }
-    REST(fabs(x[k]) < 1e5, cos(x[k]))
-}
+BY_VECTORS(exp, exp_double(limited(x[k], 700.0)), fabs(x[k]) < 700.0)
+BY_VECTORS(expm1, expm1_double(fabs(x[k]) < 700.0 ? x[k] : 0.0), fabs(x[k]) < 700.0 && x[k] != 0.0)
+BY_VECTORS(tanh, tanh_double(fabs(x[k]) < 300.0 ? x[k] : 0.0), fabs(x[k]) < 300.0 && x[k] != 0.0)
+BY_VECTORS(log, log_double(x[k]), x[k] > 1e-307 && x[k] < 1e308)
+BY_VECTORS(sin, sine(fabs(x[k]) < 1e5 ? x[k] : 0.0), fabs(x[k]) < 1e5 && x[k] != 0.0) /* sin has the sign of 0 */
+BY_VECTORS(cos, cosine(fabs(x[k]) < 1e5 ? x[k] : 0.0), fabs(x[k]) < 1e5)
 
 MESHONET_CLONES
 void function_angle(const double *restrict y, const double *restrict x, ptrdiff_t n, double *restrict out)

@@ -18,7 +18,7 @@ cdef extern from "elliptic/multigrid.h":
     size_t c_multigrid_scratch "multigrid_scratch"(ptrdiff_t mi, ptrdiff_t mj, int threads) nogil
     void multigrid_smooth(const Level *level, int forced) nogil
     double multigrid_residual(const Level *level, int forced) nogil
-    double multigrid_restrict(const Level *fine, const Level *coarse, int forced) nogil
+    void multigrid_restrict(const Level *fine, const Level *coarse, int forced) nogil
     double multigrid_correct(const Level *fine, const Level *coarse) nogil
 
 
@@ -102,12 +102,10 @@ cdef class MultigridLevel:
         return total
 
     def restrict(self, MultigridLevel coarse, bint forced):
-        """Send nodes and residual down; return the sum of squares of the coarse right side."""
-        cdef double total
+        """Send nodes and residual down."""
         self.check(coarse)
         with nogil:
-            total = multigrid_restrict(&self.level, &coarse.level, forced)
-        return total
+            multigrid_restrict(&self.level, &coarse.level, forced)
 
     def correct(self, MultigridLevel coarse):
         """Add the interpolated coarse x - x0; return its sum of squares on the coarse nodes."""

@@ -46,14 +46,6 @@ static void own_rows(const Level *g, Member member, ptrdiff_t *first, ptrdiff_t 
     *first += start, *last += start;
 }
 
-static double sum_of_rows(const Level *g, const double *sums)
-{
-    double sum = 0.0;
-    for (ptrdiff_t i = g->periodic ? 0 : 1; i < g->mi; i++)
-        sum += sums[i];
-    return sum;
-}
-
 static void smooth_share(void *data, Member member)
 {
     const Task *task = data;
@@ -130,8 +122,11 @@ static void residual_share(void *data, Member member)
 double multigrid_residual(const Level *g, int forced)
 {
     Task task = {g, NULL, forced};
+    double sum = 0.0;
     team_run(g->threads, residual_share, &task);
-    return sum_of_rows(g, g->scratch);
+    for (ptrdiff_t i = g->periodic ? 0 : 1; i < g->mi; i++)
+        sum += g->scratch[i];
+    return sum;
 }
 
 static ptrdiff_t finer(ptrdiff_t coarse, ptrdiff_t last)
@@ -190,7 +185,7 @@ static void restrict_residual(const Level *g, const Level *coarse, ptrdiff_t sta
 
 /* f += L(x) on the coarse level */
 MESHONET_CLONES
-static void add_operator(const Level *g, ptrdiff_t first, ptrdiff_t last, double *sums)
+static void add_operator(const Level *g, ptrdiff_t first, ptrdiff_t last)
 {
     double *rx = g->scratch, *ry = rx + padded(g->mj);
     for (ptrdiff_t i = first; i < last; i++) {
@@ -198,7 +193,6 @@ static void add_operator(const Level *g, ptrdiff_t first, ptrdiff_t last, double
         residual_row(g, i, 0, rx, ry);
         for (ptrdiff_t j = 1; j < g->mj; j++)
             fx[j] -= rx[j], fy[j] -= ry[j];
-        sums[i] = squares(fx, fy, 1, g->mj);
     }
 }
 
@@ -213,14 +207,13 @@ static void restrict_share(void *data, Member member)
     own_rows(&coarse, member, &first, &last);
     restrict_residual(&fine, &coarse, first, last, task->forced);
     team_wait(member);
-    add_operator(&coarse, first, last, task->level->scratch);
+    add_operator(&coarse, first, last);
 }
 
-double multigrid_restrict(const Level *fine, const Level *coarse, int forced)
+void multigrid_restrict(const Level *fine, const Level *coarse, int forced)
 {
     Task task = {fine, coarse, forced};
     team_run(fine->threads, restrict_share, &task);
-    return sum_of_rows(coarse, fine->scratch);
 }
 
 /* ex, ey [0 .. MJ] = (1 - w) (X - X0) of row I + w times that of row I + 1 */

@@ -48,9 +48,8 @@ void multigrid_smooth(const Level *level, int forced);
 /* Sum over the nodes solved for of |f - L(x)|^2. */
 double multigrid_residual(const Level *level, int forced);
 
-/* Coarse x, y, x0, y0 = injection of fine x, y; coarse f = restriction of f - L(x) + L of the coarse x.
-   Returns the sum over coarse nodes of |f coarse|^2, which on the finest level is the truncation error. */
-double multigrid_restrict(const Level *fine, const Level *coarse, int forced);
+/* Coarse x, y, x0, y0 = injection of fine x, y; coarse f = restriction of f - L(x) + L of the coarse x. */
+void multigrid_restrict(const Level *fine, const Level *coarse, int forced);
 
 /* fine x += interpolation of coarse (x - x0), at the nodes solved for. Returns the sum of |coarse (x - x0)|^2. */
 double multigrid_correct(const Level *fine, const Level *coarse);

@@ -53,7 +53,7 @@ static void count_share(void *data, Member member)
     team_share(count->ni - 1, member, &first, &last);
     for (ptrdiff_t i = first; i < last; ++i)
         folded += cells_folded_in_row(count->x + i * nj, count->y + i * nj, nj, nj - 1);
-    team_reserve(&count->folded, folded);
+    team_add(&count->folded, folded);
 }
 
 ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int threads)
@@ -187,10 +187,8 @@ static void first_place(const double *row, ptrdiff_t cells, double value, ptrdif
 typedef struct {
     double *areas;   /* of four rows of cells, (nj + 1) each */
     double *metrics; /* (METRICS, cells) */
-    double *caught;  /* (cells) */
     double *summary; /* (METRICS, 2): min, max */
     int64_t *where;  /* (METRICS, 2, 2) */
-    int64_t *counts; /* (METRICS, n_brackets, 4) */
     int64_t *rows;   /* how many */
 } Own;
 
@@ -200,43 +198,23 @@ typedef struct {
     ptrdiff_t ni, nj;
     const CellRun *run;
     double *sums; /* of each row of cells, (ni - 1, METRICS) */
-    int64_t *held; /* values caught in each bracket, (METRICS, n_brackets) */
     double *room;
 } Cells;
 
-static size_t member_room(const CellRun *run, ptrdiff_t nj)
-{
-    return (size_t)(4 * (nj + 1) + (METRICS + 1) * (nj - 1) + 6 * METRICS + 4 * METRICS * run->n_brackets + 1);
-}
+static size_t member_room(ptrdiff_t nj) { return (size_t)(4 * (nj + 1) + METRICS * (nj - 1) + 6 * METRICS + 1); }
 
 static Own own_of(const Cells *c, int rank)
 {
-    const ptrdiff_t cells = c->nj - 1;
     Own own;
-    own.areas = c->room + (size_t)rank * member_room(c->run, c->nj);
-    own.metrics = own.areas + 4 * (c->nj + 1), own.caught = own.metrics + METRICS * cells;
-    own.summary = own.caught + cells;
-    own.where = (int64_t *)(own.summary + 2 * METRICS), own.counts = own.where + 4 * METRICS;
-    own.rows = own.counts + 4 * METRICS * c->run->n_brackets;
+    own.areas = c->room + (size_t)rank * member_room(c->nj);
+    own.metrics = own.areas + 4 * (c->nj + 1), own.summary = own.metrics + METRICS * (c->nj - 1);
+    own.where = (int64_t *)(own.summary + 2 * METRICS), own.rows = own.where + 4 * METRICS;
     return own;
 }
 
-size_t cells_scratch(const CellRun *run, ptrdiff_t ni, ptrdiff_t nj, int threads)
+size_t cells_scratch(ptrdiff_t ni, ptrdiff_t nj, int threads)
 {
-    return (size_t)(METRICS * (ni - 1 + run->n_brackets)) + (size_t)threads * member_room(run, nj);
-}
-
-/* Rank the values of a metric in a row against its brackets, and keep those inside. */
-static void catch_row(const Cells *c, const Own *own, ptrdiff_t metric, const double *row)
-{
-    const CellRun *run = c->run;
-    for (ptrdiff_t m = metric * run->n_brackets; m < (metric + 1) * run->n_brackets; ++m) {
-        const ptrdiff_t n = values_catch(row, c->nj - 1, run->brackets[2 * m], run->brackets[2 * m + 1],
-                                         own->counts + 4 * m, own->caught, c->nj - 1);
-        const int64_t at = n ? team_reserve(c->held + m, n) : run->room;
-        if (at + n <= run->room)
-            memcpy(run->caught + m * run->room + at, own->caught, (size_t)n * sizeof(double));
-    }
+    return (size_t)(METRICS * (ni - 1)) + (size_t)threads * member_room(nj);
 }
 
 /* Take the metrics of row i of cells into what the thread knows of those before. */
@@ -257,7 +235,6 @@ static void take_row(const Cells *c, const Own *own, ptrdiff_t i)
             summary[1] = high;
             first_place(row, cells, high, i, own->where + 4 * k + 2);
         }
-        catch_row(c, own, k, row);
     }
 }
 
@@ -303,7 +280,6 @@ static void run_share(void *data, Member member)
     const Own own = own_of(c, member.rank);
     ptrdiff_t first, last;
     team_share(c->ni - 1, member, &first, &last);
-    memset(own.counts, 0, (size_t)(4 * METRICS * c->run->n_brackets) * sizeof *own.counts);
     if (first < last)
         run_rows(c, &own, first, last);
 }
@@ -323,8 +299,6 @@ static void add_rows(const CellRun *run, const Own *own, int fresh)
             memcpy(where + 2, own->where + 4 * k + 2, 2 * sizeof *where);
         }
     }
-    for (ptrdiff_t m = 0; m < 4 * METRICS * run->n_brackets; ++m)
-        run->counts[m] += own->counts[m];
 }
 
 /* The means, of the sums of rows in their order. */
@@ -343,9 +317,7 @@ static void add_sums(const Cells *c)
 void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run, int threads,
                double *scratch)
 {
-    int64_t *held = (int64_t *)(scratch + METRICS * (ni - 1));
-    Cells c = {x, y, ni, nj, run, scratch, held, scratch + METRICS * (ni - 1 + run->n_brackets)};
-    memset(held, 0, (size_t)(METRICS * run->n_brackets) * sizeof *held);
+    Cells c = {x, y, ni, nj, run, scratch, scratch + METRICS * (ni - 1)};
     for (int rank = 0; rank < threads; ++rank)
         *own_of(&c, rank).rows = 0;
     team_run(threads, run_share, &c);

@@ -7,14 +7,10 @@ cdef extern from "geometry/cells.h":
         int64_t *where
         ptrdiff_t keep, n_kept
         double *kept
-        ptrdiff_t n_brackets, room
-        const double *brackets
-        int64_t *counts
-        double *caught
     ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int threads) nogil
     void cells_places(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs,
                       ptrdiff_t room) nogil
-    size_t cells_scratch(const CellRun *run, ptrdiff_t ni, ptrdiff_t nj, int threads) nogil
+    size_t cells_scratch(ptrdiff_t ni, ptrdiff_t nj, int threads) nogil
     void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run, int threads,
                    double *scratch) nogil
 
@@ -62,8 +58,7 @@ def folded_cells(x, y):
     return pairs
 
 
-def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t keep, kept, brackets, counts, caught,
-                  int threads=1):
+def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t keep, kept, int threads=1):
     """Run over all cells once; the arguments are those of CellRun in ``geometry/cells.h``."""
     cdef CellRun run
     cdef ptrdiff_t ni, nj
@@ -72,15 +67,11 @@ def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t
     if ni < 2 or nj < 2 or not 0 <= keep <= METRICS - len(kept):
         raise ValueError("no cells, or metrics beyond the last")
     run.periodic, run.wake, run.keep, run.n_kept = periodic, wake, keep, len(kept)
-    run.n_brackets, run.room = brackets.shape[1], caught.shape[2]
     run.summary = fills(summary, (METRICS, 3))
     run.where = <int64_t *>numbers(where, b"i", 8, (METRICS, 2, 2), True)
     run.kept = fills(kept, (run.n_kept, ni - 1, nj - 1))
-    run.brackets = reads(brackets, (METRICS, run.n_brackets, 2))
-    run.counts = <int64_t *>numbers(counts, b"i", 8, (METRICS, run.n_brackets, 4), True)
-    run.caught = fills(caught, (METRICS, run.n_brackets, run.room))
     threads = min(max(threads, 1), 64)
-    scratch = np.empty(cells_scratch(&run, ni, nj, threads))
+    scratch = np.empty(cells_scratch(ni, nj, threads))
     cdef Written room = fills(scratch, scratch.shape)
     with nogil:
         cells_run(px, py, ni, nj, &run, threads, room)

@@ -1,20 +1,33 @@
+cdef extern from "energy/steps.h":
+    void steps_forget(Steps *s) nogil
+
 cdef extern from "hexes/energy.h":
-    int BRICK_I, BRICK_J, BRICK_K
-    ctypedef struct Brick:
-        int64_t count[3]
-        int64_t nodes, cells, targets, forces
+    ctypedef struct HexBlock:
+        int64_t n[3]
+        int64_t places, cells, rows
     ctypedef struct HexWeights:
-        double shape, smoothness, epsilon, size, cells
+        double shape, smoothness, size, epsilon, cells
+        int power
     ctypedef struct HexMesh:
-        ptrdiff_t bricks
-        const Brick *brick
+        ptrdiff_t blocks, places, cells, widest
+        const HexBlock *block
         const int32_t *node
-        const uint8_t *moves
         const double *inverse
+        const uint8_t *skip
+        const uint8_t *busy
         const float *target
-        double *force
-        double *energy
+        double *x
+        double *g
+        double *lengths
+        double *pulls
+        double *energies
         double *least
+
+cdef extern from "hexes/spectrum.h":
+    ctypedef struct Spectrum3:
+        ptrdiff_t m[3]
+        double over[3]
+        int threads
 
 cdef extern from "hexes/descent.h":
     ctypedef struct CHexDescent "HexDescent":
@@ -29,92 +42,95 @@ cdef extern from "hexes/descent.h":
         const double *projection
         const double *inverse_size
         double *x
+        Spectrum3 spectrum
         Steps steps
-    size_t hex_descent_doubles(const CHexDescent *d) nogil
+    void hex_descent_sizes(const CHexDescent *d, size_t *doubles, size_t *floats) nogil
     void hex_descent_place(CHexDescent *d, double *doubles, float *floats) nogil
     void hex_descent_start(CHexDescent *d) nogil
     void hex_descent_renew(CHexDescent *d) nogil
     void hex_descent_end(CHexDescent *d) nogil
 
-BRICK = BRICK_I, BRICK_J, BRICK_K
-
-
-cdef int check_brick(const Brick *brick, const HexMesh *mesh, ptrdiff_t nodes, ptrdiff_t *room) except -1:
-    """Raise ValueError unless a brick is small enough, lies in the tables, of so many numbers each, and has such nodes."""
-    cdef ptrdiff_t a = brick.count[0], b = brick.count[1], c = brick.count[2], i, j, k, least
-    if not (1 <= a <= BRICK_I and 1 <= b <= BRICK_J and 1 <= c <= BRICK_K):
-        raise ValueError("a brick of no cells, or too many")
-    cdef ptrdiff_t edges = (a + 2) * (b + 1) * (c + 1) + (a + 1) * (b + 2) * (c + 1) + (a + 1) * (b + 1) * (c + 2)
-    if (not 0 <= brick.nodes <= room[0] - (a + 3) * (b + 3) * (c + 3) or not 0 <= brick.cells <= room[1] - 3 * a * b * c
-            or not 0 <= brick.targets <= room[2] - edges
-            or not 0 <= brick.forces <= room[3] - 3 * (a + 1) * (b + 1) * (c + 1)):
-        raise ValueError("a brick beyond its tables")
-    cdef const int32_t *node = mesh.node + brick.nodes
-    for i in range(a + 3):
-        for j in range(b + 3):
-            for k in range(c + 3):
-                least = 0 if 0 < i < a + 2 and 0 < j < b + 2 and 0 < k < c + 2 else -1  # none beyond a side
-                if not least <= node[0] < nodes:
-                    raise ValueError("bricks of other nodes")
-                node += 1
-    return 0
-
 
 cdef class HexDescent:
     """Descents of the functional over hexahedra that share nodes, as ``descent.h`` has it; moves `nodes` (n, 3).
 
-    `bricks` (b, 8) are as ``energy.h`` has them, over the tables of `lattices` (node numbers, int32), of reciprocal
-    lengths and of `targets` (float32). `places` are (free nodes, start, place, reciprocal sizes of moves) and `slides` (unknowns, projections).
+    `blocks` (b, 6) are as ``energy.h`` has them, over `tables`: node numbers of places (P,) int32, lengths of edges that
+    are wanted (3, P) float32, reciprocal lengths of cells (3, C), bits of corners left out (C,) and busy rows (R,).
+    `places` are (free nodes, start, place, reciprocal sizes of moves) and `slides` (unknowns, projections). `over` are
+    reciprocal lengths along the directions of one block of which all inner nodes move: it then has a preconditioner of
+    its own.
     """
 
     cdef CHexDescent state
     cdef object held
 
-    def __init__(self, nodes, bricks, lattices, moves, inverse, targets, tuple places, tuple slides, double cells,
-                 int threads):
+    def __init__(self, nodes, blocks, tuple tables, tuple places, tuple slides, double cells, int threads, over=None):
         cdef CHexDescent *d = &self.state
         cdef HexMesh *mesh = &d.mesh
-        cdef ptrdiff_t b = len(bricks), count = len(places[0]), n = len(nodes), slid = len(slides[0]), k
-        cdef ptrdiff_t[4] rooms = [len(lattices), len(inverse), len(targets), 3 * len(lattices) + 3]
-        mesh.bricks = b
-        mesh.brick = <const Brick *>numbers(bricks, b"i", 8, (b, 8), False)
-        mesh.node = <const int32_t *>numbers(lattices, b"i", 4, (rooms[0],), False)
-        mesh.moves = <const uint8_t *>numbers(moves, b"?", 1, (n,), False)
-        mesh.inverse, mesh.target = reads(inverse, (rooms[1],)), reads_single(targets, (rooms[2],))
+        cdef ptrdiff_t b = len(blocks), count = len(places[0]), n = len(nodes), slid = len(slides[0]), k, at = 0, c = 0, r = 0
+        cdef size_t doubles = 0, floats = 0
+        node, target, inverse, skip, busy = tables
+        mesh.blocks, mesh.places, mesh.cells, mesh.widest = b, len(node), len(skip), 0
+        mesh.block = <const HexBlock *>numbers(blocks, b"i", 8, (b, 6), False)
+        mesh.node = <const int32_t *>numbers(node, b"i", 4, (mesh.places,), False)
+        mesh.target = reads_single(target, (3, mesh.places))
+        mesh.inverse = reads(inverse, (3, mesh.cells))
+        mesh.skip = <const uint8_t *>numbers(skip, b"B", 1, (mesh.cells,), False)
+        mesh.busy = <const uint8_t *>numbers(busy, b"?", 1, busy.shape, False)
         for k in range(b):
-            check_brick(mesh.brick + k, mesh, n, rooms)
-        d.threads, d.count, d.sliding_count, d.weights.cells = threads, count, slid, cells
+            p = mesh.block[k].n
+            if min(p[0], p[1], p[2]) < 4 or (mesh.block[k].places, mesh.block[k].cells, mesh.block[k].rows) != (at, c, r):
+                raise ValueError("starts of blocks beyond their tables")
+            at, c = at + p[0] * p[1] * p[2], c + (p[0] - 3) * (p[1] - 3) * (p[2] - 3)
+            r, mesh.widest = r + (p[0] - 2) * (p[1] - 2), max(mesh.widest, p[2])
+        if (at, c, r) != (mesh.places, mesh.cells, len(busy)):
+            raise ValueError("starts of blocks of other tables")
+        for k in range(at):
+            if not -1 <= mesh.node[k] < n:
+                raise ValueError("places of other nodes")
+        d.threads, d.count, d.sliding_count, d.weights.cells = min(max(threads, 1), 64), count, slid, cells
         d.x = fills(nodes, (n, 3))
         d.free, d.start = reads_places(places[0], (count,), n), reads_starts(places[1], count, len(places[2]))
         d.place = <const int32_t *>numbers(places[2], b"i", 4, places[2].shape, False)
         for k in range(len(places[2])):
-            if not 0 <= d.place[k] <= rooms[0]:
+            if not 0 <= d.place[k] < at:
                 raise ValueError("places of other forces")
         d.inverse_size = reads(places[3], (count,))
         d.sliding, d.projection = reads_places(slides[0], (slid,), count), reads(slides[1], (slid, 9))
-        force = np.empty(rooms[3])
-        each = np.empty((2, max(b, 1)))
-        mesh.force = fills(force, force.shape)
-        mesh.energy = fills(each, each.shape)
-        mesh.least = mesh.energy + max(b, 1)
-        room, small = np.empty(hex_descent_doubles(d)), np.empty(steps_floats(3 * count), np.float32)
-        hex_descent_place(d, fills(room, room.shape), fills_single(small))
-        self.held = (nodes, bricks, lattices, moves, inverse, targets, places, slides, force, each, room, small)
+        for k in range(3 if over is not None else 0):
+            d.spectrum.m[k], d.spectrum.over[k] = mesh.block[0].n[k] - 4, over[k]
+        if over is not None and (b != 1 or slid or d.spectrum.m[0] * d.spectrum.m[1] * d.spectrum.m[2] != count):
+            raise ValueError("a preconditioner of another block")
+        d.spectrum.threads = d.threads
+        room = np.zeros((4, 3, at)), np.zeros((5, r))
+        room[0][2] = np.nan  # lengths of edges that there are not
+        mesh.x = fills(room[0], room[0].shape)
+        mesh.g, mesh.lengths, mesh.pulls = mesh.x + 3 * at, mesh.x + 6 * at, mesh.x + 9 * at
+        mesh.least = fills(room[1], room[1].shape)
+        mesh.energies = mesh.least + r
+        room[1][0] = np.inf
+        hex_descent_sizes(d, &doubles, &floats)
+        work, small = np.empty(doubles), np.empty(floats, np.float32)
+        hex_descent_place(d, fills(work, work.shape), fills_single(small))
+        self.held = (nodes, blocks, tables, places, slides, room, work, small)
 
-    def weigh(self, double shape, double smoothness, double epsilon=0.0, double size=0.0):
-        """Set the weights of the functional, of which Jacobians are regularised with `epsilon`."""
+    def weigh(self, double shape, double smoothness, int power=2, double epsilon=0.0, double size=0.0):
+        """Set the weights of the functional, of which Jacobians are regularised with `epsilon`, and `power` is 1."""
         cdef HexWeights *w = &self.state.weights
-        w.shape, w.smoothness, w.epsilon, w.size = shape, smoothness, epsilon, size
+        w.shape, w.smoothness, w.power, w.epsilon, w.size = shape, smoothness, power, epsilon, size
+        if power < (1 if epsilon > 0.0 else 0) or power > (1 if epsilon > 0.0 else 2):
+            raise ValueError("a functional of another power")
 
-    def run(self, double gain, int most, int renewal):
+    def run(self, double gain, int most, int renewal, double still=float("inf"), double reach=0.25, double farthest=1.0):
         """Descend; return (value, smallest Jacobian over the volume of its cell, iterations).
 
-        It ends when the value falls by less than its part `gain` in each of two iterations, or after `most`. The
-        preconditioner is made anew every `renewal` iterations.
+        It ends when two iterations on end gain less than the part `gain` of the value each and move no node by more
+        than `still` of its cell, or after `most`. No node moves by more than `reach` cells in a first step, and
+        `farthest` in any. The preconditioner is made anew every `renewal` iterations.
         """
         cdef int done = 0, state = GOES_ON
         cdef Steps *steps = &self.state.steps
-        steps.reach, steps.farthest, steps.still, steps.gain = 0.25, 1.0, float("inf"), gain
+        steps.reach, steps.farthest, steps.still, steps.gain = reach, farthest, still, gain
         with nogil:
             hex_descent_start(&self.state)
         while done < most and state == GOES_ON and steps.n > 0:
@@ -122,6 +138,7 @@ cdef class HexDescent:
             with nogil:
                 if done > 0 and done % renewal == 0:
                     hex_descent_renew(&self.state)
+                    steps_forget(steps)
                 state = steps_take(steps)
             done += 1
         with nogil:
@@ -129,9 +146,9 @@ cdef class HexDescent:
         return steps.value, steps.smallest, done
 
     def evaluate(self, gradient):
-        """Return the value where the nodes are, and the smallest Jacobian; fill `gradient` (unknowns,)."""
+        """Return the value where the nodes are, and the smallest Jacobian; fill `gradient` (3, nodes that move)."""
         cdef ptrdiff_t k
-        cdef Written to = fills(gradient, (self.state.steps.n,))
+        cdef Written to = fills(gradient, (3, self.state.count))
         with nogil:
             hex_descent_start(&self.state)
         for k in range(self.state.steps.n):

@@ -3,11 +3,12 @@
    With u, v, w the edges along xi, eta and zeta that meet at the corner, each over a length of its direction,
    J = det(u, v, w), g = |u|², h = |v|², q = |w|², and χ = J, or (J + √(J² + ε²)) / 2 when regularised:
 
-       E = a S / χ + b (g h q / χ²)^p,    S = |u × v|² + |v × w|² + |w × u|²
+       E = a S / χ + b (g h q / χ²)^p [+ c (χ + 1/χ)],    S = |u × v|² + |v × w|² + |w × u|²
 
    S / J is the density of Winslow's functional: with dx/dξ as its columns, |dξ/dx|² J. It grows without bound at
    J = 0 and keeps a valid grid valid. The second term, 1 on right angles, is a power of the angles' squared
-   sines' inverse. All of it needs the products of edges only; dJ/du = v × w, dS/du = 2 ((h + q) u - (u·v) v - (u·w) w).
+   sines' inverse. The third is for regularised corners only: with χ > J cells whose size is free would gain by
+   shrinking to points. All of it needs the products of edges only; dJ/du = v × w, dS/du = 2 ((h + q) u - (u·v) v - (u·w) w).
 
    Another energy wants cells that are cubes, 1 where u, v and w are as long and at right angles, infinite at J = 0:
 
@@ -21,9 +22,9 @@
 #include <math.h>
 
 /* Weights of the terms, times the weight of the place: for the functional with angles' share w, a = (1 - w) / 3 and
-   b = w. ε² and its inverse are read only where corners are regularised. */
+   b = w. c, ε² and its inverse are read only where corners are regularised. */
 typedef struct {
-    double conformal, angle, eps2, over_eps2;
+    double conformal, angle, size, eps2, over_eps2;
 } Factors3;
 
 typedef struct {
@@ -70,13 +71,14 @@ MESHONET_INLINE Corner3 corner3(Vector u, Vector v, Vector w, const Factors3 *f,
 {
     const Products3 p = products3(u, v, w, f, power, regular);
     const double by_s = 2.0 * f->conformal * p.inverse, by_t = 2.0 * power * p.by_angle;
-    const double by_j = -(p.conformal + 2.0 * power * p.angle) * p.inverse * p.chain;
+    const double size = regular ? f->size / p.inverse : 0.0, inverse = regular ? f->size * p.inverse : 0.0;
+    const double by_j = -(p.conformal + 2.0 * power * p.angle + inverse - size) * p.inverse * p.chain;
     const double a = by_s * (p.h + p.q) + by_t * p.h * p.q;
     const double b = by_s * (p.g + p.q) + by_t * p.g * p.q;
     const double c = by_s * (p.g + p.h) + by_t * p.g * p.h;
     const double uv = by_s * p.uv, uw = by_s * p.uw, vw = by_s * p.vw;
     Corner3 r;
-    r.energy = p.conformal + p.angle, r.jacobian = p.jacobian;
+    r.energy = p.conformal + p.angle + (size + inverse), r.jacobian = p.jacobian;
     r.du = (Vector){a * u.x - uv * v.x - uw * w.x + by_j * p.cu.x, a * u.y - uv * v.y - uw * w.y + by_j * p.cu.y,
                      a * u.z - uv * v.z - uw * w.z + by_j * p.cu.z};
     r.dv = (Vector){b * v.x - uv * u.x - vw * w.x + by_j * p.cv.x, b * v.y - uv * u.y - vw * w.y + by_j * p.cv.y,

@@ -96,15 +96,13 @@ static inline void team_run(int threads, TeamWork work, void *data)
 }
 #endif
 
-/* Take the next `count` places of a table that all threads fill, in no order; returns the first of them. */
-static inline int64_t team_reserve(int64_t *held, int64_t count)
+/* Add to a count that all threads have. */
+static inline void team_add(int64_t *total, int64_t count)
 {
 #ifdef _WIN32
-    int64_t before = *held;
-    *held += count;
-    return before;
+    *total += count;
 #else
-    return __atomic_fetch_add(held, count, __ATOMIC_RELAXED);
+    __atomic_fetch_add(total, count, __ATOMIC_RELAXED);
 #endif
 }
 
@@ -114,3 +112,13 @@ static inline void team_share(ptrdiff_t count, Member member, ptrdiff_t *first, 
     *first = count * member.rank / member.size;
     *last = count * (member.rank + 1) / member.size;
 }
+
+/* NAME: what a team does to a T, ROWS(task, first, last) by each member for its share of COUNT things. */
+#define TEAM_ROWS(NAME, T, COUNT, ROWS)                \
+    static void NAME(void *data, Member member)        \
+    {                                                  \
+        const T *task = data;                          \
+        ptrdiff_t first, last;                         \
+        team_share(COUNT, member, &first, &last);      \
+        ROWS(task, first, last);                       \
+    }

@@ -1,4 +1,4 @@
-/* The arithmetic of approach.py on one grid at a time, all of which stays in the caches. */
+/* The arithmetic of solvers/neural/quad/picard.py on one grid at a time, all of which stays in the caches. */
 #include "approach.h"
 #include "clones.h"
 #include <math.h>
@@ -13,8 +13,7 @@ static const double TINY = 1e-30;
 typedef struct {
     ptrdiff_t pitch, plane, width, field;
     double *z;              /* nodes (2, rows, pitch), `plane` apart; `around`, two more rows at either end */
-    double *missed, *other; /* what is transformed, folded: (2, rows, width), `field` apart */
-    double *waves;          /* the one of these two that holds it transformed */
+    double *waves, *other; /* what is missed, transformed: (2, rows, width), `field` apart, and room for one */
     double *step, *move;    /* the last ones, transformed, when steps are extrapolated */
     double *room;           /* for a row at work */
 } Places;
@@ -22,7 +21,7 @@ typedef struct {
 MESHONET_INLINE Places sizes(const Approach *a)
 {
     Places p = {0};
-    p.width = 2 * a->eta.line, p.field = a->xi.count * p.width;
+    p.width = a->eta.line, p.field = a->xi.count * p.width;
     p.pitch = (a->n + 2 * LANES - 2) / LANES * LANES, p.plane = (a->xi.count + 4) * p.pitch;
     return p;
 }
@@ -30,8 +29,8 @@ MESHONET_INLINE Places sizes(const Approach *a)
 MESHONET_INLINE Places places(const Approach *a, double *scratch)
 {
     Places p = sizes(a);
-    p.missed = scratch, p.other = p.missed + 2 * p.field, p.waves = a->xi.folded ? p.other : p.missed;
-    p.step = p.other + 2 * p.field, p.move = p.step + 2 * p.field, p.room = p.move + 2 * p.field;
+    p.waves = scratch, p.other = p.waves + 2 * p.field;
+    p.step = p.other + p.field, p.move = p.step + 2 * p.field, p.room = p.move + 2 * p.field;
     p.z = p.room + 10 * p.pitch + BEFORE;
     return p;
 }
@@ -39,7 +38,7 @@ MESHONET_INLINE Places places(const Approach *a, double *scratch)
 ptrdiff_t approach_scratch(const Approach *a)
 {
     const Places p = sizes(a);
-    return 8 * p.field + 10 * p.pitch + 2 * p.plane + 2 * LANES;
+    return 7 * p.field + 10 * p.pitch + 2 * p.plane + 2 * LANES;
 }
 
 /* Weights of five nodes in a row in the first and the second difference at one of them, 1, 2 or 3. */
@@ -119,7 +118,7 @@ MESHONET_INLINE void laplace_row(const double *z, ptrdiff_t pitch, ptrdiff_t n, 
         AT(out + j) = OF(z + j - pitch) + OF(z + j + pitch) + OF(z + j - 1) + OF(z + j + 1) - 4.0 * OF(z + j);
 }
 
-/* By how much the nodes miss the equations, folded along eta, and the means of their coefficients. */
+/* By how much the nodes miss the equations, into `waves`, and the means of their coefficients. */
 MESHONET_INLINE void find_missed(const Approach *a, const Places *p, int linear, double *restrict mean)
 {
     const ptrdiff_t n = a->n, rows = a->xi.count, top = a->around ? 2 : 1;
@@ -142,7 +141,7 @@ MESHONET_INLINE void find_missed(const Approach *a, const Places *p, int linear,
         if (!linear)
             winslow_row(&row[0], &row[1], n, sums);
         for (int q = 0; q < 2; q++)
-            fold_row(&a->eta, row[q].u + 1, p->missed + q * p->field + i * p->width);
+            memcpy(p->waves + q * p->field + i * p->width, row[q].u + 1, (size_t)(n - 2) * sizeof(double));
     }
     for (int k = 0; k < 2; k++)
         mean[k] = linear ? 1.0 : summed(sums[k]) / (double)(rows * (n - 2));
@@ -152,29 +151,22 @@ MESHONET_INLINE void find_missed(const Approach *a, const Places *p, int linear,
 MESHONET_INLINE double solve(const Approach *a, const Places *p, const double *mean)
 {
     const Waves *xi = &a->xi, *eta = &a->eta;
-    const ptrdiff_t rows = xi->count, width = p->width, half = rows - rows / 2;
-    double *other = p->waves == p->other ? p->missed : p->other;
-    for (int q = 0; q < 2; q++) {
-        double *from = p->waves + q * p->field, *to = other + q * p->field;
-        if (xi->folded)
-            fold_columns(rows, width, to, from);
-        along_rows(eta, eta->to, from, rows, to);
-        along_columns(xi, xi->back, to, width, from);
-    }
     Lanes squares = {0};
-    for (ptrdiff_t i = 0; i < rows; i++) {
-        const double slow = mean[0] * xi->values[xi->folded && i >= half ? xi->line + i - half : i];
-        for (ptrdiff_t c = 0; c < width; c += LANES) {
-            const Lanes one = 1.0 / (slow + mean[1] * OF(eta->values + c));
+    for (int q = 0; q < 2; q++) {
+        along_rows(eta, p->waves + q * p->field, xi->count, p->other);
+        along_columns(xi, p->other, p->width, p->waves + q * p->field);
+    }
+    for (ptrdiff_t i = 0; i < xi->count; i++)
+        for (ptrdiff_t c = 0; c < p->width; c += LANES) {
+            const Lanes one = 1.0 / (mean[0] * xi->values[i] + mean[1] * OF(eta->values + c));
             for (int q = 0; q < 2; q++) {
-                double *wave = p->waves + q * p->field + i * width + c;
+                double *wave = p->waves + q * p->field + i * p->width + c;
                 const Lanes value = OF(wave) * one;
                 AT(wave) = value;
                 squares += value * value;
             }
         }
-    }
-    return summed(squares) / (double)(2 * rows * (a->n - 2));
+    return summed(squares) / (double)(2 * xi->count * (a->n - 2));
 }
 
 /* Replace the step by that to where it vanishes when it is linear along the last move: f - g (f - f' + move), with f'
@@ -196,17 +188,12 @@ MESHONET_INLINE void extrapolate(const Places *p, int first)
     }
 }
 
-/* Transform back, to `missed`. */
+/* Transform back, in place. */
 MESHONET_INLINE void transform_back(const Approach *a, const Places *p)
 {
-    const Waves *xi = &a->xi, *eta = &a->eta;
-    double *other = p->waves == p->other ? p->missed : p->other;
     for (int q = 0; q < 2; q++) {
-        double *from = p->waves + q * p->field, *to = other + q * p->field;
-        along_columns(xi, xi->to, from, p->width, to);
-        along_rows(eta, eta->back, to, xi->count, from);
-        if (xi->folded)
-            unfold_columns(xi->count, p->width, from, to);
+        along_columns(&a->xi, p->waves + q * p->field, p->width, p->other);
+        along_rows(&a->eta, p->other, a->xi.count, p->waves + q * p->field);
     }
 }
 
@@ -224,25 +211,15 @@ MESHONET_INLINE void go_round(const Approach *a, const Places *p, const double *
         }
 }
 
-/* Add what `missed` holds by now to the nodes. */
-MESHONET_INLINE void move(const Approach *a, const Places *p)
+/* Add what `waves` holds by now to the rows of planes z, `plane` apart, from the first unknown one on. */
+MESHONET_INLINE void add(const Approach *a, const Places *p, double *z, ptrdiff_t pitch, ptrdiff_t plane)
 {
     for (int q = 0; q < 2; q++)
         for (ptrdiff_t i = 0; i < a->xi.count; i++) {
-            double *z = p->z + q * p->plane + ((a->around ? 2 : 1) + i) * p->pitch;
-            unfold_row(&a->eta, p->missed + q * p->field + i * p->width, z + 1);
-        }
-}
-
-/* The same in place of the steps, whose rims are zeros. */
-MESHONET_INLINE void tell(const Approach *a, const Places *p, double *step)
-{
-    double *row = p->room + BEFORE;
-    for (int q = 0; q < 2; q++)
-        for (ptrdiff_t i = 0; i < a->xi.count; i++) {
-            memset(p->room, 0, (size_t)p->pitch * sizeof(double));
-            unfold_row(&a->eta, p->missed + q * p->field + i * p->width, row + 1);
-            memcpy(step + (q * a->m + (a->around ? 0 : 1) + i) * a->n, row, (size_t)a->n * sizeof(double));
+            const double *from = p->waves + q * p->field + i * p->width;
+            double *row = z + q * plane + i * pitch + 1;
+            for (ptrdiff_t j = 0; j < a->n - 2; j++)
+                row[j] += from[j];
         }
 }
 
@@ -267,13 +244,13 @@ void approach_grid(const Approach *a, double *nodes, const double *turn, double 
         if (!a->harmonic)
             extrapolate(&p, k == 1);
         transform_back(a, &p);
-        move(a, &p);
+        add(a, &p, p.z + (a->around ? 2 : 1) * p.pitch, p.pitch, p.plane);
         if (k == a->steps && !a->harmonic) {
             memcpy(p.waves, p.step, (size_t)(2 * p.field) * sizeof(double));
             transform_back(a, &p);
         }
         if (k == a->steps)
-            tell(a, &p, step);
+            add(a, &p, step + (a->around ? 0 : n), n, a->m * n);
     }
     for (int q = 0; q < 2; q++) {
         for (ptrdiff_t i = 0; i < rows; i++)

@@ -4,20 +4,15 @@
 
 #define APPROACH_LINE 16 /* numbers that lines of tables are rounded up to a multiple of */
 
-/* The transform of `count` values along an axis, its own inverse, and minus the eigenvalues of second differences.
-   Plain: `to` and `back` (count, line) are one table, `values` (count).
-   `folded`: the sums of values and their mirror images make every other wave, the first among them, by the first
-   half = count - count / 2 rows of `to` (count, line); their differences make the rest by the other rows. `back` has
-   the transposes of both, `values` (2, line) are of both. A value in the middle is its own image, and has half its
-   share in the tables. */
+/* The transform of `count` values along an axis: a symmetric table (count, line), its own inverse, and minus the
+   eigenvalues of second differences (line). Beyond `count` the table has zeros, and `values` ones. */
 typedef struct {
-    int folded;
     ptrdiff_t count, line;
-    const double *to, *back, *values;
+    const double *table, *values;
 } Waves;
 
 /* Planes of (m, n) nodes, the unknown ones off the rim; `around`, m rows that go round, unknown but at both ends.
-   Waves along `xi` are plain when `around`, all others folded. Before the steps comes Laplace's solution when
+   Before the steps comes Laplace's solution when
    `harmonic`; else the steps after the first are extrapolated. */
 typedef struct {
     ptrdiff_t m, n;

@@ -1,4 +1,4 @@
-/* Features of a grid and its last step at every node, those of features.py in its order: differences in double, what is
+/* Features of a grid and its last step at every node, those of encoding.py in its order: differences in double, what is
    made of them in real type T with SUFFIX after every name. */
 
 MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *restrict y, const double *restrict dx,

@@ -23,7 +23,7 @@ typedef struct {
 
 void network_layer(const Layer *layer);
 
-#define LOOK_FEATURES 20 /* of features.py, as are the numbers below */
+#define LOOK_FEATURES 20 /* of encoding.py, as are the numbers below */
 #define LOOK_FLOOR 1e-2
 #define LOOK_TINY 1e-6
 #define LOOK_STILL 1e-3

@@ -1,9 +1,8 @@
 cdef extern from "neural/approach.h":
     enum: APPROACH_LINE
     ctypedef struct Waves:
-        int folded
         ptrdiff_t count, line
-        Read to, back, values
+        Read table, values
     ctypedef struct Approach:
         ptrdiff_t m, n
         int around, harmonic, steps
@@ -11,16 +10,6 @@ cdef extern from "neural/approach.h":
         Waves xi, eta
     ptrdiff_t approach_scratch(const Approach *a) nogil
     void approach_grid(const Approach *a, double *p, const double *turn, double *scratch, double *step) nogil
-
-cdef extern from "neural/frame.h":
-    void c_frame_take_out "frame_take_out"(const double *planes, ptrdiff_t m, ptrdiff_t n, double *factor,
-                                           double *out) nogil
-    void c_frame_put_back "frame_put_back"(double *planes, const double *moved, const double *unit, ptrdiff_t m,
-                                           ptrdiff_t n, const double *factor) nogil
-    void frame_add_float(double *planes, const float *answers, ptrdiff_t numbers, const double *rim, ptrdiff_t m,
-                         ptrdiff_t n) nogil
-    void frame_add_double(double *planes, const double *answers, ptrdiff_t numbers, const double *rim, ptrdiff_t m,
-                          ptrdiff_t n) nogil
 
 cdef extern from "neural/network.h":
     enum: CONVOLVE, ACTIVATE, REFINE
@@ -49,14 +38,13 @@ LINE = APPROACH_LINE
 """Numbers that lines of tables of waves are rounded up to a multiple of."""
 
 
-cdef Waves waves(tuple tables, ptrdiff_t count, bint folded) except *:
+cdef Waves waves(tuple tables, ptrdiff_t count) except *:
     """Return pointers into tables of `approach`."""
     cdef Waves w
-    w.folded, w.count, w.line = folded, count, tables[0].shape[1]
-    if w.line < (count - count // 2 if folded else count) or (folded and w.line % APPROACH_LINE):
+    w.count, w.line = count, tables[0].shape[1]
+    if w.line < count or w.line % APPROACH_LINE:
         raise ValueError("tables of a wrong shape")
-    w.to, w.back = reads(tables[0], (count, w.line)), reads(tables[1], (count, w.line))
-    w.values = reads(tables[2], (1 + folded, w.line))
+    w.table, w.values = reads(tables[0], (count, w.line)), reads(tables[1], (w.line,))
     return w
 
 
@@ -74,56 +62,13 @@ def winslow_steps(planes, turns, bint harmonic, int steps, double share, double 
         raise ValueError("planes that are too small")
     cdef Written p = fills(planes, (batch, 2, a.m, a.n)), step = fills(last, (batch, 2, a.m, a.n))
     cdef Read turn = reads(turns, (batch, 2, a.n))
-    a.xi, a.eta = waves(xi, a.m - (1 if around else 2), not around), waves(eta, a.n - 2, True)
+    a.xi, a.eta = waves(xi, a.m - (1 if around else 2)), waves(eta, a.n - 2)
     scratch = np.zeros(approach_scratch(&a) + 8)
     cdef Written room = fills(scratch, scratch.shape)
     room += -(<uintptr_t>room // sizeof(double)) & 7  # from a line of the cache on
     with nogil:
         for b in range(batch):
             approach_grid(&a, p + 2 * b * a.m * a.n, turn + 2 * b * a.n, room, step + 2 * b * a.m * a.n)
-
-
-def frame_take_out(planes, unit, factors):
-    """Fill `unit` with `planes` (batch, 2, m, n) at unit size, and `factors` (batch, 2) of the scaling."""
-    cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b
-    cdef Read p = reads(planes, (batch, 2, m, n))
-    cdef Written to = fills(unit, (batch, 2, m, n)), f = fills(factors, (batch, 2))
-    if m < 2 or n < 2:
-        raise ValueError("planes without cells")
-    with nogil:
-        for b in range(batch):
-            c_frame_take_out(p + 2 * b * m * n, m, n, f + 2 * b, to + 2 * b * m * n)
-
-
-def frame_put_back(planes, moved, unit, factors):
-    """Add to `planes` the displacements from `unit` to `moved`, scaled back to the grids' own sizes."""
-    cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b, at
-    cdef Written p = fills(planes, (batch, 2, m, n))
-    cdef Read to = reads(moved, (batch, 2, m, n)), start = reads(unit, (batch, 2, m, n))
-    cdef Read f = reads(factors, (batch, 2))
-    with nogil:
-        for b in range(batch):
-            at = 2 * b * m * n
-            c_frame_put_back(p + at, to + at, start + at, m, n, f + 2 * b)
-
-
-def add_answers(planes, answers, ptrdiff_t head, rim):
-    """Add to `planes` (batch, 2, m, n) the answers (batch, m, n, heads, 2) of one head times `rim` (m, n)."""
-    cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b, at
-    cdef ptrdiff_t per_node = 2 * answers.shape[3]
-    cdef bint single = is_single(answers)
-    cdef Written p = fills(planes, (batch, 2, m, n))
-    cdef Read share = reads(rim, (m, n))
-    cdef const void *a = reads_real(answers, single, (batch, m, n, answers.shape[3], 2))
-    if not 0 <= 2 * head < per_node:
-        raise ValueError("no such head")
-    with nogil:
-        for b in range(batch):
-            at = b * m * n * per_node + 2 * head
-            if single:
-                frame_add_float(p + 2 * b * m * n, <const float *>a + at, per_node, share, m, n)
-            else:
-                frame_add_double(p + 2 * b * m * n, <const double *>a + at, per_node, share, m, n)
 
 
 cdef bint is_single(array):

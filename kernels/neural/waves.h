@@ -1,4 +1,4 @@
-/* Waves along the rows and columns of fields: products with the tables of Waves, and folding, which halves them. */
+/* Waves along the rows and columns of fields: products with the tables of Waves. */
 #include "lanes.h"
 
 #define BLOCK 8 /* rows of a product that are made together */
@@ -49,68 +49,13 @@ static void product(const double *a, ptrdiff_t a_line, ptrdiff_t rows, ptrdiff_t
     }
 }
 
-/* Transform rows, folded: by the waves' `to`, and by their `back` in return. */
-MESHONET_INLINE void along_rows(const Waves *w, const double *table, const double *in, ptrdiff_t rows, double *out)
+/* Waves along rows (rows, width) of fields, and along their columns: out = in table, and out = table in. */
+MESHONET_INLINE void along_rows(const Waves *w, const double *in, ptrdiff_t rows, double *out)
 {
-    const ptrdiff_t less = w->count / 2, half = w->count - less, width = 2 * w->line;
-    product(in, width, rows, half, table, w->line, w->line, out, width);
-    product(in + w->line, width, rows, less, table + half * w->line, w->line, w->line, out + w->line, width);
+    product(in, w->line, rows, w->count, w->table, w->line, w->line, out, w->line);
 }
 
-/* Transform columns, folded or plain: by the waves' `back`, and by their `to` in return. */
-MESHONET_INLINE void along_columns(const Waves *w, const double *table, const double *in, ptrdiff_t width, double *out)
+MESHONET_INLINE void along_columns(const Waves *w, const double *in, ptrdiff_t width, double *out)
 {
-    const ptrdiff_t less = w->folded ? w->count / 2 : 0, half = w->count - less;
-    product(table, w->line, half, half, in, width, width, out, width);
-    if (w->folded)
-        product(table + half * w->line, w->line, less, less, in + half * width, width, width, out + half * width,
-                width);
-}
-
-/* Columns to the sums and differences with their mirror images, and back, one field after another. */
-MESHONET_INLINE void fold_columns(ptrdiff_t rows, ptrdiff_t width, const double *restrict in, double *restrict out)
-{
-    const ptrdiff_t less = rows / 2, half = rows - less;
-    for (ptrdiff_t i = 0; i < half; i++)
-        for (ptrdiff_t c = 0; c < width; c += LANES) {
-            const Lanes one = OF(in + i * width + c), image = OF(in + (rows - 1 - i) * width + c);
-            AT(out + i * width + c) = one + image;
-            if (i < less)
-                AT(out + (half + i) * width + c) = one - image;
-        }
-}
-
-MESHONET_INLINE void unfold_columns(ptrdiff_t rows, ptrdiff_t width, const double *restrict in, double *restrict out)
-{
-    const ptrdiff_t less = rows / 2, half = rows - less;
-    for (ptrdiff_t i = 0; i < half; i++)
-        for (ptrdiff_t c = 0; c < width; c += LANES) {
-            const Lanes sum = OF(in + i * width + c);
-            const Lanes other = i < less ? OF(in + (half + i) * width + c) : sum;
-            if (i < less)
-                AT(out + (rows - 1 - i) * width + c) = sum - other;
-            AT(out + i * width + c) = sum + other;
-        }
-}
-
-#define MIRRORED(x) ((Lanes){(x)[7], (x)[6], (x)[5], (x)[4], (x)[3], (x)[2], (x)[1], (x)[0]})
-
-/* A row to the sums and differences with its mirror image. */
-MESHONET_INLINE void fold_row(const Waves *w, const double *row, double *out)
-{
-    for (ptrdiff_t j = 0; 2 * j < w->count; j += LANES) {
-        const Lanes one = OF(row + j), behind = OF(row + w->count - LANES - j), image = MIRRORED(behind);
-        AT(out + j) = one + image;
-        AT(out + w->line + j) = one - image;
-    }
-}
-
-/* Add to a row what sums and differences are of; beyond them are zeros. */
-MESHONET_INLINE void unfold_row(const Waves *w, const double *in, double *row)
-{
-    for (ptrdiff_t j = 0; 2 * j < w->count; j += LANES) {
-        const Lanes sum = OF(in + j), other = OF(in + w->line + j), image = sum - other;
-        AT(row + j) += sum + other;
-        AT(row + w->count - LANES - j) += MIRRORED(image);
-    }
+    product(w->table, w->line, w->count, w->count, in, width, width, out, width);
 }

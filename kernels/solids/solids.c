@@ -55,7 +55,7 @@ static ptrdiff_t chunks_of_plane(const SolidNodes *nodes) { return (nodes->nj - 
 
 ptrdiff_t solids_chunks(const SolidNodes *nodes) { return (nodes->ni - 1) * chunks_of_plane(nodes); }
 
-/* Scratch of one thread: inverse lengths at the lines of both ends of a row in j, its metrics and a row more. */
+/* Scratch of one thread: inverse lengths at the lines of both ends of a row in j, and its metrics. */
 typedef struct {
     double *memory;
     SolidLengths lengths;
@@ -64,7 +64,7 @@ typedef struct {
 
 static int scratch_made(Scratch *scratch, ptrdiff_t nk)
 {
-    double *at = scratch->memory = malloc((9 + SOLID_METRICS) * (size_t)nk * sizeof(double));
+    double *at = scratch->memory = malloc((8 + SOLID_METRICS) * (size_t)nk * sizeof(double));
     if (at == NULL)
         return 0;
     for (int a = 0; a < 2; a++) {
@@ -113,21 +113,6 @@ static void measured_row(const SolidNodes *nodes, const SolidLines *lines, const
     solid_row(lines, lengths, own, beside, nodes->nk - 1, stride, out);
 }
 
-/* Rank a row of metric values against the brackets, and keep those inside. */
-static void catch_row(const SolidRun *run, ptrdiff_t chunk, ptrdiff_t metric, const double *row, ptrdiff_t cells,
-                      double *room)
-{
-    for (ptrdiff_t m = metric * run->n_brackets; m < (metric + 1) * run->n_brackets; m++) {
-        int64_t *counts = run->counts + 4 * (chunk * SOLID_METRICS * run->n_brackets + m);
-        const ptrdiff_t n = values_catch(row, cells, run->brackets[2 * m], run->brackets[2 * m + 1], counts, room, cells);
-        if (!n)
-            continue;
-        const int64_t at = team_reserve(run->held + m, n);
-        if (at + n <= run->room)
-            memcpy(run->caught + m * run->room + at, room, (size_t)n * sizeof(double));
-    }
-}
-
 static void place(const double *row, double value, ptrdiff_t i, ptrdiff_t j, int64_t *where, ptrdiff_t cells)
 {
     ptrdiff_t k = 0;
@@ -156,7 +141,6 @@ static void take_row(const SolidRun *run, ptrdiff_t chunk, int fresh, ptrdiff_t 
             place(row, high, i, j, where + 3, cells);
         }
         summary[1] = fresh ? sum : summary[1] + sum;
-        catch_row(run, chunk, metric, row, cells, rows + SOLID_METRICS * cells);
         if (metric >= run->keep && metric < run->keep + run->n_kept) {
             const ptrdiff_t at = ((metric - run->keep) * (run->nodes.ni - 1) + i) * (run->nodes.nj - 1) + j;
             memcpy(run->kept + at * cells, row, (size_t)cells * sizeof(double));
@@ -207,22 +191,4 @@ int solids_run(const SolidRun *run, int threads)
     Task task = {run, 0};
     team_run(threads, run_chunks, &task);
     return !task.failed;
-}
-
-int solids_rows(const SolidNodes *nodes, const double *volumes, const int64_t *rows, ptrdiff_t n, double *values)
-{
-    const ptrdiff_t cells = nodes->nk - 1;
-    Scratch scratch;
-    if (!scratch_made(&scratch, nodes->nk))
-        return 0;
-    for (ptrdiff_t m = 0; m < n; m++) {
-        const ptrdiff_t i = rows[2 * m], j = rows[2 * m + 1];
-        const SolidLines lines = solid_lines(nodes, i, j);
-        lengths_at(&lines, 0, nodes->nk, &scratch.lengths);
-        lengths_at(&lines, 1, nodes->nk, &scratch.lengths);
-        lengths_along_j(&lines, nodes->nk, &scratch.lengths);
-        measured_row(nodes, &lines, &scratch.lengths, volumes, i, j, n * cells, values + m * cells);
-    }
-    free(scratch.memory);
-    return 1;
 }

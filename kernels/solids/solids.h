@@ -47,18 +47,10 @@ typedef struct {
     int64_t *where;        /* (chunks, metrics, 2, 3): cell (i, j, k) of the min and of the max, first in order */
     ptrdiff_t keep, n_kept; /* the first of the metrics whose values are kept, and how many are */
     double *kept;          /* (n_kept, ni-1, nj-1, nk-1) */
-    ptrdiff_t n_brackets, room;
-    const double *brackets; /* (metrics, n_brackets, 2): pairs of values */
-    int64_t *counts;        /* (chunks, metrics, n_brackets, 4), zeros before; see values_catch */
-    double *caught;         /* (metrics, n_brackets, room): values between the two, in no order */
-    int64_t *held;          /* (metrics, n_brackets), zeros before: how many those are, also beyond the room */
 } SolidRun;
 
 /* Returns 0 when there is no memory. */
 int solids_run(const SolidRun *run, int threads);
-
-/* All metrics of `n` rows of cells (i, j) into (metrics, n, nk-1). Returns 0 when there is no memory. */
-int solids_rows(const SolidNodes *nodes, const double *volumes, const int64_t *rows, ptrdiff_t n, double *values);
 
 /* Grid lines through the nodes (i, j, k): how their steps grow, the larger over the smaller, and by how many degrees
    they bend. For each plane i, axis and of these two the greatest, -1 without nodes, and the sum, (ni, 3, 2, 2), and

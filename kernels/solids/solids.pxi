@@ -10,18 +10,11 @@ cdef extern from "solids/solids.h":
         int64_t *where
         ptrdiff_t keep, n_kept
         double *kept
-        ptrdiff_t n_brackets, room
-        const double *brackets
-        int64_t *counts
-        double *caught
-        int64_t *held
     void c_solids_folded "solids_folded"(const SolidNodes *nodes, int test, int threads, int64_t *counts) nogil
     void c_solids_places "solids_places"(const SolidNodes *nodes, int test, const int64_t *counts, int64_t *places) nogil
     void c_solids_volumes "solids_volumes"(const SolidNodes *nodes, int threads, double *volumes) nogil
     ptrdiff_t c_solids_chunks "solids_chunks"(const SolidNodes *nodes) nogil
     int c_solids_run "solids_run"(const SolidRun *run, int threads) nogil
-    int c_solids_rows "solids_rows"(const SolidNodes *nodes, const double *volumes, const int64_t *rows, ptrdiff_t n,
-                                    double *values) nogil
     int c_solids_lines "solids_lines"(const SolidNodes *nodes, int threads, double *summary, int64_t *where,
                                          float *values) nogil
 
@@ -72,7 +65,7 @@ def solids_chunks(nodes):
     return c_solids_chunks(&block)
 
 
-def solids_run(nodes, volumes, summary, where, ptrdiff_t keep, kept, brackets, counts, caught, held, int threads):
+def solids_run(nodes, volumes, summary, where, ptrdiff_t keep, kept, int threads):
     """Run over all cells once; the arguments are those of SolidRun in ``solids/solids.h``."""
     cdef SolidRun run
     run.nodes = solid_nodes(nodes)
@@ -80,32 +73,12 @@ def solids_run(nodes, volumes, summary, where, ptrdiff_t keep, kept, brackets, c
     if not 0 <= keep <= SOLID_METRICS - len(kept):
         raise ValueError("metrics beyond the last")
     run.volumes = reads(volumes, (ni + 1, nj + 1, nk + 1))
-    run.keep, run.n_kept, run.n_brackets, run.room = keep, len(kept), brackets.shape[1], caught.shape[2]
+    run.keep, run.n_kept = keep, len(kept)
     run.summary, run.where = fills(summary, (chunks, SOLID_METRICS, 3)), fills_long(where, (chunks, SOLID_METRICS, 2, 3))
     run.kept = fills(kept, (run.n_kept, ni - 1, nj - 1, nk - 1))
-    run.brackets = reads(brackets, (SOLID_METRICS, run.n_brackets, 2))
-    run.counts = fills_long(counts, (chunks, SOLID_METRICS, run.n_brackets, 4))
-    run.caught = fills(caught, (SOLID_METRICS, run.n_brackets, run.room))
-    run.held = fills_long(held, (SOLID_METRICS, run.n_brackets))
     cdef int done
     with nogil:
         done = c_solids_run(&run, threads)
-    if not done:
-        raise MemoryError
-
-
-def solids_rows(nodes, volumes, rows, values):
-    """Fill values (metrics, n, nk-1) with all metrics of the rows (i, j) of cells, (n, 2)."""
-    cdef SolidNodes block = solid_nodes(nodes)
-    cdef ptrdiff_t n = len(rows)
-    cdef Read sizes = reads(volumes, (block.ni + 1, block.nj + 1, block.nk + 1))
-    cdef int64_t *at = fills_long(rows, (n, 2))
-    cdef Written to = fills(values, (SOLID_METRICS, n, block.nk - 1))
-    if n and not (0 <= rows.min() and rows[:, 0].max() < block.ni - 1 and rows[:, 1].max() < block.nj - 1):
-        raise ValueError("rows beyond the last")
-    cdef int done
-    with nogil:
-        done = c_solids_rows(&block, sizes, at, n, to)
     if not done:
         raise MemoryError
 

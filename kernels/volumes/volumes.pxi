@@ -13,33 +13,6 @@ cdef extern from "volumes/tfi.h":
     int c_tfi_volume "tfi_volume"(double *nodes, const Volume *volume, const Faces *faces, const Laws *laws,
                                   const Spline3 *spline, int threads) nogil
 
-cdef extern from "volumes/energy.h":
-    ctypedef struct Functional3:
-        ptrdiff_t n1, n2, n3
-        double over[3]
-        double shape, smoothness, epsilon
-        int power, threads
-    size_t volume_energy_room(const Functional3 *f) nogil
-    double c_volume_energy "volume_energy"(const Functional3 *f, const double *x, double *g, double *smallest,
-                                           double *room) nogil
-    void c_volume_jacobians "volume_jacobians"(const Functional3 *f, const double *x, double *least) nogil
-
-cdef extern from "volumes/descent.h":
-    ctypedef struct Descent3:
-        Functional3 f
-        ptrdiff_t m[3]
-        double *x
-        Steps steps
-    void descent3_sizes(Descent3 *d, size_t *doubles, size_t *floats) nogil
-    void descent3_place(Descent3 *d, double *doubles, float *floats) nogil
-    void descent3_start(Descent3 *d) nogil
-    void descent3_renew(Descent3 *d) nogil
-    int descent3_take(Descent3 *d) nogil
-
-cdef extern from "energy/steps.h":
-    void steps_forget(Steps *s) nogil
-
-
 def tfi_volume(nodes, tuple faces, tuple laws, int threads, spline=None):
     """Fill the planes `nodes` (3, n1, n2, n3) from six faces.
 
@@ -75,85 +48,6 @@ def tfi_volume(nodes, tuple faces, tuple laws, int threads, spline=None):
         failed = c_tfi_volume(to, &volume, &f, &l, added, threads)
     if failed:
         raise MemoryError
-
-
-cdef Functional3 functional3(tuple counts, tuple over, tuple weights, double epsilon, int threads) except *:
-    """Return the functional of (shape, smoothness, power), on so many nodes."""
-    cdef Functional3 f
-    f.n1, f.n2, f.n3 = counts
-    f.over[0], f.over[1], f.over[2] = over
-    f.shape, f.smoothness, f.power = weights
-    f.epsilon, f.threads = epsilon, min(max(threads, 1), 64)
-    if min(counts) < 3 or f.power < (1 if epsilon > 0.0 else 0) or f.power > (1 if epsilon > 0.0 else 2):
-        raise ValueError("a functional of no inner nodes, or of another power")
-    return f
-
-
-def volume_energy(x, tuple over, tuple weights, double epsilon, int threads, gradient):
-    """Return (value, smallest corner Jacobian) at the planes x (3, n1, n2, n3); fill `gradient` at inner nodes.
-
-    `over`: 1 / length of edges along each direction; `weights`: (shape, smoothness, power) of ``volumes/energy.h``.
-    """
-    cdef Functional3 f = functional3(x.shape[1:], over, weights, epsilon, threads)
-    cdef Read nodes = reads(x, (3, f.n1, f.n2, f.n3))
-    cdef Written g = fills(gradient, x.shape)
-    room = np.empty(volume_energy_room(&f))
-    cdef Written work = fills(room, room.shape)
-    cdef double value, smallest = 0.0
-    with nogil:
-        value = c_volume_energy(&f, nodes, g, &smallest, work)
-    return value, smallest
-
-
-def volume_jacobians(x, tuple over, int threads, least):
-    """Fill least (n1-1, n2-1, n3-1) with the smallest corner Jacobian of each cell of the planes x (3, n1, n2, n3)."""
-    cdef Functional3 f = functional3(x.shape[1:], over, (0.5, 1.0, 2), 0.0, threads)
-    cdef Read nodes = reads(x, (3, f.n1, f.n2, f.n3))
-    cdef Written to = fills(least, (f.n1 - 1, f.n2 - 1, f.n3 - 1))
-    with nogil:
-        c_volume_jacobians(&f, nodes, to)
-
-
-cdef class VolumeDescent:
-    """Descents of the functional over inner nodes of volumes of one shape, (n1, n2, n3)."""
-
-    cdef Descent3 state
-    cdef object held
-
-    def __init__(self, tuple counts, int threads):
-        cdef size_t doubles = 0, floats = 0
-        self.state.f = functional3(counts, (1.0, 1.0, 1.0), (0.5, 1.0, 2), 0.0, threads)
-        descent3_sizes(&self.state, &doubles, &floats)
-        room, small = np.empty(doubles), np.empty(floats, np.float32)
-        descent3_place(&self.state, fills(room, room.shape), fills_single(small))
-        self.held = (room, small)
-
-    def run(self, x, tuple over, tuple weights, double epsilon, int most, int renew, double still, double reach,
-            double gain):
-        """Descend from the planes x (3, n1, n2, n3), in place; return (value, smallest Jacobian, iterations).
-
-        The preconditioner follows the nodes after each `renew` iterations. It stops after `most` of them, or where
-        two on end move no node by more than `still` of its cell and gain less than `gain` of the value. No node moves
-        by more than `reach` cells in a first step.
-        """
-        cdef int done = 0, state = GOES_ON
-        cdef Functional3 *f = &self.state.f
-        self.state.x = fills(x, (3, f.n1, f.n2, f.n3))
-        f[0] = functional3((f.n1, f.n2, f.n3), over, weights, epsilon, f.threads)
-        self.state.steps.still, self.state.steps.reach, self.state.steps.gain = still, reach, gain
-        self.state.steps.farthest = 1e30
-        with nogil:
-            descent3_start(&self.state)
-        while done < most and state == GOES_ON:
-            PyErr_CheckSignals()
-            if done and done % renew == 0:
-                with nogil:
-                    descent3_renew(&self.state)
-                    steps_forget(&self.state.steps)
-            with nogil:
-                state = descent3_take(&self.state)
-            done += 1
-        return self.state.steps.value, self.state.steps.smallest, done
 
 
 cdef extern from "volumes/winslow.h":

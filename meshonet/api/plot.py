@@ -53,7 +53,7 @@ def plot(
     >>> import meshonet
     >>> plot(meshonet.tfi("naca:2412", res=(41, 17)), "grid.png", metric=None)
     """
-    picture = Picture(metric, zoom, every, slice, seen_from)
+    picture = Picture(zoom, every, slice, seen_from, metric)
     kind = picture_format(str(output), to_format).name
     with whole_file(str(output)) as part:
         picture.draw(kind, part, [single_grid(grid)])

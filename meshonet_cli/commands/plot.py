@@ -66,6 +66,6 @@ def plot(
     from meshonet_cli.tasks.pictures import plot_grids
 
     box, direction = o.numbers(zoom, (4, 6), *_BOX), o.numbers(seen_from, (2,), *_DIRECTION)
-    picture = Picture(None if metric == "none" else metric, box, every, slice_, direction)
+    picture = Picture(box, every, slice_, direction, None if metric == "none" else metric)
     return plot_grids(printing.batch(many.of(grid, grids=True), files), picture)
 # fmt: on

@@ -8,7 +8,7 @@ from meshonet_cli import options as o
 
 EXAMPLES = (
     "meshonet sweep circle:0.5 bend.toml -o pipe.h5",
-    "meshonet sweep circle:0.5 bend.toml --cells 800 --first-cell 0.005 -o layers.h5",
+    "meshonet sweep circle:0.5 bend.toml --first-cell 0.005 -o layers.h5",
     "meshonet sweep duct.csv path.csv --res 41x21 --twist 45 -o duct.h5",
 )
 _sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
@@ -30,6 +30,11 @@ def sweep(
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ", help="Nodes along the sides of a four-sided section. [default: 65x33]",
     )] = None,
+    around: Annotated[int | None, _sampling(
+        "--around", metavar="N",
+        help="Cells around a circle, a multiple of four. [default: what --cells need, at least 88, which "
+        "keep the area within 0.1 %]",
+    )] = None,
     planes: Annotated[int | None, _volume(
         "--planes", metavar="K",
         help="Planes of nodes along the path. [default: cells turn by up to 4 degrees and are up to three "
@@ -49,7 +54,7 @@ def sweep(
     )] = 1.0,
     cells: Annotated[int | None, o.option_of(o.DOMAIN)(
         "--cells", metavar="N",
-        help="About so many cells in the section. [default: 320 in a circle, or 2500]",
+        help="About so many cells in the section. [default: 88 around a circle, or 2500]",
     )] = None,
     cell_size: Annotated[float | None, o.option_of(o.DOMAIN)(
         "--cell-size", metavar="H", help="Length of edges in the section away from walls, in its unit.",
@@ -88,5 +93,6 @@ def sweep(
     }
     direction = o.numbers(up, (3,), "a direction", "use X,Y,Z, e.g. 0,0,1", "up")
     batch = printing.batch(many.of(outlines), files, workers)
-    return write_sweeps(batch, path, section, Sweep(planes, direction, twist, scale), gates.criteria())
+    settings = Sweep(planes, direction, twist, scale)
+    return write_sweeps(batch, path, section, settings, gates.criteria(), around=around)
 # fmt: on

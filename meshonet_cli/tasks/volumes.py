@@ -65,20 +65,24 @@ def _surface(item: Item[Stack], request: StackRequest) -> tuple[Grid, Delivered]
 
 
 def write_sweeps(
-    batch: Batch, path: str, section: Mapping[str, Any], settings: Sweep, criteria: Criteria
-) -> int:
+    batch: Batch, path: str, section: Mapping[str, Any], settings: Sweep, criteria: Criteria,
+    *, around: int | None = None,
+) -> int:  # fmt: skip
     """Write the volumes of the sections of the inputs along a path; return the exit code."""
     parameters = domain_parameters(_shared(section, batch)) | {"percentiles": criteria.percentiles}
     res = parameters.pop("res")
     request = grid_request(res=None if res is None else _counts(res), **parameters)
-    make = each(_swept, path=path_of(path), request=request, settings=settings, criteria=criteria)
+    make = each(
+        _swept, path=path_of(path), request=request, settings=settings, criteria=criteria, around=around
+    )
     return batch.run(BatchTask(partial(read_sections, fmt=batch.files.from_format), make, nodes=VOLUME_NODES))
 
 
 def _swept(
-    item: Item[Shape], path: Path, request: GridRequest, settings: Sweep, criteria: Criteria
-) -> tuple[Grid, Report]:
-    return reported(item, make_sweep(item.what, path, request, settings), criteria)
+    item: Item[Shape], path: Path, request: GridRequest, settings: Sweep, criteria: Criteria,
+    around: int | None,
+) -> tuple[Grid, Report]:  # fmt: skip
+    return reported(item, make_sweep(item.what, path, request, settings, around), criteria)
 
 
 def _counts(text: str) -> tuple[int, int]:

@@ -70,14 +70,14 @@ def interpolate(x: Floats, y: Floats, edges: Four, along: Four) -> None:
 
 
 def arc_length_fraction(points: Floats) -> Floats:
-    """Return the length along the polyline `points` (n, 2) up to each point, over the whole: (n,), 0 to 1.
+    """Return the length along polylines (..., n, 2) up to each point, over the whole: (..., n), 0 to 1.
 
     >>> arc_length_fraction(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 9.0]]))
     array([0. , 0.5, 1. ])
     """
-    along = np.zeros(len(points))
-    dx, dy = (points[1:] - points[:-1]).T
-    np.hypot(dx, dy, out=along[1:])
-    np.cumsum(along, out=along)
-    along /= along[-1]
+    along = np.zeros(points.shape[:-1])
+    steps = points[..., 1:, :] - points[..., :-1, :]
+    np.hypot(steps[..., 0], steps[..., 1], out=along[..., 1:])
+    np.cumsum(along, axis=-1, out=along)
+    along /= along[..., -1:]
     return along

@@ -16,6 +16,7 @@ Trefethen, Spectral Methods in MATLAB (2000), chapters 6 and 7.
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,6 @@ import numpy as np
 from meshonet.geometry import elementary
 from meshonet.geometry.arrays import Complexes, Floats, array_like, read_only
 from meshonet.geometry.elementary import functions_of
-from meshonet.geometry.linear import real_eigen
 from meshonet.kernels._native import picard_step
 from meshonet.solvers.conformal.chebyshev import barycentric, weights
 
@@ -31,6 +31,13 @@ MODES = 63  # as in kernels/conformal/picard.h, like the next two
 COLUMNS = 128  # samples along theta
 LEVELS = 40  # Chebyshev points across the strip, both walls included
 CLUSTERING = 4.0  # eta(s) = (exp(c s) - 1)/(exp(c) - 1)
+
+EIGENVECTORS = Path(__file__).with_name("eigenvectors.npy")
+"""Rows of eigenvalues w of ``d2[1:-1, 1:-1]`` below, of eigenvectors v in columns, and of their inverse.
+
+Kept, since LAPACK rounds by the processor. When `LEVELS` or `CLUSTERING` change, they are made again:
+``w, v = np.linalg.eig(d2[1:-1, 1:-1])``, ``np.save(EIGENVECTORS, np.vstack([w, v, np.linalg.inv(v)]))``.
+"""
 
 
 @dataclass(frozen=True)
@@ -60,7 +67,8 @@ def across() -> Across:
     rate = CLUSTERING * elementary.exp(CLUSTERING * s) / math.expm1(CLUSTERING)
     d1 = -2.0 * d / rate[:, None]
     d2 = elementary.product(d1, d1)
-    arrays = (s, eta, d1, d2, *real_eigen(d2[1:-1, 1:-1]))
+    kept = np.load(EIGENVECTORS)
+    arrays = (s, eta, d1, d2, kept[0], kept[1:n], kept[n:])
     return Across(*(read_only(array) for array in arrays))
 
 

@@ -50,9 +50,8 @@ class Field:
         return moved.T
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the derivative (d + d², k) by the motions of Σ pull · displacement, `pull` (m, d)."""
-        d = len(self.places)
-        gathered = np.empty((d + d * d, len(self.areas)))
+        """Return the derivative (6, k) by motions in the plane of Σ pull · displacement, `pull` (m, 2)."""
+        gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
         blend_transposed(self.places, self.areas, self.near, self.points, force, gathered)
         return gathered

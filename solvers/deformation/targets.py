@@ -118,17 +118,14 @@ def _placed(
         for piece in pieces:
             yield piece.numbers, new(table.nodes[piece.numbers])
         return
-    if isinstance(new, Grid):
-        yield from _of_grid(table, pieces, name, new)
-        return
-    if table.nodes.shape[1] == 3:
-        parts = [piece.numbers for piece in pieces]
-        arrays = _arrays(new, name)
-        if [part.shape for part in parts] != [array.shape[:-1] for array in arrays]:
-            sizes = ", ".join(" x ".join(map(str, part.shape)) for part in parts)
-            problem = f"{name!r} has patches of {sizes} nodes, and its new shape others"
+    if isinstance(new, Grid) or table.nodes.shape[1] == 3:
+        arrays = _of_grid(new, name) if isinstance(new, Grid) else _arrays(new, name)
+        had, given = ([piece.numbers.shape for piece in pieces], [array.shape[:-1] for array in arrays])
+        if had != given or arrays[0].shape[-1] != table.nodes.shape[1]:
+            own, other = (", ".join(" x ".join(map(str, size)) for size in each) for each in (had, given))
+            problem = f"{name!r} has patches of {own} nodes, and its new shape {other or 'none'}"
             raise InputError(problem, "give as many nodes, in order", parameter="wall")
-        yield from zip(parts, arrays, strict=True)
+        yield from ((piece.numbers, array) for piece, array in zip(pieces, arrays, strict=True))
         return
     lines = lines_of(pieces)
     shapes = _arrays(new, name) if isinstance(new, np.ndarray | Sequence) else [new] * len(lines)
@@ -155,24 +152,11 @@ def _arrays(new: Any, name: str) -> list[Floats]:
     return arrays
 
 
-def _of_grid(
-    table: NodeTable, pieces: Sequence[Piece], name: str, new: Grid
-) -> Iterator[tuple[NDArray[np.intp], Floats]]:
+def _of_grid(new: Grid, name: str) -> list[Floats]:
     if new.form == "surface":
-        others = [block.nodes for block in new.blocks]
-    else:
-        theirs = NodeTable.of(new)
-        others = [theirs.nodes[each.numbers] for each in theirs.pieces if each.patch.name == name]
-    sizes = [piece.numbers.shape for piece in pieces]
-    if sizes != [other.shape[:-1] for other in others] or others[0].shape[-1] != table.nodes.shape[1]:
-        own_sizes, new_sizes = (
-            ", ".join(" x ".join(map(str, size)) for size in each)
-            for each in (sizes, [other.shape[:-1] for other in others])
-        )
-        problem = f"{name!r} has {own_sizes} nodes, and {new_sizes or 'none'} in the other grid"
-        raise InputError(problem, "use a grid with the same nodes there", parameter="wall")
-    for piece, other in zip(pieces, others, strict=True):
-        yield piece.numbers, other
+        return [block.nodes for block in new.blocks]
+    theirs = NodeTable.of(new)
+    return [theirs.nodes[each.numbers] for each in theirs.pieces if each.patch.name == name]
 
 
 def _on(wall: Floats, shape: Any, name: str) -> tuple[Floats, tuple[str, ...]]:

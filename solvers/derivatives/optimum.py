@@ -21,6 +21,7 @@ from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import variational_energy
 from meshonet.solvers.derivatives.lattice import Equations, Jacobian, jacobian, shortest_edges
+from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.energy.functional import Weights, aspect_of
 from meshonet.solvers.sparse import Factor, SparseMatrix, SparsePattern
 
@@ -176,24 +177,14 @@ def aspect_slope(nodes: Floats) -> Floats:
 
 
 def winslow_residual(nodes: Floats) -> Floats:
-    """Return the left side of Winslow's equations at inner nodes of (2, ni, nj), central differences.
-
-    α x_ξξ - 2β x_ξη + γ x_ηη with α = x_η·x_η, β = x_ξ·x_η, γ = x_ξ·x_ξ; Winslow, J. Comput. Phys. 1 (1966).
-    """
-    residual = np.zeros_like(nodes)
-    west, east, south, north = (
-        nodes[:, :-2, 1:-1],
-        nodes[:, 2:, 1:-1],
-        nodes[:, 1:-1, :-2],
-        nodes[:, 1:-1, 2:],
-    )
-    middle = nodes[:, 1:-1, 1:-1]
-    xi, eta = 0.5 * (east - west), 0.5 * (north - south)
+    """Return the left side of Winslow's equations at inner nodes of (2, ni, nj), by central differences."""
+    residual, middle = np.zeros_like(nodes), nodes[:, 1:-1, 1:-1]
+    west, east = nodes[:, :-2, 1:-1], nodes[:, 2:, 1:-1]
+    south, north = nodes[:, 1:-1, :-2], nodes[:, 1:-1, 2:]
     mixed = 0.25 * (nodes[:, 2:, 2:] - nodes[:, 2:, :-2] - nodes[:, :-2, 2:] + nodes[:, :-2, :-2])
-    alpha, beta, gamma = (eta**2).sum(axis=0), (xi * eta).sum(axis=0), (xi**2).sum(axis=0)
-    residual[:, 1:-1, 1:-1] = (
-        alpha * (east - 2.0 * middle + west) - 2.0 * beta * mixed + gamma * (north - 2.0 * middle + south)
-    )
+    first = 0.5 * (east - west), 0.5 * (north - south)
+    second = east - 2.0 * middle + west, mixed, north - 2.0 * middle + south
+    residual[:, 1:-1, 1:-1] = left_side((*first, *second), lambda a, b: (a * b).sum(axis=0))[0]
     return residual
 
 

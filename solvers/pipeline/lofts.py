@@ -30,7 +30,7 @@ from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.section_nodes import around, unit_nodes
 from meshonet.solvers.stacking.wing_surface import span_heights
-from meshonet.solvers.sweeping.butterfly import CORE, filled, ring_rows
+from meshonet.solvers.sweeping import butterfly
 
 _FADE = 4.0
 """Distance from a blade, in chords, at which two thirds of its twist and scale are gone."""
@@ -97,24 +97,17 @@ def _four_sided(stack: Stack, request: StackRequest, first: float | None) -> lis
 def _five_blocks(stack: Stack, request: StackRequest, first: float | None) -> list[Grid]:
     """Return a core and a ring of four blocks inside each section."""
     side = _side(request)
-    arcs_of, widths = [], []
+    sections = []
     for section in stack.sections:
         assert isinstance(section.shape, Outline)  # noqa: S101 - ducts have no others
         edges = section.shape.boundary(Sampling(side + 1, side + 1, topology="quad"))
         origin, length = section.frame
         loop = (edges.east, edges.north[::-1], edges.west[::-1], edges.south)
-        arcs_of.append([(arc - origin) / length for arc in loop])
-        points = np.concatenate(arcs_of[-1])
-        widths.append((1.0 - CORE) * float(norms(points - points.mean(axis=0)).mean()))
-    k = int(np.argmax([width * section.chord for width, section in zip(widths, stack.sections, strict=True)]))
-    width = widths[k] * stack.sections[k].chord
-    edge = width / (1.0 - CORE) * 0.25 * np.pi * (1.0 + CORE) / side
-    rows = request.layers - 1 if request.layers else ring_rows(width, edge, first, request.growth)
-    planes = []
-    for section, arcs, own in zip(stack.sections, arcs_of, widths, strict=True):
-        part = None if first is None else first / section.chord / own
-        planes.append(filled(arcs, rows, part))
-    return planes
+        arcs = [(arc - origin) / length for arc in loop]
+        sections.append(butterfly.CrossSection(arcs, None if first is None else first / section.chord))
+    rows = request.layers - 1 if request.layers else None
+    plan = butterfly.planned(sections, request.growth or _GROWTH, rows)
+    return [butterfly.filled(section, plan) for section in sections]
 
 
 def _side(request: StackRequest) -> int:

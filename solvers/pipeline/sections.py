@@ -22,32 +22,39 @@ from meshonet.geometry.shapes.shape import Shape
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.uses import GIVEN_SECTION, refuse
-from meshonet.solvers.sweeping.butterfly import DEFAULT_CELLS, Disc, butterfly
+from meshonet.solvers.pipeline.wall_facts import wall_facts
+from meshonet.solvers.sweeping.butterfly import GROWTH
+from meshonet.solvers.sweeping.disc import Disc, butterfly
 
 _SIDES = 65, 33
 """Nodes along the sides of a four-sided section, unless they are given."""
 
 
-def section_grid(shape: Shape | Grid, request: GridRequest) -> tuple[Grid, tuple[str, ...]]:
+def section_grid(
+    shape: Shape | Grid, request: GridRequest, around: int | None = None
+) -> tuple[Grid, tuple[str, ...]]:
     """Return the planar grid inside a closed curve or domain, and notes; a grid is taken as it is.
 
     A circle is made of five blocks, a four-sided outline of one, others of the blocks that are found.
-    Walls with a first cell are all sides, or the stretches that the request names.
+    Walls with a first cell are all sides, or the stretches that the request names. `around` is the count of
+    cells around a circle.
 
     Raises InputError: parameters that do not fit the shape; as `make_grid`.
     """
+    five_blocks = isinstance(shape, Circle) and not (request.cell_size or request.layout or request.walls)
+    if around is not None and not five_blocks:
+        problem = "cells around are counted in circles of five blocks"
+        raise InputError(problem, "give {cells} or {res} instead", parameter="around")
     if isinstance(shape, Grid):
         refuse(request.chosen, GIVEN_SECTION)
         return shape, ()
     request, note = _with_height(shape, request)
     notes = (note,) if note else ()
-    if (
-        isinstance(shape, Circle)
-        and request.cell_size is None
-        and request.layout is None
-        and not request.walls
-    ):
-        return _disc(shape, request), notes
+    if isinstance(shape, Circle) and five_blocks:
+        disc = _disc(shape, request, around)
+        grid = butterfly(disc)
+        facts = wall_facts(grid, request.growth or GROWTH) if disc.first_cell else ()
+        return grid, (*notes, *[disc.note] * bool(disc.note), *facts)
     inside = _inside(shape)
     if isinstance(inside, DomainShape) and inside.many:
         request = _walled(inside, request)
@@ -86,11 +93,11 @@ def _with_height(shape: Shape, request: GridRequest) -> tuple[GridRequest, str]:
     return replace(request, y_plus=None, reynolds=None, chord_fraction=0.5, first_cell=height), note
 
 
-def _disc(shape: Circle, request: GridRequest) -> Grid:
+def _disc(shape: Circle, request: GridRequest, around: int | None) -> Disc:
     if request.sampling.ni is not None:
-        raise InputError("a circle is made of five blocks", "give {cells} instead", parameter="res")
-    cells = request.cells or DEFAULT_CELLS * (1 if request.first_cell is None else 2)
-    return butterfly(Disc(shape.radius, cells, request.first_cell, request.growth))
+        problem = "a circle is made of five blocks"
+        raise InputError(problem, "give {around} or {cells} instead", parameter="res")
+    return Disc(shape.radius, request.cells, request.first_cell, request.growth, around)
 
 
 def _inside(shape: Shape) -> Shape:

@@ -19,17 +19,20 @@ _REMEDY = "use a wider bend, a smaller section or more {planes}"  # where cells 
 
 
 def make_sweep(
-    shape: Shape | Grid, path: Path, request: GridRequest, settings: Sweep | None = None
-) -> Result:
+    shape: Shape | Grid, path: Path, request: GridRequest, settings: Sweep | None = None,
+    around: int | None = None,
+) -> Result:  # fmt: skip
     """Return the volume of a cross-section carried along a path, measured.
 
-    `request` says how the planar grid of the section is made (`section_grid`). Raises InputError: parameters,
-    section and path do not go together; NoValidGridError: cells are folded, and that was not allowed.
+    `request` and `around` say how the planar grid of the section is made (`section_grid`).
+
+    Raises InputError: parameters, section and path do not go together; NoValidGridError: cells are
+    folded, and that was not allowed.
     """
     seconds: dict[str, float] = {}
     with limited_to(request.threads):
         begun = time.perf_counter()
-        section, notes = section_grid(shape, request)
+        section, notes = section_grid(shape, request, around)
         seconds["boundary"] = time.perf_counter() - begun
         reached("grid")
         begun = time.perf_counter()

@@ -17,7 +17,7 @@ from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
-from meshonet.solvers.energy.hex_bricks import Targets
+from meshonet.solvers.energy.hex_tables import Targets
 
 THIN = 3.0
 """Ratio of the shorter of the other sides to the height from which on a cell is one of layers."""

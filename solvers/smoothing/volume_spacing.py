@@ -15,7 +15,7 @@ from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.elementary import log
 from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, exchange, second_layer
-from meshonet.solvers.energy.hex_bricks import Targets
+from meshonet.solvers.energy.hex_tables import BlockTargets, Targets
 
 ROUNDS = 12
 """Of diffusion: over about so many cells as their root."""
@@ -29,7 +29,10 @@ _CLIPPED = 4
 
 def wanted_edges(mesh: HexMesh, moves: Bools, rounds: int = ROUNDS) -> Targets:
     """Return the logarithms of wanted lengths of edges of a mesh of which nodes `moves` (n,) are free."""
-    logs = [tuple(_logs(mesh.nodes[block], axis) for axis in range(3)) for block in mesh.blocks]
+    logs: list[BlockTargets] = [
+        tuple(_logs(mesh.nodes[block], axis) for axis in range(3))  # type: ignore[misc]
+        for block in mesh.blocks
+    ]
     stays = [tuple(_stays(moves[block], axis) for axis in range(3)) for block in mesh.blocks]
     _fill_beyond(mesh, logs)
     for number in range(rounds):
@@ -37,7 +40,7 @@ def wanted_edges(mesh: HexMesh, moves: Bools, rounds: int = ROUNDS) -> Targets:
             for axis in range(3):
                 _diffuse(edges[axis], axis, still[axis], clip=number < _CLIPPED)
         _fill_beyond(mesh, logs)
-    return [tuple(np.nan_to_num(each) for each in edges) for edges in logs]  # type: ignore[misc]
+    return logs
 
 
 def _logs(nodes: Floats, axis: int) -> Floats:
@@ -58,7 +61,7 @@ def _stays(moves: Bools, axis: int) -> Bools:
     return np.moveaxis(~(ends[1:] | ends[:-1]), 0, axis)
 
 
-def _fill_beyond(mesh: HexMesh, logs: list[tuple[Floats, ...]]) -> None:
+def _fill_beyond(mesh: HexMesh, logs: list[BlockTargets]) -> None:
     """Copy the first edges across each connection to what is beyond the sides that it joins."""
 
     def edges(number: int, side: Side) -> Floats:

@@ -17,20 +17,25 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner, corners_of, hex_mesh_of, with_nodes
-from meshonet.solvers.energy.hex_bricks import Targets
-from meshonet.solvers.energy.hexes import HexProblem, Slides, optimise, unfold
+from meshonet.solvers.energy.hex_tables import Targets
+from meshonet.solvers.energy.hexes import HexProblem, Slides, optimise
 from meshonet.solvers.smoothing.slide_planes import slides_of
 from meshonet.solvers.smoothing.volume_judge import VolumeMeasures, cells_below, measures
 from meshonet.solvers.smoothing.volume_layers import VolumeLayers, layers_of, with_first_heights, with_layers
+from meshonet.solvers.smoothing.volume_levels import carried, coarser
 from meshonet.solvers.smoothing.volume_restart import harmonic
 from meshonet.solvers.smoothing.volume_spacing import wanted_edges
 from meshonet.solvers.solution import Outcome, Solution, timed
 
 METHOD = "variational"
-ITERATIONS = 100  # of the optimum, at the most
+ITERATIONS = 40  # of the optimum, at the most
 TOLERANCE = 1e-5  # relative gain of the functional at which it ends before
 _AROUND = (2, 4)
 """Cells around folded ones that unfold with them, before all of them do."""
+_SOME = 0.02
+"""Part of the cells that is folded up to which cells around these are moved before all are."""
+_FEW_ROUNDS = 5  # of unfolding, where layers at their heights folded what was valid
+_COARSE = 60  # iterations of the optimum of a coarser copy, at the most
 _ROUNDS, _GENTLE = 12, 5
 """Tries to go part of the way at the most, and those after which nodes of bad cells stay at once."""
 _SHARES = (0.5, 0.7, 0.85)
@@ -87,18 +92,60 @@ def _unfolded(
 ) -> tuple[HexMesh, VolumeMeasures, Targets]:
     """Return the mesh without folded cells, or with fewer, and the edges that are wanted.
 
-    What is around folded cells is moved first, then all, then all from a new beginning.
+    What is around a few folded cells is moved first; then all, from where a coarser copy leads; from where
+    they are; and from a new beginning.
     """
     mesh, measured = given, before
-    for reach in (*_AROUND, None):
-        near = moves if reach is None else moves & _around(mesh, reach)
+    for reach in _AROUND if before.folded < _SOME * given.cells else ():
+        near = moves & _around(mesh, reach)
         mesh, measured = _with_fewer(mesh, mesh, measured, near, targets, slides)
         if not measured.folded:
             return mesh, measured, targets
-    anew = given.with_nodes(harmonic(given, ~given.outer))
-    wanted = wanted_edges(anew, moves)
-    fewer, now = _with_fewer(mesh, anew, measured, moves, wanted, slides)
-    return (mesh, measured, targets) if fewer is mesh else (fewer, now, wanted)
+    for begin in (_begun, _same, _anew):
+        start = begin(mesh, moves, targets, slides)
+        if start is mesh and begin is not _same:
+            continue
+        wanted = wanted_edges(start, moves) if begin is _anew else targets
+        fewer, now = _with_fewer(mesh, start, measured, moves, wanted, slides)
+        if fewer is not mesh:
+            mesh, measured, targets = fewer, now, wanted
+        if not measured.folded:
+            break
+    return mesh, measured, targets
+
+
+def _same(mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides) -> HexMesh:
+    return mesh
+
+
+def _anew(mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides) -> HexMesh:
+    return mesh.with_nodes(harmonic(mesh, ~mesh.outer))
+
+
+def _begun(mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides) -> HexMesh:
+    """Return a mesh moved as the optimum of a coarser copy is; as it is where there is none."""
+    copy = coarser(mesh)
+    optimum = None if copy is None else _nested(copy.mesh, moves[copy.nodes], slides.among(copy.nodes))
+    if copy is None or optimum is None:
+        return mesh
+    moved = mesh.nodes + carried(mesh, copy, optimum - copy.mesh.nodes, targets)
+    starts = [mesh.with_nodes(slides.kept(mesh.nodes, nodes, moves)) for nodes in (moved,)]
+    if measures(starts[0]).folded > _SOME * mesh.cells:
+        filled = carried(mesh, copy, optimum, targets)
+        starts.append(mesh.with_nodes(slides.kept(mesh.nodes, filled, moves)))
+    return min(starts, key=lambda each: measures(each).folded)
+
+
+def _nested(mesh: HexMesh, moves: Bools, slides: Slides) -> Floats | None:
+    """Return the nodes of the optimum of a mesh, begun on a coarser copy; None where it stays folded."""
+    targets, before = wanted_edges(mesh, moves), measures(mesh)
+    if before.folded:
+        mesh, before, targets = _unfolded(mesh, before, moves, targets, slides)
+        if before.folded:
+            return None
+    start = _begun(mesh, moves, targets, slides)
+    optimum = optimise(start, moves, targets, slides=slides, iterations=_COARSE, tolerance=TOLERANCE)
+    return optimum.nodes if optimum.valid else None
 
 
 def _with_fewer(
@@ -106,7 +153,7 @@ def _with_fewer(
 ) -> tuple[HexMesh, VolumeMeasures]:
     """Return `start` unfolded, and its measures, where it has fewer folded cells than `mesh`; else that."""
     problem = HexProblem(start, moves, targets, slides)
-    unfold(problem)
+    problem.unfold(problem.smallest())
     tried = start.with_nodes(problem.result())
     now = measures(tried)
     return (tried, now) if now.folded < measured.folded else (mesh, measured)
@@ -147,12 +194,15 @@ def _optima(
     The optimum itself comes last; whether layers, if there are any, have their heights comes with each.
     """
     towards = partial(optimise, targets=targets, slides=slides, iterations=iterations, tolerance=TOLERANCE)
-    optimum = towards(start, moves)
+    begun = _begun(start, moves, targets, slides)
+    optimum = towards(begun, moves)
+    if not optimum.valid and begun is not start:
+        optimum = towards(start, moves)
     if not optimum.valid:
         return
     for some in (layers, [each.only_first() for each in layers]) if layers else ():
         nodes, held = with_layers(optimum.nodes, some)
-        rest = towards(start.with_nodes(nodes), moves & ~held)
+        rest = towards(start.with_nodes(nodes), moves & ~held, rounds=_FEW_ROUNDS)
         if rest.valid:
             yield start.with_nodes(rest.nodes), True
     yield start.with_nodes(optimum.nodes), not layers

@@ -1,140 +1,180 @@
-r"""The inside of a circle in five blocks: a core, and a ring of four around it.
+r"""The inside of a closed curve in five blocks: a core, and a ring of four around it.
 
 ::
 
-         .-----------.          Corners of the core lie on the diagonals, and its sides are bent outwards, a
-       .' \         / '.        quarter of the way from lines to arcs, so that no corner is far from a right
+         .-----------.          Corners of the core lie on the diagonals, and its sides are bent outwards,
+       .' \         / '.        part of the way from lines to arcs, so that no corner is far from a right
       /    +-------+    \       angle: 120 degrees, which three blocks that meet cannot stay below.
       |    |  core |    |
       \    +-------+    /       Ring blocks count i along the wall, counter-clockwise, and j away from it.
-       '. /         \ .'
+       '. /         \ .'        The core is as large as the growth of the rows around it lets it be.
          '-----------'
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.elementary import cos, product, sin
-from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.growth import cells_for_growth, check_growth, growing_steps
+from meshonet.geometry.elementary import tan
+from meshonet.solvers.sweeping.ring_steps import TRIED, fewest_rows, largest_ratio, ring_steps
 
-DEFAULT_CELLS = 320  # of a disc
-CORE, _BEND = 0.55, 0.25
-"""Size of the core in sizes of the section, and how far its sides are bent from lines, 0, to arcs, 1."""
-_GROWTH = 1.2  # ratio of cells from the wall inwards, where the first one is given and no ratio
-_LEAST = 2  # cells along a side of the core, and rows around it
-# quarter turns: east, north, west, south
-_TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1, 0)))
+GROWTH = 1.2
+"""Largest ratio of neighbouring cells away from walls, where none is given."""
+_BEND, _BEND_RADIAL = 0.25, 0.4
+"""How far the sides of the core are bent from lines, 0, to arcs, 1; further where lines are radii."""
+_SIZES = (0.6, 0.55, 0.5, 0.45, 0.4, 0.35, 0.3, 0.25, 0.2, 0.15, 0.1)
+"""Sizes of the core in sizes of the section, the first of which is taken that the growth allows."""
+_ROUNDING = 1e-9
+_RADIAL = (1.0, 0.75, 0.5, 0.25, 0.0)
+"""How near lines through the ring of a circle are to radii, tried likewise; 0 has equal cells in the core."""
+
+Sides: TypeAlias = Sequence[Floats]
+"""Nodes (n, 2) on the east, north, west and south of a closed curve, counter-clockwise."""
+
+
+class FiveBlocks(NamedTuple):
+    """How the inside of closed curves is divided: size of the core, rows of the ring, how radial it is."""
+
+    core: float
+    rows: int
+    radial: float = 0.0
 
 
 @dataclass(frozen=True)
-class Disc:
-    """A circle and its cells.
+class CrossSection:
+    """A closed curve whose inside is filled.
 
     Parameters
     ----------
-    radius : in any unit.
-    cells : about how many.
-    first_cell : height of the cells at the wall; None makes them about as long as they are wide.
-    growth : largest ratio of neighbouring cells away from the wall.
-
-    Raises InputError: a value that is not positive, a first cell wider than the ring.
+    arcs : its nodes on four sides that meet in corners of blocks.
+    first : height of the first cell at the wall; None: about that of the cells of the core.
     """
 
-    radius: float
-    cells: int = DEFAULT_CELLS
-    first_cell: float | None = None
-    growth: float | None = None
+    arcs: Sides
+    first: float | None = None
 
-    def __post_init__(self) -> None:
-        if not 0 < self.radius < 1e12:
-            raise InputError(f"a circle of radius {self.radius:g}", "use more than 0")
-        if not 12 <= self.cells <= 10_000_000:
-            raise InputError(f"{self.cells} cells", "use 12 to 10 million", parameter="cells")
-        if self.first_cell is not None and not 1e-9 < self.first_cell / self.radius < 0.2:
-            problem = f"{self.first_cell:g} in a circle of radius {self.radius:g}"
-            raise InputError(problem, "use up to a fifth of the radius", parameter="first_cell")
-        check_growth(self.growth)
+    def inner(self, core: float, radial: float) -> list[Floats]:
+        """Return the sides of the core."""
+        middle = np.concatenate([arc[:-1] for arc in self.arcs]).mean(axis=0)
+        u = np.linspace(-1.0, 1.0, len(self.arcs[0]))
+        t = (0.5 + 0.5 * ((1.0 - radial) * u + radial * tan(0.25 * np.pi * u)))[:, None]
+        t[0], t[-1] = 0.0, 1.0
+        lines = ((1.0 - t) * arc[0] + t * arc[-1] for arc in self.arcs)
+        both = zip(lines, self.arcs, strict=True)
+        bend = _BEND + (_BEND_RADIAL - _BEND) * radial
+        return [middle + core * ((1.0 - bend) * line + bend * arc - middle) for line, arc in both]
 
-    def rows(self, side: int) -> int:
-        """Return the rows of the ring when the core has `side` cells along each side."""
-        edge = 0.25 * np.pi * (1.0 + CORE) * self.radius / side
-        return ring_rows((1.0 - CORE) * self.radius, edge, self.first_cell, self.growth)
+    def across(self, core: float, radial: float, *, eighth: bool = False) -> tuple[Floats, Floats]:
+        """Return how long lines through the ring are, and the cells of the core that they lead to (k,).
 
-    def side(self) -> int:
-        """Return the cells along a side of the core with which all cells are nearest to those wanted."""
-        sides = range(_LEAST, 2 + int(np.sqrt(self.cells)))
-        return min(sides, key=lambda n: abs(n * n + 4 * n * self.rows(n) - self.cells))
-
-
-def ring_rows(width: float, edge: float, first: float | None, growth: float | None) -> int:
-    """Return the rows of a ring so wide, of cells as long as `edge`; they may begin with a height `first`."""
-    even = max(_LEAST, round(width / edge))
-    return even if first is None else max(even, cells_for_growth(first, width, growth or _GROWTH))
-
-
-def butterfly(disc: Disc) -> Grid:
-    """Return the grid of a disc around the origin, its wall named ``wall``."""
-    side = disc.side()
-    rows = disc.rows(side)
-    u = np.linspace(-1.0, 1.0, side + 1)
-    arc = disc.radius * np.stack([cos(0.25 * np.pi * u), sin(0.25 * np.pi * u)], axis=1)
-    arcs = [product(arc, np.array(turn).T) for turn in _TURNS]
-    first = None if disc.first_cell is None else disc.first_cell / ((1.0 - CORE) * disc.radius)
-    return replace(filled(arcs, rows, first), name="circle")
+        An `eighth` of them has all that there is in a circle.
+        """
+        inner = self.inner(core, radial)
+        lengths = [norms(side - arc) for side, arc in zip(inner, self.arcs, strict=True)]
+        last, first = slice(-2, -1), slice(1, 2)
+        seconds = (
+            _between(inner, rows=last)[0], _between(inner, columns=last)[::-1, 0],
+            _between(inner, rows=first)[0, ::-1], _between(inner, columns=first)[:, 0],
+        )  # fmt: skip
+        sizes = []
+        for side, second in zip(inner, seconds, strict=True):
+            size = norms(second - side)
+            size[0], size[-1] = size[1], size[-2]  # no line runs on from the corners
+            sizes.append(size)
+        if eighth:
+            middle = len(lengths[0]) // 2 + 1
+            return lengths[0][:middle], sizes[0][:middle]
+        return np.concatenate(lengths), np.concatenate(sizes)
 
 
-def filled(arcs: Sequence[Floats], rows: int, first: float | None = None) -> Grid:
-    """Return the five blocks inside a closed curve, its wall named ``wall``.
+def planned(
+    sections: Sequence[CrossSection], growth: float = GROWTH, rows: int | None = None, *, radial: bool = False
+) -> FiveBlocks:
+    """Return the plan, one for all sections, in which neighbouring cells differ by at most `growth`.
 
-    `arcs` are its nodes (n, 2) on the east, north, west and south, counter-clockwise, that meet in corners of
-    blocks. The ring has `rows` cells across, of which the first is as high as `first` says, in widths of the
-    ring; None makes them equal.
+    If there is none, that in which they differ least. Without `rows` there are as many as it takes; `radial`
+    is for circles.
     """
-    side, middle = len(arcs[0]) - 1, np.concatenate([arc[:-1] for arc in arcs]).mean(axis=0)
-    t = np.linspace(0.0, 1.0, side + 1)[:, None]
-    along = _towards_core(rows, first)
+    best, least = FiveBlocks(_SIZES[0], rows or 1), np.inf
+    for core in _SIZES:
+        way, inside = _most_radial(sections, core, growth) if radial else (0.0, 1.0)
+        lines = [(*section.across(core, way, eighth=radial), section.first) for section in sections]
+        for count in _counts(lines, growth) if rows is None else (rows,):
+            steps = (largest_ratio(*line[:2], ring_steps(*line[:2], count, line[2])) for line in lines)
+            largest = max(inside, *steps)
+            if largest < least:
+                best, least = FiveBlocks(core, count, way), largest
+            if largest <= growth * (1.0 + _ROUNDING):
+                return best
+    return best
+
+
+def _most_radial(sections: Sequence[CrossSection], core: float, growth: float) -> tuple[float, float]:
+    """Return how radial the lines can be, and the ratio of neighbouring cells along the core's sides then."""
+    for way in _RADIAL:
+        inside = max(_side_ratio(section.inner(core, way)) for section in sections)
+        if inside <= growth:
+            break
+    return way, inside
+
+
+def _counts(lines: Sequence[tuple[Floats, Floats, float | None]], growth: float) -> Iterator[int]:
+    fewest = max(fewest_rows(lengths, sizes, first, growth) for lengths, sizes, first in lines)
+    yield from range(fewest, fewest + TRIED + 1)
+
+
+def _side_ratio(sides: Sides) -> float:
+    """Return the largest ratio of neighbouring steps along the sides of a core."""
+    steps = np.stack([norms(np.diff(side, axis=0)) for side in sides])
+    ratio = steps[:, 1:] / steps[:, :-1]
+    return float(np.maximum(ratio, 1.0 / ratio).max())
+
+
+def filled(section: CrossSection, plan: FiveBlocks) -> Grid:
+    """Return the five blocks inside a closed curve, its wall named ``wall``."""
+    side = len(section.arcs[0]) - 1
+    inner = section.inner(plan.core, plan.radial)
+    lengths, sizes = section.across(plan.core, plan.radial)
+    steps = ring_steps(lengths, sizes, plan.rows, section.first)
+    along = np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1) / lengths[:, None]
     rings = []
-    for arc in arcs:
-        lines = (1.0 - t) * arc[0] + t * arc[-1]
-        inner = middle + CORE * ((1.0 - _BEND) * lines + _BEND * arc - middle)
-        ring = arc[:, None] + along[:, None] * (inner[:, None] - arc[:, None])
-        ring[:, 0], ring[:, -1] = arc, inner
+    for k, (arc, end) in enumerate(zip(section.arcs, inner, strict=True)):
+        own = along[k * (side + 1) : (k + 1) * (side + 1), :, None]
+        ring = arc[:, None] + own * (end[:, None] - arc[:, None])
+        ring[:, 0], ring[:, -1] = arc, end
         rings.append(ring)
     for k in range(4):  # the diagonals are those of the ring before, bitwise
         rings[(k + 1) % 4][0] = rings[k][-1]
-    east, north, west, south = (each[:, -1] for each in rings)
-    core = _between(south, east, north[::-1], west[::-1])
+    core = _core([ring[:, -1] for ring in rings])
     patches = tuple(Patch("wall", "south", 0, side, block=k) for k in range(1, 5))
-    return Grid((Block(core), *map(Block, rings)), patches, _connections(side, rows))
+    return Grid((Block(core), *map(Block, rings)), patches, _connections(side, plan.rows))
 
 
-def _towards_core(rows: int, first: float | None) -> Floats:
-    """Return places (rows + 1,) from the wall, 0, to the core, 1."""
-    if first is None:
-        return np.linspace(0.0, 1.0, rows + 1)
-    along = np.concatenate([[0.0], np.cumsum(growing_steps(min(first, 1.0 / rows), 1.0, rows))])
-    along[-1] = 1.0
-    return along
+def _core(inner: Sides) -> Floats:
+    """Return the nodes (n, n, 2) of the core by transfinite interpolation; its sides run along x and y."""
+    nodes = _between(inner)
+    east, north, west, south = inner
+    nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1] = south, north[::-1], west[::-1], east
+    return nodes
 
 
-def _between(south: Floats, east: Floats, north: Floats, west: Floats) -> Floats:
-    """Return nodes (n, n, 2) by transfinite interpolation; sides run along x and along y."""
+def _between(inner: Sides, rows: slice = slice(None), columns: slice = slice(None)) -> Floats:
+    """Return nodes (n, n, 2) between the sides of the core, or those of some `rows` i or `columns` j."""
+    east, north, west, south = inner[0], inner[1][::-1], inner[2][::-1], inner[3]
     a = np.linspace(0.0, 1.0, len(south))
-    i, j = a[:, None, None], a[None, :, None]
+    i, j = a[rows, None, None], a[None, columns, None]
     corners = (1 - i) * ((1 - j) * south[0] + j * north[0]) + i * ((1 - j) * south[-1] + j * north[-1])
-    nodes = (1 - i) * west[None] + i * east[None] + (1 - j) * south[:, None] + j * north[:, None] - corners
-    nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1] = south, north, west, east
-    return np.asarray(nodes)
+    between = (1 - i) * west[None, columns] + i * east[None, columns]
+    return np.asarray(between + (1 - j) * south[rows, None] + j * north[rows, None] - corners)
 
 
 def _connections(side: int, rows: int) -> tuple[Connection, ...]:

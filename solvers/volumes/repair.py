@@ -1,12 +1,14 @@
 """Unfold the folded cells of a volume on windows around them, whose faces stay."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import folded_cells
+from meshonet.geometry.quality.volumes import solid_metric
+from meshonet.solvers.energy.hex_functional import OPENING, OPTIMAL, UNFOLDING
+from meshonet.solvers.energy.hexes import NEARLY
 from meshonet.solvers.volumes.descent import PlanesDescent
-from meshonet.solvers.volumes.functional import OPENING, OPTIMAL, UNFOLDING
 from meshonet.solvers.volumes.windows import Window, windows
 
 MARGINS = 5, 8, 11, 14
@@ -34,9 +36,10 @@ def repair(planes: Floats) -> int:
     return len(bad)
 
 
-def open_flat_cells(planes: Floats, flat: NDArray[np.bool_]) -> None:
-    """Open the cells `flat` (ni-1, nj-1, nk-1) of planes (3, ni, nj, nk) on windows, in place."""
-    for window in windows(np.argwhere(flat), MARGINS[0], planes.shape[1:]):
+def open_flat_cells(planes: Floats) -> None:
+    """Open flat cells of planes (3, ni, nj, nk) on windows, in place."""
+    (scaled,) = solid_metric(Grid.from_nodes(np.moveaxis(planes, 0, -1)), "scaled_jacobian")
+    for window in windows(np.argwhere(scaled < NEARLY), MARGINS[0], planes.shape[1:]):
         _mend(planes, window)
 
 
@@ -50,8 +53,8 @@ def _mend(planes: Floats, window: Window) -> None:
 def _unfold(part: Floats) -> None:
     """Unfold a window and open its cells, in place."""
     descent = PlanesDescent(part)
-    if descent.unfold(descent.smallest, ROUNDS, ROUND) <= 0.0:
+    if descent.unfold(descent.smallest(), ROUNDS, ROUND) <= 0.0:
         return
     descent.run(UNFOLDING, FIRST)
-    if descent.run(OPENING[0], OPEN) > ENOUGH:
+    if descent.run(OPENING[0], OPEN)[0] > ENOUGH:
         descent.run(OPTIMAL, LAST)

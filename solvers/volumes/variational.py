@@ -8,13 +8,14 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.energy.hexes import NEARLY
 from meshonet.solvers.iteration import check_tolerances
 from meshonet.solvers.solution import Outcome, Solution
 from meshonet.solvers.stages import reached
-from meshonet.solvers.volumes.descent import FLAT, PlanesDescent
+from meshonet.solvers.volumes.descent import PlanesDescent
 from meshonet.solvers.volumes.edge_corners import check_corners
 from meshonet.solvers.volumes.first_cells import keep_first_cells
-from meshonet.solvers.volumes.functional import ENERGIES, OPTIMAL, Energy, VolumeWeights
+from meshonet.solvers.energy.hex_functional import ENERGIES, OPTIMAL, Energy, HexWeights
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import Laws, arc_laws, mean_laws, uniform_laws
 from meshonet.solvers.volumes.refine import refine_volume
@@ -41,7 +42,7 @@ def variational(
     coarse: int | Literal["auto"] | None = "auto",
     energy: Energy = "angles",
 ) -> Solution:
-    """Minimise a functional of `meshonet.solvers.volumes.functional` over the nodes inside `faces`.
+    """Minimise a functional of `meshonet.solvers.energy.hex_functional` over the nodes inside `faces`.
 
     The optimum is found on at most `coarse` nodes a direction, evenly spaced in the mean arc length of the
     edges ("auto": 33; None: as many as the faces have), from coarser copies, and evaluated at the nodes of
@@ -77,13 +78,13 @@ def variational(
     return Solution(grid, "variational", cycles=iterations, seconds=spent, outcome=outcome)
 
 
-def _terms(weights: VolumeWeights) -> dict[str, float]:
+def _terms(weights: HexWeights) -> dict[str, float]:
     """Return the weights that a grid's provenance names."""
     return {} if weights.of_cubes else {"shape": weights.shape, "smoothness": weights.smoothness}
 
 
 def optimum(
-    faces: SixFaces, most: int | None = None, weights: VolumeWeights = OPTIMAL
+    faces: SixFaces, most: int | None = None, weights: HexWeights = OPTIMAL
 ) -> tuple[Floats, int]:  # fmt: skip
     """Return the optimum inside evenly spaced `faces`, (3, ni, nj, nk), and iterations on the finest level.
 
@@ -111,7 +112,7 @@ def _interpolated(faces: SixFaces) -> Floats:
     return np.ascontiguousarray(np.moveaxis(interpolate(faces, uniform_laws(faces.counts)), -1, 0))
 
 
-def _solved(planes: Floats, faces: SixFaces, most: int, weights: VolumeWeights) -> tuple[Floats, int]:
+def _solved(planes: Floats, faces: SixFaces, most: int, weights: HexWeights) -> tuple[Floats, int]:
     """Return the optimum from planes, which may change, and the iterations.
 
     Where these stay folded, as splines leave them that overshoot at kinks of faces, the interpolation is the
@@ -128,23 +129,25 @@ def _solved(planes: Floats, faces: SixFaces, most: int, weights: VolumeWeights) 
 
 def _smallest(planes: Floats) -> float:
     """Return the smallest corner Jacobian, or infinity where there is no inner node."""
-    return PlanesDescent(planes).smallest if min(planes.shape[1:]) > 2 else np.inf
+    return PlanesDescent(planes).smallest() if min(planes.shape[1:]) > 2 else np.inf
 
 
-def _settle(planes: Floats, most: int, weights: VolumeWeights) -> int:
+def _settle(planes: Floats, most: int, weights: HexWeights) -> int:
     """Minimise over planes in place, unfolded first; return the iterations."""
     if min(planes.shape[1:]) < 3:
         return 0
-    descent = PlanesDescent(planes)
-    smallest = descent.smallest
+    descent = PlanesDescent(planes, weights.of_cubes)
+    smallest = descent.smallest()
     folded = smallest <= 0.0
     if folded:
         repair(planes)
-        smallest = descent.unfold(descent.smallest)
-    if 0.0 < smallest < FLAT and (folded or max(planes.shape) <= FEW):
+        descent = PlanesDescent(planes, weights.of_cubes)
+        smallest = descent.unfold(descent.smallest())
+    if 0.0 < smallest < NEARLY and (folded or max(planes.shape) <= FEW):
         descent.open()
-    elif 0.0 < smallest < FLAT:
-        open_flat_cells(planes, descent.jacobians() < FLAT)
+    elif 0.0 < smallest < NEARLY:
+        open_flat_cells(planes)
+        descent = PlanesDescent(planes, weights.of_cubes)
     if smallest > 0.0:
         descent.run(weights, most)
     return descent.iterations

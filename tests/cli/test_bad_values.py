@@ -20,7 +20,7 @@ INPUTS = {
     "layout": ("step.wkt", "-o", "made.json"),
     "stack": ("wing.toml", "--around", "49", "--span", "9", "--layers", "18", "-o", "made.h5"),
     "deform": ("grid.vts", "--shift", "south=0,-0.1", "-o", "made.h5"),
-    "sweep": ("circle:0.5", "path.csv", "--cells", "40", "-o", "made.h5"),
+    "sweep": ("circle:0.5", "path.csv", "--around", "16", "-o", "made.h5"),
 }
 """What each command does well with; train loads a library of its own first, and has tests of its own."""
 

@@ -40,12 +40,28 @@ def swept(meshonet: Meshonet, *words: str):
 
 
 def test_a_circle_becomes_a_pipe_of_five_blocks(meshonet: Meshonet) -> None:
-    grid = swept(meshonet, "circle:0.5", "bend.toml", "--cells", "100", "--planes", "21")
+    grid = swept(meshonet, "circle:0.5", "bend.toml", "--around", "24", "--planes", "21")
     assert len(grid.blocks) == 5
     assert {(patch.name, patch.kind) for patch in grid.patches} == {
         ("wall", "wall"), ("inlet", "inlet"), ("outlet", "outlet"),
     }  # fmt: skip
     assert all(block.counts[2] == 21 for block in grid.blocks)
+
+
+def test_the_report_says_what_a_pipe_has_at_its_wall(meshonet: Meshonet) -> None:
+    words = "sweep circle:0.5 bend.toml --cells 800 --first-cell 2e-4 -o p.h5"
+    done = meshonet(*words.split())
+    assert done.code == 0, done.err
+    assert "wall: first cells 0.0002, growth up to 1.194 along lines from it" in done.err
+    assert "a circle has 3300 cells or more instead of 800: 88 around keep its area within 0.1 %" in done.err
+
+
+def test_growth_beyond_its_limit_is_told_with_its_place(meshonet: Meshonet) -> None:
+    words = "sweep circle:0.5 bend.toml --around 200 --first-cell .05 --growth 1.1 -o p.h5"
+    done = meshonet(*words.split())
+    assert done.code == 0, done.err
+    assert "neighbouring cells differ by up to 1.164 at node block=" in done.err
+    assert "more than the growth of 1.1" in done.err
 
 
 def test_a_closed_curve_is_filled_with_blocks_and_a_four_sided_one_with_one(meshonet: Meshonet) -> None:
@@ -70,16 +86,16 @@ def test_a_planar_grid_is_swept_as_it_is(meshonet: Meshonet) -> None:
 
 def test_several_sections_go_along_one_path(meshonet: Meshonet) -> None:
     done = meshonet(
-        "sweep", "circle:0.5", "circle:0.3", "path.csv", "--cells", "60", "-o", "{index}.h5", "-q"
+        "sweep", "circle:0.5", "circle:0.3", "path.csv", "--around", "24", "-o", "{index}.h5", "-q"
     )
     assert done.code == 0, done.err
     assert {path.name for path in Path().glob("*.h5")} == {"0.h5", "1.h5"}
 
 
 def test_the_function_makes_what_the_command_writes(meshonet: Meshonet) -> None:
-    written = swept(meshonet, "circle:0.5", "path.csv", "--cells", "60", "--twist", "20")
+    written = swept(meshonet, "circle:0.5", "path.csv", "--around", "24", "--twist", "20")
     points = np.loadtxt("path.csv", delimiter=",")
-    made = library.sweep("circle:0.5", points, cells=60, twist=20.0)
+    made = library.sweep("circle:0.5", points, around=24, twist=20.0)
     for one, two in zip(written.blocks, made.blocks, strict=True):
         assert np.array_equal(one.nodes, two.nodes)
 
@@ -96,6 +112,9 @@ def test_the_function_makes_what_the_command_writes(meshonet: Meshonet) -> None:
         (("circle:0.5", "bend.toml", "--up", "1,0,0"), "--up: points along the path"),
         (("circle:0.5", "bend.toml", "--up", "north"), "--up: 'north' is not a direction"),
         (("circle:0.5", "bend.toml", "--res", "9"), "--res: a circle is made of five blocks"),
+        (("circle:0.5", "bend.toml", "--around", "30"), "--around: 30 cells around a circle"),
+        (("circle:0.5", "bend.toml", "--around", "32", "--cells", "99"), "--cells and --around both say"),
+        (("ellipse.csv", "bend.toml", "--around", "32"), "--around: cells around are counted in circles"),
         (("circle:0.5", "bend.toml", "--planes", "1"), "--planes"),
         (("circle:0.5", "bend.toml", "--scale", "0"), "--scale: 0"),
         (("circle:0.5", "bend.toml", "--first-cell", "0.4"), "--first-cell: 0.4 in a circle"),

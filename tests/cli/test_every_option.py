@@ -148,7 +148,7 @@ MARCHED = {
 TRAINING = "arches.h5 --epochs 4 --points 60 --batch 4 -o new.safetensors"
 PICTURE = printing(f"{GRID} -o made.png", "missing.h5 -o made.png") | files(GRID, made="png", kind="png")
 LAYOUT = printing("step.wkt -o made.json", "missing.wkt -o made.json") | files("step.wkt", made="json")
-WING, PIPE = "short.toml --around 49 --span 9 --layers 18", "circle:.5 path.csv --cells 40"
+WING, PIPE = "short.toml --around 49 --span 9 --layers 18", "circle:.5 path.csv --around 16"
 EFFECTS: dict[str, dict[str, Effect]] = {
     "sample-boundary": SHAPES | {
         "--family": (f"--res 9 {MADE}", "OPTION arch", "code"),
@@ -253,7 +253,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
     },
     "sweep": printing(f"{PIPE} -o made.h5", f"circle:1 missing.csv {MADE}") | {
         **files(PIPE, "odd.name path.csv"),
-        **chosen("@pipes.txt path.csv --cells 40 -o made-{index}.h5 -q", "circle.4"),
+        **chosen("@pipes.txt path.csv --around 16 -o made-{index}.h5 -q", "circle.4"),
         **engines(f"circle:.4 {PIPE} -o {{index}}.h5 -q"),
         **flat_plate(f"{PIPE} {MADE}"),
         **judged(f"{PIPE} {MADE}", f"folded.h5 path.csv {MADE}"),
@@ -263,7 +263,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--up": (f"{PIPE} {MADE}", "OPTION 0,1,1", "nodes"),
         "--twist": (f"{PIPE} {MADE}", "OPTION 10", "nodes"),
         "--scale": (f"{PIPE} {MADE}", "OPTION .5", "nodes"),
-        "--cells": (f"{PIPE} {MADE}", "OPTION 60", "nodes"),
+        "--around": (f"circle:.5 path.csv {MADE}", "OPTION 40", "nodes"),
+        "--cells": (f"circle:.5 path.csv {MADE}", "OPTION 2000", "nodes"),
         "--cell-size": (f"step.wkt path.csv {MADE}", "OPTION .5", "nodes"),
         "--layout": (f"step.wkt path.csv --cells 400 {MADE}", "OPTION tall.json", "nodes"),
         "--walls": (f"hole.wkt path.csv --first-cell .002 {MADE}", "OPTION bolt", "error"),

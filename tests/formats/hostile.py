@@ -48,6 +48,10 @@ TEXTS = {
     "geojson": json.dumps({"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [SQUARE]}}),
 }
 """A good file of each format that this package reads and does not write as grids."""
+TEXTS["svg"] = (
+    '<svg xmlns="http://www.w3.org/2000/svg"><g transform="scale(2)"><rect width="8" height="4"/>'
+    '<path d="M3 2A1 1 0 0 0 5 2C5 1 3 1 3 2z"/></g></svg>'
+)
 TEXTS["layout"] = as_text(step_layout())
 TEXTS["dxf"] = "\n".join(
     ["0", "SECTION", "2", "ENTITIES"]
@@ -143,11 +147,11 @@ def foreign() -> Iterator[tuple[str, bytes]]:
     yield "the head of HDF5", b"\x89HDF\r\n\x1a\n" + bytes(200)
     yield "an ADF container", b"@(#)ADF Database Version B02012>" + bytes(400)
     yield "noise", np.random.default_rng(0).bytes(20_000)
-    for told, points in _outlines().items():
+    for message, points in _outlines().items():
         rows = "".join(f"{x} {y}\n" for x, y in points)
-        yield told, rows.encode()
+        yield message, rows.encode()
         ring = ", ".join(f"{x} {y}" for x, y in [*points, points[0]])
-        yield f"{told}, as WKT", f"POLYGON (({ring}))".encode()
+        yield f"{message}, as WKT", f"POLYGON (({ring}))".encode()
         closed = [[list(point) for point in [*points, points[0]]]]
         feature = {
             "type": "Feature",
@@ -155,7 +159,7 @@ def foreign() -> Iterator[tuple[str, bytes]]:
             "geometry": {"type": "Polygon"},
         }
         feature["geometry"]["coordinates"] = closed  # type: ignore[index]
-        yield f"{told}, as GeoJSON", json.dumps(feature).encode()
+        yield f"{message}, as GeoJSON", json.dumps(feature).encode()
     for dims in (
         "1000000000 1000000000",
         "3 3 -3",
@@ -214,9 +218,9 @@ def _put(data: bytearray, random: Random) -> None:
 
 
 def _renumber(data: bytearray, random: Random) -> None:
-    found = _NUMBER.search(data, _place(data, random))
-    if found:
-        data[found.start() : found.end()] = random.choice((*_WRONG_NUMBERS, b"%d" % random.randrange(99)))
+    result = _NUMBER.search(data, _place(data, random))
+    if result:
+        data[result.start() : result.end()] = random.choice((*_WRONG_NUMBERS, b"%d" % random.randrange(99)))
 
 
 def _resize(data: bytearray, random: Random) -> None:

@@ -173,8 +173,8 @@ def test_both_surfaces_may_start_at_the_trailing_edge_round_or_not(edge, between
     lednicer = parse("".join([*upper, "\n", *lower]), "lednicer.dat")
     both = parse("".join([*upper[::-1], between, *lower[::-1]]), "both.dat")
     first = parse("".join([*lower[::-1], between, *upper[::-1]]), "lower-first.dat")
-    for found in (lednicer, both, first):
-        np.testing.assert_array_equal(found.curve.points, selig.curve.points)
+    for result in (lednicer, both, first):
+        np.testing.assert_array_equal(result.curve.points, selig.curve.points)
 
 
 @pytest.mark.parametrize("base", [3e-4, 0.004, 0.1])
@@ -242,9 +242,9 @@ def test_crossing_surfaces_are_named_by_their_lines():
     points[3, 1] = -0.1
     with pytest.raises(InputError) as caught:
         parse("T\n" + lines(points), "bad.dat")
-    told = str(caught.value)
-    assert told.startswith("bad.dat: the surface crosses itself at (0.")
-    assert "line 5" in told
+    wanted = str(caught.value)
+    assert wanted.startswith("bad.dat: the surface crosses itself at (0.")
+    assert "line 5" in wanted
 
 
 def test_sniffing_knows_airfoils_from_other_text():

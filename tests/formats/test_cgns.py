@@ -58,12 +58,12 @@ def test_cgnscheck_has_neither_errors_nor_warnings(make: type[Grid], thick: bool
     else:
         write_grids(path, grids)
     done = subprocess.run(["cgnscheck", "-v", str(path)], capture_output=True, text=True, timeout=60)
-    told = done.stdout + done.stderr
+    message = done.stdout + done.stderr
     assert done.returncode == 0
-    assert "WARNING" not in told
-    assert "ERROR" not in told
-    assert told.rstrip().endswith("checking complete")
-    assert told.count("checking donor interface") == (0 if make is channel else 4)
+    assert "WARNING" not in message
+    assert "ERROR" not in message
+    assert message.rstrip().endswith("checking complete")
+    assert message.count("checking donor interface") == (0 if make is channel else 4)
 
 
 @pytest.mark.client("hdf2adf")
@@ -90,9 +90,9 @@ def joints(path: Path, zone: str) -> list[tuple[list[list[int]], list[list[int]]
 def test_both_sides_of_a_cut_are_joined_node_by_node(make: type[Grid], tmp_path: Path) -> None:
     grid = make()
     write_grids(tmp_path / "g.cgns", [grid])
-    found = joints(tmp_path / "g.cgns", grid.name)
-    assert len(found) == 2
-    for own, donor, transform in found:
+    result = joints(tmp_path / "g.cgns", grid.name)
+    assert len(result) == 2
+    for own, donor, transform in result:
         steps = max(abs(a - b) for a, b in zip(own[0], own[1], strict=True))
         for k in range(steps + 1):
             here = [a + k * np.sign(b - a) for a, b in zip(own[0], own[1], strict=True)]
@@ -152,24 +152,24 @@ def test_conditions_of_others_become_parts(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("remove", "told"),
+    ("remove", "message"),
     [
         ("Base", "holds no CGNS zone; give a CGNS file"),
         ("Base/ring/GridCoordinates", "zone 'ring': has no CoordinateX and CoordinateY; write Cartesian"),
         ("Base/ring/ data", "/Base/ring: node has no data of its own"),
     ],
 )
-def test_what_is_missing_is_named(remove: str, told: str, tmp_path: Path) -> None:
+def test_what_is_missing_is_named(remove: str, message: str, tmp_path: Path) -> None:
     path = tmp_path / "g.cgns"
     write_grids(path, [ring()])
     with h5py.File(path, "r+") as file:
         del file[remove]
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         list(read_grids(memory(path.read_bytes())))
 
 
 @pytest.mark.parametrize(
-    ("node", "value", "told"),
+    ("node", "value", "message"),
     [
         ("Base/ring", np.array([[13, 5], [12, 4]], np.int32), r"size has shape \(2, 2\)"),
         (
@@ -183,12 +183,12 @@ def test_what_is_missing_is_named(remove: str, told: str, tmp_path: Path) -> Non
     ],
 )
 def test_what_does_not_fit_is_named(
-    node: str, value: np.ndarray[tuple[int, ...], np.dtype[np.generic]], told: str, tmp_path: Path
+    node: str, value: np.ndarray[tuple[int, ...], np.dtype[np.generic]], message: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "g.cgns"
     write_grids(path, [ring()])
     with h5py.File(path, "r+") as file:
         del file[f"{node}/ data"]
         file[f"{node}/ data"] = value
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         list(read_grids(memory(path.read_bytes())))

@@ -55,13 +55,13 @@ def test_a_grid_comes_back_to_the_last_bit(make: Make, heights: tuple[float, ...
     write_grids(tmp_path / "g.cgns", [thick(each, heights) for each in (channel(), grid, ring(), grid)])
     one, two, three, four = back(tmp_path / "g.cgns")
     assert (one.topology, three.topology) == ("quad", "o")
-    for found in (two, four):
-        for block, old in zip(found.blocks, grid.blocks, strict=True):
+    for result in (two, four):
+        for block, old in zip(result.blocks, grid.blocks, strict=True):
             assert np.array_equal(block.nodes.view(np.uint64), old.nodes.view(np.uint64))
-        assert (found.connections, found.name, found.provenance) == (
+        assert (result.connections, result.name, result.provenance) == (
             grid.connections, grid.name, grid.provenance
         )  # fmt: skip
-        assert found.patches == by_block(grid.patches)
+        assert result.patches == by_block(grid.patches)
 
 
 @pytest.mark.client("cgnscheck")
@@ -74,12 +74,12 @@ def test_cgnscheck_has_neither_errors_nor_warnings(
     done = subprocess.run(
         ["cgnscheck", "-v", str(tmp_path / "g.cgns")], capture_output=True, text=True, timeout=60
     )
-    told = done.stdout + done.stderr
+    message = done.stdout + done.stderr
     assert done.returncode == 0
-    assert "WARNING" not in told
-    assert "ERROR" not in told
-    assert told.count("checking donor interface") == 2 * len(make().connections)
-    assert told.count("checking periodic property") == 2 * sum(
+    assert "WARNING" not in message
+    assert "ERROR" not in message
+    assert message.count("checking donor interface") == 2 * len(make().connections)
+    assert message.count("checking periodic property") == 2 * sum(
         c.transform is not None for c in make().connections
     )
 
@@ -104,19 +104,19 @@ def test_a_file_of_others_comes_in_with_interfaces_and_names(
     grid = make()
     write_grids(tmp_path / "g.cgns", [thick(grid, heights)])
     without(tmp_path / "g.cgns", *FACTS)
-    (found,) = back(tmp_path / "g.cgns")
-    assert len(found.connections) == len(grid.connections)
-    assert {p.name for p in found.patches} >= {p.name.replace(" ", "_") for p in grid.patches}
-    merged, wanted = unstructured(found), unstructured(grid)
+    (result,) = back(tmp_path / "g.cgns")
+    assert len(result.connections) == len(grid.connections)
+    assert {p.name for p in result.patches} >= {p.name.replace(" ", "_") for p in grid.patches}
+    merged, wanted = unstructured(result), unstructured(grid)
     assert len(merged.points) == len(wanted.points)
     assert {n: len(e) for n, e in merged.faces.items()} == {
         n.replace(" ", "_"): len(e) for n, e in wanted.faces.items()
     }
     if make not in (passage, sector):
-        assert sorted_joints(found.connections) == sorted_joints(grid.connections)
+        assert sorted_joints(result.connections) == sorted_joints(grid.connections)
         without(tmp_path / "g.cgns", "ZoneGridConnectivity")  # found by position then
         (again,) = back(tmp_path / "g.cgns")
-        assert (again.connections, again.patches) == (found.connections, found.patches)
+        assert (again.connections, again.patches) == (result.connections, result.patches)
 
 
 def zone(base: h5py.Group, name: str, nodes: Floats, *, space: bool = False) -> h5py.Group:
@@ -184,8 +184,8 @@ def test_ranges_may_run_either_way_and_transforms_have_any_sign(
         joint(zone(base, "left", left), "right", own, other, transform)
         condition(zone(base, "right", right), "wall", "BCWall", [[1, 1], [3, 1]])
     (grid,) = back(tmp_path / "g.cgns")
-    (found,) = grid.connections
-    assert (found.side, found.donor_side, found.orientation) == ("east", "west", (1,))
+    (result,) = grid.connections
+    assert (result.side, result.donor_side, result.orientation) == ("east", "west", (1,))
     assert grid.provenance["zones"] == ["left", "right"]
     assert {p.name for p in grid.patches} == {"wall", "outer"}
 
@@ -222,10 +222,10 @@ def test_conditions_by_family_by_faces_and_by_points(tmp_path: Path) -> None:
         condition(second, "none", "Null", [[1, 1], [1, 4]])
     (grid,) = back(tmp_path / "g.cgns")
     assert len(grid.connections) == 1  # a condition that says nothing does not hide an interface
-    found = {p.name: (p.block, p.side, p.start, p.stop, p.kind) for p in grid.patches}
-    assert found["skin"] == (0, "south", 0, 4, "wall")
-    assert found["bc2"] == (0, "west", 0, 3, "inlet")
-    assert found["bc3"] == (1, "north", 0, 2, "symmetry")
+    result = {p.name: (p.block, p.side, p.start, p.stop, p.kind) for p in grid.patches}
+    assert result["skin"] == (0, "south", 0, 4, "wall")
+    assert result["bc2"] == (0, "west", 0, 3, "inlet")
+    assert result["bc3"] == (1, "north", 0, 2, "symmetry")
 
 
 def test_walls_on_both_sides_of_a_plate_stay_apart(tmp_path: Path) -> None:
@@ -277,7 +277,7 @@ def test_periodic_interfaces_are_found_whatever_sign_the_file_has(sign: int, tmp
 
 def test_interfaces_that_join_nothing_are_refused_with_their_place(tmp_path: Path) -> None:
     left, right = pair()
-    for other, told in (
+    for other, message in (
         ([[1, 1], [1, 3]], "joins 3 cells to 2; join equal"),
         ([[3, 1], [3, 4]], "no shift or"),
     ):
@@ -285,7 +285,7 @@ def test_interfaces_that_join_nothing_are_refused_with_their_place(tmp_path: Pat
             base = child(root(file), "B", "CGNSBase_t", np.array([2, 2], np.int32))
             joint(zone(base, "left", left), "right", [[5, 1], [5, 4]], other, None)
             zone(base, "right", right * (1, 1.5))
-        with pytest.raises(InputError, match=told):
+        with pytest.raises(InputError, match=message):
             back(tmp_path / "g.cgns")
 
 
@@ -345,7 +345,7 @@ def test_what_gmsh_writes_of_transfinite_surfaces_is_one_grid(ending: str, tmp_p
 def test_zones_keep_their_names(make: Make, tmp_path: Path) -> None:
     write_grids(tmp_path / "g.cgns", [make()])
     without(tmp_path / "g.cgns", *FACTS)
-    (found,) = back(tmp_path / "g.cgns")
-    write_grids(tmp_path / "again.cgns", [found])
+    (result,) = back(tmp_path / "g.cgns")
+    write_grids(tmp_path / "again.cgns", [result])
     with h5py.File(tmp_path / "again.cgns") as file:
-        assert set(found.provenance["zones"]) <= set(file["Base"])
+        assert set(result.provenance["zones"]) <= set(file["Base"])

@@ -40,32 +40,36 @@ def back(path: Path) -> list[Grid]:
 def checked(path: Path) -> str:
     """What cgnscheck says of a file, without errors and warnings."""
     done = subprocess.run(["cgnscheck", "-v", str(path)], capture_output=True, text=True, timeout=60)
-    told = done.stdout + done.stderr
+    message = done.stdout + done.stderr
     assert done.returncode == 0
-    assert "WARNING" not in told, told
-    assert "ERROR" not in told, told
-    return told
+    assert "WARNING" not in message, message
+    assert "ERROR" not in message, message
+    return message
 
 
 @pytest.mark.parametrize("make", [*VOLUMES, surface])
 def test_a_grid_comes_back_to_the_last_bit(make: Make, tmp_path: Path) -> None:
     grid = make()
     write_grids(tmp_path / "g.cgns", [grid])
-    (found,) = back(tmp_path / "g.cgns")
-    for block, old in zip(found.blocks, grid.blocks, strict=True):
+    (result,) = back(tmp_path / "g.cgns")
+    for block, old in zip(result.blocks, grid.blocks, strict=True):
         assert np.array_equal(block.nodes.view(np.uint64), old.nodes.view(np.uint64))
-    assert (found.connections, found.name, found.provenance) == (grid.connections, grid.name, grid.provenance)
-    assert sorted(found.patches, key=repr) == sorted(grid.patches, key=repr)
+    assert (result.connections, result.name, result.provenance) == (
+        grid.connections,
+        grid.name,
+        grid.provenance,
+    )
+    assert sorted(result.patches, key=repr) == sorted(grid.patches, key=repr)
 
 
 @pytest.mark.client("cgnscheck")
 @pytest.mark.parametrize("make", VOLUMES)
 def test_cgnscheck_has_neither_errors_nor_warnings(make: Make, tmp_path: Path) -> None:
     write_grids(tmp_path / "g.cgns", [make()])
-    told = checked(tmp_path / "g.cgns")
+    message = checked(tmp_path / "g.cgns")
     joints = make().connections
-    assert told.count("checking donor interface") == 2 * len(joints)
-    assert told.count("checking periodic property") == 2 * sum(c.transform is not None for c in joints)
+    assert message.count("checking donor interface") == 2 * len(joints)
+    assert message.count("checking periodic property") == 2 * sum(c.transform is not None for c in joints)
 
 
 @pytest.mark.client("cgnscheck")
@@ -157,15 +161,15 @@ def test_a_file_of_others_comes_in_with_interfaces_and_names(make: Make, tmp_pat
     grid = make()
     write_grids(tmp_path / "g.cgns", [grid])
     without(tmp_path / "g.cgns", *FACTS)
-    (found,) = back(tmp_path / "g.cgns")
+    (result,) = back(tmp_path / "g.cgns")
     periodic = make in (shifted, turned_sector)
-    assert len(found.connections) == len(grid.connections)
+    assert len(result.connections) == len(grid.connections)
     if not periodic:
-        assert set(found.connections) == set(grid.connections)
-    for mine, other in zip(found.blocks, grid.blocks, strict=True):
+        assert set(result.connections) == set(grid.connections)
+    for mine, other in zip(result.blocks, grid.blocks, strict=True):
         np.testing.assert_allclose(mine.nodes, other.nodes, atol=1e-12 if periodic else 0)
     outer = [(p.name.replace(" ", "_"), p.side, p.start, p.stop, p.across) for p in grid.outer_patches()]
-    assert [(p.name, p.side, p.start, p.stop, p.across) for p in found.outer_patches()] == outer
+    assert [(p.name, p.side, p.start, p.stop, p.across) for p in result.outer_patches()] == outer
 
 
 def edited(path: Path, grid: Grid, change: Callable[[h5py.Group], None]) -> Path:
@@ -239,7 +243,7 @@ def test_a_left_handed_zone_is_turned_with_what_it_says(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         (lambda z: z.pop("GridCoordinates"), "zone 'pipe-1': has no CoordinateX and CoordinateY; write Cart"),
         (
@@ -271,9 +275,9 @@ def test_a_left_handed_zone_is_turned_with_what_it_says(tmp_path: Path) -> None:
     ],
 )
 def test_what_does_not_fit_is_refused_with_its_place(
-    change: Callable[[h5py.Group], None], told: str, tmp_path: Path
+    change: Callable[[h5py.Group], None], message: str, tmp_path: Path
 ) -> None:
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         back(edited(tmp_path / "g.cgns", pipe(), change))
 
 

@@ -44,12 +44,12 @@ def grid(name: str, folder: Path) -> str:
 def test_check_mesh_finds_no_fault(name: str, folder: Path) -> None:
     case = folder / f"case-{name}"
     run(sys.executable, "-m", "meshonet_cli", "convert", grid(name, folder), str(case / "case.foam"), "-q")
-    told = run("checkMesh", "-case", str(case), "-allTopology")
-    faults = [line for line in told.splitlines() if "***" in line]
+    message = run("checkMesh", "-case", str(case), "-allTopology")
+    faults = [line for line in message.splitlines() if "***" in line]
     assert [line for line in faults if not any(word in line for word in SOFT)] == []
-    assert "Upper triangular ordering OK." in told
-    assert "Cell volumes OK." in told
-    assert "Mesh OK." in told
+    assert "Upper triangular ordering OK." in message
+    assert "Cell volumes OK." in message
+    assert "Mesh OK." in message
 
 
 @pytest.mark.client("cgnscheck")
@@ -60,6 +60,6 @@ def test_cgnscheck_finds_neither_errors_nor_warnings(
 ) -> None:
     path = str(tmp_path / "grid.cgns")
     run(sys.executable, "-m", "meshonet_cli", "convert", grid(name, folder), path, "-q", *layers)
-    told = run("cgnscheck", "-w3", path)
-    assert "ERROR" not in told
-    assert "WARNING" not in told
+    message = run("cgnscheck", "-w3", path)
+    assert "ERROR" not in message
+    assert "WARNING" not in message

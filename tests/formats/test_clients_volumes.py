@@ -35,8 +35,8 @@ towards = [0, 1, 0]
 GRIDS = {
     "wing": "stack wing.toml --around 65 --span 25",
     "blade": "stack blade.toml --around 65 --span 13",
-    "pipe": "sweep circle:0.5 bend.toml --cells 300 --first-cell 0.01",
-    "ring": "sweep circle:0.5 ring.csv --cells 100",
+    "pipe": "sweep circle:0.5 bend.toml --around 40 --first-cell 0.01",
+    "ring": "sweep circle:0.5 ring.csv --around 32",
 }
 PATCHES = {
     "wing": {"wing": "wall", "tip": "wall", "symmetry": "symmetryPlane", "farfield": "patch"},
@@ -72,9 +72,9 @@ def written(name: str, ending: str, folder: Path) -> Path:
 @pytest.mark.parametrize("name", GRIDS)
 def test_check_mesh_finds_no_fault(name: str, folder: Path) -> None:
     path = written(name, "/case.foam", folder)
-    told = run("checkMesh", "-case", str(path.parent), "-allTopology", folder=folder)
-    assert "***" not in told
-    assert "Mesh OK." in told
+    message = run("checkMesh", "-case", str(path.parent), "-allTopology", folder=folder)
+    assert "***" not in message
+    assert "Mesh OK." in message
     boundary = (path.parent / "constant" / "polyMesh" / "boundary").read_text().partition("}")[2].split()
     types = {boundary[k - 1]: boundary[k + 2].strip(";") for k, word in enumerate(boundary) if word == "{"}
     assert types == PATCHES[name]
@@ -83,6 +83,6 @@ def test_check_mesh_finds_no_fault(name: str, folder: Path) -> None:
 @pytest.mark.client("cgnscheck")
 @pytest.mark.parametrize("name", GRIDS)
 def test_cgnscheck_finds_neither_errors_nor_warnings(name: str, folder: Path) -> None:
-    told = run("cgnscheck", str(written(name, ".cgns", folder)), folder=folder)
-    assert "ERROR" not in told.upper().replace("0 ERRORS", "")
-    assert "WARNING" not in told.upper().replace("0 WARNINGS", "")
+    message = run("cgnscheck", str(written(name, ".cgns", folder)), folder=folder)
+    assert "ERROR" not in message.upper().replace("0 ERRORS", "")
+    assert "WARNING" not in message.upper().replace("0 WARNINGS", "")

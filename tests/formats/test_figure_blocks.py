@@ -10,9 +10,8 @@ import pytest
 from block_grids import butterfly, duct, o_ring
 
 from meshonet.formats.figure.figure import draw
-from meshonet.formats.figure.files import write
 from meshonet.formats.figure.layers import Colouring
-from meshonet.formats.figure.picture import Picture
+from meshonet.formats.figure.picture import Picture, write
 from meshonet.formats.figure.view import View
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -22,7 +21,7 @@ from meshonet.geometry.quality.measure import per_cell_of_blocks
 @pytest.mark.parametrize("make", [butterfly, duct, o_ring])
 def test_blocks_are_drawn_twice_the_same(make: type[Grid], tmp_path: Path) -> None:
     for name in ("a.png", "b.png"):
-        Picture("skewness").draw("png", tmp_path / name, [make()])
+        Picture(metric="skewness").draw("png", tmp_path / name, [make()])
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 

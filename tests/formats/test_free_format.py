@@ -40,8 +40,8 @@ def test_halves_are_rounded_to_even_or_left_to_others() -> None:
     ],
 )
 def test_fortran_spells_numbers_freely(text: bytes, values: list[float]) -> None:
-    found, stop = leading_numbers(text)
-    assert found.tolist() == [float(value) for value in values]
+    result, stop = leading_numbers(text)
+    assert result.tolist() == [float(value) for value in values]
     assert stop == len(text)
 
 
@@ -49,11 +49,11 @@ def test_fortran_spells_numbers_freely(text: bytes, values: list[float]) -> None
     "word", [b"nan", b"3*1", b"1e", b"e5", b".", b"-", b"1..2", b"0x1", b"1e99999", b"\x1b[2J"]
 )
 def test_it_stops_before_a_word_that_is_no_number(word: bytes) -> None:
-    found, stop = leading_numbers(b"1 2 " + word + b" 3")
-    assert (found.tolist(), stop) == ([1, 2], 4)
+    result, stop = leading_numbers(b"1 2 " + word + b" 3")
+    assert (result.tolist(), stop) == ([1, 2], 4)
 
 
 def test_it_stops_when_it_has_enough() -> None:
-    found, stop = leading_numbers(b"1 2 3 4 5", 2, 2)
-    assert (found.tolist(), stop) == ([2, 3], 6)
+    result, stop = leading_numbers(b"1 2 3 4 5", 2, 2)
+    assert (result.tolist(), stop) == ([2, 3], 6)
     assert np.array_equal(leading_numbers(b"7 8", 5)[0], [7, 8])

@@ -18,12 +18,12 @@ from meshonet.geometry.blocks.patches import Patch
 
 def groups(dimension: int) -> dict[str, int]:
     """Return the elements in each physical group of the open mesh."""
-    found = {}
+    result = {}
     for _, tag in gmsh.model.getPhysicalGroups(dimension):
         entities = gmsh.model.getEntitiesForPhysicalGroup(dimension, tag)
         elements = [gmsh.model.mesh.getElements(dimension, entity)[1] for entity in entities]
-        found[gmsh.model.getPhysicalName(dimension, tag)] = sum(len(e) for block in elements for e in block)
-    return found
+        result[gmsh.model.getPhysicalName(dimension, tag)] = sum(len(e) for block in elements for e in block)
+    return result
 
 
 COUNTS = {
@@ -83,7 +83,7 @@ def test_meshio_reads_the_names_back(version: str, tmp_path: Path) -> None:
     assert writer is not None
     writer(tmp_path / "g.msh", [ring()])
     mesh = meshio.gmsh.read(tmp_path / "g.msh")
-    assert {name: told.tolist() for name, told in mesh.field_data.items()} == {
+    assert {name: message.tolist() for name, message in mesh.field_data.items()} == {
         "airfoil": [1, 1], "far": [2, 1], "fluid": [3, 2],
     }  # fmt: skip
 

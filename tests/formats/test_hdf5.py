@@ -43,8 +43,8 @@ def test_grids_whose_edges_are_no_boundary_are_written_all_the_same(tmp_path: Pa
     with pytest.raises(InputError, match="clockwise"):
         boundary_of(turned)
     write_grids(tmp_path / "g.h5", [turned])
-    (found,) = read_grids(open_source(str(tmp_path / "g.h5")))
-    assert np.array_equal(found.nodes, turned.nodes)
+    (result,) = read_grids(open_source(str(tmp_path / "g.h5")))
+    assert np.array_equal(result.nodes, turned.nodes)
 
 
 def test_the_layout_is_the_documented_one(tmp_path: Path) -> None:
@@ -321,8 +321,8 @@ def test_grids_of_several_blocks_come_back_with_connections_and_patches(turned: 
         assert file["blocks/0"].shape == file["blocks/1"].shape == (3, 5, 5, 2)
     back = list(read_grids(open_source(str(tmp_path / "g.h5"))))
     for one, other in zip(back, grids, strict=True):
-        for found, block in zip(one.blocks, other.blocks, strict=True):
-            np.testing.assert_array_equal(found.nodes, block.nodes)
+        for result, block in zip(one.blocks, other.blocks, strict=True):
+            np.testing.assert_array_equal(result.nodes, block.nodes)
         assert (one.patches, one.connections, one.name) == (other.patches, other.connections, other.name)
         assert (one.provenance, one.origin) == (other.provenance, other.origin)
 

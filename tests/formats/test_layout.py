@@ -137,17 +137,17 @@ DAMAGED = {
 @pytest.mark.parametrize("case", DAMAGED)
 def test_a_damaged_layout_is_refused_with_the_place(case: str) -> None:
     facts = as_dict(step_layout())
-    at, value, told = DAMAGED[case]
+    at, value, message = DAMAGED[case]
     if case == "twice":
         value = facts["faces"][0]
     facts = json.loads(json.dumps(facts))
     change(facts, at, value)
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         read(json.dumps(facts))
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("{", "is not JSON"),
         ("[" * 100_000, "is not JSON"),
@@ -156,8 +156,8 @@ def test_a_damaged_layout_is_refused_with_the_place(case: str) -> None:
         ('{"format": "meshonet-layout", "version": 1}', "loops are no list of objects"),
     ],
 )
-def test_what_is_no_layout_is_refused(text: str, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_what_is_no_layout_is_refused(text: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         read_layout(memory(text.encode("latin-1"), "layout.json"))
 
 

@@ -226,13 +226,15 @@ def test_a_format_of_one_block_names_those_of_many(name: str, tmp_path: Path) ->
         record.write_grids(path, [butterfly()])
         assert path.exists()
     else:
-        told = f"{name} files hold one block and the grid has 5; write one of hdf5, .*openfoam.*su2"
-        with pytest.raises(InputError, match=told):
+        message = f"{name} files hold one block and the grid has 5; write one of hdf5, .*openfoam.*su2"
+        with pytest.raises(InputError, match=message):
             record.write_grids(path, [butterfly()])
     space = Grid((Block(np.random.default_rng(0).random((3, 3, 3, 3))),))
     if "volumes" in record.space:
         record.write_grids(path, [space])
     else:
-        told = f"{name} files hold grids in the plane and this grid has volumes in space; write one of hdf5"
-        with pytest.raises(InputError, match=told):
+        message = (
+            f"{name} files hold grids in the plane and this grid has volumes in space; write one of hdf5"
+        )
+        with pytest.raises(InputError, match=message):
             record.write_grids(path, [space])

@@ -17,8 +17,8 @@ def rows(path: Path) -> tuple[list[int], list[Row]]:
     """Return the dimensions and the rows: type and its numbers, without the word for the swap."""
     lines = [line.split() for line in path.read_text().splitlines() if not line.startswith("#")]
     assert lines[0] == ["1"]
-    found = [(line[0], [int(word) for word in line[1:] if word != "FALSE"]) for line in lines[2:]]
-    return [int(word) for word in lines[1][1:]], found
+    result = [(line[0], [int(word) for word in line[1:] if word != "FALSE"]) for line in lines[2:]]
+    return [int(word) for word in lines[1][1:]], result
 
 
 def face_nodes(span: list[int], dims: list[int]) -> list[tuple[int, int, int]]:
@@ -29,23 +29,23 @@ def face_nodes(span: list[int], dims: list[int]) -> list[tuple[int, int, int]]:
     normal = (face - 1) // 2  # 0: k, 1: i, 2: j
     fixed = [2, 0, 1][normal]
     at = dims[fixed] if face % 2 == 0 else 1
-    found = []
+    result = []
     for a in first:
         for b in second:
             node = [0, 0, 0]
             node[fixed], node[(fixed + 1) % 3], node[(fixed + 2) % 3] = at, a, b
-            found.append((node[0], node[1], node[2]))
-    return found
+            result.append((node[0], node[1], node[2]))
+    return result
 
 
 @pytest.mark.parametrize("make", [channel, ring, c_grid])
 def test_every_outer_node_of_a_layer_is_in_a_row(make: type[Grid], tmp_path: Path) -> None:
     grid = make()
     write_grids(tmp_path / "g.nmf", [extruded(grid, (0.0, 1.0))])
-    dims, found = rows(tmp_path / "g.nmf")
+    dims, result = rows(tmp_path / "g.nmf")
     assert dims == [grid.ni, grid.nj, 2]
     covered = set()
-    for _, span in found:
+    for _, span in result:
         for k in range(0, len(span), 6):
             covered |= set(face_nodes(span[k : k + 6], dims))
     assert len(covered) == grid.ni * grid.nj * 2
@@ -55,8 +55,8 @@ def test_every_outer_node_of_a_layer_is_in_a_row(make: type[Grid], tmp_path: Pat
 def test_the_cut_joins_equal_nodes(make: type[Grid], tmp_path: Path) -> None:
     grid = make()
     write_grids(tmp_path / "g.nmf", [grid])
-    dims, found = rows(tmp_path / "g.nmf")
-    (span,) = [numbers for kind, numbers in found if kind == "ONE_TO_ONE"]
+    dims, result = rows(tmp_path / "g.nmf")
+    (span,) = [numbers for kind, numbers in result if kind == "ONE_TO_ONE"]
     pairs = zip(face_nodes(span[:6], dims), face_nodes(span[6:], dims), strict=True)
     count = 0
     for own, other in pairs:

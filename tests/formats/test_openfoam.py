@@ -30,9 +30,9 @@ PATCHES = {
 
 def numbers(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     """Return the rows of a list, once there are as many as it says."""
-    found = re.fullmatch(r"FoamFile\n\{.*?\}\s+(\d+)\n\(\n(.*)\)\n", path.read_text(), re.S)
-    assert found is not None
-    count, body = found.groups()
+    result = re.fullmatch(r"FoamFile\n\{.*?\}\s+(\d+)\n\(\n(.*)\)\n", path.read_text(), re.S)
+    assert result is not None
+    count, body = result.groups()
     rows = [re.sub(r"4?\(|\)", " ", line).split() for line in body.splitlines()]
     assert len(rows) == int(count)
     return np.array(rows, float)
@@ -84,10 +84,10 @@ def test_cells_are_closed_and_faces_point_out_of_owners_in_order(
 def test_patches_are_named_typed_and_cover_the_outer_faces(make: type[Grid], tmp_path: Path) -> None:
     write_grids(tmp_path / "case.foam", [make()])
     mesh = tmp_path / "constant" / "polyMesh"
-    found = patches(mesh)
-    assert {name: told[:2] for name, told in found.items()} == PATCHES[make().topology]
+    result = patches(mesh)
+    assert {name: message[:2] for name, message in result.items()} == PATCHES[make().topology]
     at = len(numbers(mesh / "neighbour"))
-    for _, count, start in found.values():
+    for _, count, start in result.values():
         assert start == at
         at += count
     assert at == len(numbers(mesh / "faces"))
@@ -116,8 +116,8 @@ def test_the_planes_of_several_layers_are_symmetry_planes(tmp_path: Path) -> Non
     write_grids(
         tmp_path / "case.foam", [extruded(Grid.from_nodes(ring().nodes, "o", parts), (0.0, 1.0, 2.0))]
     )
-    found = patches(tmp_path / "constant" / "polyMesh")
-    assert {name: told[:2] for name, told in found.items()} == {
+    result = patches(tmp_path / "constant" / "polyMesh")
+    assert {name: message[:2] for name, message in result.items()} == {
         "front-2": ("wall", 24), "far": ("patch", 24),
         "back": ("symmetryPlane", 48), "front": ("symmetryPlane", 48),
     }  # fmt: skip
@@ -155,16 +155,16 @@ def test_the_rest_of_a_case_is_left_alone(tmp_path: Path) -> None:
 def test_names_that_no_dictionary_could_hold_become_words(tmp_path: Path) -> None:
     parts = (Patch("0012 {a;}", "south", 0, 12), Patch("frontAndBack", "north", 0, 12))
     write_grids(tmp_path / "case.foam", [Grid.from_nodes(ring().nodes, "o", parts)])
-    found = patches(tmp_path / "constant" / "polyMesh")
-    assert list(found) == ["part_0012_a", "frontAndBack-2", "frontAndBack"]
-    assert found["part_0012_a"][0] == "wall"
+    result = patches(tmp_path / "constant" / "polyMesh")
+    assert list(result) == ["part_0012_a", "frontAndBack-2", "frontAndBack"]
+    assert result["part_0012_a"][0] == "wall"
 
 
 def test_overlapping_parts_give_every_face_to_one_patch(tmp_path: Path) -> None:
     parts = (Patch("wall", "south", 0, 12), Patch("slot", "south", 3, 5), Patch("far", "north", 0, 12))
     write_grids(tmp_path / "case.foam", [Grid.from_nodes(ring().nodes, "o", parts)])
-    found = patches(tmp_path / "constant" / "polyMesh")
-    assert {name: told[1] for name, told in found.items()} == {
+    result = patches(tmp_path / "constant" / "polyMesh")
+    assert {name: message[1] for name, message in result.items()} == {
         "wall": 10, "slot": 2, "far": 12, "frontAndBack": 96,
     }  # fmt: skip
 

@@ -71,9 +71,9 @@ def test_check_mesh_says_the_same(tmp_path: Path, name: str) -> None:
     )
 
     def theirs(pattern: str) -> float:
-        found = re.search(pattern + r" ([-+.\de]+)", done.stdout)
-        assert found, done.stdout
-        return float(found[1])
+        result = re.search(pattern + r" ([-+.\de]+)", done.stdout)
+        assert result, done.stdout
+        return float(result[1])
 
     ours = faces(grid)
     assert ours.non_orthogonality is not None

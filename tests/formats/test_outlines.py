@@ -7,7 +7,7 @@ import pytest
 from format_shapes import memory
 
 from meshonet.formats.outlines.vector import read_geojson, read_wkt
-from meshonet.formats.table import is_geojson, is_wkt
+from meshonet.formats.table import TABLE
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
 
@@ -60,9 +60,9 @@ def test_a_polygon_with_a_hole_is_a_body_in_its_far_field(way: int) -> None:
     hole = [[0.5, 0.3], [1.0, 0.3], [1.0, 0.6], [0.5, 0.6], [0.5, 0.3]]
     text = f"POLYGON (({wkt(SQUARE[::way])}), ({wkt(hole)}))"
     (body,) = read_wkt(memory(text.encode(), "body.wkt"))
-    found = body.boundary(Sampling(ni=33, nj=9))
-    assert (found.topology, found.name) == ("o", "body")
-    for corner, side in [(p, found.south) for p in hole] + [(p, found.north) for p in SQUARE]:
+    result = body.boundary(Sampling(ni=33, nj=9))
+    assert (result.topology, result.name) == ("o", "body")
+    for corner, side in [(p, result.south) for p in hole] + [(p, result.north) for p in SQUARE]:
         assert np.hypot(*(side - corner).T).min() < 1e-12
 
 
@@ -80,6 +80,9 @@ def test_geojson_features_are_called_by_their_name() -> None:
 
 
 def test_files_are_known_by_their_start() -> None:
+    is_wkt, is_geojson = TABLE["wkt"].sniff, TABLE["geojson"].sniff
+    assert is_wkt is not None
+    assert is_geojson is not None
     assert is_wkt(b"\n  Polygon ((0 0")
     assert not is_wkt(b"POLYGONAL AIRFOIL\n1 0")
     assert is_geojson(b' {"type": "Feature"')
@@ -87,6 +90,7 @@ def test_files_are_known_by_their_start() -> None:
 
 
 ASK = "give a POLYGON or a closed LINESTRING"
+OUTER = [[0, 0], [4, 0], [4, 2], [0, 0]]
 WKT = {
     "prose": ("hello", f"line 1: is not WKT .*; {ASK}"),
     "second line": (f"{HEXAGON}\nPOLYGON ((0 0, 1", "line 2: is not WKT"),
@@ -97,6 +101,8 @@ WKT = {
     "crossing": ("POLYGON ((0 0, 1 1, 1 0, 0 1, 0 0))", "crosses itself at"),
     "nan": ("POLYGON ((0 0, nan 1, 1 0, 0 0))", "is not finite or far too large; check its numbers"),
     "huge": ("POLYGON ((0 0, 1e300 0, 1e300 1e300, 0 1e300, 0 0))", "is not finite or far too large"),
+    "empty hole": ("POLYGON ((0 0, 1 0, 1 1, 0 0), EMPTY)", "has a hole without points; give its points"),
+    "crossing walls": ("LINESTRING (0 0, 2 1)\nLINESTRING (0 1, 2 0)", "crosses itself"),
 }
 GEOJSON = {
     "prose": (b"hello", "is not JSON .*; give a GeoJSON file"),
@@ -109,19 +115,62 @@ GEOJSON = {
     "number": (geojson({"type": "Polygon", "coordinates": 7}), "is not a GeoJSON geometry"),
     "point": (geojson({"type": "Point", "coordinates": [1, 2]}), "which is no outline"),
     "none": (b'{"type": "FeatureCollection", "features": []}', "holds no geometry"),
+    "empty hole": (geojson({"type": "Polygon", "coordinates": [OUTER, []]}), "has a hole without points"),
+    "null hole": (geojson({"type": "Polygon", "coordinates": [OUTER, None]}), "has a hole without points"),
+    "400 digits": (
+        geojson({"type": "Polygon", "coordinates": [[[10**400, 0], *OUTER]]}),
+        "is not a GeoJSON geometry",
+    ),
+    "a corner of 400 digits": (
+        geojson({"type": "Polygon", "coordinates": [OUTER]}, corners=[[10**400]]),
+        "property 'corners' holds no list of point numbers",
+    ),
     "bytes": (b'{"type": "\xff\xfe"}', "byte 10: is not UTF-8 text; save it as UTF-8"),
 }
 
 
 @pytest.mark.parametrize("case", WKT)
 def test_wkt_that_is_no_outline_is_refused(case: str) -> None:
-    text, told = WKT[case]
-    with pytest.raises(InputError, match=told):
+    text, message = WKT[case]
+    with pytest.raises(InputError, match=message):
         list(read_wkt(memory(text.encode())))
 
 
 @pytest.mark.parametrize("case", GEOJSON)
 def test_geojson_that_is_no_outline_is_refused(case: str) -> None:
-    data, told = GEOJSON[case]
-    with pytest.raises(InputError, match=told):
+    data, message = GEOJSON[case]
+    with pytest.raises(InputError, match=message):
         list(read_geojson(memory(data)))
+
+
+FLOOR, ROOF = "LINESTRING (0 0, 1 0.1, 3 0)", "LINESTRING (3 1, 0 1)"
+SIDES = {
+    "two walls": (f"{FLOOR}\n{ROOF}", ["wall", "outlet", "wall", "inlet"]),
+    "two walls with names": (f"# floor\n{FLOOR}\n# roof\n{ROOF}", ["floor", "outlet", "roof", "inlet"]),
+    "one geometry": ("MULTILINESTRING ((0 0, 1 0.1, 3 0), (0 1, 3 1))", ["wall", "outlet", "wall", "inlet"]),
+    "four sides": (
+        f"# floor\n{FLOOR}\n# roof\n{ROOF}\n# west\nLINESTRING (0 0, 0 1)\n# east\nLINESTRING (3 0, 3 1)",
+        ["floor", "east", "roof", "west"],
+    ),
+}
+
+
+@pytest.mark.parametrize("case", SIDES)
+def test_open_lines_are_the_sides_of_a_channel(case: str) -> None:
+    text, names = SIDES[case]
+    (shape,) = read_wkt(memory(text.encode(), "duct.wkt"))
+    edges = shape.boundary(Sampling(ni=13, nj=7))
+    assert shape.name == "duct"
+    assert [patch.name for patch in edges.patches] == names
+
+
+def test_features_that_are_open_lines_are_sides_by_their_names() -> None:
+    lines = {"floor": [[0, 0], [1, 0.1], [3, 0]], "roof": [[0, 1], [3, 1]]}
+    members = [
+        {"type": "Feature", "properties": {"name": n}, "geometry": {"type": "LineString", "coordinates": c}}
+        for n, c in lines.items()
+    ]
+    data = json.dumps({"type": "FeatureCollection", "features": members}).encode()
+    (shape,) = read_geojson(memory(data, "duct.geojson"))
+    names = [patch.name for patch in shape.boundary(Sampling(ni=13, nj=7)).patches]
+    assert names == ["floor", "outlet", "roof", "inlet"]

@@ -178,20 +178,20 @@ def test_folders_are_made_only_when_asked(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("where", "told"),
+    ("where", "message"),
     [
         ("", "is a folder; name a file in it"),
         ("none/a.vts", "its folder does not exist; make it: mkdir -p .*none"),
     ],
 )
-def test_a_place_that_cannot_be_written_is_named(where: str, told: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=told), whole_file(str(tmp_path / where)):
+def test_a_place_that_cannot_be_written_is_named(where: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=message), whole_file(str(tmp_path / where)):
         pass
 
 
 def test_a_full_disc_is_named() -> None:
-    told = r"/dev/full: cannot be written \(No space left on device\); free space"
-    with pytest.raises(InputError, match=told), whole_file("/dev/full") as part:
+    message = r"/dev/full: cannot be written \(No space left on device\); free space"
+    with pytest.raises(InputError, match=message), whole_file("/dev/full") as part:
         part.write_text("x")
 
 

@@ -149,7 +149,7 @@ def test_of_a_large_volume_a_page_has_the_outer_boundary(
 
 
 @pytest.mark.parametrize(
-    ("make", "view", "told"),
+    ("make", "view", "message"),
     [
         (ring, View(slice=parse_slice("k=0")), "slice: the grid is in the plane; leave slice out"),
         (ring, View(seen_from=(0, 0)), "seen_from: the grid is in the plane"),
@@ -161,11 +161,11 @@ def test_of_a_large_volume_a_page_has_the_outer_boundary(
     ],
 )
 def test_a_view_that_the_grid_does_not_have_is_refused(
-    make: Make, view: View, told: str, tmp_path: Path
+    make: Make, view: View, message: str, tmp_path: Path
 ) -> None:
     with pytest.raises(InputError) as refused:
         page(make(), tmp_path, view=view)
-    assert str(refused.value).startswith(told)
+    assert str(refused.value).startswith(message)
     assert not list(tmp_path.iterdir())
 
 

@@ -22,7 +22,8 @@ EVERY = (*formats(), *map(format_named, VARIANTS))
 BOTH_WAYS = [row.name for row in EVERY if row.write_grids and row.read_grids]
 KEPT = [row.name for row in EVERY if row.blocks == "kept" and row.read_grids]
 MERGED = [row.name for row in EVERY if row.blocks == "merged"]
-AS_BOUNDARIES = [row.name for row in EVERY if row.write_grids and row.read_shapes and row.read_grids is None]
+MESHES = [row for row in EVERY if row.write_grids and row.read_shapes and row.name != "svg"]  # a picture
+AS_BOUNDARIES = [row.name for row in MESHES if row.read_grids is None]
 
 
 def through(name: str, grid: Grid, folder: Path) -> Path:

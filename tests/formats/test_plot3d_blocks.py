@@ -40,19 +40,19 @@ def test_a_grid_comes_back_with_its_map(
     options = frozenset(filter(None, words.split(",")))
     with whole_file(str(tmp_path / "g.xyz")) as part:
         write_grids(part, [extruded(grid, heights) if heights else grid], options=options)
-    (found,) = back(tmp_path / "g.xyz")
-    assert sorted_joints(found.connections) == sorted_joints(grid.connections) or make is sector
-    for block, old in zip(found.blocks, grid.blocks, strict=True):
+    (result,) = back(tmp_path / "g.xyz")
+    assert sorted_joints(result.connections) == sorted_joints(grid.connections) or make is sector
+    for block, old in zip(result.blocks, grid.blocks, strict=True):
         if make is sector:  # whose angle is what its nodes say
             np.testing.assert_allclose(block.nodes, old.nodes, atol=1e-14)
         else:
             assert np.array_equal(block.nodes, old.nodes)
     named = [(p.block, p.side, p.start, p.stop, p.name, p.kind) for p in by_block(grid.patches)]
-    told = [(p.block, p.side, p.start, p.stop, p.name, p.kind) for p in found.patches]
-    assert set(named) <= set(told)
-    mesh, wanted = unstructured(found), unstructured(grid)
+    message = [(p.block, p.side, p.start, p.stop, p.name, p.kind) for p in result.patches]
+    assert set(named) <= set(message)
+    mesh, wanted = unstructured(result), unstructured(grid)
     assert {n: len(e) for n, e in mesh.faces.items()} == {n: len(e) for n, e in wanted.faces.items()}
-    assert "iblank" not in words or found.provenance == {
+    assert "iblank" not in words or result.provenance == {
         "iblank": {"1": sum(b.nodes.size // 2 for b in grid.blocks)}
     }
 
@@ -92,16 +92,29 @@ def test_without_a_map_interfaces_are_found_and_lines_named(make: Make, tmp_path
     grid = make()
     write_grids(tmp_path / "g.p3d", [grid])
     (tmp_path / "g.nmf").unlink()
-    (found,) = back(tmp_path / "g.p3d")
-    assert sorted_joints(found.connections) == sorted_joints(grid.connections)
-    assert set(unstructured(found).faces) == {"outer"}
+    (result,) = back(tmp_path / "g.p3d")
+    assert sorted_joints(result.connections) == sorted_joints(grid.connections)
+    assert set(unstructured(result).faces) == {"outer"}
+
+
+@pytest.mark.parametrize("make", [channel, ring, c_grid])
+@pytest.mark.parametrize("words", ["", "binary", "3d"])
+def test_a_grid_of_one_block_has_a_map_too_and_keeps_its_names(
+    make: Make, words: str, tmp_path: Path
+) -> None:
+    grid = make()
+    write_grids(tmp_path / "g.xyz", [grid], options=frozenset(filter(None, [words])))
+    (result,) = back(tmp_path / "g.xyz")
+    assert np.array_equal(result.nodes, grid.nodes)
+    assert (result.topology, result.connections) == (grid.topology, grid.connections)
+    assert unstructured(result).faces.keys() == unstructured(grid).faces.keys()
 
 
 def test_a_hole_is_called_body(tmp_path: Path) -> None:
     half = ring().nodes
     write_grids(tmp_path / "g.p3d", [Grid.from_nodes(half[:7]), Grid.from_nodes(half[6:])])
-    (found,) = back(tmp_path / "g.p3d")
-    mesh = unstructured(found)
+    (result,) = back(tmp_path / "g.p3d")
+    mesh = unstructured(result)
     assert {name: len(edges) for name, edges in mesh.faces.items()} == {"body": 12, "outer": 12}
     assert len(mesh.points) == len(unstructured(ring()).points)
 
@@ -115,17 +128,17 @@ def test_blocks_of_any_hand_in_single_precision_are_joined(tmp_path: Path) -> No
         [Grid.from_nodes(nodes) for nodes in lattices],
         options=frozenset(["binary", "float32"]),
     )
-    (found,) = back(tmp_path / "g.bin")
-    assert len(found.connections) == 8
-    assert len(unstructured(found).points) == len(unstructured(grid).points)
+    (result,) = back(tmp_path / "g.bin")
+    assert len(result.connections) == 8
+    assert len(unstructured(result).points) == len(unstructured(grid).points)
 
 
 def test_a_batch_of_grids_stays_one_and_has_no_map(tmp_path: Path) -> None:
     write_grids(tmp_path / "g.p3d", [channel(), ring(), c_grid(), ring(), c_grid(), channel()])
     assert not (tmp_path / "g.nmf").exists()
-    found = back(tmp_path / "g.p3d")
-    assert [grid.topology for grid in found] == ["quad", "o", "c", "o", "c", "quad"]
-    assert [grid.name for grid in found] == [f"g-{k}" for k in range(1, 7)]
+    result = back(tmp_path / "g.p3d")
+    assert [grid.topology for grid in result] == ["quad", "o", "c", "o", "c", "quad"]
+    assert [grid.name for grid in result] == [f"g-{k}" for k in range(1, 7)]
     write_grids(tmp_path / "g.p3d", [channel(), duct(), passage()])
     assert [len(grid.blocks) for grid in back(tmp_path / "g.p3d")] == [1, 2, 3]
     assert back(tmp_path / "g.p3d")[0].patches[0].name == "no-slip wall"
@@ -138,8 +151,8 @@ def test_a_stream_has_no_map_beside_it(tmp_path: Path, monkeypatch: pytest.Monke
         write_grids(part, [duct()])
         assert list(part.parent.glob(f"{part.stem}*.nmf")) == []
     assert isinstance(pipe.buffer, io.BytesIO)
-    (found,) = read_grids(memory(pipe.buffer.getvalue()))
-    assert len(found.connections) == 1
+    (result,) = read_grids(memory(pipe.buffer.getvalue()))
+    assert len(result.connections) == 1
 
 
 ROWS = """\
@@ -157,16 +170,16 @@ farfield_riem 2 5  1 1  1 5
 def test_maps_of_others_are_read_as_they_are_spelled(tmp_path: Path) -> None:
     write_grids(tmp_path / "g.p3d", [duct()])
     (tmp_path / "g.nmf").write_text(ROWS)
-    (found,) = back(tmp_path / "g.p3d")
-    assert len(found.connections) == 1
-    assert {(p.name, p.block, p.side, p.kind) for p in found.patches if p.name != "outer"} == {
+    (result,) = back(tmp_path / "g.p3d")
+    assert len(result.connections) == 1
+    assert {(p.name, p.block, p.side, p.kind) for p in result.patches if p.name != "outer"} == {
         ("tangency", 0, "south", "wall"), ("viscous_solid", 0, "north", "wall"),
         ("farfield_riem", 1, "south", "farfield"),
     }  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("", "g.nmf: its map is of 0 blocks"),
         ("1\n1 9 5 1\n", "g.nmf: its map is of 1 blocks: 9x5x1; write the map again, or take it away"),
@@ -180,8 +193,8 @@ def test_maps_of_others_are_read_as_they_are_spelled(tmp_path: Path) -> None:
         ("x\n", "its map cannot be read"),
     ],
 )
-def test_a_map_that_does_not_fit_is_refused(text: str, told: str, tmp_path: Path) -> None:
+def test_a_map_that_does_not_fit_is_refused(text: str, message: str, tmp_path: Path) -> None:
     write_grids(tmp_path / "g.p3d", [duct()])
     (tmp_path / "g.nmf").write_text(text)
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         back(tmp_path / "g.p3d")

@@ -39,8 +39,8 @@ def test_every_variant_comes_back_with_and_without_being_told(words: str, tmp_pa
     kinds = ("float64", "float64,big") if not words.startswith("ascii") else ("float64",)
     for kind in kinds:
         data = written(f"{words},{kind}", [CHANNEL], tmp_path)
-        told = words if words.startswith("ascii") else f"{words},{kind}"
-        for way in ("", told):
+        message = words if words.startswith("ascii") else f"{words},{kind}"
+        for way in ("", message):
             (back,) = read(way, data)
             assert np.array_equal(back.nodes, CHANNEL.nodes)
 
@@ -82,14 +82,14 @@ def test_iblank_that_is_read_is_told_of() -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         ("huge", "'huge' is no option of plot3d files; use ascii binary fortran multi"),
         ("big,little", "little and big exclude each other; give one"),
     ],
 )
-def test_words_that_make_no_sense_are_refused(words: str, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_words_that_make_no_sense_are_refused(words: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         format_named(f"plot3d:{words}")
 
 

@@ -93,8 +93,8 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_file_that_is_no_plane_grid_is_refused(case: str) -> None:
-    data, told = CASES[case]
-    with pytest.raises(InputError, match=told):
+    data, message = CASES[case]
+    with pytest.raises(InputError, match=message):
         list(read_grids(memory(data)))
 
 

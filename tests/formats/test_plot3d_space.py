@@ -193,8 +193,8 @@ def test_volumes_that_do_not_touch_are_grids_and_patches_one_surface(tmp_path: P
     surface = Grid((Block(leaf().blocks[0].nodes + 20.0), Block(leaf().blocks[0].nodes + 30.0)))
     with whole_file(str(tmp_path / "g.bin")) as part:
         write_grids(part, [pipe(), far, surface], options=frozenset({"binary"}))
-    found = list(read_grids(open_source(str(tmp_path / "g.bin"))))
-    assert [len(grid.blocks) for grid in found] == [5, 1, 2]
+    result = list(read_grids(open_source(str(tmp_path / "g.bin"))))
+    assert [len(grid.blocks) for grid in result] == [5, 1, 2]
 
 
 def test_a_plane_grid_beside_volumes_is_a_surface(tmp_path: Path) -> None:

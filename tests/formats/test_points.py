@@ -98,7 +98,7 @@ def test_a_round_body_is_no_airfoil():
     [
         ("", "a.csv: 0 blocks of points; give closed curves, or four edges"),
         ("0,0\n1,1\n", "2 points; a closed curve needs at least 3"),
-        ("0,0\n1,0\n1,1\n\n5,5\n6,6\n", "a.csv: line 5: 2 blocks of points"),
+        ("0,0\n1,0\n1,1\n0,1\n\n5,5\n6,6\n", "a.csv: line 6: 2 blocks of points"),
         ("0,0\n1,x\n1,1\n", "a.csv: line 2: '1,x' is no pair of numbers"),
         ("0,0\n1,1\n1,0\n0,1\n", r"crosses itself at \(0.5, 0.5\), behind line 1 and behind line 3"),
         (
@@ -143,3 +143,48 @@ def test_reading_names_the_shape_after_the_file():
 def test_sniffing_knows_points_from_prose():
     assert sniff(b"x,y\n0,0\n1,0\n1,1\n")
     assert not sniff(b"a\nb\nc\n")
+
+
+WALLS = {
+    "as drawn": (SOUTH, NORTH[::2]),
+    "against each other": (SOUTH, NORTH[::-2]),
+    "from the outlet": (SOUTH[::-1], NORTH[::2]),
+}
+
+
+@pytest.mark.parametrize("case", WALLS)
+@pytest.mark.parametrize("titles", [("", ""), ("# floor\n", "# the roof\n"), ("# a channel\n", "")])
+def test_two_open_curves_are_the_walls_of_a_channel(case, titles):
+    text = "\n".join(title + lines(wall) for title, wall in zip(titles, WALLS[case], strict=True))
+    (shape,) = parse(text, "channel.csv")
+    b = shape.boundary(Sampling(ni=21, nj=7))
+    assert b.topology == "quad"
+    np.testing.assert_allclose(sorted(b.south[[0, -1]].tolist()), [[0, 0], [2, 0]], atol=1e-12)
+    floor, roof = ("floor", "the roof") if titles[1] else ("wall", "wall")
+    start, stop = ("west", "east") if case != "from the outlet" else ("east", "west")
+    assert {p.side: p.name for p in b.patches} == {
+        "south": floor,
+        "north": roof,
+        start: "inlet",
+        stop: "outlet",
+    }
+    assert [p.stop - p.start for p in b.patches] == [20, 6, 20, 6]
+
+
+def test_two_bodies_left_open_are_no_channel():
+    t = np.linspace(0, 2 * np.pi, 40)[:-1]
+    circle = np.stack([np.cos(t), np.sin(t)], axis=1)
+    assert len(parse(lines(circle) + "\n" + lines(circle + 5), "two.csv")) == 2
+
+
+@pytest.mark.parametrize("step", [1, 2])
+def test_four_edges_are_called_as_lines_above_them_say(step):
+    names = ("floor", "out", "roof", "in")
+    text = "\n".join(
+        f"# {n}\n{lines(e)}" for n, e in zip(names, (SOUTH, EAST, NORTH[::step], WEST), strict=True)
+    )
+    (shape,) = parse(text, "four.csv")
+    b = shape.boundary(Sampling(ni=9, nj=5))
+    assert {p.side: p.name for p in b.patches} == dict(
+        zip(("south", "east", "north", "west"), names, strict=True)
+    )

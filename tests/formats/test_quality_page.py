@@ -15,7 +15,7 @@ from volume_grids import box
 import meshonet
 from meshonet.formats.figure.page.cells import BARS, scale_of
 from meshonet.formats.figure.report import report as report_module
-from meshonet.formats.figure.report.charts import histogram_svg
+from meshonet.formats.figure.report.article import histogram_svg
 from meshonet.formats.figure.report.report import QualityPage
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError

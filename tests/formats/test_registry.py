@@ -272,7 +272,7 @@ def test_standard_output_is_hdf5_unless_said_otherwise() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "message"),
     [
         ("no.vts", "no.vts: no such file; check the path"),
         ("", "is a folder; name a file in it"),
@@ -292,20 +292,20 @@ def test_standard_output_is_hdf5_unless_said_otherwise() -> None:
         ("\x1b[31m.vts", r"\\x1b\[31m.vts: no such file"),
     ],
 )
-def test_what_cannot_be_read_is_named_with_its_remedy(name: str, told: str, tmp_path: Path) -> None:
+def test_what_cannot_be_read_is_named_with_its_remedy(name: str, message: str, tmp_path: Path) -> None:
     (tmp_path / "empty.vts").touch()
     (tmp_path / "case.foam").touch()
     for file in ("a.q", "plain", "x.png", "x.geo"):
         (tmp_path / file).write_text("hello\n")
     (tmp_path / "loop.vts").symlink_to(tmp_path / "loop.vts")
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         list(read_grids(str(tmp_path / name)))
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         list(read_shapes(str(tmp_path / name)))
 
 
 @pytest.mark.parametrize(
-    ("path", "told"),
+    ("path", "message"),
     [
         ("a.q", r"a.q: its ending '.q' is not known; .*to_format; known endings: .*\.vts"),
         ("", "output: the output has no name; name a file, or - for standard output"),
@@ -313,8 +313,8 @@ def test_what_cannot_be_read_is_named_with_its_remedy(name: str, told: str, tmp_
         ("a.vts", "a.vts: vts cannot hold boundaries; write one of hdf5"),
     ],
 )
-def test_what_cannot_be_written_is_named_with_its_remedy(path: str, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_what_cannot_be_written_is_named_with_its_remedy(path: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         format_for_output(path, kind="boundaries")
 
 

@@ -157,3 +157,11 @@ def test_what_a_reader_does_to_its_lines_is_not_seen_by_the_next() -> None:
     one, other = read_lines(text), read_lines(text)
     assert [line.kind for line in one] == ["text", "row", "row"]
     assert one[1] is other[1], "lines of a text that is read again are kept"
+
+
+def test_html_between_rows_is_named():
+    page = "<pre>\n1 2\n3 4\n<p>ad</p>\nlower surface\n&nbsp;\n5 6\n</pre>\n"
+    assert left_out(read_lines(page)) == (
+        "line 4, '<p>ad</p>', is HTML and is left out",
+        "line 6, '&nbsp;', is HTML and is left out",
+    )

@@ -33,7 +33,7 @@ def through(name: str, grid: Grid, folder: Path) -> Grid:
     return back
 
 
-def told(grid: Grid) -> set[tuple[object, ...]]:
+def message(grid: Grid) -> set[tuple[object, ...]]:
     """What patches are, those inside left out, which Plot3D's maps do not name."""
     outer = [patch for patch in grid.patches if patch.kind != "interface"]
     sides = [grid.blocks[patch.block].face(patch.side).shape[:-1] for patch in outer]
@@ -56,9 +56,9 @@ def test_a_grid_goes_through_two_formats(make: Make, first: str, tmp_path: Path)
         for block, old in zip(back.blocks, grid.blocks, strict=True):
             assert np.array_equal(block.nodes.view(np.uint64), old.nodes.view(np.uint64)), second
         assert sorted_connections(back) == sorted_connections(grid), second
-        assert told(grid) <= told(back), second
+        assert message(grid) <= message(back), second
         if format_named(first).names_patches and format_named(second).names_patches:
-            assert (told(back), back.name) == (told(grid), grid.name)
+            assert (message(back), back.name) == (message(grid), grid.name)
 
 
 @pytest.mark.parametrize("make", [shifted, turned_sector])

@@ -24,15 +24,15 @@ def markers(path: Path) -> dict[str, int]:
     """Return the count that the file's text gives each marker, once it has as many rows."""
     lines = path.read_text().splitlines()
     at = lines.index(next(line for line in lines if line.startswith("NMARK=")))
-    found = {}
+    result = {}
     rest = lines[at + 1 :]
     while rest:
         name, count = rest[0].split("MARKER_TAG= ")[1], int(rest[1].split("MARKER_ELEMS= ")[1])
         assert all(row[0].isdigit() for row in rest[2 : 2 + count])
-        found[name] = count
+        result[name] = count
         rest = rest[2 + count :]
-    assert int(lines[at].split("=")[1]) == len(found)
-    return found
+    assert int(lines[at].split("=")[1]) == len(result)
+    return result
 
 
 @pytest.mark.parametrize("make", [channel, ring, c_grid])

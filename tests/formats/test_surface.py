@@ -37,14 +37,14 @@ def test_the_boundary_of_a_structured_mesh_comes_back_bit_for_bit(
     record, path = format_named(name), tmp_path / f"g{format_named(name).suffixes[0]}"
     assert record.write_grids is not None
     record.write_grids(path, [make()])
-    (found,) = read_shapes(str(path))
-    assert isinstance(found, Boundary)
+    (result,) = read_shapes(str(path))
+    assert isinstance(result, Boundary)
     wanted = boundary_of(make())
     for side in ("south", "east", "north", "west"):
-        assert np.array_equal(getattr(found, side), getattr(wanted, side))
-    assert found.topology == wanted.topology
+        assert np.array_equal(getattr(result, side), getattr(wanted, side))
+    assert result.topology == wanted.topology
     words = {part.name.replace(" ", "_" if name == "su2" else " "): part for part in wanted.patches}
-    parts = {part.name: part for part in found.patches}
+    parts = {part.name: part for part in result.patches}
     for title, part in words.items():
         assert (parts[title].side, parts[title].start, parts[title].stop) == (
             part.side,
@@ -58,8 +58,8 @@ def test_the_wall_and_the_far_field_of_a_c_mesh_are_a_body_in_a_far_field(name: 
     record, path = format_named(name), tmp_path / f"g{format_named(name).suffixes[0]}"
     assert record.write_grids is not None
     record.write_grids(path, [c_grid(9, 33)])
-    (found,) = read_shapes(str(path))
-    boundary = found.boundary(Sampling(61, 21))
+    (result,) = read_shapes(str(path))
+    boundary = result.boundary(Sampling(61, 21))
     assert (boundary.topology, boundary.ni, boundary.nj) == ("o", 61, 21)
     assert named(boundary) == {"plate": "south", "far_side" if name == "su2" else "far side": "north"}
     assert np.abs(np.hypot((boundary.south[:, 0] - 0.5) / 0.5, boundary.south[:, 1] / 0.1) - 1).max() < 0.02
@@ -96,9 +96,9 @@ def test_a_triangle_mesh_of_gmsh_gives_its_named_boundary(
     gmsh.option.setNumber("Mesh.MshFileVersion", version)
     gmsh.option.setNumber("Mesh.Binary", binary)
     gmsh.write(str(tmp_path / "g.msh"))
-    (found,) = read_shapes(str(tmp_path / "g.msh"))
-    assert found.name == "g"
-    boundary = found.boundary(Sampling(65, 17))
+    (result,) = read_shapes(str(tmp_path / "g.msh"))
+    assert result.name == "g"
+    boundary = result.boundary(Sampling(65, 17))
     assert named(boundary) == {"the wall": "south", "far Ω": "north"}
     assert boundary.north.min(axis=0) == pytest.approx((-4, -3), abs=0.3)
     assert np.abs(np.hypot(boundary.south[:, 0], 2 * boundary.south[:, 1]) - 1).max() < 0.03
@@ -113,10 +113,10 @@ def test_a_mesh_without_lines_has_the_rim_of_its_cells(tmp_path: Path) -> None:
     meshio.Mesh(np.column_stack([points, 0 * points[:, 0]]), [("quad", quads)]).write(
         tmp_path / "g.msh", file_format="gmsh22"
     )
-    (found,) = read_shapes(str(tmp_path / "g.msh"))
-    assert isinstance(found, Boundary)
-    assert (found.ni, found.nj) == (5, 4)
-    assert named(found) == {side: side for side in ("south", "east", "north", "west")}
+    (result,) = read_shapes(str(tmp_path / "g.msh"))
+    assert isinstance(result, Boundary)
+    assert (result.ni, result.nj) == (5, 4)
+    assert named(result) == {side: side for side in ("south", "east", "north", "west")}
 
 
 def su2(
@@ -135,8 +135,8 @@ def test_four_markers_make_a_domain_whatever_their_order_and_direction() -> None
     data = su2({"outlet": [(2, 1)], "floor": [(0, 1)], "inlet": [(0, 3)], "roof": [(3, 2)]}, SQUARE)
     read = format_named("su2").read_shapes
     assert read is not None
-    (found,) = read(memory(data))
-    assert named(found.boundary(Sampling(11, 5))) == {
+    (result,) = read(memory(data))
+    assert named(result.boundary(Sampling(11, 5))) == {
         "outlet": "south", "roof": "east", "inlet": "north", "floor": "west",
     }  # fmt: skip
 
@@ -159,8 +159,8 @@ def test_a_drawing_of_lines_arcs_and_polylines_is_a_named_domain(tmp_path: Path)
     space.add_spline([(3, 1), (2, 1.2), (1, 1.1), (0, 1)], dxfattribs={"layer": "roof"})
     space.add_text("a duct")
     document.saveas(tmp_path / "duct.dxf")
-    (found,) = read_shapes(str(tmp_path / "duct.dxf"))
-    boundary = found.boundary(Sampling(81, 81))
+    (result,) = read_shapes(str(tmp_path / "duct.dxf"))
+    boundary = result.boundary(Sampling(81, 81))
     assert {part.name for part in boundary.patches} == {"inlet", "floor", "roof", "outlet"}
     floor = next(part.side for part in boundary.patches if part.name == "floor")
     nodes = getattr(boundary, floor)
@@ -173,8 +173,8 @@ def test_circles_one_in_the_other_are_a_body_in_a_far_field(tmp_path: Path) -> N
     document.modelspace().add_circle((1, 1), 0.5, dxfattribs={"layer": "body"})
     document.modelspace().add_circle((1, 1), 20, dxfattribs={"layer": "far"})
     document.saveas(tmp_path / "c.dxf")
-    (found,) = read_shapes(str(tmp_path / "c.dxf"))
-    boundary = found.boundary(Sampling(41, 11))
+    (result,) = read_shapes(str(tmp_path / "c.dxf"))
+    boundary = result.boundary(Sampling(41, 11))
     assert named(boundary) == {"body": "south", "far": "north"}
     assert np.abs(np.hypot(*(boundary.north - 1).T) - 20).max() < 1e-2
 
@@ -201,10 +201,10 @@ def test_a_body_takes_no_other_topology() -> None:
     data = su2({"in": edges, "out": [(40 + a, 40 + b) for a, b in edges]}, points)
     read = format_named("su2").read_shapes
     assert read is not None
-    (found,) = read(memory(data))
-    assert named(found.boundary(Sampling(21, 5))) == {"in": "south", "out": "north"}
+    (result,) = read(memory(data))
+    assert named(result.boundary(Sampling(21, 5))) == {"in": "south", "out": "north"}
     with pytest.raises(InputError, match="a body in a far field makes an O grid; use topology o"):
-        found.boundary(Sampling(21, 5, topology="quad"))
+        result.boundary(Sampling(21, 5, topology="quad"))
 
 
 def test_ezdxf_that_is_missing_is_told_with_the_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -263,9 +263,9 @@ BROKEN = [
 ]
 
 
-@pytest.mark.parametrize(("name", "data", "told"), BROKEN)
-def test_what_is_wrong_is_named_with_its_remedy(name: str, data: bytes, told: str) -> None:
+@pytest.mark.parametrize(("name", "data", "message"), BROKEN)
+def test_what_is_wrong_is_named_with_its_remedy(name: str, data: bytes, message: str) -> None:
     read = format_named(name).read_shapes
     assert read is not None
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         list(read(memory(data)))

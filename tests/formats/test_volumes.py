@@ -209,6 +209,8 @@ def test_cells_at_an_axis_are_prisms(words: str, tmp_path: Path) -> None:
 def test_formats_of_hexahedra_refuse_an_axis_with_its_place(name: str, tmp_path: Path) -> None:
     record = format_named(name)
     assert record.write_grids is not None
-    told = "block 0, south, i=0, k=0, x=0, y=0, z=-1: a .* has hexahedra, and an edge along i has no length"
-    with pytest.raises(InputError, match=told):
+    message = (
+        "block 0, south, i=0, k=0, x=0, y=0, z=-1: a .* has hexahedra, and an edge along i has no length"
+    )
+    with pytest.raises(InputError, match=message):
         record.write_grids(tmp_path / "g", [poles()])

@@ -133,6 +133,6 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_damaged_or_hostile_file_is_refused(case: str) -> None:
-    data, told = CASES[case]
-    with pytest.raises(InputError, match=told):
+    data, message = CASES[case]
+    with pytest.raises(InputError, match=message):
         list(read_grids(memory(data)))

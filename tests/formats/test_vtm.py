@@ -40,9 +40,9 @@ def test_a_grid_of_blocks_is_one_among_others(
     grid = make()
     grids = [ring(), grid, grid, channel()]
     write_grids(tmp_path / "g.vtm", [extruded(each, heights) if heights else each for each in grids])
-    found = list(read_grids(open_source(str(tmp_path / "g.vtm"))))
-    assert [each.topology for each in found] == ["o", "blocks", "blocks", "quad"]
-    for back in found[1:3]:
+    result = list(read_grids(open_source(str(tmp_path / "g.vtm"))))
+    assert [each.topology for each in result] == ["o", "blocks", "blocks", "quad"]
+    for back in result[1:3]:
         for block, old in zip(back.blocks, grid.blocks, strict=True):
             assert np.array_equal(block.nodes, old.nodes)
         assert (back.name, back.connections, back.provenance) == (
@@ -117,7 +117,7 @@ def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("hello", "is not well-formed XML"),
         ("<a/>", "is no VTK multi-block file"),
@@ -129,10 +129,10 @@ def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
         (INDEX.format('<DataSet file="bad.vts"/>'), "bad.vts: .*is not"),
     ],
 )
-def test_what_is_wrong_is_named_with_its_remedy(text: str, told: str, tmp_path: Path) -> None:
+def test_what_is_wrong_is_named_with_its_remedy(text: str, message: str, tmp_path: Path) -> None:
     (tmp_path / "g.vtm").write_text(text)
     (tmp_path / "bad.vts").write_text("<VTKFile>")
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         list(read_grids(open_source(str(tmp_path / "g.vtm"))))
 
 

@@ -87,13 +87,13 @@ def test_compressed_blocks_with_and_without_a_short_last_one() -> None:
 
 def pieces() -> str:
     """Return the grid as a file of two pieces that share their middle column."""
-    told = ""
+    message = ""
     for i in range(2):
         part = " ".join(map(repr, POINTS[:, i : i + 2].ravel().tolist()))
         array = f"<DataArray {form('ascii')}>{part}</DataArray>"
-        told += f'<Piece Extent="{i} {i + 1} 0 1 0 0"><Points>{array}</Points></Piece>'
+        message += f'<Piece Extent="{i} {i + 1} 0 1 0 0"><Points>{array}</Points></Piece>'
     text = vts().decode()
-    return text[: text.index("<Piece")] + told + text[text.index("</StructuredGrid>") :]
+    return text[: text.index("<Piece")] + message + text[text.index("</StructuredGrid>") :]
 
 
 def test_several_pieces_are_put_together() -> None:
@@ -102,15 +102,15 @@ def test_several_pieces_are_put_together() -> None:
 
 
 @pytest.mark.parametrize(
-    ("extent", "told"),
+    ("extent", "message"),
     [
         ("0 8 0 1 0 0", "its pieces do not cover WholeExtent"),
         ("0 1 0 1 0 0", "a piece lies outside WholeExtent"),
     ],
 )
-def test_pieces_that_do_not_make_the_whole_are_refused(extent: str, told: str) -> None:
+def test_pieces_that_do_not_make_the_whole_are_refused(extent: str, message: str) -> None:
     data = pieces().replace('WholeExtent="0 2 0 1 0 0"', f'WholeExtent="{extent}"')
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         list(read_grids(memory(data.encode())))
 
 
@@ -164,8 +164,8 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_damaged_or_hostile_file_is_refused(case: str) -> None:
-    data, told = CASES[case]
-    with pytest.raises(InputError, match=told):
+    data, message = CASES[case]
+    with pytest.raises(InputError, match=message):
         list(read_grids(memory(data)))
 
 

@@ -9,7 +9,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from meshonet.formats.mesh.unstructured import unstructured
-from meshonet.formats.vtk.vtu import write_grids
+from meshonet.formats.meshio_export import write_vtu as write_grids
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 

@@ -127,10 +127,10 @@ def test_crossing_surfaces_are_refused_with_the_place_and_the_points():
     points[5:8, 1] = [-0.04, -0.05, -0.06]
     with pytest.raises(InputError) as caught:
         Airfoil(points, places=[f"line {k + 2}" for k in range(len(points))])
-    told = str(caught.value)
-    assert "crosses itself at (0.9" in told
-    assert "between line 6 and line 7" in told or "between line 7 and line 6" in told
-    assert "correct these points" in told
+    wanted = str(caught.value)
+    assert "crosses itself at (0.9" in wanted
+    assert "between line 6 and line 7" in wanted or "between line 7 and line 6" in wanted
+    assert "correct these points" in wanted
 
 
 def test_surfaces_that_touch_by_rounding_are_still_an_airfoil():

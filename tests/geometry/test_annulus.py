@@ -16,11 +16,11 @@ SQUARE = 2.0 * np.array([[-1.0, -1], [-1, 1], [1, 1], [1, -1]])
 
 @pytest.mark.parametrize("ni", [33, 50, 64])
 def test_corners_of_the_far_field_are_nodes(ni: int) -> None:
-    found = Annulus(DISC, Curve(SQUARE, closed=True)).boundary(Sampling(ni, 9))
+    result = Annulus(DISC, Curve(SQUARE, closed=True)).boundary(Sampling(ni, 9))
     for corner in SQUARE:
-        assert np.hypot(*(found.north - corner).T).min() < 1e-12
-    assert np.abs(found.north).max(axis=1) == pytest.approx(2.0, abs=1e-12)
-    np.testing.assert_array_equal(found.north[0], found.north[-1])
+        assert np.hypot(*(result.north - corner).T).min() < 1e-12
+    assert np.abs(result.north).max(axis=1) == pytest.approx(2.0, abs=1e-12)
+    np.testing.assert_array_equal(result.north[0], result.north[-1])
 
 
 def test_a_far_field_begins_where_its_body_does_wherever_both_are() -> None:

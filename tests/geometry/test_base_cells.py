@@ -20,11 +20,11 @@ def notes(name: str, te_spacing: float | None, **more: str) -> str:
 @pytest.mark.parametrize("name", ["0012", "2424", "4415"])
 def test_unlike_cells_at_a_base_are_noted_with_their_ratio_and_a_size_that_fits(name: str) -> None:
     note = notes(name, 1e-3)
-    found = re.search(
+    result = re.search(
         r"base are (\S+) times smaller than those beside it: use {te_spacing} near (\S+),", note
     )
-    assert found is not None
-    ratio, fits = map(float, found.groups())
+    assert result is not None
+    ratio, fits = map(float, result.groups())
     wall = naca(name).boundary(Sampling(200, 60, "o", "curvature", te_spacing=1e-3)).south
     steps = np.hypot(*np.diff(wall[:40], axis=0).T)
     assert ratio == pytest.approx((steps[1:] / steps[:-1]).max(), rel=0.03)

@@ -111,34 +111,34 @@ def test_they_are_those_of_openfoam(make: object, rows: int, monkeypatch: pytest
     monkeypatch.setattr(steps, "ROWS", rows)
     grid = make()  # type: ignore[operator]
     angles, skews = Mesh(grid).measures()
-    found = faces(grid)
-    assert found.non_orthogonality is not None
-    assert found.face_skewness is not None
-    assert found.non_orthogonality.max == pytest.approx(max(angles), rel=1e-9, abs=2e-6)
+    result = faces(grid)
+    assert result.non_orthogonality is not None
+    assert result.face_skewness is not None
+    assert result.non_orthogonality.max == pytest.approx(max(angles), rel=1e-9, abs=2e-6)
     mean = np.degrees(np.arccos(np.mean(np.cos(np.radians(angles)))))
-    assert found.non_orthogonality.mean == pytest.approx(mean, rel=1e-9)
-    assert found.face_skewness.max == pytest.approx(max(skews), rel=1e-9)
-    assert found.face_skewness.mean == pytest.approx(np.mean(skews), rel=1e-9, abs=1e-12)
+    assert result.non_orthogonality.mean == pytest.approx(mean, rel=1e-9)
+    assert result.face_skewness.max == pytest.approx(max(skews), rel=1e-9)
+    assert result.face_skewness.mean == pytest.approx(np.mean(skews), rel=1e-9, abs=1e-12)
 
 
 def test_a_parallelogram_is_as_oblique_as_it_looks() -> None:
     x, y = np.meshgrid(np.arange(5.0), np.arange(4.0), indexing="ij")
-    found = faces(Grid.from_nodes(np.stack([x + 3 * y, y], axis=-1)))
-    assert found.non_orthogonality is not None
-    assert found.non_orthogonality.max == pytest.approx(np.degrees(np.arctan(3)))
-    assert found.box_ratio is not None
-    assert found.box_ratio.max == pytest.approx((2 * 1 + 2 * 3) / 2)
+    result = faces(Grid.from_nodes(np.stack([x + 3 * y, y], axis=-1)))
+    assert result.non_orthogonality is not None
+    assert result.non_orthogonality.max == pytest.approx(np.degrees(np.arctan(3)))
+    assert result.box_ratio is not None
+    assert result.box_ratio.max == pytest.approx((2 * 1 + 2 * 3) / 2)
 
 
 def test_a_face_the_wrong_way_round_is_beyond_90() -> None:
     nodes = shaken().nodes.copy()
     nodes[4:6] = nodes[5:3:-1]
-    found = faces(Grid.from_nodes(nodes))
-    assert found.non_orthogonality is not None
-    assert found.non_orthogonality.max > 90
+    result = faces(Grid.from_nodes(nodes))
+    assert result.non_orthogonality is not None
+    assert result.non_orthogonality.max > 90
 
 
 def test_one_cell_has_no_faces_inside() -> None:
-    found = faces(Grid.from_nodes(shaken().nodes[:2, :2]))
-    assert found.non_orthogonality is None
-    assert found.face_skewness is not None
+    result = faces(Grid.from_nodes(shaken().nodes[:2, :2]))
+    assert result.non_orthogonality is None
+    assert result.face_skewness is not None

@@ -63,7 +63,7 @@ def test_boundaries_are_those_of_their_grids() -> None:
 
 
 @pytest.mark.parametrize(
-    ("ni", "nj", "k", "told"),
+    ("ni", "nj", "k", "message"),
     [
         (13, 7, 4, "13x7 nodes are 12x6 cells, which 4 does not divide; use a number that divides 6, or make "
                    "the grid with 13x5 nodes, say"),
@@ -72,8 +72,8 @@ def test_boundaries_are_those_of_their_grids() -> None:
         (5, 5, 0, "which 0 does not divide"),
     ],
 )  # fmt: skip
-def test_counts_that_do_not_divide_are_told_with_a_remedy(ni: int, nj: int, k: int, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_counts_that_do_not_divide_are_told_with_a_remedy(ni: int, nj: int, k: int, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         coarser_grid(Grid.from_nodes(lattice(ni, nj)), k)
 
 

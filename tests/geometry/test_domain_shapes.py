@@ -69,7 +69,7 @@ def test_points_given_twice_are_one() -> None:
 
 
 @pytest.mark.parametrize(
-    ("points", "more", "told"),
+    ("points", "more", "message"),
     [
         (SQUARE[:2], {}, "a ring of 2 different points; give at least 3"),
         (SQUARE[[0, 2, 1, 3]], {}, r"crosses itself at \(2, 1\), behind point"),
@@ -78,8 +78,8 @@ def test_points_given_twice_are_one() -> None:
         (SQUARE, {"names": ["a", "b"]}, "2 names and 4 corners that were found; give one name, or one for"),
     ],
 )
-def test_a_ring_that_cannot_be_is_refused(points: Floats, more: dict[str, list[int]], told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_a_ring_that_cannot_be_is_refused(points: Floats, more: dict[str, list[int]], message: str) -> None:
+    with pytest.raises(InputError, match=message):
         ring_loop(points, hole=False, **more)  # type: ignore[arg-type]
 
 

@@ -125,9 +125,9 @@ def test_the_axis_of_a_motion_is_what_it_leaves_in_place(angle: float) -> None:
     turn = rotation(axis, angle)
     shift = centre - turn @ centre
     motion = Motion(tuple(shift.tolist()), tuple(map(tuple, turn.tolist())))
-    found, along, place, rest, angles = screw_of(motion)
+    result, along, place, rest, angles = screw_of(motion)
     sign = np.sign(along @ axis)
-    assert sign * found == pytest.approx(angle) or abs(found) == pytest.approx(np.pi)
+    assert sign * result == pytest.approx(angle) or abs(result) == pytest.approx(np.pi)
     assert along[np.argmax(np.abs(along))] > 0
     np.testing.assert_allclose(motion(place[None])[0], place, atol=1e-12)
     np.testing.assert_allclose(sign * along, axis, atol=1e-7)

@@ -45,8 +45,8 @@ def test_a_part_of_a_side_is_joined_whatever_way_the_neighbour_runs(quarters: in
 
 def test_a_side_may_be_joined_to_several_blocks_and_to_itself() -> None:
     low = [Block(lattice((a, a + 1, 5), (-1, 0, 4))) for a in (0, 1, 3)]
-    found = find_connections([Block(lattice((0, 4, 17), (0, 1, 4))), *low])
-    assert [(c.range, c.donor) for c in found if c.block == 0] == [
+    result = find_connections([Block(lattice((0, 4, 17), (0, 1, 4))), *low])
+    assert [(c.range, c.donor) for c in result if c.block == 0] == [
         (((0, 4),), 1),
         (((4, 8),), 2),
         (((12, 16),), 3),
@@ -72,9 +72,9 @@ def test_sides_that_were_computed_twice_and_rounded_become_equal(make: Callable[
         return np.array([float(form % value) for value in values]).reshape(nodes.shape)
 
     blocks = [Block(written(block.nodes)) for block in grid.blocks]
-    found = find_connections(blocks)
-    assert found == tuple(sorted(grid.connections, key=order))
-    equal = Grid(with_equal_nodes(blocks, found), (), found)  # checks that they are
+    result = find_connections(blocks)
+    assert result == tuple(sorted(grid.connections, key=order))
+    equal = Grid(with_equal_nodes(blocks, result), (), result)  # checks that they are
     for block, old in zip(equal.blocks, blocks, strict=True):
         assert np.abs(block.nodes - old.nodes).max() < 1e-4
         np.testing.assert_array_equal(block.nodes[1:-1, 1:-1], old.nodes[1:-1, 1:-1])

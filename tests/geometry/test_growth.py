@@ -31,7 +31,7 @@ def test_as_many_cells_as_needed_and_not_one_more(ratio: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("first", "length", "cells", "told"),
+    ("first", "length", "cells", "message"),
     [
         (
             1.0,
@@ -47,7 +47,7 @@ def test_as_many_cells_as_needed_and_not_one_more(ratio: float) -> None:
         ),
     ],
 )
-def test_what_does_not_fit_is_said(first: float, length: float, cells: int, told: str) -> None:
+def test_what_does_not_fit_is_said(first: float, length: float, cells: int, message: str) -> None:
     with pytest.raises(InputError) as error:
         growth_ratio(first, length, cells)
-    assert told in str(error.value)
+    assert message in str(error.value)

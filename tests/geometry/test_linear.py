@@ -8,7 +8,6 @@ from meshonet.geometry.linear import (
     inverse,
     least_squares,
     nearest_rotation,
-    real_eigen,
     singular_values,
     solve,
     symmetric_eigen,
@@ -201,19 +200,3 @@ def test_gauss_quadrature_is_exact_for_polynomials_of_twice_its_degree():
     nodes, weights = gauss_legendre(5)
     assert weights @ nodes**8 == pytest.approx(2.0 / 9.0, rel=1e-14)
     assert abs(weights @ nodes**9) < 1e-15
-
-
-@pytest.mark.parametrize("size", [0, 1, 2, 3, 12, 38])
-def test_a_matrix_is_taken_apart_into_its_real_eigenvalues_and_vectors(size):
-    values, vectors = np.linspace(-3.0, -1.0, size) ** 3, random(size, size) + 3.0 * np.eye(size)
-    matrix = vectors * values @ np.linalg.inv(vectors)
-    w, v, u = real_eigen(matrix)
-    np.testing.assert_allclose(np.sort(w), values, rtol=1e-11)
-    np.testing.assert_allclose(v * w @ u, matrix, atol=1e-12 * np.abs(matrix).max(initial=1.0))
-    np.testing.assert_allclose(v @ u, np.eye(size), atol=1e-12)
-    np.testing.assert_allclose((v**2).sum(axis=0), 1.0, rtol=1e-14)
-
-
-def test_eigenvalues_that_are_not_real_are_refused():
-    with pytest.raises(ValueError, match="not real"):
-        real_eigen([[0.0, 1.0], [-1.0, 0.0]])

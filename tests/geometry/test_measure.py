@@ -269,10 +269,10 @@ def test_a_metric_with_a_function_is_measured_in_every_grid(
     assert [cells.shape for cells in values] == [
         tuple(count - 1 for count in block.counts) for block in grid.blocks
     ]
-    found = measure(grid, percentiles=True)
+    result = measure(grid, percentiles=True)
     every = np.concatenate([cells.ravel() for cells in values])
-    assert list(found)[-1] == "abscissa"
-    row = found["abscissa"]
+    assert list(result)[-1] == "abscissa"
+    row = result["abscissa"]
     assert (row.min, row.max, row.p99) == (every.min(), every.max(), np.percentile(every, 99))
     worst = row.worst if grid.topology == "blocks" else (0, *row.worst)
     assert values[worst[0]][worst[1:]] == every.max()

@@ -66,14 +66,14 @@ def verdict(nodes: Floats, name: str) -> Floats:
 
 def reflex_faces(nodes: Floats) -> Floats:
     """Say which cells have a face with a reflex angle, of which Verdict takes 360 degrees less the angle."""
-    found = np.zeros([count - 1 for count in nodes.shape[:-1]], dtype=bool)
+    result = np.zeros([count - 1 for count in nodes.shape[:-1]], dtype=bool)
     for axis in range(3):
         for number, layer in enumerate(np.moveaxis(nodes, axis, 0)):
             bent = per_cell_of_blocks(Grid.from_nodes(layer), "max_angle")[0] > 180
-            cells = np.moveaxis(found, axis, 0)
+            cells = np.moveaxis(result, axis, 0)
             for beside in {max(number - 1, 0), min(number, len(cells) - 1)}:
                 cells[beside] |= bent
-    return found
+    return result
 
 
 @pytest.mark.parametrize("name", HEX)

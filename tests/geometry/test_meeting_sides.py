@@ -60,9 +60,9 @@ def test_a_part_of_a_face_is_joined() -> None:
 
 def test_a_face_may_be_joined_to_several_blocks() -> None:
     over = [lattice((a, a + 1, 3), (0, 1, 3), (1, 2, 2)) for a in (0, 1, 3)]
-    found = find_connections([Block(each) for each in (lattice((0, 4, 9), (0, 1, 3), (0, 1, 3)), *over)])
-    assert [(c.range[0], c.donor) for c in found if c.block == 0] == [((0, 2), 1), ((2, 4), 2), ((6, 8), 3)]
-    assert [(c.block, c.donor, c.side) for c in found if c.block] == [(1, 2, "east")]
+    result = find_connections([Block(each) for each in (lattice((0, 4, 9), (0, 1, 3), (0, 1, 3)), *over)])
+    assert [(c.range[0], c.donor) for c in result if c.block == 0] == [((0, 2), 1), ((2, 4), 2), ((6, 8), 3)]
+    assert [(c.block, c.donor, c.side) for c in result if c.block] == [(1, 2, "east")]
 
 
 def test_a_seam_joins_a_block_to_itself_and_an_axis_joins_nothing() -> None:
@@ -110,8 +110,8 @@ def test_faces_that_were_computed_twice_and_rounded_become_equal(form: str) -> N
 
 def test_parts_known_to_be_boundaries_are_left_out() -> None:
     blocks = [Block(lattice((a, a + 1, 3), (0, 1, 5), (0, 1, 3))) for a in (0, 1)]
-    found = find_connections(blocks, without=[(1, "west", ((0, 2), (0, 2)))])
-    assert [c.range for c in found] == [((2, 4), (0, 2))]
+    result = find_connections(blocks, without=[(1, "west", ((0, 2), (0, 2)))])
+    assert [c.range for c in result] == [((2, 4), (0, 2))]
     whole = [(0, side, ((0, 2), (0, 2))) for side in PLACES]
     cube = Block(lattice(*[(0, 1, 3)] * 3))
     assert find_connections([cube], without=whole) == ()

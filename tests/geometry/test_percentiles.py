@@ -7,7 +7,6 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality import measure as quality
 from meshonet.geometry.quality.measure import measure, per_cell
 from meshonet.geometry.quality.metrics import NAMES
-from meshonet.geometry.quality.percentiles import no_run, prepared
 
 
 def lattice(ni: int, nj: int) -> np.ndarray:
@@ -49,43 +48,10 @@ GRIDS = {
 @pytest.mark.parametrize("name", GRIDS)
 def test_they_are_those_of_all_cells_sorted(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     grid = GRIDS[name]()
+    together = measure(grid, percentiles=True)
     monkeypatch.setattr(quality, "FEW", 100)
-    found = measure(grid, percentiles=True)
-    monkeypatch.setattr(quality, "FEW", 10**9)
+    one_by_one = measure(grid, percentiles=True)
     for metric in NAMES:
         low, high = np.percentile(per_cell(grid, metric), [1, 99])
-        assert (found[metric].p01, found[metric].p99) == (low, high), metric
-        few = measure(grid, percentiles=True)[metric]
-        assert (few.p01, few.p99) == (low, high), metric
-
-
-@pytest.mark.parametrize("name", ["shaken", "smooth", "of one value"])
-def test_a_sample_says_where_to_look(name: str) -> None:
-    """Or they would be right, but slow."""
-    grid = GRIDS[name]()
-    run, cells = prepared(grid.x, grid.y, (1.0, 99.0)), (grid.ni - 1) * (grid.nj - 1)
-    run.over(grid.x, grid.y, np.empty((0, grid.ni - 1, grid.nj - 1)), grid.periodic)
-    hits = [
-        run.percentile(k, m, cells, p) is not None for k in range(len(NAMES)) for m, p in enumerate((1, 99))
-    ]
-    assert sum(hits) >= len(hits) - 1
-    assert run.caught.size < 0.5 * cells
-
-
-def test_what_a_bracket_misses_or_cannot_hold_is_found_anyway(monkeypatch: pytest.MonkeyPatch) -> None:
-    grid = shaken(90, 80, 0.4)
-    monkeypatch.setattr(quality, "FEW", 100)
-    expected = measure(grid, percentiles=True)
-
-    def elsewhere(x: np.ndarray, y: np.ndarray, percents: tuple[float, ...]) -> object:
-        run = prepared(x, y, percents)
-        run.brackets[:4] = 1e9
-        run.brackets[4:] = [-1e9, 1e9]
-        return run
-
-    monkeypatch.setattr(quality, "prepared", elsewhere)
-    assert measure(grid, percentiles=True) == expected
-
-
-def test_a_run_that_looks_for_nothing_keeps_nothing() -> None:
-    assert no_run().brackets.shape[1] == no_run().caught.shape[1] == 0
+        for result in (together, one_by_one):
+            assert (result[metric].p01, result[metric].p99) == (low, high), metric

@@ -29,7 +29,7 @@ def verdicts(judgement: ProfileReport) -> dict[str, str]:
     return {checked.check.figure: checked.verdict for checked in judgement.results}
 
 
-def found(judgement: ProfileReport, figure: str) -> CheckResult:
+def result(judgement: ProfileReport, figure: str) -> CheckResult:
     return next(checked for checked in judgement.results if checked.check.figure == figure)
 
 
@@ -40,7 +40,7 @@ def test_squares_pass_and_folds_fail(profile: str) -> None:
     assert "fail" not in verdicts(square).values()
     folded = judged(Grid.from_nodes(oblique(0).nodes[::-1]), profile, Patch("wall", "south", 0, 4))
     assert not folded.passed
-    assert found(folded, "folded").value == 12
+    assert result(folded, "folded").value == 12
 
 
 def ladder(first: float, second: float) -> Grid:
@@ -75,7 +75,7 @@ def ladder(first: float, second: float) -> Grid:
     ],
 )  # fmt: skip
 def test_thresholds(profile: str, grid: Grid, figure: str, value: float, verdict: str) -> None:
-    checked = found(judged(grid, profile, Patch("floor", "south", 0, 4)), figure)
+    checked = result(judged(grid, profile, Patch("floor", "south", 0, 4)), figure)
     assert checked.value == pytest.approx(value, rel=2e-3)
     assert checked.verdict == verdict
 
@@ -86,7 +86,7 @@ def test_the_far_field_is_counted_in_chords() -> None:
         radius = np.array([[0.5, 1.0, chords]]) * 2
         nodes = np.stack([7 + radius * np.cos(turn), 3 + radius * np.sin(turn)], axis=-1)
         nodes[-1] = nodes[0]
-        checked = found(
+        checked = result(
             judged(Grid.from_nodes(nodes, "o"), "viscous", Patch("wall", "south", 0, 60)), "far_field"
         )
         assert checked.value == pytest.approx(chords, rel=1e-2)
@@ -94,17 +94,21 @@ def test_the_far_field_is_counted_in_chords() -> None:
 
 
 def test_what_a_grid_does_not_have_is_not_judged() -> None:
-    told = verdicts(judged(oblique(0), "viscous"))
-    assert (told["wall_growth"], told["equal_wall_cells"], told["far_field"]) == ("none", "none", "none")
+    message = verdicts(judged(oblique(0), "viscous"))
+    assert (message["wall_growth"], message["equal_wall_cells"], message["far_field"]) == (
+        "none",
+        "none",
+        "none",
+    )
     assert judged(oblique(0), "viscous").passed
 
 
 def test_growth_is_taken_away_from_the_wall() -> None:
     floor, side = Patch("wall", "south", 0, 4), Patch("wall", "west", 0, 3)
     grid = ladder(1, 1.5)
-    assert found(judged(grid, "viscous", floor), "wall_growth").value == pytest.approx(1.5)
-    assert found(judged(grid, "viscous", side), "wall_growth").value == pytest.approx(1.0)
-    assert found(judged(grid, "viscous", side, floor), "wall_growth").value == pytest.approx(1.5)
+    assert result(judged(grid, "viscous", floor), "wall_growth").value == pytest.approx(1.5)
+    assert result(judged(grid, "viscous", side), "wall_growth").value == pytest.approx(1.0)
+    assert result(judged(grid, "viscous", side, floor), "wall_growth").value == pytest.approx(1.5)
 
 
 def test_what_is_no_number_breaks_every_limit() -> None:

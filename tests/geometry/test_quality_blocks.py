@@ -139,9 +139,9 @@ def test_walls_are_measured_by_name_over_all_blocks() -> None:
     assert row.height.max == pytest.approx(first)
     assert row.off_square.max == pytest.approx(180 / 32)
     assert report.profile
-    found = {result.check.figure: result for result in report.profile.results}
-    assert (found["wall_growth"].value, found["wall_growth"].verdict) == (pytest.approx(1.3), "fail")
-    assert found["far_field"].value == pytest.approx(1.5)
+    actual = {result.check.figure: result for result in report.profile.results}
+    assert (actual["wall_growth"].value, actual["wall_growth"].verdict) == (pytest.approx(1.3), "fail")
+    assert actual["far_field"].value == pytest.approx(1.5)
 
 
 def test_growth_away_from_walls_goes_on_in_the_next_block() -> None:

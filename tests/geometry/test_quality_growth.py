@@ -14,11 +14,11 @@ def product(x: list[float], y: list[float]) -> np.ndarray:
 
 
 def test_a_product_grid_grows_as_its_factors() -> None:
-    found = growth(Grid.from_nodes(product([0.0, 1.0, 3.0, 4.0], [0.0, 1.0, 2.0, 5.0, 8.0])))
-    assert found.xi is not None
-    assert found.eta is not None
-    assert (found.xi.max, found.xi.mean, found.xi.at) == (2.0, 2.0, (1, 0))
-    assert (found.eta.max, found.eta.mean, found.eta.at) == (3.0, pytest.approx(5 / 3), (0, 2))
+    result = growth(Grid.from_nodes(product([0.0, 1.0, 3.0, 4.0], [0.0, 1.0, 2.0, 5.0, 8.0])))
+    assert result.xi is not None
+    assert result.eta is not None
+    assert (result.xi.max, result.xi.mean, result.xi.at) == (2.0, 2.0, (1, 0))
+    assert (result.eta.max, result.eta.mean, result.eta.at) == (3.0, pytest.approx(5 / 3), (0, 2))
 
 
 def test_the_seam_is_a_place_like_any_other() -> None:
@@ -62,7 +62,7 @@ def test_blocks_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_steps_of_no_length_are_large_and_single_steps_have_no_growth() -> None:
-    found = growth(Grid.from_nodes(product([0.0, 1.0], [0.0, 0.0, 1.0])))
-    assert found.xi is None
-    assert found.eta is not None
-    assert found.eta.max == LARGE
+    result = growth(Grid.from_nodes(product([0.0, 1.0], [0.0, 0.0, 1.0])))
+    assert result.xi is None
+    assert result.eta is not None
+    assert result.eta.max == LARGE

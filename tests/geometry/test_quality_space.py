@@ -86,18 +86,18 @@ def test_growth_and_bend_are_those_of_numpy() -> None:
     nodes = nodes + np.random.default_rng(0).uniform(-0.3, 0.3, nodes.shape)
     lines = block_figures(Grid.from_nodes(nodes)).lines
     every = []
-    for axis, found in enumerate((lines.growth.xi, lines.growth.eta, lines.growth.zeta)):
+    for axis, actual in enumerate((lines.growth.xi, lines.growth.eta, lines.growth.zeta)):
         step = np.diff(np.moveaxis(nodes, axis, 0), axis=0)
         length = np.linalg.norm(step, axis=-1)
         ratio = np.maximum(length[1:] / length[:-1], length[:-1] / length[1:])
-        assert (found.max, found.mean) == (pytest.approx(ratio.max()), pytest.approx(ratio.mean()))
+        assert (actual.max, actual.mean) == (pytest.approx(ratio.max()), pytest.approx(ratio.mean()))
         at = [1, 1, 1]
         place = (
             list(np.moveaxis(ratio, 0, axis).shape)
             and np.argwhere(np.moveaxis(ratio, 0, axis) == ratio.max())[0]
         )
         place[axis] += at[axis]
-        assert found.at == (0, *place)
+        assert actual.at == (0, *place)
         cosine = (step[1:] * step[:-1]).sum(axis=-1) / (length[1:] * length[:-1])
         every.append(np.degrees(np.arccos(cosine)).ravel())
     assert lines.bend_inside.max == pytest.approx(np.concatenate(every).max())

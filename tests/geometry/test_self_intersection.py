@@ -26,15 +26,15 @@ def test_agrees_with_shapely_on_open_lines(seed, n):
 
 def test_names_the_segments_and_the_place():
     bow = np.array([[0.0, 0], [2, 2], [2, 0], [0, 2]])
-    found = find_crossing(bow)
-    assert (found.first, found.second) == (0, 2)
-    assert (found.x, found.y) == pytest.approx((1, 1))
+    result = find_crossing(bow)
+    assert (result.first, result.second) == (0, 2)
+    assert (result.x, result.y) == pytest.approx((1, 1))
 
 
 def test_touching_counts():
     points = np.array([[0.0, 0], [4, 0], [4, 2], [2, 0], [0, 2]])
-    found = find_crossing(points)
-    assert (found.x, found.y) == pytest.approx((2, 0))
+    result = find_crossing(points)
+    assert (result.x, result.y) == pytest.approx((2, 0))
 
 
 def test_running_back_along_the_neighbour_counts():
@@ -44,9 +44,9 @@ def test_running_back_along_the_neighbour_counts():
 
 def test_collinear_overlap_is_placed_on_both_segments():
     points = np.array([[0.0, 0], [3, 0], [3, 1], [2, 1], [2, 0], [1, 0], [1, -1], [0, -1]])
-    found = find_crossings(points)
-    assert found
-    assert all(0 <= c.x <= 3 and -1e-12 <= c.y <= 1 for c in found)
+    result = find_crossings(points)
+    assert result
+    assert all(0 <= c.x <= 3 and -1e-12 <= c.y <= 1 for c in result)
 
 
 def test_the_tree_finds_the_same_crossings_when_the_sweep_gives_up(monkeypatch):

@@ -25,8 +25,8 @@ def airfoil(request: pytest.FixtureRequest) -> Airfoil:
 
 @pytest.mark.slow
 def test_only_the_base_is_changed_and_from_inside(airfoil: Airfoil) -> None:
-    given, made = (dense(body.curve) for body in (airfoil, airfoil.rounded()))
-    outline = shapely.Polygon(given)
+    original, made = (dense(body.curve) for body in (airfoil, airfoil.rounded()))
+    outline = shapely.Polygon(original)
     assert outline.buffer(1e-3 * airfoil.gap).covers(shapely.Polygon(made))
     assert 0 < outline.area - shapely.Polygon(made).area < airfoil.gap**2
     made = made[::10]

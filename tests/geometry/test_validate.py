@@ -51,9 +51,9 @@ def test_edges_that_keep_apart_pass(floor):
 def test_opposite_sides_that_touch_or_cross_are_named_with_the_place(height):
     with pytest.raises(
         InputError, match=r"south and north cross at \(.*, 1\), behind node 9 of south"
-    ) as told:
+    ) as message:
         check_edges(Boundary(*channel(bump(height))))
-    x = float(str(told.value).split("(")[1].split(",")[0])
+    x = float(str(message.value).split("(")[1].split(",")[0])
     assert x == pytest.approx(1.0 - 0.1 * (1.0 - 1.0 / height))
 
 
@@ -109,12 +109,12 @@ def test_a_tangled_ring_is_refused(side, radii):
 
 
 def test_c_boundaries_meet_themselves_along_the_wake_and_nowhere_else():
-    found = naca("2412").boundary(Sampling(101, 31, "c"))
-    check_edges(found)
-    north = found.north.copy()
+    result = naca("2412").boundary(Sampling(101, 31, "c"))
+    check_edges(result)
+    north = result.north.copy()
     north[50] = [0.9, 0.0]  # through the airfoil
     with pytest.raises(InputError, match="south and north cross"):
-        check_edges(Boundary(found.south, north, found.west, found.east, "c", found.patches))
+        check_edges(Boundary(result.south, north, result.west, result.east, "c", result.patches))
 
 
 @pytest.mark.parametrize("family", [family_of("arch"), family_of("hole")])

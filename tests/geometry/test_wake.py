@@ -118,8 +118,8 @@ def test_a_wedge_closes_a_blunt_edge_keeps_its_points_and_is_told() -> None:
     assert not wedge.blunt
     half = 5 * 0.12 * 0.24225 - 0.002  # the surfaces' slope, by the formula, meets the axis sooner than REACH
     np.testing.assert_allclose(wedge.trailing_edge, [1 + min(REACH, 0.5 / half) * 0.004, 0.0], atol=1e-4)
-    given, kept = BLUNT.curve.points[1:], wedge.curve.points
-    assert all((kept == point).all(axis=1).any() for point in given)
+    original, kept = BLUNT.curve.points[1:], wedge.curve.points
+    assert all((kept == point).all(axis=1).any() for point in original)
     assert 10 < wedge.wedge < 20
     assert SHARP.wedged() is SHARP
     boundary = c(BLUNT)
@@ -158,7 +158,7 @@ def test_parts_nobody_named_are_told_by_the_nodes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("settings", "told"),
+    ("settings", "message"),
     [
         (
             {"te": "exact"},
@@ -175,10 +175,10 @@ def test_parts_nobody_named_are_told_by_the_nodes() -> None:
         ({"topology": "quad"}, "topology quad is not made from an airfoil; use o or c"),
     ],
 )
-def test_what_cannot_be_made_is_named(settings: dict[str, object], told: str) -> None:
+def test_what_cannot_be_made_is_named(settings: dict[str, object], message: str) -> None:
     with pytest.raises(InputError) as error:
         c(BLUNT, **settings)
-    assert told in str(error.value)
+    assert message in str(error.value)
 
 
 def test_normalised_naca_sections_make_c_grids() -> None:

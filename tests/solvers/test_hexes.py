@@ -13,11 +13,12 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.threads import limited_to
 from meshonet.geometry.volume.hex_mesh import HexMesh, hex_mesh_of
-from meshonet.solvers.energy.hex_bricks import Targets
+from meshonet.solvers.energy.hex_tables import Targets
 from meshonet.solvers.energy.hexes import HexProblem, optimise
 from meshonet.solvers.smoothing.volume_spacing import wanted_edges
 
-VALID, UNFOLDING = (0.9, 2e-3, 0.0, 0.0), (0.02, 2e-3, 0.3, 0.1)
+VALID, UNFOLDING = (0.9, 2e-3, 2, 0.0, 0.0), (0.02, 2e-3, 1, 0.3, 0.1)
+Weights = tuple[float, float, int, float, float]
 
 
 def bent(ni: int, nj: int, nk: int, noise: float = 0.004) -> Floats:
@@ -34,12 +35,12 @@ def alike(mesh: HexMesh) -> Targets:
 
 
 def value(
-    mesh: HexMesh, weights: tuple[float, float, float, float], targets: Targets
+    mesh: HexMesh, weights: Weights, targets: Targets
 ) -> tuple[float, Floats]:
     problem = HexProblem(mesh, ~mesh.outer, targets)
     problem.descent.weigh(*weights)
-    slopes = np.empty(3 * np.count_nonzero(~mesh.outer))
-    return problem.descent.evaluate(slopes)[0], slopes.reshape(-1, 3)
+    slopes = np.empty((3, np.count_nonzero(~mesh.outer)))
+    return problem.descent.evaluate(slopes)[0], slopes.T
 
 
 def reference(x: Floats, w: float, beta: float, length: float) -> float:
@@ -87,7 +88,7 @@ def cut(x: Floats) -> Grid:
 
 
 @pytest.mark.parametrize("weights", [VALID, UNFOLDING])
-def test_cuts_into_blocks_change_nothing(weights: tuple[float, float, float, float]) -> None:
+def test_cuts_into_blocks_change_nothing(weights: Weights) -> None:
     x = bent(12, 9, 17)
     whole, parts = hex_mesh_of(Grid((Block(x),))), hex_mesh_of(cut(x))
     one, of_one = value(whole, weights, alike(whole))
@@ -100,7 +101,7 @@ def test_cuts_into_blocks_change_nothing(weights: tuple[float, float, float, flo
 @pytest.mark.parametrize("weights", [VALID, UNFOLDING])
 @pytest.mark.parametrize("make", [lambda: cut(bent(12, 9, 17)), lambda: perturbed(shell(), 0.2)])
 def test_slopes_are_those_of_the_value(
-    make: Callable[[], Grid], weights: tuple[float, float, float, float]
+    make: Callable[[], Grid], weights: Weights
 ) -> None:
     mesh = hex_mesh_of(make())
     targets = wanted_edges(mesh, ~mesh.outer)

@@ -7,19 +7,19 @@ import pytest
 import torch
 from random_quads import random_quad
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Complexes
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.neural.differentiable import QuadGrids
 from meshonet.solvers.neural.quad.coarse_grids import share
 from meshonet.solvers.neural.registry import load
 
 
-def pushed(by: float) -> Floats:
-    """Return planes (2, 9, 9) of squares, one node of which is moved by so many cells along the diagonal."""
+def pushed(by: float) -> Complexes:
+    """Return a grid (9, 9) of squares, one node of which is moved by so many cells along the diagonal."""
     t = np.linspace(0.0, 8.0, 9)
-    planes = np.array(np.meshgrid(t, t, indexing="ij"))
-    planes[:, 4, 4] += by
-    return planes
+    nodes = t[:, None] + 1j * t
+    nodes[4, 4] += by * (1.0 + 1.0j)
+    return nodes
 
 
 @pytest.mark.parametrize(("by", "part"), [(0.4, 1.0), (0.51, 0.95), (0.55, 0.9), (0.6, 0.8), (0.9, 1.0)])

@@ -16,6 +16,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.threads import limited_to, thread_count
 from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
+from meshonet.solvers.algebraic.resample.quad import refine_quad
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.operator import in_batches
 from meshonet.solvers.neural.quad import coarse_grids, operator
@@ -101,7 +102,7 @@ def test_evaluation_is_that_of_coarse_solves(model: str) -> None:
     boundary = arch(90, 70)
     edges = Edges.of([boundary])
     coarse = coarse_grids.coarse_grids(edges, load(model).network(), 1)
-    (found,) = coarse_grids.refine_coarse(coarse, edges)
+    (found,) = refine_quad(coarse, edges.sides)
     expected = refine_grid(np.ascontiguousarray(np.moveaxis(coarse[0], 0, -1)), boundary)
     np.testing.assert_allclose(np.moveaxis(found, 0, -1), expected, rtol=0, atol=1e-14)
     thin = edges.thinned(33, 33)

@@ -11,9 +11,8 @@ from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.geometry.threads import limited_to
-from meshonet.kernels._native import volume_energy
 from meshonet.solvers.solution import Outcome
-from meshonet.solvers.volumes.functional import inverse_lengths
+from meshonet.solvers.volumes.descent import PlanesDescent
 from meshonet.solvers.volumes.near_faces import closed_place
 from meshonet.solvers.volumes.tfi import tfi
 from meshonet.solvers.volumes.variational import variational
@@ -103,25 +102,31 @@ def test_semi_coarsening_takes_cells_of_any_shape() -> None:
     assert winslow(faces, tol=1e-6).cycles <= 8
 
 
+def value(planes: np.ndarray, weights: tuple, gradient: np.ndarray, cubes: bool = False) -> float:
+    descent = PlanesDescent(planes, cubes)
+    descent.descent.weigh(*weights)
+    return descent.descent.evaluate(gradient)[0]
+
+
 def test_the_gradient_is_that_of_the_functional() -> None:
     planes = np.ascontiguousarray(np.moveaxis(mapped(skewed, (6, 7, 8)), -1, 0))
     planes[:, 1:-1, 1:-1, 1:-1] += 0.02 * np.random.default_rng(0).normal(size=(3, 4, 5, 6))
-    over, step = inverse_lengths(planes), np.random.default_rng(1).normal(size=planes.shape)
-    step[:, [0, -1]] = step[:, :, [0, -1]] = step[..., [0, -1]] = 0.0
     inner = (slice(None), *[slice(1, -1)] * 3)
-    for weights, epsilon in (((0.9, 2e-3, 2), 0.0), ((0.02, 2e-3, 1), 0.3), ((1.0, 0.0, 0), 0.0)):
-        gradient, spare = np.empty_like(planes), np.empty_like(planes)
-        volume_energy(planes, over, weights, epsilon, 1, gradient)
-        ends = [volume_energy(planes + h * step, over, weights, epsilon, 1, spare)[0] for h in (1e-6, -1e-6)]
-        slope = (gradient[inner] * step[inner]).sum()
-        assert (ends[0] - ends[1]) / 2e-6 == pytest.approx(slope, rel=1e-6)
+    step = np.zeros_like(planes)
+    step[inner] = np.random.default_rng(1).normal(size=step[inner].shape)
+    for weights in ((0.9, 2e-3, 2), (0.3, 2e-3, 1), (0.02, 2e-3, 1, 0.3), (1.0, 0.0, 0)):
+        gradient, spare = np.empty((3, 4 * 5 * 6)), np.empty((3, 4 * 5 * 6))
+        value(planes, weights, gradient)
+        ends = [value(planes + h * step, weights, spare) for h in (1e-7, -1e-7)]
+        slope = (gradient * step[inner].reshape(3, -1)).sum()
+        assert (ends[0] - ends[1]) / 2e-7 == pytest.approx(slope, rel=1e-6)
 
 
 def test_the_energy_of_shapes_is_the_inverse_mean_ratio() -> None:
-    box = np.ascontiguousarray(np.moveaxis(mapped(lambda a, b, c: (a, b, c), (5, 6, 7)), -1, 0))
-    for over, wanted in (((4.0, 5.0, 6.0), 1.0), ((4.0, 5.0, 12.0), 6.0 / (3.0 * 2.0 ** (2.0 / 3.0)))):
-        value, _ = volume_energy(box, over, (1.0, 0.0, 0), 0.0, 1, np.empty_like(box))
-        assert value == pytest.approx(wanted, rel=1e-12)
+    for thick, wanted in ((1.0, 1.0), (2.0, 6.0 / (3.0 * 2.0 ** (2.0 / 3.0)))):
+        box = np.moveaxis(mapped(lambda a, b, c, z=thick: (a, b, z * c), (5, 5, 5)), -1, 0)
+        found = value(np.ascontiguousarray(box), (1.0, 0.0, 0), np.empty((3, 27)), cubes=True)
+        assert found == pytest.approx(wanted, rel=1e-12)
 
 
 @pytest.mark.parametrize("shape", [bump, skewed])

@@ -61,7 +61,7 @@ def page_text(name: str, scene: Scene, start: dict[str, Any]) -> str:
     facts = scene.facts | {"name": name, "start": start, "colours": _colours()}
     body = _BODY.format(
         body=own_file("body.html"),
-        facts=_json(facts),
+        facts=json.dumps(facts, separators=(",", ":")).replace("</", "<\\/"),
         numbers="\n".join(_data(key, value) for key, value in scene.numbers.items()),
         program="\n".join(own_file(part) for part in _PROGRAM),
     )
@@ -82,22 +82,17 @@ def _start(grid: Grid, metric: str | None, view: View) -> dict[str, Any]:
         "metric": metric,
         "zoom": None if view.zoom is None else _zoom(grid, view.zoom),
         "every": view.every,
-        "slice": None if view.slice is None else _slice(grid, view.slice),
+        "slice": None if view.part is None else _slice(grid, view.part),
         "seen_from": list(view.seen_from or SEEN_FROM),
     }
 
 
 def _zoom(grid: Grid, zoom: tuple[float, ...]) -> list[float]:
     """Return a box; raise InputError for one of another kind, or that has nothing of the grid."""
-    nodes = [block.nodes.reshape(-1, block.nodes.shape[-1]) for block in grid.blocks]
-    box_low, box_high = np.array(zoom[::2]), np.array(zoom[1::2])
-    if len(box_low) != nodes[0].shape[-1]:
+    (low, high), box_low, box_high = grid.box, np.array(zoom[::2]), np.array(zoom[1::2])
+    if len(box_low) != len(low):
         remedy = "use x0,x1,y0,y1" if grid.form == "plane" else "use x0,x1,y0,y1,z0,z1"
         raise InputError("the box is not one of this grid", remedy, parameter="zoom")
-    low, high = (
-        np.min([part.min(axis=0) for part in nodes], 0),
-        np.max([part.max(axis=0) for part in nodes], 0),
-    )
     if (box_low > high).any() or (box_high < low).any():
         spans = ", ".join(f"{x} {a:.4g} to {b:.4g}" for x, a, b in zip("xyz", low, high, strict=False))
         raise InputError(f"zoom {zoom} shows none of the grid", f"it spans {spans}", parameter="zoom")
@@ -122,10 +117,6 @@ def _colours() -> str:
 
     table = mpl.colormaps["YlGnBu"](np.linspace(0.0, 1.0, 256))[:, :3]
     return np.rint(255 * table).astype(np.uint8).tobytes().hex()
-
-
-def _json(facts: dict[str, Any]) -> str:
-    return json.dumps(facts, separators=(",", ":")).replace("</", "<\\/")
 
 
 def _data(name: str, numbers: Packed) -> str:

@@ -24,7 +24,6 @@ from meshonet.formats.figure.page.cells import (
 )
 from meshonet.formats.figure.page.packing import Packed, packed, rounding_step, shortest_edge
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.vertices import irregular_points
@@ -94,7 +93,7 @@ def scene_of(grid: Grid) -> Scene:
     extent = float((high - low).max()) or 1.0
     step = rounding_step(min(shortest_edge(lattice.nodes, extent) for lattice in lattices), extent)
     numbers = {
-        name: packed(_counted([lattice.nodes[..., axis] for lattice in lattices], float(low[axis]), step))
+        name: packed(_whole_numbers([(each.nodes[..., axis] - low[axis]) / step for each in lattices]))
         for axis, name in enumerate("xyz"[: len(low)])
     }
     metrics = []
@@ -102,7 +101,8 @@ def scene_of(grid: Grid) -> Scene:
         values = [np.asarray(cells) for cells in per_cell_of_blocks(grid, metric.name)]
         scale = scale_of(np.concatenate([cells.ravel() for cells in values]))
         metrics.append(_metric(grid, metric, values, scale))
-        numbers[metric.name] = packed(_levels([_of(lattice, values) for lattice in lattices], scale))
+        levels = [scale.parts(_of(lattice, values)) * LEVELS for lattice in lattices]
+        numbers[metric.name] = packed(_whole_numbers(levels))
     cells = sum(int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks)
     facts = {
         "form": grid.form,
@@ -122,9 +122,7 @@ def scene_of(grid: Grid) -> Scene:
 
 def _walls(grid: Grid) -> list[list[float]] | None:
     """Return the lowest and highest coordinates of walls; None without any."""
-    nodes = [
-        _of_patch(grid, patch).nodes.reshape(-1, grid.blocks[0].nodes.shape[-1]) for patch in grid.walls()
-    ]
+    nodes = [grid.at(patch).reshape(-1, grid.blocks[0].nodes.shape[-1]) for patch in grid.walls()]
     if not nodes:
         return None
     every = np.concatenate(nodes)
@@ -179,13 +177,10 @@ def _shell(grid: Grid) -> tuple[list[Lattice], list[SceneSheet]]:
 
 
 def _of_patch(grid: Grid, patch: Patch) -> Lattice:
-    axis, end = PLACES[patch.side]
-    nodes = grid.face(patch.block, patch.side)
-    spans = patch.range(nodes.shape[:-1])
-    start = [first for first, _ in spans]
+    axis, end = patch.place
+    start = [first for first, _ in patch.range(grid.face(patch.block, patch.side).shape[:-1])]
     start.insert(axis, grid.blocks[patch.block].counts[axis] - 2 if end else 0)
-    part = nodes[tuple(slice(first, last + 1) for first, last in spans)]
-    return Lattice(patch.block, part, tuple(start), axis)
+    return Lattice(patch.block, grid.at(patch), tuple(start), axis)
 
 
 def _of(lattice: Lattice, values: Sequence[Floats]) -> Floats:
@@ -199,14 +194,9 @@ def _of(lattice: Lattice, values: Sequence[Floats]) -> Floats:
     return np.asarray(cells[tuple(at)][:rows, :columns])
 
 
-def _counted(planes: Sequence[Floats], low: float, step: float) -> Any:
-    """Return coordinates in steps from the lowest, of every lattice behind one another."""
-    return np.concatenate([np.rint((plane - low) / step).astype(np.int64).ravel() for plane in planes])
-
-
-def _levels(values: Sequence[Floats], scale: Scale) -> Any:
-    every = np.concatenate([cells.ravel() for cells in values])
-    return np.rint(scale.parts(every) * LEVELS).astype(np.int64)
+def _whole_numbers(planes: Sequence[Floats]) -> Any:
+    """Return values (n, m) of every lattice behind one another, rounded."""
+    return np.concatenate([np.rint(plane).astype(np.int64).ravel() for plane in planes])
 
 
 def _metric(grid: Grid, metric: Metric, values: Sequence[Floats], scale: Scale) -> dict[str, Any]:

@@ -2,47 +2,21 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-from typing import NamedTuple
+from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import Block, face_of
-from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.layout.shared_sides import key_of, shared, shared_in_part
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.surface import Surface
 
 _SIDES: tuple[Side, ...] = ("west", "east", "south", "north")
 SYMMETRY, FREE = "symmetry", "free"
-
-
-class _Edge(NamedTuple):
-    """An edge at the side of a patch: it goes from node `k` of the side to the next."""
-
-    block: int
-    side: Side
-    k: int
-
-
-class _Pair(NamedTuple):
-    """The same edge at two sides, and whether both go along it the same way."""
-
-    own: _Edge
-    across: _Edge
-    alike: bool
-
-
-class _Outer(NamedTuple):
-    """A named stretch of a side, from a node to another."""
-
-    name: str
-    block: int
-    side: Side
-    start: int
-    stop: int
 
 
 def blocks_of(surface: Surface, lines: Floats) -> tuple[Block, ...]:
@@ -53,8 +27,23 @@ def blocks_of(surface: Surface, lines: Floats) -> tuple[Block, ...]:
 def volume_grid(surface: Surface, blocks: tuple[Block, ...], in_plane: Indices) -> Grid:
     """Return the grid of `blocks` on a surface; `in_plane` says which (k,) open edges lie in planes."""
     top = blocks[0].counts[2] - 1
-    runs, outer = _runs(surface, in_plane)
-    connections = tuple(_connection(run, top) for run in runs)
+    sides = [
+        (b, side, face_of(lattice, side)) for b, lattice in enumerate(surface.lattices) for side in _SIDES
+    ]
+    whole, rest = shared(sides)
+    partly, outer = shared_in_part(rest)
+    connections = tuple(
+        replace(
+            each,
+            range=(*each.range, (0, top)),
+            donor_range=(*each.donor_range, (0, top)),
+            orientation=(*each.orientation, 2),
+        )
+        for each in sorted(
+            (*whole, *partly), key=lambda each: (each.block, _SIDES.index(each.side), each.range)
+        )
+    )
+    plane = {key_of(edge): bool(flag) for edge, flag in zip(surface.open_edges, in_plane, strict=True)}
     patches = []
     for number, (lattice, name) in enumerate(zip(surface.lattices, surface.names, strict=True)):
         ni, nj = lattice.shape
@@ -62,66 +51,10 @@ def volume_grid(surface: Surface, blocks: tuple[Block, ...], in_plane: Indices) 
             Patch(name, "bottom", 0, ni - 1, (0, nj - 1), number, "wall"),
             Patch("farfield", "top", 0, ni - 1, (0, nj - 1), number),
         ]
-        patches += [
-            Patch(each.name, each.side, each.start, each.stop, (0, top), number)
-            for each in outer
-            if each.block == number
-        ]
+        for (block, side, nodes), start in outer:
+            for flat, run in groupby(range(len(nodes) - 1), key=lambda k: plane[key_of(nodes[k : k + 2])]):
+                stop = start + len(list(run))
+                if block == number:
+                    patches.append(Patch(SYMMETRY if flat else FREE, side, start, stop, (0, top), number))
+                start = stop
     return Grid(blocks, tuple(patches), connections)
-
-
-def _runs(surface: Surface, in_plane: Indices) -> tuple[list[list[_Pair]], list[_Outer]]:
-    """Return the stretches of pairs of edges that are the same, and named stretches of open ones."""
-    table = _edges_of(surface)
-    ends = np.sort(surface.open_edges, axis=1).tolist()
-    plane = {(a, b): bool(flag) for (a, b), flag in zip(ends, in_plane, strict=True)}
-    runs: list[list[_Pair]] = []
-    outer: list[_Outer] = []
-    for key, places in table.items():
-        if len(places) == 1:
-            _add_outer(outer, SYMMETRY if plane.get(key, False) else FREE, places[0][0])
-        else:
-            (own, way), (across, other) = places
-            pair = _Pair(own, across, way == other)
-            if runs and _goes_on(runs[-1][-1], pair):
-                runs[-1].append(pair)
-            else:
-                runs.append([pair])
-    return runs, outer
-
-
-def _edges_of(surface: Surface) -> dict[tuple[int, int], list[tuple[_Edge, bool]]]:
-    """Return the edges at sides of patches by their nodes, the lesser first, and whether they ascend."""
-    table: dict[tuple[int, int], list[tuple[_Edge, bool]]] = {}
-    for number, lattice in enumerate(surface.lattices):
-        for side in _SIDES:
-            line = face_of(lattice, side).tolist()
-            for k, (a, b) in enumerate(pairwise(line)):
-                table.setdefault((min(a, b), max(a, b)), []).append((_Edge(number, side, k), a < b))
-    return table
-
-
-def _add_outer(outer: list[_Outer], what: str, edge: _Edge) -> None:
-    last = outer[-1] if outer else None
-    if last and (last.name, last.block, last.side, last.stop) == (what, *edge):
-        outer[-1] = last._replace(stop=edge.k + 1)
-    else:
-        outer.append(_Outer(what, edge.block, edge.side, edge.k, edge.k + 1))
-
-
-def _goes_on(last: _Pair, pair: _Pair) -> bool:
-    """Whether a pair of edges continues a run in its direction."""
-    sides = (last.own[:2], last.across[:2], last.alike) == (pair.own[:2], pair.across[:2], pair.alike)
-    step = 1 if pair.alike else -1
-    return sides and pair.own.k == last.own.k + 1 and pair.across.k == last.across.k + step
-
-
-def _connection(run: list[_Pair], top: int) -> Connection:
-    """Return the connection of blocks along a run of edges of their patches; `top` is the last level."""
-    first, last = run[0], run[-1]
-    low, high = sorted((first.across.k, last.across.k))
-    return Connection(
-        first.own.block, first.own.side, ((first.own.k, last.own.k + 1), (0, top)),
-        first.across.block, first.across.side, ((low, high + 1), (0, top)),
-        (1 if first.alike else -1, 2),
-    )  # fmt: skip

@@ -15,8 +15,8 @@ Nodes of the first group (red) are no neighbours of each other; ``kernels/surfac
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,38 +29,31 @@ _WIDTH, _FALL = 4, 0.35
 """Rings of nodes smoothed more around those where other than four faces meet, and how that falls."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Seen:
-    """What a node sees in a direction: own x(node) + sign x(base) + shift."""
+    """What a node sees in a direction: own x(node) + sign x(base) + shift, with signs and shift (3,)."""
 
     base: int
     own: float = 0.0
-    sign: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    sign: Floats = field(default_factory=lambda: np.ones(3))
+    shift: Floats = field(default_factory=lambda: np.zeros(3))
 
     @property
     def real(self) -> bool:
         """Whether it is a node itself."""
-        return self.own == 0.0 and self.sign == (1.0, 1.0, 1.0)
+        return self.own == 0.0 and bool((self.sign == 1.0).all())
 
     def mirrored(self, plane: Plane) -> Seen:
         """Return it on the other side of a plane."""
-        sign, shift = np.array(self.sign), np.array(self.shift)
-        sign[plane.axis] *= -1.0
-        shift[plane.axis] = 2.0 * plane.value - shift[plane.axis]
-        return Seen(self.base, self.own, _triple(sign), _triple(shift))
+        turned = np.where(np.arange(3) == plane.axis, -1.0, 1.0)
+        return Seen(
+            self.base, self.own, turned * self.sign, turned * self.shift + (1.0 - turned) * plane.value
+        )
 
     def opposite(self, splay: float) -> Seen:
         """Return what lies opposite it, 1 + `splay` times as far."""
         far = 1.0 + splay
-        return Seen(
-            self.base, 1.0 + far, _triple(-far * np.array(self.sign)), _triple(-far * np.array(self.shift))
-        )
-
-
-def _triple(values: Floats) -> tuple[float, float, float]:
-    x, y, z = values.tolist()
-    return x, y, z
+        return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,26 +200,27 @@ def _sorted(
         else:
             near[:, k] = (row + row)[:4]
             odd.append((k, row))
-    sign, shift = (np.empty((3, len(ghosts))) for _ in range(2))
-    for k, (_, seen) in enumerate(ghosts):
-        sign[:, k], shift[:, k] = seen.sign, seen.shift
     fixed = sorted((int(new[node]), axes) for node, axes in held.items() if axes)
     moves = np.ones((3, len(fixed)))
     for k, (_, axes) in enumerate(fixed):
         moves[list(axes), k] = 0.0
+
+    def whole(numbers: Iterable[int]) -> Indices:
+        return np.fromiter(numbers, dtype=np.intp)
+
     return MarchGraph(
         order,
         int(red.sum()),
         np.ascontiguousarray(near),
-        np.array([k for k, _ in odd], dtype=np.intp),
-        np.cumsum([0, *(len(row) for _, row in odd)]),
-        np.array([m for _, row in odd for m in row], dtype=np.intp),
-        np.array([k for k, _ in ghosts], dtype=np.intp),
-        np.array([int(new[seen.base]) for _, seen in ghosts], dtype=np.intp),
-        np.array([seen.own for _, seen in ghosts]),
-        sign,
-        shift,
-        np.array([k for k, _ in fixed], dtype=np.intp),
-        moves,
-        np.ones(n),
+        odd_nodes=whole(k for k, _ in odd),
+        odd_start=np.cumsum([0, *(len(row) for _, row in odd)]),
+        odd_near=whole(m for _, row in odd for m in row),
+        owner=whole(k for k, _ in ghosts),
+        base=whole(int(new[seen.base]) for _, seen in ghosts),
+        own=np.array([seen.own for _, seen in ghosts]),
+        sign=np.array([seen.sign for _, seen in ghosts]).reshape(-1, 3).T.copy(),
+        shift=np.array([seen.shift for _, seen in ghosts]).reshape(-1, 3).T.copy(),
+        fixed_nodes=whole(k for k, _ in fixed),
+        moves=moves,
+        boost=np.ones(n),
     )

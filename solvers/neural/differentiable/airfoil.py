@@ -12,12 +12,13 @@ from meshonet.solvers.conformal import strip
 from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
 from meshonet.solvers.conformal.evaluate import StripGrid
 from meshonet.solvers.conformal.strip import MODES, across, smoothing, wavenumbers
+from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
 from meshonet.solvers.neural.differentiable.sides import as_numpy, check_sides
-from meshonet.solvers.neural.differentiable.strip_fno import StripFNO
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import load
 from meshonet.solvers.neural.strip.encoding import decode, encode
+from meshonet.solvers.neural.strip.network import StripNetwork
 from meshonet.solvers.neural.strip.operator import StripOperator
 
 CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner counts as halved
@@ -72,13 +73,8 @@ class _Correction:
     """`StripOperator.residual`: modes of the walls (batch, modes) to those of Winslow - harmonic."""
 
     def __init__(self, operator: StripOperator, device: str) -> None:
-        weights = operator.weights
-        width, count = weights["project.weight"].shape[1], len(weights["spectral.0.weight"])
-        layers = sum(name.startswith("conv.") for name in weights) // 2
-        outputs, inputs = weights["project.weight"].shape[0], weights["lift.weight"].shape[1]
-        self._network = StripFNO(inputs - 3, 3, outputs, width, count, layers)
-        self._network.load_state_dict({name: torch.tensor(array) for name, array in weights.items()})
-        self._network.to(device=device, dtype=torch.float64).requires_grad_(False)
+        weights = {name: torch.tensor(array, device=device) for name, array in operator.weights.items()}
+        self._network = StripNetwork(weights, torch)
         self._basis = torch.tensor(operator.basis, device=device)
         self._scale = operator.scale
 
@@ -113,9 +109,8 @@ def _picard(c: Tensor) -> Tensor:
     parts = (1j * k * levels, -(k**2) * levels, ce, 1j * k * ce, d2 @ levels)
     Wt, Wtt, We, Wte, Wee = (strip.to_columns(part, torch)[:, 1:-1] for part in parts)
     Wt = Wt + 1j
-    alpha, gamma = torch.abs(We) ** 2, torch.abs(Wt) ** 2
-    beta = (torch.conj(Wt) * We).real
-    residual = (alpha * Wtt - 2.0 * beta * Wte + gamma * Wee) * (2.0 / (alpha / (T * T) + gamma))
+    missed, alpha, gamma = left_side((Wt, We, Wtt, Wte, Wee), lambda a, b: (torch.conj(a) * b).real)
+    residual = missed * (2.0 / (alpha / (T * T) + gamma))
     update = vectors @ ((inverse @ strip.from_columns(residual, torch)) * smooth)
     return (levels - torch.nn.functional.pad(update, (0, 0, 1, 1))).mT
 

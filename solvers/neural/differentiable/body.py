@@ -15,8 +15,7 @@ from meshonet.solvers.neural.differentiable.resample import between
 from meshonet.solvers.neural.differentiable.sides import NetworkGrids, as_complex, as_numpy, check_sides
 from meshonet.solvers.neural.quad.encoding import LATENT
 from meshonet.solvers.neural.quad.inside import inside, slope
-from meshonet.solvers.neural.quad.o_grids import NOT_ROUND, answered
-from meshonet.solvers.neural.quad.picard import approach
+from meshonet.solvers.neural.quad.o_grids import NOT_ROUND, moved
 from meshonet.solvers.neural.quad.unrolled import AROUND, around_middles, even, factors, rolled
 
 
@@ -42,7 +41,7 @@ class BodyGrids(NetworkGrids):
         if not once.all():
             raise InputError(*NOT_ROUND)
         base, factor = even(strips, LATENT, torch), factors(strips, torch)[:, None, None]
-        strip = answered(base, factor, self._head, self._answer, approach, torch)
+        strip = moved(base, factor, self._head, self._answer, torch)
         grid = rolled(strip, centres[:, None, None], torch)
         coarse = torch.cat([walls[..., :1], grid[..., 1:-1], walls[..., 1:]], 2)
         inner = torch.view_as_real(_evaluated(coarse, body, far, nj))

@@ -10,7 +10,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from meshonet.geometry.conformal.lift import SECOND_PRONG, Corner, Lift, beside, follow, lift_body, removable
+from meshonet.geometry.conformal.lift import SECOND_PRONG, Corner, Lift, follow, lift_body, removable
 from meshonet.geometry.polygon.mirror import farthest, handedness
 from meshonet.solvers.neural.differentiable.sides import as_numpy
 from meshonet.solvers.neural.quad.unrolled import middles
@@ -106,7 +106,12 @@ def _slit(z: Tensor, sharp: bool, base: list[int]) -> tuple[Tensor, Tensor]:
 
 def _focus(z: Tensor, tip: int, far_end: Tensor) -> Tensor:
     chord = torch.abs(far_end - z[tip])
-    a, b, c = (z[k] for k in beside(as_numpy(z), tip, complex(far_end.detach())))
+    apart = torch.abs(z.detach() - z[tip].detach()) > 0.004 * chord.detach()
+    nearer = torch.arange(
+        1, len(z) // 2, device=z.device
+    )  # nodes ahead and behind, as kernels/conformal/lift.c
+    ahead, behind = (int(torch.argmax(apart[(tip + way * nearer) % len(z)].int())) + 1 for way in (1, -1))
+    a, b, c = z[(tip + ahead) % len(z)], z[tip], z[tip - behind]
     area = 0.5 * torch.abs(((a - b) * torch.conj(c - b)).imag)
     sides = torch.abs(a - b) * torch.abs(c - b) * torch.abs(a - c)
     radius = sides / (4.0 * area + 1e-12 * chord**2)

@@ -6,13 +6,17 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.arrays import Topology
-from meshonet.solvers.neural.differentiable.resample import arrays, between, folded, refined
-from meshonet.solvers.neural.differentiable.sides import NetworkGrids, as_complex, check_sides
-from meshonet.solvers.neural.quad.coarse_grids import share
-from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features, frame
-from meshonet.solvers.neural.quad.picard import AFTER, approach, nodes_after
-
-Sides = tuple[Tensor, ...]  # south, north (batch, 2, ni), west and east (batch, 2, nj)
+from meshonet.solvers.neural.differentiable.resample import between, folded, refined
+from meshonet.solvers.neural.differentiable.sides import (
+    NetworkGrids,
+    as_complex,
+    as_numpy,
+    as_planes,
+    check_sides,
+)
+from meshonet.solvers.neural.quad.coarse_grids import answered, in_frame, nearer, share
+from meshonet.solvers.neural.quad.encoding import LATENT, WINSLOW
+from meshonet.solvers.neural.quad.picard import nodes_after
 
 
 class QuadGrids(NetworkGrids):
@@ -30,47 +34,24 @@ class QuadGrids(NetworkGrids):
         """
         check_sides(self._dtype, 2, south=south, north=north, west=west, east=east)
         sides = tuple(edge.movedim(-1, 1) for edge in (south, north, west, east))
-        coarse = self._coarse(sides)
-        if self._head == WINSLOW:
-            coarse = _nearer(coarse, sides)
-        return refined(coarse, sides).movedim(1, -1)
-
-    def _coarse(self, sides: Sides) -> Tensor:
         thin = tuple(between(side, LATENT) for side in sides)
-        base = interpolated(thin, _laws(thin))
-        z, factor = _framed(base)
-        near, step = approach(z, torch)
-        move = SCALE * self._answer(features(near, step, torch))
-        answer = near + (move if self._head == WINSLOW else _shares(near, move) * move)
-        return _moved(base, (answer - z) / factor)
-
-
-def _framed(planes: Tensor) -> tuple[Tensor, Tensor]:
-    """Return grids of planes (batch, 2, m, n) in the network's frame, and the factors (batch, 1, 1) to it."""
-    z = as_complex(planes)
-    middle, factor = (value[:, None, None] for value in frame(z, torch))
-    return (z - middle) * factor, factor
+        base = as_complex(interpolated(thin, _laws(thin)))
+        shares = None if self._head == WINSLOW else _shares
+        coarse = as_planes(answered(base, in_frame(base, torch), self._answer, shares, torch))
+        if self._head == WINSLOW:
+            few = tuple(between(side, nodes_after(side.shape[-1])) for side in sides)
+            finer = as_complex(refined(coarse, few))
+            coarse = as_planes(nearer(finer, in_frame(finer, torch), torch))
+        return refined(coarse, sides).movedim(1, -1)
 
 
 def _shares(near: Tensor, by: Tensor) -> Tensor:
     """Return the share (batch, 1, 1) of the moves `by` to take from grids `near`, without gradients."""
-    start, answer = (torch.stack([z.real, z.imag], 1).detach() for z in (near, near + by))
-    where = folded(answer).nonzero()[:, 0]
-    parts = [share(*pair) for pair in zip(arrays(start[where]), arrays(answer[where]), strict=True)]
-    few = torch.tensor(parts, dtype=start.dtype, device=start.device)
-    return torch.ones_like(start[:, 0, 0, 0]).index_copy(0, where, few)[:, None, None]
-
-
-def _nearer(coarse: Tensor, sides: Sides) -> Tensor:
-    """Return grids `coarse` on more nodes, nearer to Winslow's."""
-    planes = refined(coarse, tuple(between(side, nodes_after(side.shape[-1])) for side in sides))
-    z, factor = _framed(planes)
-    near, _ = approach(z, torch, steps=AFTER, harmonic=False)
-    return _moved(planes, (near - z) / factor)
-
-
-def _moved(planes: Tensor, by: Tensor) -> Tensor:
-    return planes + torch.stack([by.real, by.imag], 1)
+    start, answer = near.detach(), (near + by).detach()
+    where = folded(as_planes(answer)).nonzero()[:, 0]
+    parts = [share(*pair) for pair in zip(as_numpy(start[where]), as_numpy(answer[where]), strict=True)]
+    few = torch.tensor(parts, dtype=start.real.dtype, device=start.device)
+    return torch.ones_like(start[:, 0, 0].real).index_copy(0, where, few)[:, None, None]
 
 
 def interpolated(sides: Any, laws: Any) -> Tensor:

@@ -7,8 +7,9 @@ from torch import Tensor
 
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.differentiable.quad_unet import QuadUNet
+from meshonet.solvers.neural.differentiable.networks import QuadUNet
 from meshonet.solvers.neural.operator import Operator
+from meshonet.solvers.neural.quad.encoding import features
 from meshonet.solvers.neural.quad.operator import QuadOperator
 from meshonet.solvers.neural.registry import load
 
@@ -61,13 +62,18 @@ class NetworkGrids:
         self._network.load_state_dict(state)
         self._network.to(device=device, dtype=dtype).requires_grad_(False)
 
-    def _answer(self, seen: Tensor) -> Tensor:
-        return self._network(seen)[:, self._head]
+    def _answer(self, near: Tensor, step: Tensor) -> Tensor:
+        return self._network(features(near, step, torch, self.topology == "o"))[:, self._head]
 
 
 def as_complex(planes: Tensor) -> Tensor:
     """Return planes (batch, 2, ...) of x and y as x + iy."""
     return torch.complex(planes[:, 0], planes[:, 1])
+
+
+def as_planes(z: Tensor) -> Tensor:
+    """Return complex numbers (batch, ...) as planes (batch, 2, ...) of x and y."""
+    return torch.stack([z.real, z.imag], 1)
 
 
 def as_numpy(values: Tensor) -> Any:

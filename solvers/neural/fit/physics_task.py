@@ -8,6 +8,7 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.neural.fit.model_task import ModelTask, tensor
 from meshonet.solvers.neural.models.mgnet import MGNet
 from meshonet.solvers.neural.samples import Samples
@@ -67,13 +68,10 @@ class PhysicsTask(ModelTask):
         """Return the left side of Winslow's equations (batch, p, 2)."""
         h = self.model.finite
         if h > 0:
-            X = self._differences(net, points, h)
+            X: Sequence[Tensor] = self._differences(net, points, h)
         else:
             X = _layers(net, [f[None] for f in self.model.slopes(torch, points)])[1:]
-        Xx, Xe, Xxx, Xxe, Xee = X
-        alpha, gamma = (Xe**2).sum(-1, keepdim=True), (Xx**2).sum(-1, keepdim=True)
-        beta = (Xx * Xe).sum(-1, keepdim=True)
-        return alpha * Xxx - 2.0 * beta * Xxe + gamma * Xee
+        return left_side(X, lambda a, b: (a * b).sum(-1, keepdim=True))[0]
 
     def _differences(self, net: dict[str, Tensor], points: Tensor, h: float) -> Sequence[Tensor]:
         """Return the five derivatives by central differences of step h."""

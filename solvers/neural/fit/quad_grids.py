@@ -10,12 +10,12 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, complex_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.quad.coarse_grids import Edges, rims
-from meshonet.solvers.neural.quad.encoding import HEADS, LATENT, frame
-from meshonet.solvers.neural.quad.picard import approached
+from meshonet.solvers.neural.quad.encoding import HEADS, LATENT, frame, planes_of
+from meshonet.solvers.neural.quad.picard import approach
 from meshonet.solvers.neural.quad.unrolled import AROUND, even, factors, middles, unrolled
 from meshonet.solvers.neural.samples import Samples, gathered
 
@@ -83,10 +83,12 @@ def quads(variational: Samples, winslow: Samples) -> Quads:
     if not pairs:
         raise InputError("no domain is in both datasets", "solve the same boundaries with both methods")
     first, second = (list(rows) for rows in zip(*pairs, strict=True))
-    best, solved = _complex(variational.nodes[first]), _complex(winslow.nodes[second])
+    best, solved = complex_of(variational.nodes[first]), complex_of(winslow.nodes[second])
     if around:
         return _unrolled(best, solved)
-    base = transfinite(best)
+    edges = Edges(*(np.ascontiguousarray(side) for side in rims(planes_of(best))))
+    planes = edges.transfinite(LATENT, LATENT)
+    base = planes[:, 0] + 1j * planes[:, 1]
     middle, factor = (value[:, None, None] for value in frame(base, np))
     return _approached(*((z - middle) * factor for z in (base, solved, best)))
 
@@ -103,7 +105,7 @@ def _unrolled(best: Complexes, solved: Complexes) -> Quads:
 
 def _approached(base: Complexes, winslow: Complexes, variational: Complexes, around: bool = False) -> Quads:
     """Return domains by their grids, the base transfinite."""
-    near, step = (planes[:, 0] + 1j * planes[:, 1] for planes in approached(base, around))
+    near, step = approach(base, np, around)
     return Quads(_single(near), _single(step), _single(winslow), _single(variational), around)
 
 
@@ -113,14 +115,3 @@ def _single(z: Complexes) -> Tensor:
 
 def _rim(nodes: Floats, sides: slice) -> bytes:
     return b"".join(side.tobytes() for side in (nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1])[sides])
-
-
-def transfinite(z: Complexes) -> Complexes:
-    """Return the transfinite grids (m, n, n) in the rims of the grids `z`."""
-    edges = Edges(*(np.ascontiguousarray(side) for side in rims(np.stack([z.real, z.imag], axis=1))))
-    planes = edges.transfinite(*edges.counts)
-    return np.asarray(planes[:, 0] + 1j * planes[:, 1])
-
-
-def _complex(nodes: Floats) -> Complexes:
-    return np.asarray(nodes[..., 0] + 1j * nodes[..., 1])

@@ -12,23 +12,27 @@ Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Complexes, Floats, pairs_of
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.elementary import times
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.kernels._native import add_answers, frame_put_back, frame_take_out, grid_features, tfi_coarse
-from meshonet.solvers.algebraic.resample import quad as evaluation
-from meshonet.solvers.algebraic.resample.spline import between, places
-from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, SCALE, WINSLOW
-from meshonet.solvers.neural.quad.network import CHUNK, Network, rim_factor
-from meshonet.solvers.neural.quad.picard import AFTER, nodes_after, step_all
+from meshonet.kernels._native import tfi
+from meshonet.solvers.algebraic.resample.quad import Sides, refine_quad
+from meshonet.solvers.algebraic.resample.spline import between
+from meshonet.solvers.algebraic.tfi import arc_length_fraction
+from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, frame, planes_of
+from meshonet.solvers.neural.quad.network import CHUNK, Network
+from meshonet.solvers.neural.quad.picard import AFTER, approach, nodes_after
 
+Moves: TypeAlias = Callable[[Any, Any], Any]  # of grids and steps, or of grids and moves
 SHARES = (0.95, 0.9, 0.8)  # of the way to the network's answer, the first without folds; else all
-Sides = tuple[Floats, Floats, Floats, Floats]  # of south, north, west and east
 
 
 @dataclass(frozen=True)
@@ -69,8 +73,11 @@ class Edges:
 
     def transfinite(self, m: int, n: int) -> Floats:
         """Return the planes (batch, 2, m, n) of transfinite interpolation between edges, by their lengths."""
-        nodes, (ni, nj) = np.empty((len(self), 2, m, n)), self.counts
-        tfi_coarse(self.sides, (places(ni, m), places(nj, n)), nodes)
+        nodes, thin = np.empty((len(self), 2, m, n)), self.thinned(m, n).sides
+        laws = [arc_length_fraction(np.moveaxis(side, 1, -1)) for side in thin]
+        for k, (x, y) in enumerate(nodes):
+            along, across = (tuple(side[k, axis] for side in thin) for axis in (0, 1))
+            tfi(x, y, along, across, tuple(law[k] for law in laws))
         return nodes
 
 
@@ -90,46 +97,54 @@ def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
     `encoding.HEADS`.
     """
     base = edges.transfinite(LATENT, LATENT)
-    room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), network.dtype)
+    shares = None if head == WINSLOW else _shares
     for k in range(0, len(base), CHUNK):
-        planes = base[k : k + CHUNK]
-        unit, factors = _unit(planes)
-        near = unit.copy()
-        step, seen = step_all(near), room[: len(near)]
-        grid_features(near, step, seen)
-        start = near.copy()
-        add_answers(near, network.answers(seen), head, SCALE * rim_factor(LATENT, LATENT, around=False))
-        for grid, before in () if head == WINSLOW else zip(near, start, strict=True):
-            if (part := share(before, grid)) < 1.0:
-                grid[:] = before + part * (grid - before)
-        frame_put_back(planes, near, unit, factors)
-    return _nearer(base, edges) if head == WINSLOW else base
+        z = base[k : k + CHUNK, 0] + 1j * base[k : k + CHUNK, 1]
+        base[k : k + CHUNK] = planes_of(
+            answered(z, in_frame(z, np), partial(network.moves, head=head), shares, np)
+        )
+    if head != WINSLOW:
+        return base
+    finer = refine_quad(base, edges.thinned(*(nodes_after(n) for n in edges.counts)).sides)
+    z = finer[:, 0] + 1j * finer[:, 1]
+    return planes_of(nearer(z, in_frame(z, np), np))
 
 
-def _nearer(coarse: Floats, edges: Edges) -> Floats:
-    planes = refine_coarse(coarse, edges.thinned(*(nodes_after(n) for n in edges.counts)))
-    unit, factors = _unit(planes)
-    near = unit.copy()
-    step_all(near, steps=AFTER, harmonic=False)
-    frame_put_back(planes, near, unit, factors)
-    return planes
+def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, around: bool = False) -> Any:
+    """Return grids `z` (batch, n, n), or strips (batch, m + 1, n) that go `around`, moved by a network.
+
+    `unit`: the same at unit size, and the factors (batch, 1, 1) back; `network`: answers to grids near
+    Winslow's and their last step; `shares` (batch, 1, 1) of a move to take from a grid, or all of it; of
+    `xp`.
+    """
+    sized, back = unit
+    near, step = approach(sized, xp, around)
+    move = SCALE * network(near, step)
+    if around:
+        move = xp.concatenate([move, move[:, :1]], 1)
+    if shares is not None:
+        move = shares(near, move) * move
+    return z + times(near + move - sized, back)
 
 
-def _unit(planes: Floats) -> tuple[Floats, Floats]:
-    """Return planes at unit size (`encoding.frame`), and the factors (batch, 2) to it."""
-    unit, factors = np.empty_like(planes), np.empty((len(planes), 2))
-    frame_take_out(planes, unit, factors)
-    return unit, factors
+def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
+    """Return grids, as in `answered`, after the steps that follow the network for Winslow's."""
+    sized, back = unit
+    return z + times(approach(sized, xp, around, AFTER, harmonic=False)[0] - sized, back)
 
 
-def refine_coarse(coarse: Floats, edges: Edges) -> Floats:
-    """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
-    return evaluation.refine_quad(coarse, edges.sides)
+def in_frame(z: Any, xp: Any) -> tuple[Any, Any]:
+    """Return grids at unit size (`encoding.frame`), and the factors (batch, 1, 1) back."""
+    middle, factor = (value[:, None, None] for value in frame(z, xp))
+    return times(z - middle, factor), factor.conj() / (factor.real**2 + factor.imag**2)
 
 
-def share(start: Floats, answer: Floats) -> float:
-    """Return the share of the step from `start` to `answer`, planes (2, m, n), to take: 1 unless it folds."""
-    if count_folded(answer.transpose(1, 2, 0)) == 0:
-        return 1.0
-    tried = ((part, start + part * (answer - start)) for part in SHARES)
-    return next((part for part, grid in tried if count_folded(grid.transpose(1, 2, 0)) == 0), 1.0)
+def _shares(near: Complexes, move: Complexes) -> Floats:
+    parts = [share(start, start + by) for start, by in zip(near, move, strict=True)]
+    return np.array(parts)[:, None, None]
+
+
+def share(start: Complexes, answer: Complexes) -> float:
+    """Return the share of the way from `start` to `answer`, grids (m, n), to take: 1 unless it folds."""
+    tried = (part for part in (1.0, *SHARES) if not count_folded(pairs_of(start + part * (answer - start))))
+    return next(tried, 1.0)

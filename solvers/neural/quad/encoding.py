@@ -6,6 +6,9 @@ is the module, numpy or torch, that arrays are of.
 
 from typing import Any
 
+import numpy as np
+
+from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.elementary import functions_of, modulus, times
 
 LATENT = 33  # nodes along xi and eta of the grid the network sees
@@ -31,7 +34,7 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
 
     ``(z - middle) * factor`` has its outline's area 1, and its mean step from west to east and, turned by a
     quarter, from south to north points along x. The eight relabellings of a domain have the same frame,
-    relabelled. Only the rim is looked at. Compiled for planes it is `kernels/neural/frame.c`.
+    relabelled. Only the rim is looked at.
     """
     south, north, west, east = z[:, :, 0], z[:, :, -1], z[:, 0], z[:, -1]
     outline = xp.concatenate(
@@ -43,6 +46,11 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
     area = 0.5 * (outline.conj() * after).imag.sum(1)
     towards = east.mean(1) - west.mean(1) - 1j * (north.mean(1) - south.mean(1))
     return middle, towards.conj() / abs(towards) / xp.sqrt(area)
+
+
+def planes_of(z: Complexes) -> Floats:
+    """Return the planes (batch, 2, m, n) of complex grids (batch, m, n), as kernels take them."""
+    return np.ascontiguousarray(np.stack([z.real, z.imag], axis=1))
 
 
 def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:

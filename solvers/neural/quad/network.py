@@ -9,25 +9,26 @@ On n = 33, 17, 9 and 5 nodes along each axis, with channels in sets of eight (`s
 
 with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b and down. Expanded
 once, the kernels are those of an ordinary convolutional network, which is compiled
-(`kernels/neural/convolve.h`). `meshonet.solvers.neural.differentiable.quad_unet` is the same in torch.
+(`kernels/neural/network.c`). `meshonet.solvers.neural.differentiable.networks` is the same in torch.
 Ronneberger et al., U-Net, MICCAI 2015.
 """
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from itertools import pairwise, product
-from typing import Any, TypeAlias
+from typing import Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, read_only
-from meshonet.kernels._native import LayerProgram, activate, convolve, upsample
+from meshonet.kernels._native import LayerProgram, activate, convolve, grid_features, upsample
 from meshonet.solvers.neural.quad import symmetry
-from meshonet.solvers.neural.quad.encoding import FEATURES, HEADS
+from meshonet.solvers.neural.quad.encoding import FEATURES, HEADS, features, planes_of
 from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
 
 Reals: TypeAlias = NDArray[Any]
+Field = TypeVar("Field")  # of a level: an array of numpy, or a tensor
 Shapes: TypeAlias = dict[str, tuple[int, ...]]
 
 CHUNK = 16  # domains that go through a layer together: their fields stay in the cache, and so do its weights
@@ -85,6 +86,43 @@ def rim_factor(m: int, n: int, around: bool) -> Floats:
     return read_only(rise)
 
 
+class UNet(Generic[Field]):
+    """The order of a network's layers, which `layer`, `silu` and `finer` of a subclass compute or record."""
+
+    def layer(self, name: str, x: Field, stride: int = 1, add: Field | None = None, room: str = "") -> Field:
+        """Return the convolution `name` of `x`, plus `add`; results of one `room` may replace each other."""
+        raise NotImplementedError
+
+    def silu(self, x: Field, pad: int = 1) -> Field:
+        """Return x / (1 + exp(-x)), padded."""
+        raise NotImplementedError
+
+    def finer(self, low: Field, skip: Field) -> Field:
+        """Return `skip` and `low`, which is linear between its nodes."""
+        raise NotImplementedError
+
+    def through(self, h: Field, blocks: Sequence[int]) -> Field:
+        """Return the answer to features `h`, by so many residual blocks on each level."""
+        h = self.layer("lift", h)
+        skips: list[Field] = []
+        coarsest = len(blocks) - 1
+        for level in range(coarsest):
+            h = self._blocks(f"before.{level}", blocks[level], h)
+            skips.append(h)
+            h = self.layer(f"down.{level}", self.silu(h), stride=2)
+        h = self._blocks(f"before.{coarsest}", blocks[-1], h)
+        for level in range(coarsest - 1, -1, -1):
+            h = self.finer(self.layer(f"up.{level}", h), skips[level])
+            h = self._blocks(f"after.{level}", blocks[level], h)
+        return self.layer("project", self.silu(h, pad=0))
+
+    def _blocks(self, part: str, count: int, x: Field) -> Field:
+        for k in range(count):
+            inner = self.layer(f"{part}.{k}.a", self.silu(x), room="inner")
+            x = self.layer(f"{part}.{k}.b", self.silu(inner), add=x, room=f"sum {k % 2}")
+        return x
+
+
 class Network:
     """The network of one set of weights, its kernels expanded and laid out once.
 
@@ -115,14 +153,6 @@ class Network:
 
     def __call__(self, seen: Reals, head: int | None = None) -> Complexes:
         """Return the fields (batch, heads, m, n), or one `head`'s, for features (batch, m, n, FEATURES)."""
-        pairs = self.answers(seen)
-        m, n = pairs.shape[1:3]
-        pairs = np.moveaxis(pairs, 3, 1) if head is None else pairs[..., head, :]
-        moved = np.multiply(pairs, rim_factor(m, n, self.around)[..., None], order="C")
-        return np.asarray(moved.view(np.complex128)[..., 0])
-
-    def answers(self, seen: Reals) -> Reals:
-        """Return the fields (batch, m, n, heads, 2) before `rim_factor`, in the network's arithmetic."""
         batch, m, n = seen.shape[:3]
         seen = np.ascontiguousarray(seen, self.dtype)
         answer = np.empty((batch, m, n, 2 * self.heads), self.dtype)
@@ -134,27 +164,27 @@ class Network:
         for k in range(0, batch, CHUNK):
             program.run(seen[k : k + CHUNK], answer[k : k + CHUNK])
         idle.append(program)
-        return answer.reshape(batch, m, n, self.heads, 2)
+        pairs = answer.reshape(batch, m, n, self.heads, 2)
+        pairs = np.moveaxis(pairs, 3, 1) if head is None else pairs[..., head, :]
+        moved = np.multiply(pairs, rim_factor(m, n, self.around)[..., None], order="C")
+        return np.asarray(moved.view(np.complex128)[..., 0])
+
+    def moves(self, near: Complexes, step: Complexes, head: int) -> Complexes:
+        """Return one head's answers (batch, m, n) to grids near Winslow's and their last step."""
+        if self.around:
+            return self(features(near, step, np, around=True), head)
+        seen = np.empty((*near.shape, FEATURES), self.dtype)
+        grid_features(planes_of(near), planes_of(step), seen)
+        return self(seen, head)
 
     def _recorded(self, h: Reals) -> LayerProgram:
         """Return the layers for as many domains as `h` has or fewer, on arrays that no other program has."""
         work = _ProgramRecorder(self._layers, self.around)
-        h = work.layer("lift", h)
-        skips: list[Reals] = []
-        coarsest = len(self.blocks) - 1
-        for level in range(coarsest):
-            h = work.blocks(f"before.{level}", self.blocks[level], h)
-            skips.append(h)
-            h = work.layer(f"down.{level}", work.silu(h), stride=2)
-        h = work.blocks(f"before.{coarsest}", self.blocks[-1], h)
-        for level in range(coarsest - 1, -1, -1):
-            h = work.finer(work.layer(f"up.{level}", h), skips[level])
-            h = work.blocks(f"after.{level}", self.blocks[level], h)
-        work.layer("project", work.silu(h, pad=0))
+        work.through(h, self.blocks)
         return work.program
 
 
-class _ProgramRecorder:
+class _ProgramRecorder(UNet[Reals]):
     """Records layers by name in a program, on arrays of `CHUNK` domains."""
 
     def __init__(self, layers: Mapping[str, tuple[Reals, Reals, int]], around: bool) -> None:
@@ -180,12 +210,6 @@ class _ProgramRecorder:
         out = self._room("active", (batch, m + 2 * pad, n + 2 * pad, channels), x.dtype)
         activate(x, out, self._around, self.program)
         return out
-
-    def blocks(self, part: str, count: int, x: Reals) -> Reals:
-        for k in range(count):
-            inner = self.layer(f"{part}.{k}.a", self.silu(x), room="inner")
-            x = self.layer(f"{part}.{k}.b", self.silu(inner), add=x, room=f"sum {k % 2}")
-        return x
 
     def _room(self, name: str, shape: tuple[int, ...], dtype: Any) -> Reals:
         """Return an array that later layers use again."""

@@ -10,7 +10,7 @@ Turning, moving and scaling only move the strip, a mirrored body has the mirrore
 of the way further round shifts it: the network's answer does the same, to rounding.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -20,13 +20,12 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.algebraic.resample import grids as resample
 from meshonet.solvers.algebraic.resample.spline import between
-from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features
+from meshonet.solvers.neural.quad.coarse_grids import Moves, answered, nearer
+from meshonet.solvers.neural.quad.encoding import LATENT, WINSLOW, planes_of
 from meshonet.solvers.neural.quad.inside import inside
 from meshonet.solvers.neural.quad.network import CHUNK, Network
-from meshonet.solvers.neural.quad.picard import AFTER, approached
-from meshonet.solvers.neural.quad.unrolled import AROUND, TURN, around_middles, even, factors, rolled
+from meshonet.solvers.neural.quad.unrolled import AROUND, around_middles, even, factors, rolled
 
 # problem and remedy, the same for numpy and torch
 NOT_ROUND = "its walls do not go once round a middle of the body", "use meshonet solve-pde for this shape"
@@ -47,38 +46,23 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
     base, factor = even(strips, LATENT), factors(strips)[:, None, None]
     for k in range(0, len(base), CHUNK):
         chunk = slice(k, k + CHUNK)
-        base[chunk] = answered(base[chunk], factor[chunk], head, partial(network, head=head), _approached)
+        base[chunk] = moved(base[chunk], factor[chunk], head, partial(network.moves, head=head), np)
     grids = rolled(base, centres[:, None, None])
     grids[:, :, [0, -1]] = walls
-    return np.ascontiguousarray(np.stack([grids.real, grids.imag], axis=1))
+    return planes_of(grids)
 
 
-def answered(
-    base: Any,
-    factor: Any,
-    head: int,
-    network: Callable[[Any], Any],
-    approach: Callable[..., Any],
-    xp: Any = np,
-) -> Any:
+def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
     """Return strips `base` (batch, m + 1, n) of even steps, moved as the network says and closed.
 
-    `factor`: (batch, 1, 1) to unit size; `network`: answers (batch, m, n) by what it sees; `approach` is that
-    of `picard`; both of `xp`.
+    `factor`: (batch, 1, 1) to unit size; `network` as in `coarse_grids.answered`; all of `xp`.
     """
-    z = base * factor
-    near, step = approach(z, xp, around=True)
-    moved = near[:, :-1] + SCALE * network(features(near, step, xp, around=True))
+    strip = answered(base, (base * factor, 1.0 / factor), network, None, xp, around=True)
     if head == WINSLOW:
-        closed = xp.concatenate([moved, moved[:, :1] + factor * TURN], 1)
-        moved = approach(closed, xp, around=True, steps=AFTER, harmonic=False)[0][:, :-1]
-    strip = base[:, :-1] + (moved - z[:, :-1]) / factor
-    return xp.concatenate([strip, strip[:, :1]], 1)  # exp(-i strip) closes: a whole turn on is the same
-
-
-def _approached(z: Complexes, _: Any, **settings: Any) -> tuple[Complexes, Complexes]:
-    planes, steps = approached(z, **settings)
-    return _complex(planes), _complex(steps)
+        strip = nearer(strip, (strip * factor, 1.0 / factor), xp, around=True)
+    return xp.concatenate(
+        [strip[:, :-1], strip[:, :1]], 1
+    )  # exp(-i strip) closes: a whole turn on is the same
 
 
 def _strips(boundaries: Sequence[Boundary]) -> tuple[Complexes, Complexes, Complexes, NDArray[np.bool_]]:
@@ -93,13 +77,6 @@ def compact(boundary: Boundary) -> bool:
     _, _, centres, once = _strips([boundary])
     reach = np.abs(_complex(boundary.south.T[None]) - centres)
     return bool(once[0] and reach.min() > COMPACT * reach.max())
-
-
-def refine_o_grids(grids: Floats, boundaries: Sequence[Boundary]) -> Floats:
-    """Return the planes (batch, 2, ni, nj) within `boundaries` of `grids` (batch, 2, m, n) on fewer nodes."""
-    pairs = zip(grids, boundaries, strict=True)
-    nodes = [resample.refine_grid(np.moveaxis(planes, 0, -1), boundary) for planes, boundary in pairs]
-    return np.stack([np.moveaxis(grid, -1, 0) for grid in nodes])
 
 
 def _complex(planes: Floats) -> Complexes:

@@ -8,7 +8,8 @@ Winslow's equations with the coefficients of the last grid::
 Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha + gamma)
 at their means over the domain. Three quarters of the leading error of differences are taken out. Steps after
 the network, which alone converge slowly or not at all, are extrapolated to where they would vanish if they
-were linear along the last move. `xp` is numpy or torch.
+were linear along the last move. For NumPy they are compiled (`kernels/neural/approach.c`); the formulas here
+are torch's, which has their gradients.
 Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501; Anderson, J. ACM 12
 (1965) 547-560.
 """
@@ -21,7 +22,8 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats, array_like, read_only
 from meshonet.geometry.elementary import cos, sin
 from meshonet.kernels._native import LINE, winslow_steps
-from meshonet.solvers.neural.quad.encoding import LATENT
+from meshonet.solvers.elliptic.winslow import left_side
+from meshonet.solvers.neural.quad.encoding import LATENT, planes_of
 
 STEPS = 4  # after the harmonic grid; a fifth takes a tenth of what is left on average
 AFTER = 3  # once more, after the network's answer for Winslow's grid
@@ -31,18 +33,18 @@ GROWTH = 4.0  # a step whose square is so many times the last one's, in the mean
 
 TINY = 1e-30  # keeps quotients finite where nothing moves
 
-Tables = tuple[Floats, Floats, Floats]  # a transform, its transpose, minus the eigenvalues of differences
-
 
 def approach(
     z: Any, xp: Any, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
 ) -> tuple[Any, Any]:
     """Return grids nearer to Winslow's in the rims of `z`, and the last step, both of the shape of `z`.
 
-    `z`: (batch, n, n) grids of unit size, complex, arrays of `xp`; `around`: `z` are strips (batch, m + 1,
-    n), whose last column is the first a turn on; `steps`: of Picard's iteration; `harmonic`: they go out from
-    the harmonic grid, else from `z`, and are extrapolated.
+    `z`: (batch, n, n) grids of unit size, complex, arrays of `xp`, numpy or torch; `around`: `z` are strips
+    (batch, m + 1, n), whose last column is the first a turn on; `steps`: of Picard's iteration; `harmonic`:
+    they go out from the harmonic grid, else from `z`, and are extrapolated.
     """
+    if xp is np:
+        return _compiled(z, around, steps, harmonic)
     p = xp.stack([z.real, z.imag], 1)
     turn = p[:, :, -1:] - p[:, :, :1]
     if around:
@@ -55,7 +57,7 @@ def approach(
         inner = left @ ((left @ missed @ right) / (alpha * slow[:, None] + gamma * fast)) @ right
         square = (inner**2).mean((1, 2, 3))[:, None, None, None]
         taken = square < GROWTH * size  # and a number
-        correction = _inside(inner, xp, around)
+        correction = xp.nn.functional.pad(inner, (1, 1) if around else (1, 1, 1, 1))
         move = correction if harmonic or k == 1 else _extrapolated(correction, step, move, xp)
         move, step = (xp.where(taken, value, 0.0 * step) for value in (move, correction))
         size, p = xp.where(taken, square, size), p + move
@@ -64,25 +66,13 @@ def approach(
     return p[:, 0] + 1j * p[:, 1], step[:, 0] + 1j * step[:, 1]
 
 
-def approached(
-    z: Complexes, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
-) -> tuple[Floats, Floats]:
-    """Return what `approach` does, as planes (batch, 2, ...): the same compiled, to rounding."""
-    near = np.stack([z.real, z.imag], axis=1)
-    return near, step_all(near, around, steps, harmonic=harmonic)
-
-
-def step_all(near: Floats, around: bool = False, steps: int = STEPS, *, harmonic: bool = True) -> Floats:
-    """Move planes `near` (batch, 2, m, n) in place as `approach` does; return the last steps, likewise."""
-    last, (m, n) = np.empty_like(near), near.shape[2:]
+def _compiled(z: Complexes, around: bool, steps: int, harmonic: bool) -> tuple[Complexes, Complexes]:
+    near = planes_of(z)
+    last, (m, n) = np.empty_like(near), z.shape[1:]
     turns = np.ascontiguousarray(near[:, :, -1] - near[:, :, 0])
-    if around:
-        table, values = _transform(m - 1, around=True)
-        xi = table, table, values[None]
-    else:
-        xi = _folded(m)
-    winslow_steps(near, turns, harmonic, steps, SHARE, GROWTH, xi, _folded(n), around, last)
-    return last
+    tables = _padded(m - 1 if around else m, around), _padded(n, around=False)
+    winslow_steps(near, turns, harmonic, steps, SHARE, GROWTH, *tables, around, last)
+    return near[:, 0] + 1j * near[:, 1], last[:, 0] + 1j * last[:, 1]
 
 
 def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
@@ -98,22 +88,12 @@ def nodes_after(n: int) -> int:
 
 
 @lru_cache(maxsize=8)
-def _folded(n: int) -> Tables:
-    """Return the tables of n nodes for sums of values and their mirror images, and for differences."""
-    table, values = _transform(n, around=False)
-    less = len(values) // 2
-    half = len(values) - less
-    line = -(-half // LINE) * LINE
-    to, back = np.zeros((2, half + less, line))
-    eigenvalues = np.ones((2, line))
-    for parity, count in enumerate((half, less)):
-        rows, part = slice(parity * half, parity * half + count), table[:count, parity::2]
-        to[rows, :count], back[rows, :count] = part, part.T
-        eigenvalues[parity, :count] = values[parity::2]
-    if half > less:  # the value in the middle is its own image
-        to[half - 1] *= 0.5
-        back[:half, half - 1] *= 0.5
-    return read_only(to), read_only(back), read_only(eigenvalues)
+def _padded(n: int, around: bool) -> tuple[Floats, Floats]:
+    """Return the tables of `_transform` with lines as the compiled steps take them."""
+    table, values = _transform(n, around)
+    more = -len(values) % LINE
+    tables = np.pad(table, ((0, 0), (0, more))), np.pad(values, (0, more), constant_values=1.0)
+    return read_only(tables[0]), read_only(tables[1])
 
 
 def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tuple[Any, Any, Any]:
@@ -126,10 +106,9 @@ def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tup
     slopes = _first(p, share, xp, around)
     u, v = slopes[..., 1:-1], _across(_first, body, share, xp)
     twist = _across(_first, slopes, share, xp)
-    alpha, gamma, beta = ((a * b).sum(1)[:, None] for a, b in ((v, v), (u, u), (u, v)))
+    missed, alpha, gamma = left_side((u, v, bends[0], twist, bends[1]), lambda a, b: (a * b).sum(1)[:, None])
     total = alpha + gamma + TINY
-    missed = (alpha * bends[0] - 2.0 * beta * twist + gamma * bends[1]) / total
-    return missed, *((value / total).mean((2, 3))[:, :, None, None] for value in (alpha, gamma))
+    return missed / total, *((value / total).mean((2, 3))[:, :, None, None] for value in (alpha, gamma))
 
 
 def _first(p: Any, share: float, xp: Any, around: bool = False) -> Any:
@@ -155,14 +134,6 @@ def _corrected(central: Any, error: Any, share: float, xp: Any, around: bool) ->
 
 def _across(difference: Any, p: Any, share: float, xp: Any) -> Any:
     return difference(p.swapaxes(2, 3), share, xp).swapaxes(2, 3)
-
-
-def _inside(inner: Any, xp: Any, around: bool) -> Any:
-    """Return planes with zeros for the rim around `inner`; `around`, for the walls."""
-    side = 0.0 * inner[..., :1]
-    rows = xp.concatenate([side, inner, side], 3)
-    end = 0.0 * rows[:, :, :1]
-    return rows if around else xp.concatenate([end, rows, end], 2)
 
 
 def _waves(p: Any, axis: int, xp: Any, around: bool) -> tuple[Any, Any]:

@@ -1,20 +1,18 @@
 """The network's coarse grids, improved there and on all nodes: by descent, or towards Winslow's solution."""
 
-from collections.abc import Callable, Sequence
-from typing import TypeAlias
+from collections.abc import Sequence
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.solvers.algebraic.resample.grids import thinned
+from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
 from meshonet.solvers.neural.quad import coarse_grids, o_grids
 from meshonet.solvers.neural.quad.coarse_grids import Edges
 from meshonet.solvers.neural.quad.encoding import WINSLOW
 from meshonet.solvers.neural.quad.network import Network
 
-Counts: TypeAlias = tuple[int, int]  # nodes along xi and eta
 MOST_SOLVED = 129  # nodes along a direction at the most of the grid that Winslow's equations are solved on
 MOST_DESCENDED, LARGER_DESCENDED = 513, 257  # most nodes that descend in full; larger grids' nodes
 
@@ -32,10 +30,13 @@ def polished(
     boundaries: Sequence[Boundary], network: Network, topology: Topology, head: int, steps: int
 ) -> tuple[Floats, list[int]]:
     """Return the planes (batch, 2, ni, nj) of boundaries with equal counts, and the steps taken for each."""
-    coarse, evaluated = _coarse(boundaries, network, topology, head)
+    if topology == "quad":
+        coarse = coarse_grids.coarse_grids(Edges.of(boundaries), network, head)
+    else:
+        coarse = o_grids.coarse_grids(boundaries, network, head)
     counts = boundaries[0].ni, boundaries[0].nj
     if not steps:
-        return evaluated(coarse, counts), [0] * len(boundaries)
+        return _evaluated(coarse, boundaries, counts), [0] * len(boundaries)
     newton = head != WINSLOW and topology == "quad"
     last = steps if head == WINSLOW else min((steps + 1) // 2 if newton else steps, LAST)
     begin = _newton if newton else _descent
@@ -44,31 +45,21 @@ def polished(
         ni, nj = (min(n, MOST_SOLVED) for n in counts)
     else:
         ni, nj = (n if n <= MOST_DESCENDED else LARGER_DESCENDED for n in counts)
-    planes = evaluated(coarse, (ni, nj))
+    planes = _evaluated(coarse, boundaries, (ni, nj))
     for k, grid in enumerate(planes):
         if head == WINSLOW:
             taken[k] += _cycles(grid, last, topology)
         else:
             taken[k] += _descent(grid, last, topology, coarse[k] if newton else None)
-    return (planes if (ni, nj) == counts else evaluated(planes, counts)), taken
+    return (planes if (ni, nj) == counts else _evaluated(planes, boundaries, counts)), taken
 
 
-def _coarse(
-    boundaries: Sequence[Boundary], network: Network, topology: Topology, head: int
-) -> tuple[Floats, Callable[[Floats, Counts], Floats]]:
-    """Return the network's coarse grids, and what evaluates them at other counts."""
-    if topology == "quad":
-        edges = Edges.of(boundaries)
-        grids = coarse_grids.coarse_grids(edges, network, head)
-        return grids, lambda planes, counts: coarse_grids.refine_coarse(planes, edges.thinned(*counts))
-
-    def around(planes: Floats, counts: Counts) -> Floats:
-        own = counts == (boundaries[0].ni, boundaries[0].nj)
-        return o_grids.refine_o_grids(
-            planes, boundaries if own else [thinned(b, *counts) for b in boundaries]
-        )
-
-    return o_grids.coarse_grids(boundaries, network, head), around
+def _evaluated(grids: Floats, boundaries: Sequence[Boundary], counts: tuple[int, int]) -> Floats:
+    """Return planes with so many nodes within `boundaries` of `grids` (batch, 2, m, n) on fewer nodes."""
+    if counts != (boundaries[0].ni, boundaries[0].nj):
+        boundaries = [thinned(boundary, *counts) for boundary in boundaries]
+    nodes = [refine_grid(np.moveaxis(grid, 0, -1), b) for grid, b in zip(grids, boundaries, strict=True)]
+    return np.stack([np.moveaxis(each, -1, 0) for each in nodes])
 
 
 def _newton(planes: Floats, steps: int, topology: Topology) -> int:

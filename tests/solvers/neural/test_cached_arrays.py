@@ -21,7 +21,7 @@ from meshonet.solvers.neural.quad import network, picard
         lambda: [evaluate._interpolation(np.linspace(0.0, 1.0, 5).tobytes())],
         lambda: nufft._transform(256),
         lambda: [network.rim_factor(9, 9, False)],
-        lambda: picard._folded(9),
+        lambda: picard._padded(9, False),
         lambda: picard._transform(9, True),
         lambda: _waves(9, 9, 2, 1),
     ],

@@ -26,6 +26,13 @@ def test_derivative_matrices_are_exact_for_smooth_functions() -> None:
     np.testing.assert_allclose(grid.d2 @ f, 9 * f, atol=1e-5)
 
 
+def test_kept_eigenvectors_are_those_of_the_second_derivative() -> None:
+    grid = across()
+    made = grid.vectors * grid.eigenvalues @ grid.inverse
+    np.testing.assert_allclose(made, grid.d2[1:-1, 1:-1], atol=1e-12 * np.abs(grid.d2).max())
+    np.testing.assert_allclose(grid.vectors @ grid.inverse, np.eye(len(made)), atol=1e-12)
+
+
 def test_interpolation_reproduces_points_and_smooth_functions() -> None:
     grid = across()
     np.testing.assert_array_equal(interpolation(grid.eta[[0, -1]]), np.eye(len(grid.eta))[:, [0, -1]])

@@ -7,7 +7,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.path import Bend, PiecedPath, SplinePath
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import measure
-from meshonet.solvers.sweeping.butterfly import Disc, butterfly
+from meshonet.solvers.sweeping.disc import Disc, butterfly
 from meshonet.solvers.sweeping.sweep import Sweep, reach_of, self_crossing, sweep
 
 
@@ -39,7 +39,7 @@ def volume(grid: Grid) -> float:
 
 
 def test_a_bent_pipe_has_the_volume_of_pappus():
-    disc = butterfly(Disc(0.5, 800))
+    disc = butterfly(Disc(0.5))
     area = np.pi * 0.25
     path = quarter(1.5)
     made = sweep(disc, path, Sweep(planes=161))
@@ -47,7 +47,7 @@ def test_a_bent_pipe_has_the_volume_of_pappus():
 
 
 def test_every_plane_stands_across_the_path_and_is_the_section():
-    disc = butterfly(Disc(0.5, 100))
+    disc = butterfly(Disc(0.5, around=32))
     path = quarter(1.5)
     made = sweep(disc, path, Sweep(planes=31))
     places = path.at(np.linspace(0.0, path.length, 31))
@@ -60,7 +60,7 @@ def test_every_plane_stands_across_the_path_and_is_the_section():
 
 
 def test_blocks_and_connections_stay_and_ends_are_inlet_and_outlet():
-    disc = butterfly(Disc(0.5, 100))
+    disc = butterfly(Disc(0.5, around=32))
     made = sweep(disc, quarter(1.5))
     assert len(made.blocks) == 5
     assert len(made.connections) == len(disc.connections)
@@ -70,7 +70,7 @@ def test_blocks_and_connections_stay_and_ends_are_inlet_and_outlet():
 
 
 def test_a_closed_path_is_connected_to_itself_and_has_no_ends():
-    made = sweep(butterfly(Disc(0.5, 100)), ring(2.0), Sweep(planes=65))
+    made = sweep(butterfly(Disc(0.5, around=32)), ring(2.0), Sweep(planes=65))
     assert {patch.name for patch in made.patches} == {"wall"}
     tops = [each for each in made.connections if each.donor_side == "top"]
     assert [each.block for each in tops] == [0, 1, 2, 3, 4]
@@ -118,21 +118,7 @@ def test_a_path_that_comes_back_to_itself_is_seen():
 
 def test_periodic_sections_and_open_turns_of_closed_paths_are_refused():
     with pytest.raises(InputError, match="does not come back to itself"):
-        sweep(butterfly(Disc(0.5, 100)), ring(2.0), Sweep(twist=90.0))
-
-
-@pytest.mark.parametrize(
-    ("cells", "first", "growth"), [(320, None, None), (800, 0.005, None), (3000, 0.001, 1.1), (48, 0.05, 1.5)]
-)
-def test_a_disc_has_about_the_cells_and_the_first_cells_asked_for(cells, first, growth):
-    grid = butterfly(Disc(0.5, cells, first, growth))
-    quality = measure(grid)
-    assert quality.folded == 0
-    assert quality["max_angle"].max < 136.0
-    assert 0.5 * cells <= quality.cells <= 1.5 * cells or cells < 100
-    if first:
-        wall = np.concatenate([block.nodes[:, 0] - block.nodes[:, 1] for block in grid.blocks[1:]])
-        assert np.linalg.norm(wall, axis=-1) == pytest.approx(np.full(len(wall), first), rel=0.4)
+        sweep(butterfly(Disc(0.5, around=32)), ring(2.0), Sweep(twist=90.0))
 
 
 @pytest.mark.parametrize(

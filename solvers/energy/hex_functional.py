@@ -25,16 +25,11 @@ like cubes).
 """
 
 from dataclasses import dataclass
-from itertools import product
 from typing import Literal
-
-import numpy as np
-
-from meshonet.geometry.arrays import Floats
 
 
 @dataclass(frozen=True)
-class VolumeWeights:
+class HexWeights:
     """Weights of the terms: `shape` q, `smoothness` β, `power` p (1 or 2).
 
     Power 0 stands for cells like cubes, with q = 1 and β = 0. A descent ends after two steps of which each
@@ -52,24 +47,14 @@ class VolumeWeights:
         return self.power == 0
 
 
-OPTIMAL = VolumeWeights()
+OPTIMAL = HexWeights()
 """What grids are made with."""
-CUBES = VolumeWeights(1.0, 0.0, power=0, gain=1e-6)
+CUBES = HexWeights(1.0, 0.0, power=0, gain=1e-6)
 """Cells like cubes."""
 Energy = Literal["angles", "shape"]
-ENERGIES: dict[Energy, VolumeWeights] = {"angles": OPTIMAL, "shape": CUBES}
+ENERGIES: dict[Energy, HexWeights] = {"angles": OPTIMAL, "shape": CUBES}
 """What may be minimised, by name."""
-UNFOLDING = VolumeWeights(0.02, power=1)
+UNFOLDING = HexWeights(0.02, power=1)
 """About Winslow's functional, which unfolds the most."""
-OPENING = VolumeWeights(0.3, power=1), VolumeWeights(0.9, power=1)
+OPENING = HexWeights(0.3, power=1), HexWeights(0.9, power=1)
 """The way from there to `OPTIMAL`: cells that are nearly flat get stuck otherwise."""
-
-
-def inverse_lengths(planes: Floats) -> tuple[float, float, float]:
-    """Return 1 / root mean square step of the four edges along each direction of planes (3, ni, nj, nk)."""
-    lengths = []
-    for axis in range(3):
-        rows = np.moveaxis(planes, axis + 1, -1)
-        edges = np.stack([rows[:, a, b] for a, b in product((0, -1), (0, -1))])
-        lengths.append(float(np.sqrt((np.diff(edges, axis=-1) ** 2).sum(axis=1).mean())))
-    return 1.0 / lengths[0], 1.0 / lengths[1], 1.0 / lengths[2]

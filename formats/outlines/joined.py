@@ -1,0 +1,56 @@
+"""Curves of a drawing joined where their ends meet."""
+
+import numpy as np
+
+from meshonet.formats.mesh.surface import MOST_EDGES, MeshBoundary
+from meshonet.formats.mesh.unstructured import Indices
+from meshonet.formats.source import LARGEST
+from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.errors import InputError
+
+MOST_BYTES = 64 << 20
+"""Larger drawings take too long to read: no outline needs so many curves."""
+SAG = 1e-5
+"""Largest distance of a chord from its curve, in extents."""
+_MEET = 1e-6
+"""How far apart, in extents, two ends may lie and still meet."""
+
+
+def extent_checked(points: Floats) -> float:
+    """Return the extent of points (n, 2) of curves; InputError where it is none, or not finite."""
+    extent = extent_of(points)
+    if not (np.abs(points) < LARGEST).all() or extent == 0:
+        raise InputError("its curves have no size, or one that is not finite", "check the drawing")
+    return extent
+
+
+def joined(lines: list[tuple[str, Floats]]) -> MeshBoundary:
+    """Return curves, each a name and points (n, 2), as edges between points, ends that meet being one point.
+
+    Raises InputError: too many points.
+    """
+    lines = [(name, line[np.append(True, (np.diff(line, axis=0) != 0).any(axis=1))]) for name, line in lines]
+    lines = [(name, line) for name, line in lines if len(line) > 1]
+    if sum(len(line) for _, line in lines) > MOST_EDGES:
+        raise InputError(f"has more than {MOST_EDGES} points", "simplify the drawing")
+    points = np.concatenate([line for _, line in lines])
+    reach = _MEET * extent_of(points)
+    counts = [len(line) for _, line in lines]
+    stops = np.cumsum(counts)
+    starts = stops - counts
+    same = np.arange(len(points))
+    ends = np.concatenate([starts, stops - 1])
+    order = ends[np.argsort(points[ends, 0], kind="stable")].tolist()
+    for k, end in enumerate(order):
+        if same[end] != end:
+            continue
+        for later in order[k + 1 :]:
+            if points[later, 0] - points[end, 0] > reach:
+                break
+            if same[later] == later and abs(points[later, 1] - points[end, 1]) <= reach:
+                same[later] = end
+    edges: dict[str, list[Indices]] = {}
+    for (name, _), start, stop in zip(lines, starts, stops, strict=True):
+        nodes = same[start:stop]
+        edges.setdefault(name, []).append(np.stack([nodes[:-1], nodes[1:]], axis=1))
+    return MeshBoundary(points, {name: np.concatenate(pieces) for name, pieces in edges.items()})

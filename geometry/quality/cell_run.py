@@ -1,0 +1,39 @@
+"""One run of the compiled metrics over all cells of a planar block."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality.metrics import QUAD_METRICS
+from meshonet.geometry.threads import threads_for
+from meshonet.kernels._native import measure_cells
+
+PERCENTS = (1.0, 99.0)
+"""Percentiles that are asked for."""
+FEW = 1 << 22
+"""Cells up to which the values of all metrics are in memory together."""
+NONE = slice(0)
+"""No metrics."""
+
+
+class CellRun(NamedTuple):
+    """Min, mean and max (metrics, 3), where min and max are (metrics, 2, 2), and kept values."""
+
+    table: Floats
+    where: NDArray[np.int64]
+    values: Floats
+
+
+def run_over(x: Floats, y: Floats, kept: slice = NONE, *, periodic: bool = False, wake: int = 0) -> CellRun:
+    """Run over the cells of the planes x, y (ni, nj); values (n, ni-1, nj-1) of the metrics `kept` are kept.
+
+    Of a `periodic` block column ni-1 is column 0; the first `wake` cells at south are beside the last ones.
+    """
+    metrics = len(QUAD_METRICS)
+    table, where = np.empty((metrics, 3)), np.empty((metrics, 2, 2), dtype=np.int64)
+    first, last, _ = kept.indices(metrics)
+    values = np.empty((last - first, len(x) - 1, x.shape[1] - 1))
+    measure_cells(x, y, periodic, wake, table, where, first, values, threads_for(x.size))
+    return CellRun(table, where, values)

@@ -1,0 +1,142 @@
+"""A mesh of hexahedra as the compiled descent takes it: blocks with what is beyond their sides, and forces.
+
+Of each block (``kernels/hexes/energy.h``) there is the part around nodes that move, its longest direction
+last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import exp
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner, corners_of
+
+BlockTargets: TypeAlias = tuple[Floats, Floats, Floats]
+Targets = Sequence[BlockTargets]
+"""Of each block the logarithms of wanted lengths of edges along xi, eta and zeta: (ni+1, nj, nk) with one
+edge beyond either end, and so on; any number where there is no edge."""
+
+
+@dataclass(frozen=True, eq=False)
+class HexTables:
+    """Tables of all blocks, one after the other.
+
+    Parameters
+    ----------
+    blocks : (b, 6) places along each direction, and where places, cells and rows begin.
+    node : number of the node at each place (p,), -1 for none.
+    target : (3, p) wanted logarithms of edges that begin there.
+    inverse : (3, c) one over the wanted lengths of cells.
+    skip : (c,) bits of corners that do not count.
+    busy : of each row of cells, whether it has a corner that counts.
+    free : nodes (k,) that move.
+    start, place : at which places, from start[k] to start[k + 1], are the forces on each of them.
+    """
+
+    blocks: NDArray[np.int64]
+    node: NDArray[np.int32]
+    target: NDArray[np.float32]
+    inverse: Floats
+    skip: NDArray[np.uint8]
+    busy: Bools
+    free: Indices
+    start: Indices
+    place: NDArray[np.int32]
+
+
+def tables_of(mesh: HexMesh, moves: Bools, targets: Targets, lengths: Sequence[Floats]) -> HexTables:
+    """Return the tables of a mesh of which nodes `moves` (n,) are free and cells have wanted `lengths`."""
+    parts = [
+        _part(wider, np.append(moves, False), wanted, sizes)
+        for wider, wanted, sizes in zip(mesh.beyond, targets, lengths, strict=True)
+    ]
+    rows: list[list[int]] = []
+    starts = np.zeros(3, dtype=np.int64)
+    own, places = [np.empty(0, np.intp)], [np.empty(0, np.intp)]
+    for part in parts:
+        if part is None:
+            continue
+        node, _, _, skip, busy = part
+        rows.append([*node.shape, *starts.tolist()])
+        inner = (slice(1, -1),) * 3
+        own.append(node[inner].ravel())
+        places.append(starts[0] + np.arange(node.size).reshape(node.shape)[inner].ravel())
+        starts += node.size, skip.size, busy.size
+    tables = [[each[k] for each in parts if each is not None] for k in range(5)]
+    shapes = ((0,), (3, 0), (3, 0), (0,), (0,))
+    kinds = np.int32, np.float32, np.float64, np.uint8, np.bool_
+    joined = [
+        np.concatenate(
+            [np.empty(shape, kind), *(np.reshape(e, (*shape[:-1], -1)).astype(kind) for e in each)], axis=-1
+        )
+        for each, shape, kind in zip(tables, shapes, kinds, strict=True)
+    ]
+    free, start, place = _forces(moves, np.concatenate(own), np.concatenate(places))
+    return HexTables(np.array(rows, dtype=np.int64).reshape(-1, 6), *joined, free, start, place)
+
+
+def cell_lengths(edges: Sequence[Floats]) -> Floats:
+    """Return the wanted lengths (3, ni-1, nj-1, nk-1) of cells from `Targets` of their block."""
+    means = []
+    for d, values in enumerate(edges):
+        inner = np.moveaxis(values, d, 0)[1:-1]
+        mean = 0.25 * (inner[:, 1:, 1:] + inner[:, 1:, :-1] + inner[:, :-1, 1:] + inner[:, :-1, :-1])
+        means.append(np.moveaxis(mean, 0, d))
+    return exp(np.stack(means))
+
+
+_Part: TypeAlias = tuple[Indices, Floats, Floats, NDArray[np.uint8], Bools]
+
+
+def _part(lattice: Indices, free: Bools, wanted: BlockTargets, lengths: Floats) -> _Part | None:
+    """Return the tables of a block around what moves; None if nothing does. `free` of -1 is False."""
+    last = int(np.argmax(lattice.shape))
+    axes = [(last + 1) % 3, (last + 2) % 3, last]
+    lattice, edges = lattice.transpose(axes), [wanted[axis].transpose(axes) for axis in axes]
+    lengths = lengths[axes].transpose(0, *(axis + 1 for axis in axes))
+    moving = any_corner(free[lattice[1:-1, 1:-1, 1:-1]])
+    where = [np.flatnonzero(moving.any(axis=tuple({0, 1, 2} - {axis}))) for axis in range(3)]
+    if not len(where[0]):
+        return None
+    cells = tuple(slice(at[0], at[-1] + 1) for at in where)
+    target = np.full((3, *lattice.shape), np.nan, np.float32)
+    for d, values in enumerate(edges):
+        into = tuple(slice(0, -1) if k == d else slice(1, -1) for k in range(3))
+        ends = np.moveaxis(lattice[tuple(slice(None) if k == d else slice(1, -1) for k in range(3))], d, 0)
+        none = (ends[1:] == ends[:-1]) | (ends[1:] < 0) | (ends[:-1] < 0)
+        target[d][into] = np.where(np.moveaxis(none, 0, d), np.nan, values)
+    inside = tuple(slice(at[0], at[-1] + 4) for at in where)
+    node = lattice[inside]
+    skip = np.where(moving[cells], _collapsed(node[1:-1, 1:-1, 1:-1]), 255).astype(np.uint8)
+    some = (skip != 255).any(axis=2).ravel()
+    busy = np.zeros((node.shape[0] - 2) * (node.shape[1] - 2), dtype=bool)
+    busy[: len(some)] = some
+    return node, target[(slice(None), *inside)], 1.0 / lengths[(slice(None), *cells)], skip, busy
+
+
+def _collapsed(nodes: Indices) -> NDArray[np.uint8]:
+    """Return the bits of corners of cells (ni-1, nj-1, nk-1) at which an edge has no length."""
+    bits = np.zeros([n - 1 for n in nodes.shape], dtype=np.uint8)
+    if not any((np.diff(nodes, axis=axis) == 0).any() for axis in range(3)):
+        return bits
+    corners = list(corners_of(nodes))
+    for number, own in enumerate(corners):
+        out = (own == corners[number ^ 1]) | (own == corners[number ^ 2]) | (own == corners[number ^ 4])
+        bits |= np.where(out, np.uint8(1 << number), np.uint8(0))
+    return bits
+
+
+def _forces(moves: Bools, own: Indices, places: Indices) -> tuple[Indices, Indices, NDArray[np.int32]]:
+    """Return the nodes that move, where each one's places start (k+1,), and the places of forces on them."""
+    on = moves[own]
+    free = np.flatnonzero(moves)
+    of = (np.cumsum(moves) - 1)[own[on]]
+    start = np.concatenate([[0], np.cumsum(np.bincount(of, minlength=len(free)))])
+    return free, start.astype(np.intp), places[on][np.argsort(of, kind="stable")].astype(np.int32)

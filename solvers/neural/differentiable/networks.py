@@ -1,0 +1,140 @@
+"""The networks in torch, for training and for gradients; the order of their layers is that of inference.
+
+The strip network is `meshonet.solvers.neural.strip.network`. The quad network, a U-Net on a small grid, is
+equivariant under the eight relabellings of a quad (`meshonet.solvers.neural.quad.network`); around a body its
+layers go round along xi, where a quad's see zeros outside the grid.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import torch
+from torch import Tensor, nn
+from torch.nn import functional
+
+from meshonet.solvers.neural.quad import symmetry
+from meshonet.solvers.neural.quad.encoding import HEADS
+from meshonet.solvers.neural.quad.network import UNet, rim_factor
+from meshonet.solvers.neural.quad.network import shapes as quad_shapes
+from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
+from meshonet.solvers.neural.strip.network import StripNetwork
+from meshonet.solvers.neural.strip.network import shapes as strip_shapes
+
+
+class NamedParameters(nn.Module):
+    """A network whose parameters are `arrays`; a dot in a name leads into a module of parameters."""
+
+    def __init__(self, arrays: Mapping[str, Tensor]) -> None:
+        super().__init__()
+        for name, array in arrays.items():
+            module: nn.Module = self
+            *path, last = name.split(".")
+            for part in path:
+                if part not in dict(module.named_children()):
+                    module.add_module(part, nn.Module())
+                module = module.get_submodule(part)
+            module.register_parameter(last, nn.Parameter(array))
+
+
+class StripFNO(NamedParameters):
+    """Channels and scalars of `meshonet.solvers.neural.strip.encoding` to `outputs` channels.
+
+    `inputs`, `scalars`, `outputs`: channel counts; `width`, `modes`, `layers`: of the hidden state.
+    """
+
+    def __init__(
+        self, inputs: int, scalars: int, outputs: int, width: int = 32, modes: int = 32, layers: int = 3
+    ) -> None:
+        wanted = strip_shapes(inputs + scalars, outputs, width, (modes,) * (layers + 1))
+        super().__init__({name: _first_of_strip(name, shape, wanted) for name, shape in wanted.items()})
+
+    def forward(self, channels: Tensor, scalars: Tensor) -> Tensor:
+        """(batch, inputs, columns), (batch, scalars) to (batch, outputs, columns)."""
+        out: Tensor = StripNetwork(dict(self.named_parameters()), torch)(channels, scalars)
+        return out
+
+
+def _first_of_strip(name: str, shape: tuple[int, ...], shapes: dict[str, tuple[int, ...]]) -> Tensor:
+    """Return first values: spectral ones normal over their inputs, others uniform as torch's layers have."""
+    if name.startswith("spectral"):
+        return torch.randn(shape) / shape[1]
+    _, inputs, taps = shapes[name.replace("bias", "weight")]
+    return (2.0 * torch.rand(shape) - 1.0) / (inputs * taps) ** 0.5
+
+
+class QuadUNet(NamedParameters, UNet[Tensor]):
+    """Features of a grid to displacements of its nodes.
+
+    `widths` are sets of eight channels on each level, the finest first, each with every second node; `blocks`
+    residual blocks on each, on the way down and on the way up; `around`, O grids go round along xi.
+    """
+
+    def __init__(self, widths: Sequence[int], blocks: Sequence[int], around: bool = False) -> None:
+        wanted = quad_shapes(widths, blocks, len(HEADS))
+        super().__init__({name: _first_of_quad(name, shape) for name, shape in wanted.items()})
+        self.counts, self.around = tuple(blocks), around
+        tables = {"seen": torch.tensor(SEEN, dtype=torch.float32)}
+        tables |= {"elements": torch.tensor(ELEMENTS, dtype=torch.float32)}
+        tables |= {f"places{size}": torch.from_numpy(symmetry.table(size)) for size in (1, 3)}
+        for name, values in tables.items():
+            self.register_buffer(name, values, persistent=False)
+
+    def forward(self, features: Tensor) -> Tensor:
+        """Return (batch, heads, m, n), complex, for `features` (batch, m, n, FEATURES); zero on the rim.
+
+        m is n, or around a body a multiple of 2 for each level but the coarsest.
+        """
+        answer = self.through(features.movedim(-1, 1), self.counts)
+        rim = torch.tensor(
+            rim_factor(*answer.shape[-2:], self.around), dtype=answer.dtype, device=answer.device
+        )
+        answer = answer * rim
+        return torch.complex(answer[:, 0::2].contiguous(), answer[:, 1::2].contiguous())
+
+    def layer(
+        self,
+        name: str,
+        x: Tensor,
+        stride: int = 1,
+        add: Tensor | None = None,
+        room: str = "",  # noqa: ARG002
+    ) -> Tensor:
+        """Return the convolution `name` of channels x (batch, 8 in, m, n) that hold their own padding."""
+        if name == "lift":
+            kernel = symmetry.lift(self.get_parameter("lift"), self.get_buffer("seen"))[..., None, None]
+            bias = self.get_parameter("lift_bias").repeat_interleave(ORDER)
+        elif name == "project":
+            elements = self.get_buffer("elements")
+            kernel = symmetry.projection(self.get_parameter("project"), elements, torch)[..., None, None]
+            bias = None
+        else:
+            weight = self.get_parameter(f"{name}.weight")
+            kernel = symmetry.convolution(weight, self.get_buffer(f"places{weight.shape[-1]}"), torch)
+            bias = self.get_parameter(f"{name}.bias").repeat_interleave(ORDER)
+        out = functional.conv2d(x, kernel, bias, stride=stride)
+        return out if add is None else out + add
+
+    def silu(self, x: Tensor, pad: int = 1) -> Tensor:
+        """Return x / (1 + exp(-x)), with zeros around it, or going round along xi."""
+        x = functional.silu(x)
+        if self.around and pad:
+            return functional.pad(functional.pad(x, (0, 0, pad, pad), mode="circular"), (pad, pad))
+        return functional.pad(x, (pad,) * 4)
+
+    def finer(self, low: Tensor, skip: Tensor) -> Tensor:
+        """Return `low` linear between its nodes, with as many as `skip` has, and `skip`."""
+        m, n = skip.shape[-2:]
+        if self.around:
+            low, m = torch.cat([low, low[:, :, :1]], 2), m + 1
+        fine = functional.interpolate(low, size=(m, n), mode="bilinear", align_corners=True)
+        return (fine[:, :, :-1] if self.around else fine) + skip
+
+
+def _first_of_quad(name: str, shape: tuple[int, ...]) -> Tensor:
+    """Return first values: those of He and others, less in the second half of a residual block."""
+    if name.endswith("bias"):
+        return torch.zeros(shape)
+    if name in ("lift", "project"):
+        return (1.0 if name == "lift" else 0.1) * shape[-1] ** -0.5 * torch.randn(shape)
+    gain = 0.3 if name.endswith(".b.weight") else 1.0
+    return gain * (2.0 / math.prod(shape[1:])) ** 0.5 * torch.randn(shape)

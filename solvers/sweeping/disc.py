@@ -1,0 +1,101 @@
+"""A circle and its cells: how many around, how many rows, and what a user should know of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.elementary import cos, product, sin
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.growth import check_growth
+from meshonet.solvers.sweeping.butterfly import GROWTH, CrossSection, FiveBlocks, filled, planned
+
+AROUND = 88
+"""Cells around a circle that leave its area within 0.1 %: 1 - sin(x)/x with x = 2 pi / 88 is 0.08 %."""
+_FEWER = 40  # cells around that leave it within 0.4 %
+# quarter turns: east, north, west, south
+_TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1, 0)))
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A circle and its cells.
+
+    Parameters
+    ----------
+    radius : in any unit.
+    cells : about how many; None: as few as `around` allows.
+    first_cell : height of the first cell at the wall; None: about that of the cells in the middle.
+    growth : largest ratio of neighbouring cells; None is 1.2.
+    around : cells along the circle, a multiple of four; None: what `cells` needs, and at least `AROUND`.
+
+    Raises InputError: a value that is not positive, a first cell wider than the ring, no multiple of four,
+    both `cells` and `around`.
+    """
+
+    radius: float
+    cells: int | None = None
+    first_cell: float | None = None
+    growth: float | None = None
+    around: int | None = None
+
+    def __post_init__(self) -> None:
+        if not 0 < self.radius < 1e12:
+            raise InputError(f"a circle of radius {self.radius:g}", "use more than 0")
+        if self.cells is not None and self.around is not None:
+            raise InputError("{cells} and {around} both say how fine a circle is", "give one of them")
+        if self.cells is not None and not 12 <= self.cells <= 10_000_000:
+            raise InputError(f"{self.cells} cells", "use 12 to 10 million", parameter="cells")
+        if self.around is not None and (self.around % 4 or not 8 <= self.around <= 10_000):
+            remedy = "use a multiple of 4 from 8 to 10000"
+            raise InputError(f"{self.around} cells around a circle", remedy, parameter="around")
+        if self.first_cell is not None and not 1e-9 < self.first_cell / self.radius < 0.2:
+            problem = f"{self.first_cell:g} in a circle of radius {self.radius:g}"
+            raise InputError(problem, "use up to a fifth of the radius", parameter="first_cell")
+        check_growth(self.growth)
+
+    def section(self, side: int) -> CrossSection:
+        """Return the circle with `side` cells on each quarter."""
+        u = np.linspace(-1.0, 1.0, side + 1)
+        arc = self.radius * np.stack([cos(0.25 * np.pi * u), sin(0.25 * np.pi * u)], axis=1)
+        return CrossSection([product(arc, np.array(turn).T) for turn in _TURNS], self.first_cell)
+
+    def plan(self, side: int) -> FiveBlocks:
+        """Return how the inside is divided with `side` cells on each quarter."""
+        return planned([self.section(side)], self.growth or GROWTH, radial=True)
+
+    def count(self, side: int) -> int:
+        """Return the cells that there are with `side` cells on each quarter."""
+        return side * side + 4 * side * self.plan(side).rows
+
+    @cached_property
+    def side(self) -> int:
+        """Cells on each quarter."""
+        if self.around is not None:
+            return self.around // 4
+        low, high = AROUND // 4, math.isqrt(self.cells or 0)
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (middle, high) if self.count(middle) < (self.cells or 0) else (low, middle)
+        nearest = [side for side in (low, high) if side >= low]
+        return min(nearest, key=lambda side: abs(self.count(side) - (self.cells or 0)))
+
+    @property
+    def note(self) -> str:
+        """That there are more cells than were asked for, and why."""
+        if self.cells is None or self.side > AROUND // 4 or self.count(self.side) <= 1.1 * self.cells:
+            return ""
+        fewer = replace(self, around=_FEWER, cells=None)
+        return (
+            f"a circle has {self.count(self.side)} cells or more instead of {self.cells}: {AROUND} around "
+            f"keep its area within 0.1 %; {{around}} {_FEWER} makes {fewer.count(fewer.side)}, 0.4 % off"
+        )
+
+
+def butterfly(disc: Disc) -> Grid:
+    """Return the grid of a disc around the origin, its wall named ``wall``."""
+    return replace(filled(disc.section(disc.side), disc.plan(disc.side)), name="circle")

@@ -1,0 +1,70 @@
+"""Steps along the lines of a ring, from a wall to cells of a given size that they join.
+
+::
+
+    wall |-|--|---|----|-----|------|------|------|  core      the first is given; they grow by a constant
+         first                              size               ratio up to the size of the cells that follow
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import exp
+from meshonet.geometry.spacing.growth import LARGEST
+
+TRIED = 8
+"""Counts of rows from the fewest on, of which one is even enough if any is."""
+_HALVINGS = 60  # of the range that the ratio lies in: to the last digit
+_CLOSE = 1e-9  # of the length, to which steps fill it
+
+
+def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
+    """Return steps (k, rows) that fill `lengths` (k,) and lead to cells as long as `sizes` (k,).
+
+    The ones at the wall are `first` long, or as long as a constant ratio makes them. Where no ratio up to
+    `LARGEST` fills a length, they do not (see `largest_ratio`).
+    """
+    most = math.log(LARGEST)
+    low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)
+    shrink = np.full(len(lengths), False) if first is None else sizes < first
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        longer = (_steps(sizes, rows, first, middle).sum(axis=1) < lengths) != shrink
+        low, high = np.where(longer, middle, low), np.where(longer, high, middle)
+    return _steps(sizes, rows, first, 0.5 * (low + high))
+
+
+def _steps(sizes: Floats, rows: int, first: float | None, rate: Floats) -> Floats:
+    """Return steps (k, rows) that change by a ratio, whose logarithm is `rate` (k,), up to the sizes."""
+    grown = exp(rate[:, None] * np.arange(rows))
+    if first is None:
+        return np.asarray(sizes[:, None] * grown[:, ::-1])
+    size, shrink = sizes[:, None], sizes[:, None] < first
+    return np.where(shrink, np.maximum(first / grown, size), np.minimum(first * grown, size))
+
+
+def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: float) -> int:
+    """Return the fewest rows with which steps (see `ring_steps`) may grow by no more than `growth`."""
+    if first is None:
+        return max(1, round(float((lengths / sizes).mean())) - TRIED // 2)
+    even = math.ceil(float((lengths / np.maximum(sizes, first)).max()) - _CLOSE)
+    growing = math.ceil(math.log(max(float(sizes.max()) / first, 1.0)) / math.log(growth))
+    steps = _steps(sizes, even + growing, first, np.full(len(sizes), math.log(growth)))
+    fitting = np.where(sizes < first, even, (np.cumsum(steps, axis=1) < lengths[:, None]).sum(axis=1) + 1)
+    return max(2, int(fitting.max()))
+
+
+def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
+    """Return the largest ratio of neighbouring cells along lines, the cells that follow included.
+
+    It is infinite where the steps (k, rows) do not fill the `lengths` (k,).
+    """
+    if np.abs(steps.sum(axis=1) - lengths).max() > _CLOSE * lengths.max():
+        return math.inf
+    every = np.concatenate([steps, sizes[:, None]], axis=1)
+    ratio = every[:, 1:] / every[:, :-1]
+    return float(np.maximum(ratio, 1.0 / ratio).max())
