@@ -39,7 +39,7 @@ from meshonet.solvers.algebraic.resample.quad import refine_quad
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.quad.coarse_grids import Edges
+from meshonet.solvers.neural.quad.coarse_grids import sides_of, thinned, transfinite
 from meshonet.solvers.neural.quad.encoding import LATENT, frame
 from meshonet.solvers.neural.quad.picard import approach
 from meshonet.solvers.neural.registry import load
@@ -111,12 +111,12 @@ def to_winslow(n: int, boundaries: list[Boundary], network: Callable[..., Soluti
 
 def near(boundary: Boundary) -> Solution:
     """Return the grid that the network goes out from, evaluated as its own are."""
-    edges = Edges.of([boundary])
-    base = edges.transfinite(LATENT, LATENT)
+    sides = sides_of([boundary])
+    base = transfinite(thinned(sides, LATENT, LATENT))
     z = base[:, 0] + 1j * base[:, 1]
     middle, factor = frame(z, np)
     z = approach((z - middle) * factor, np)[0] / factor + middle
-    (planes,) = refine_quad(np.stack([z.real, z.imag], axis=1), edges.sides)
+    (planes,) = refine_quad(np.stack([z.real, z.imag], axis=1), sides)
     return Solution(
         Grid.from_nodes(np.ascontiguousarray(np.moveaxis(planes, 0, -1)), "quad", boundary.patches), "picard"
     )

@@ -172,6 +172,8 @@ def _opened(text: str) -> Source:
             return Source(printable(text), data=read_member(*member))
     if stat.S_ISDIR(mode):
         raise InputError("is a folder", "name a file in it", source=printable(text))
+    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):  # which may have no end
+        raise InputError("is a device", "name a file", source=printable(text))
     with path.open("rb") as stream:
         if stat.S_ISREG(mode):
             return Source(printable(text), path=path)

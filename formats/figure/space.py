@@ -144,7 +144,9 @@ def _cut_figure(grid: Grid, polygons: Cut, colouring: Colouring | None, view: Vi
     figure, (ax,), bar = frame([box], colouring is not None)
     limits = limits_of(colouring, [] if polygons.values is None else [polygons.values])
     pixels = ax.get_window_extent().width / (box[1] - box[0])
-    size = np.sqrt(_polygon_areas(points)) * pixels
+    x, y = np.moveaxis(points, -1, 0)
+    areas = 0.5 * np.abs((x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1))
+    size = np.sqrt(areas) * pixels
     fills: dict[str, Any] = {"facecolors": "#e1e6eb"}
     if colouring and polygons.values is not None:
         fills = {"array": polygons.values, "cmap": colouring.scale, "clim": limits}
@@ -158,12 +160,6 @@ def _cut_figure(grid: Grid, polygons: Cut, colouring: Colouring | None, view: Vi
     note(ax, f"{names[0]} to the right, {names[1]} upwards")
     _finish(ax, bar, replace(grid, name=f"{grid.name}   {view.part}".strip()), colouring, limits)
     return figure
-
-
-def _polygon_areas(points: Floats) -> Floats:
-    x, y = np.moveaxis(points, -1, 0)
-    ahead = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
-    return np.asarray(0.5 * np.abs((x * ahead[1] - y * ahead[0]).sum(axis=1)))
 
 
 def _finish(

@@ -21,10 +21,14 @@ def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]
     names do not say them, and across what they span along the second direction of a side. What is empty is
     left out. Of a grid of blocks they are those of one `block`, the first of which has the connections and
     the provenance; with the grid's `number` in its file, by which its blocks know each other,
-    `grid_of_blocks` makes a grid. Writers give the plane of an extruded grid (`plane_of_extruded`), so that
-    it is read as that again.
+    `grid_of_blocks` makes a grid. An extruded grid has those of its plane, so that it is read as that again.
     """
     space = in_space(grid)
+    if space:
+        from meshonet.geometry.blocks.extrude import plane_of_extruded
+
+        grid = plane_of_extruded(grid) or grid
+        space = in_space(grid)
     of_blocks = grid.topology == "blocks"
     several = of_blocks and (len(grid.blocks) > 1 or not space)
     first = block == 0

@@ -18,6 +18,7 @@ from meshonet.formats.openfoam.patches import patches_of, with_empty_planes, wri
 from meshonet.formats.output import whole_file, whole_folder
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.polygon.area import check_extent
 from meshonet.geometry.shapes.spatial_shape import in_space
 
 _DICTIONARIES = {
@@ -39,6 +40,8 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     new one is whole.
     """
     grid = only_one(grids, "a case")
+    low, high = grid.box
+    check_extent(float((high - low).max()))
     if not in_space(grid):
         grid = extruded(grid, (0.0, 1.0))
     apart = node_numbers(grid)

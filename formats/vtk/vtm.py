@@ -55,7 +55,7 @@ def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = 
             values = cell_data(grid) if cell_data else [{}] * len(grid.blocks)
             for block in range(len(grid.blocks)):
                 name = f"block-{next(files)}.vts"
-                facts = facts_of(described, block, number)
+                facts = facts_of(grid, block, number)
                 write(part / name, grid, values[block], facts=facts, block=block)
                 place = f'index="{block if several else number}"'
                 label = f"block-{block}" if several else title

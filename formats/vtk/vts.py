@@ -54,7 +54,7 @@ def write(
     """
     nodes = grid.blocks[block].nodes
     cells = {name: _cell_values(name, values, nodes) for name, values in (cell_data or {}).items()}
-    facts = _facts(grid) if facts is None else facts
+    facts = facts_of(grid) if facts is None else facts
     ni, nj, nk = (*grid.blocks[block].counts, 1)[:3]
     with path.open("wb") as stream:
         stream.write(_head((ni, nj, nk), facts, cells).encode())
@@ -70,14 +70,6 @@ def write(
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     """Write the only grid of `grids`, of one block."""
     write(path, only_one(grids, "a .vts file"))
-
-
-def _facts(grid: Grid) -> Facts:
-    if grid.form == "plane":
-        return facts_of(grid)
-    from meshonet.geometry.blocks.extrude import plane_of_extruded
-
-    return facts_of(plane_of_extruded(grid) or grid)
 
 
 def _head(dims: tuple[int, int, int], facts: Facts, cells: Mapping[str, NDArray[Any]]) -> str:

@@ -17,8 +17,7 @@ from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.measure import count_folded_in
-from meshonet.solvers.deformation.field import Field
-from meshonet.solvers.deformation.follow import Follow
+from meshonet.solvers.deformation.follow import Field, Follow
 from meshonet.solvers.deformation.motions import Turning, turns_in_plane
 from meshonet.solvers.deformation.outer import NodeTable, lines_of
 from meshonet.solvers.deformation.targets import NewWall, targets_of

@@ -27,8 +27,7 @@ from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.elliptic.wall_control import ControlledEdge
-from meshonet.solvers.elliptic.wall_lines import first_heights, lines_from_side
+from meshonet.solvers.elliptic.wall_control import ControlledEdge, first_heights, lines_from_side
 from meshonet.solvers.iteration import check_settings
 from meshonet.solvers.solution import Solution, timed
 

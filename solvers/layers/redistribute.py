@@ -25,7 +25,7 @@ from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.growth import LARGEST
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import layer_lines, redistribute
-from meshonet.solvers.elliptic.wall_lines import first_heights, lines_from_side
+from meshonet.solvers.elliptic.wall_control import first_heights, lines_from_side
 from meshonet.solvers.layers.first_cells import (
     Heights,
     arcs_in_layers,

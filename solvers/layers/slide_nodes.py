@@ -21,7 +21,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
-from meshonet.solvers.elliptic.wall_lines import leaning, lines_from_side
+from meshonet.solvers.elliptic.wall_control import leaning, lines_from_side
 
 COUNTS = 129, 49  # nodes along and between the walls, at the most, on which places are sought
 ROUNDS = 60  # rounds at the most

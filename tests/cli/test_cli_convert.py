@@ -83,7 +83,8 @@ def test_json_says_what_was_converted(meshonet: Meshonet, grid_vts: Path) -> Non
 def test_a_batch_becomes_one_file_each_or_one_for_all(meshonet: Meshonet, three_h5: Path) -> None:
     meshonet("tfi", three_h5, "-o", "{name}.vts")
     assert meshonet("convert", "flat.vts", "low.vts", "-o", "p3d/{stem}.p3d").code == 0
-    assert sorted(path.name for path in Path("p3d").iterdir()) == ["flat.p3d", "low.p3d"]
+    names = sorted(path.name for path in Path("p3d").iterdir())
+    assert names == ["flat.nmf", "flat.p3d", "low.nmf", "low.p3d"]
     assert meshonet("convert", "flat.vts", "low.vts", "both.h5").code == 0
     assert len(list(read_grids("both.h5"))) == 2
 

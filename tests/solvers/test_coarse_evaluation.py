@@ -6,10 +6,10 @@ import pytest
 from meshonet.geometry.arrays import Floats
 from meshonet.kernels._native import resample
 from meshonet.solvers.algebraic.resample import corner_damping as acute
-from meshonet.solvers.algebraic.resample.edge_blending import REACH, inwards
+from meshonet.solvers.algebraic.resample.quad import REACH
 from meshonet.solvers.algebraic.resample.spline import bending, places
 from meshonet.solvers.algebraic.tfi import interpolate, parameters
-from meshonet.solvers.neural.quad.coarse_grids import Edges, rims
+from meshonet.solvers.neural.quad.coarse_grids import rims, thinned, transfinite
 
 RNG = np.random.default_rng(5)
 
@@ -33,20 +33,27 @@ def matrices(m: int, count: int) -> tuple[Floats, Floats]:
     return 1.0 - off, -off * (1.0 - off) * (2.0 - off) / 6.0
 
 
+def shares_of(coarse: Floats) -> list[Floats]:
+    torch = pytest.importorskip("torch")
+    from meshonet.solvers.neural.differentiable.resample import inwards
+
+    return [share.numpy() for share in inwards(torch.from_numpy(np.ascontiguousarray(coarse)))]
+
+
 @pytest.mark.parametrize(
     ("m", "n", "ni", "nj"),
     [(33, 33, 65, 65), (9, 12, 40, 23), (5, 4, 17, 8), (3, 2, 7, 6), (2, 3, 2, 9), (33, 21, 12, 33)],
 )
 @pytest.mark.parametrize("straightened", [False, True])
 def test_it_is_the_sum_of_matrices(m: int, n: int, ni: int, nj: int, straightened: bool) -> None:
-    edges = Edges(*(np.ascontiguousarray(side) for side in rims(wavy(ni, nj))))
+    sides = rims(wavy(ni, nj))
     coarse = wavy(m, n) + 0.02 * RNG.normal(size=(2, 2, m, n))
     opened = np.array([[[0.7, 0.0], [1.0, 0.2]], [[0.0, 0.0], [0.0, 0.0]]])
     straight = (RNG.random((2, m, n)) < 0.3).astype(np.uint8) if straightened else None
     nodes = np.empty((2, 2, ni, nj))
     fine = placed(m, n, ni, nj)
     near = acute.NEAR, acute.FAR, REACH
-    resample(coarse, edges.sides, fine, opened.reshape(2, 4), *near, nodes, straight)
+    resample(coarse, sides, fine, opened.reshape(2, 4), *near, nodes, straight)
 
     left = 1.0 - (opened.reshape(2, 4, 1, 1) * acute.fading(m, n)).max(axis=1)
     left = (left * (1.0 if straight is None else 1 - straight))[:, None]
@@ -55,22 +62,22 @@ def test_it_is_the_sum_of_matrices(m: int, n: int, ni: int, nj: int, straightene
     values = coarse @ line.T + (left * (coarse @ across)) @ curve.T
     bends = (left * (along @ coarse)) @ line.T + (left * (along @ coarse @ across)) @ curve.T
     expected = low @ values + high @ bends
-    south, north, west, east = ((low @ one @ line.T)[:, None] for one in inwards(coarse, np))
-    missed = [side - own for side, own in zip(edges.sides[2:], rims(expected)[2:], strict=True)]
+    south, north, west, east = ((low @ one @ line.T)[:, None] for one in shares_of(coarse))
+    missed = [side - own for side, own in zip(sides[2:], rims(expected)[2:], strict=True)]
     expected += west * missed[0][:, :, None] + east * missed[1][:, :, None]
-    missed = [side - own for side, own in zip(edges.sides[:2], rims(expected)[:2], strict=True)]
+    missed = [side - own for side, own in zip(sides[:2], rims(expected)[:2], strict=True)]
     expected += south * missed[0][..., None] + north * missed[1][..., None]
     inner = (..., slice(1, -1), slice(1, -1))
     np.testing.assert_allclose(nodes[inner], expected[inner], atol=1e-13)
-    for side, given in zip(rims(nodes), edges.sides, strict=True):
+    for side, given in zip(rims(nodes), sides, strict=True):
         assert np.array_equal(side, given)
 
 
 @pytest.mark.parametrize(("m", "n", "ni", "nj"), [(33, 33, 65, 65), (9, 5, 40, 23), (4, 6, 3, 2)])
 def test_the_beginning_is_the_interpolation_of_thinned_edges(m: int, n: int, ni: int, nj: int) -> None:
-    edges = Edges(*(np.ascontiguousarray(side) for side in rims(wavy(ni, nj))))
-    for k, found in enumerate(edges.transfinite(m, n)):
-        south, north, west, east = (side[k].T for side in edges.thinned(m, n).sides)
+    sides = rims(wavy(ni, nj))
+    for k, found in enumerate(transfinite(thinned(sides, m, n))):
+        south, north, west, east = (side[k].T for side in thinned(sides, m, n))
         expected = np.empty((2, m, n))
         interpolate(
             *expected, (south, north, west, east), parameters((south, north, west, east), "arclength")
@@ -79,16 +86,16 @@ def test_the_beginning_is_the_interpolation_of_thinned_edges(m: int, n: int, ni:
 
 
 def test_arrays_that_do_not_fit_are_refused() -> None:
-    edges = Edges(*(np.ascontiguousarray(side) for side in rims(wavy(9, 7))))
+    sides = rims(wavy(9, 7))
     fine = placed(5, 5, 9, 7)
     coarse, opened, nodes = wavy(5, 5), np.zeros((2, 4)), np.empty((2, 2, 9, 7))
     near, straight = (acute.NEAR, acute.FAR, REACH), np.zeros((2, 5, 4), np.uint8)
     for given, told in (
-        ((coarse[:1], edges.sides, fine, opened, *near, nodes), "is needed"),
-        ((coarse, edges[:1].sides, fine, opened, *near, nodes), "is needed"),
-        ((coarse, edges.sides, fine[::-1], opened, *near, nodes), "is needed"),
-        ((coarse, edges.sides, placed(8, 8, 9, 7), opened, *near, nodes), "index 4 out of range"),
-        ((coarse, edges.sides, fine, opened, *near, nodes, straight), "is needed"),
+        ((coarse[:1], sides, fine, opened, *near, nodes), "is needed"),
+        ((coarse, tuple(side[:1] for side in sides), fine, opened, *near, nodes), "is needed"),
+        ((coarse, sides, fine[::-1], opened, *near, nodes), "is needed"),
+        ((coarse, sides, placed(8, 8, 9, 7), opened, *near, nodes), "index 4 out of range"),
+        ((coarse, sides, fine, opened, *near, nodes, straight), "is needed"),
     ):
         with pytest.raises(ValueError, match=told):
             resample(*given)

@@ -20,7 +20,7 @@ from meshonet.solvers.algebraic.resample.quad import refine_quad
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.operator import in_batches
 from meshonet.solvers.neural.quad import coarse_grids, operator
-from meshonet.solvers.neural.quad.coarse_grids import Edges
+from meshonet.solvers.neural.quad.coarse_grids import sides_of
 from meshonet.solvers.neural.quad.encoding import WINSLOW
 from meshonet.solvers.neural.quad.polish import polished
 from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER
@@ -100,16 +100,14 @@ def test_a_batch_has_the_grids_of_its_members_alone(model: str) -> None:
 
 def test_evaluation_is_that_of_coarse_solves(model: str) -> None:
     boundary = arch(90, 70)
-    edges = Edges.of([boundary])
-    coarse = coarse_grids.coarse_grids(edges, load(model).network(), 1)
-    (found,) = refine_quad(coarse, edges.sides)
+    sides = sides_of([boundary])
+    coarse = coarse_grids.coarse_grids(sides, load(model).network(), 1)
+    (found,) = refine_quad(coarse, sides)
     expected = refine_grid(np.ascontiguousarray(np.moveaxis(coarse[0], 0, -1)), boundary)
     np.testing.assert_allclose(np.moveaxis(found, 0, -1), expected, rtol=0, atol=1e-14)
-    thin = edges.thinned(33, 33)
-    for side in SIDES:
-        np.testing.assert_allclose(
-            getattr(thin, side)[0].T, getattr(thinned(boundary, 33, 33), side), atol=1e-15
-        )
+    thin = coarse_grids.thinned(sides, 33, 33)
+    for name, side in zip(("south", "north", "west", "east"), thin, strict=True):
+        np.testing.assert_allclose(side[0].T, getattr(thinned(boundary, 33, 33), name), atol=1e-15)
 
 
 def test_single_precision_of_the_network_changes_the_sixth_digit(model: str) -> None:

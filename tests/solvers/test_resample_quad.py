@@ -9,7 +9,7 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.algebraic.resample.quad import mended, refine_quad
 from meshonet.solvers.energy.variational import solve
-from meshonet.solvers.neural.quad.coarse_grids import Edges, rims
+from meshonet.solvers.neural.quad.coarse_grids import rims, sides_of
 
 
 def planes(nodes: Floats) -> Floats:
@@ -39,9 +39,9 @@ def straight_edges(coarse: Floats, n: int) -> list[Floats]:
 
 def test_smooth_grids_are_met_to_fourth_order() -> None:
     full = smooth(129)
-    edges = Edges(*(np.ascontiguousarray(side) for side in rims(full[None])))
+    sides = rims(full[None])
     errors = [
-        np.abs(refine_quad(np.ascontiguousarray(full[None, :, ::step, ::step]), edges.sides) - full).max()
+        np.abs(refine_quad(np.ascontiguousarray(full[None, :, ::step, ::step]), sides) - full).max()
         for step in (16, 8, 4)
     ]
     assert np.log2(errors[0] / errors[1]) > 3.5
@@ -64,7 +64,7 @@ def test_a_valid_variational_grid_between_narrow_walls_stays_valid(seed: int) ->
     assert boundary is not None
     coarse = solve(thinned(boundary, 33, 33)).grid.nodes
     assert count_folded(coarse) == 0
-    (nodes,) = refine_quad(planes(coarse)[None], Edges.of([boundary]).sides)
+    (nodes,) = refine_quad(planes(coarse)[None], sides_of([boundary]))
     assert count_folded(np.moveaxis(nodes, 0, -1)) == 0
 
 

@@ -58,10 +58,14 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 def page_text(name: str, scene: Scene, start: dict[str, Any]) -> str:
     """Return the page of a scene; `start` is what it shows first."""
-    facts = scene.facts | {"name": name, "start": start, "colours": _colours()}
+    import matplotlib as mpl
+
+    table = mpl.colormaps["YlGnBu"](np.linspace(0.0, 1.0, 256))[:, :3]  # light to dark
+    colours = np.rint(255 * table).astype(np.uint8).tobytes().hex()
+    facts = scene.facts | {"name": name, "start": start, "colours": colours}
     body = _BODY.format(
         body=own_file("body.html"),
-        facts=json.dumps(facts, separators=(",", ":")).replace("</", "<\\/"),
+        facts=json.dumps(facts, separators=(",", ":")).replace("<", "\\u003c"),
         numbers="\n".join(_data(key, value) for key, value in scene.numbers.items()),
         program="\n".join(own_file(part) for part in _PROGRAM),
     )
@@ -109,14 +113,6 @@ def _slice(grid: Grid, at: Slice) -> dict[str, Any]:
     layers(grid, at, None)
     most = max(block.counts[at.direction] for block in grid.blocks)
     return {"name": "ijk"[at.direction], "at": at.index % most}
-
-
-def _colours() -> str:
-    """Return the 256 colours of the scale, light to dark, as hexadecimal digits."""
-    import matplotlib as mpl
-
-    table = mpl.colormaps["YlGnBu"](np.linspace(0.0, 1.0, 256))[:, :3]
-    return np.rint(255 * table).astype(np.uint8).tobytes().hex()
 
 
 def _data(name: str, numbers: Packed) -> str:

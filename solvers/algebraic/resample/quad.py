@@ -5,10 +5,20 @@ With X the planes of a grid's nodes::
     x = S X Tᵀ + shares * (edges - S X Tᵀ there)
 
 S and T are cubic splines, less curved near acute corners (`corner_damping`). They do not reproduce the edges
-exactly; the mismatch is blended into the interior over two coarse cells (`edge_blending`). A cubic swings
+exactly; the mismatch is blended into the interior over two coarse cells. A cubic swings
 between nodes, which may fold cells where spacings differ much, although the coarse ones are valid. Then lines
 are made straight around these, as far as it takes: between straight lines, cells inside a valid coarse cell
 are valid.
+
+Between the nodes of a coarse edge the full one has detail. In a smooth grid, detail as long as a coarse step
+dies out over about that distance from the edge, however thin the cells there are. Blended along whole lines,
+the detail would fold thin cells far away. So at coarse node (i, j), at a distance d along its line from the
+edge ::
+
+    share = max(0, 1 - d / r),    r = max(d_1, min(`REACH` h, length of the line))
+
+with h the mean of the edge's steps to both sides of the line and d_1 the line's first cell. Between nodes
+shares are linear.
 """
 
 from collections.abc import Iterator
@@ -21,13 +31,14 @@ from meshonet.geometry.quality.measure import count_folded, folded_cells
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import resample
 from meshonet.solvers.algebraic.resample import corner_damping as acute
-from meshonet.solvers.algebraic.resample.edge_blending import REACH
 from meshonet.solvers.algebraic.resample.spline import places
 
 Sides = tuple[Floats, Floats, Floats, Floats]
 """Planes of south and north (batch, 2, ni), west and east (batch, 2, nj)."""
 
 Straight = NDArray[np.uint8]
+
+REACH = 2.0  # steps of the edge over which its mismatch is blended
 
 CORNERS = [0, 1, -2, -1]  # rows and columns of a grid that tell how wide its corners open
 

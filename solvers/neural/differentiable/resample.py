@@ -8,8 +8,7 @@ from torch import Tensor
 
 from meshonet.geometry.arrays import Floats, array_like
 from meshonet.solvers.algebraic.resample import corner_damping as acute
-from meshonet.solvers.algebraic.resample.edge_blending import inwards
-from meshonet.solvers.algebraic.resample.quad import mended
+from meshonet.solvers.algebraic.resample.quad import REACH, mended
 from meshonet.solvers.algebraic.resample.spline import bending
 
 
@@ -52,13 +51,38 @@ def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None 
     nodes = low @ values + high @ bends
 
     south, north, west, east = sides
-    felt = [(low @ share @ line.mT)[:, None] for share in inwards(coarse, torch)]
+    felt = [(low @ share @ line.mT)[:, None] for share in inwards(coarse)]
     missed = (west - nodes[:, :, 0])[:, :, None], (east - nodes[:, :, -1])[:, :, None]
     nodes = nodes + felt[2] * missed[0] + felt[3] * missed[1]
     missed = (south - nodes[..., 0])[..., None], (north - nodes[..., -1])[..., None]
     nodes = nodes + felt[0] * missed[0] + felt[1] * missed[1]
     inner = torch.cat([south[:, :, 1:-1, None], nodes[:, :, 1:-1, 1:-1], north[:, :, 1:-1, None]], 3)
     return torch.cat([west[:, :, None], inner, east[:, :, None]], 2)
+
+
+def inwards(planes: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+    """Return the shares (.., m, n) of south, north, west and east at the nodes of `planes` (.., 2, m, n).
+
+    How far a mismatch of edges is felt: `meshonet.solvers.algebraic.resample.quad`.
+    """
+    south, north = _both(planes)
+    west, east = (share.mT for share in _both(planes.mT))
+    return south, north, west, east
+
+
+def _both(planes: Tensor) -> list[Tensor]:
+    """Return the shares of the first and of the last column."""
+    along, beside = (torch.hypot(*planes.diff(dim=axis).unbind(-3)) for axis in (-1, -2))
+    off = torch.nn.functional.pad(along.cumsum(-1), (1, 0))
+    whole, shares = off[..., -1:], []
+    for away, first, step in (
+        (off, along[..., :1], beside[..., :1]),
+        (whole - off, along[..., -1:], beside[..., -1:]),
+    ):
+        mean = 0.5 * (torch.cat([step[..., :1, :], step], -2) + torch.cat([step, step[..., -1:, :]], -2))
+        way = torch.maximum(torch.minimum(REACH * mean, whole), first)
+        shares.append((1.0 - away / way).clip(0.0, 1.0))
+    return shares
 
 
 def folded(nodes: Tensor) -> Tensor:

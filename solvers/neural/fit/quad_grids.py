@@ -13,7 +13,7 @@ from torch import Tensor
 from meshonet.geometry.arrays import Complexes, Floats, complex_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.quad.coarse_grids import Edges, rims
+from meshonet.solvers.neural.quad.coarse_grids import rims, transfinite
 from meshonet.solvers.neural.quad.encoding import HEADS, LATENT, frame, planes_of
 from meshonet.solvers.neural.quad.picard import approach
 from meshonet.solvers.neural.quad.unrolled import AROUND, even, factors, middles, unrolled
@@ -86,8 +86,7 @@ def quads(variational: Samples, winslow: Samples) -> Quads:
     best, solved = complex_of(variational.nodes[first]), complex_of(winslow.nodes[second])
     if around:
         return _unrolled(best, solved)
-    edges = Edges(*(np.ascontiguousarray(side) for side in rims(planes_of(best))))
-    planes = edges.transfinite(LATENT, LATENT)
+    planes = transfinite(rims(planes_of(best)))
     base = planes[:, 0] + 1j * planes[:, 1]
     middle, factor = (value[:, None, None] for value in frame(base, np))
     return _approached(*((z - middle) * factor for z in (base, solved, best)))

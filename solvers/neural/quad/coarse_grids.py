@@ -13,7 +13,6 @@ Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeAlias
 
@@ -35,68 +34,44 @@ Moves: TypeAlias = Callable[[Any, Any], Any]  # of grids and steps, or of grids 
 SHARES = (0.95, 0.9, 0.8)  # of the way to the network's answer, the first without folds; else all
 
 
-@dataclass(frozen=True)
-class Edges:
-    """South, north (batch, 2, ni), west and east (batch, 2, nj) of a batch of domains."""
-
-    south: Floats
-    north: Floats
-    west: Floats
-    east: Floats
-
-    @classmethod
-    def of(cls, boundaries: Sequence[Boundary]) -> Edges:
-        """Return the edges of boundaries that have the same node counts."""
-        names = ("south", "north", "west", "east")
-        return cls(*(_planes([getattr(boundary, name) for boundary in boundaries]) for name in names))
-
-    def __len__(self) -> int:
-        return len(self.south)
-
-    def __getitem__(self, rows: slice) -> Edges:
-        return Edges(*(side[rows] for side in self.sides))
-
-    @property
-    def sides(self) -> Sides:
-        """South, north, west and east."""
-        return self.south, self.north, self.west, self.east
-
-    @property
-    def counts(self) -> tuple[int, int]:
-        """Nodes along xi and eta."""
-        return self.south.shape[-1], self.west.shape[-1]
-
-    def thinned(self, ni: int, nj: int) -> Edges:
-        """Return the edges with ni and nj nodes, at equal steps of the index of the given ones."""
-        south, north = between(self.south, ni), between(self.north, ni)
-        return Edges(south, north, between(self.west, nj), between(self.east, nj))
-
-    def transfinite(self, m: int, n: int) -> Floats:
-        """Return the planes (batch, 2, m, n) of transfinite interpolation between edges, by their lengths."""
-        nodes, thin = np.empty((len(self), 2, m, n)), self.thinned(m, n).sides
-        laws = [arc_length_fraction(np.moveaxis(side, 1, -1)) for side in thin]
-        for k, (x, y) in enumerate(nodes):
-            along, across = (tuple(side[k, axis] for side in thin) for axis in (0, 1))
-            tfi(x, y, along, across, tuple(law[k] for law in laws))
-        return nodes
+def sides_of(boundaries: Sequence[Boundary]) -> Sides:
+    """Return the sides of boundaries that have the same node counts."""
+    names = ("south", "north", "west", "east")
+    south, north, west, east = (
+        np.ascontiguousarray(np.stack([getattr(boundary, name).T for boundary in boundaries]))
+        for name in names
+    )
+    return south, north, west, east
 
 
 def rims(planes: Floats) -> Sides:
-    """Return south, north, west and east of grids (batch, 2, m, n)."""
-    return planes[..., 0], planes[..., -1], planes[:, :, 0], planes[:, :, -1]
+    """Return the sides of grids (batch, 2, m, n)."""
+    south, north = np.ascontiguousarray(planes[..., 0]), np.ascontiguousarray(planes[..., -1])
+    return south, north, np.ascontiguousarray(planes[:, :, 0]), np.ascontiguousarray(planes[:, :, -1])
 
 
-def _planes(edges: Sequence[Floats]) -> Floats:
-    return np.ascontiguousarray(np.moveaxis(np.stack(edges), -1, 1))
+def thinned(sides: Sides, ni: int, nj: int) -> Sides:
+    """Return the sides with ni and nj nodes, at equal steps of the index of the given ones."""
+    return between(sides[0], ni), between(sides[1], ni), between(sides[2], nj), between(sides[3], nj)
 
 
-def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
-    """Return the planes (batch, 2, m, n) of the network's grids inside the `edges`: 33 x 33 nodes.
+def transfinite(sides: Sides) -> Floats:
+    """Return the planes (batch, 2, ni, nj) of transfinite interpolation between sides, by their lengths."""
+    nodes = np.empty((*sides[0].shape, sides[2].shape[-1]))
+    laws = [arc_length_fraction(np.moveaxis(side, 1, -1)) for side in sides]
+    for k, (x, y) in enumerate(nodes):
+        along, across = (tuple(side[k, axis] for side in sides) for axis in (0, 1))
+        tfi(x, y, along, across, tuple(law[k] for law in laws))
+    return nodes
 
-    Winslow's have up to 65 along a direction, where the edges have as many. `head`: index into
+
+def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
+    """Return the planes (batch, 2, m, n) of the network's grids inside the `sides`: 33 x 33 nodes.
+
+    Winslow's have up to 65 along a direction, where the sides have as many. `head`: index into
     `encoding.HEADS`.
     """
-    base = edges.transfinite(LATENT, LATENT)
+    base = transfinite(thinned(sides, LATENT, LATENT))
     shares = None if head == WINSLOW else _shares
     for k in range(0, len(base), CHUNK):
         z = base[k : k + CHUNK, 0] + 1j * base[k : k + CHUNK, 1]
@@ -105,7 +80,8 @@ def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
         )
     if head != WINSLOW:
         return base
-    finer = refine_quad(base, edges.thinned(*(nodes_after(n) for n in edges.counts)).sides)
+    counts = (nodes_after(side.shape[-1]) for side in (sides[0], sides[2]))
+    finer = refine_quad(base, thinned(sides, *counts))
     z = finer[:, 0] + 1j * finer[:, 1]
     return planes_of(nearer(z, in_frame(z, np), np))
 

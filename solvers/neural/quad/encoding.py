@@ -43,9 +43,9 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
     middle = outline.mean(1)
     outline = outline - middle[:, None]
     after = xp.concatenate([outline[:, 1:], outline[:, :1]], 1)
-    area = 0.5 * (outline.conj() * after).imag.sum(1)
+    area = 0.5 * times(outline.conj(), after).imag.sum(1)
     towards = east.mean(1) - west.mean(1) - 1j * (north.mean(1) - south.mean(1))
-    return middle, towards.conj() / abs(towards) / xp.sqrt(area)
+    return middle, towards.conj() / modulus(towards) / xp.sqrt(area)
 
 
 def planes_of(z: Complexes) -> Floats:

@@ -33,6 +33,10 @@ GROWTH = 4.0  # a step whose square is so many times the last one's, in the mean
 
 TINY = 1e-30  # keeps quotients finite where nothing moves
 
+THIRD, FOURTH = np.array(
+    [[-0.5, 1.0, 0.0, -1.0, 0.5], [1.0, -4.0, 6.0, -4.0, 1.0]]
+)  # differences of five values
+
 
 def approach(
     z: Any, xp: Any, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
@@ -98,42 +102,38 @@ def _padded(n: int, around: bool) -> tuple[Floats, Floats]:
 
 def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tuple[Any, Any, Any]:
     """Return by how much planes `p` miss the equations at nodes off the rim, and their mean coefficients."""
+    m, n = p.shape[2:]
+    first, second, across, curve = (
+        array_like(matrix, p, xp)
+        for matrix in (*_differences(m, share, around), *_differences(n, share, False))
+    )
     body = p[:, :, 2:-2] if around else p[:, :, 1:-1]
-    bends = _second(p, share, xp, around)[..., 1:-1], _across(_second, body, share, xp)
+    bends = second @ p[..., 1:-1], body @ curve.T
     if linear:
         unit = 1.0 + 0.0 * p[:, :1, :1, :1]
         return bends[0] + bends[1], unit, unit
-    slopes = _first(p, share, xp, around)
-    u, v = slopes[..., 1:-1], _across(_first, body, share, xp)
-    twist = _across(_first, slopes, share, xp)
-    missed, alpha, gamma = left_side((u, v, bends[0], twist, bends[1]), lambda a, b: (a * b).sum(1)[:, None])
+    slopes = first @ p
+    parts = slopes[..., 1:-1], body @ across.T, bends[0], slopes @ across.T, bends[1]
+    missed, alpha, gamma = left_side(parts, lambda a, b: (a * b).sum(1)[:, None])
     total = alpha + gamma + TINY
     return missed / total, *((value / total).mean((2, 3))[:, :, None, None] for value in (alpha, gamma))
 
 
-def _first(p: Any, share: float, xp: Any, around: bool = False) -> Any:
-    """Return central differences a step along axis 2, at nodes off the ends; `around`, two nodes off."""
-    central = 0.5 * (p[:, :, 2:] - p[:, :, :-2])
-    third = 0.5 * (p[:, :, 4:] - p[:, :, :-4]) + p[:, :, 1:-3] - p[:, :, 3:-1]
-    return _corrected(central, third, share / 6.0, xp, around)
+@lru_cache(maxsize=16)
+def _differences(n: int, share: float, around: bool) -> tuple[Floats, Floats]:
+    """Return the matrices (., n) of first and of second differences a step, at all but the ends of n nodes.
 
-
-def _second(p: Any, share: float, xp: Any, around: bool = False) -> Any:
-    """Return second differences along axis 2, where `_first` has differences."""
-    central = p[:, :, 2:] + p[:, :, :-2] - 2.0 * p[:, :, 1:-1]
-    fourth = central[:, :, 2:] + central[:, :, :-2] - 2.0 * central[:, :, 1:-1]
-    return _corrected(central, fourth, share / 12.0, xp, around)
-
-
-def _corrected(central: Any, error: Any, share: float, xp: Any, around: bool) -> Any:
-    """Return differences less a `share` of what is `error` two nodes from the ends and beyond."""
-    if around:
-        return central[:, :, 1:-1] - share * error
-    return central - share * xp.concatenate([error[:, :, :1], error, error[:, :, -1:]], 2)
-
-
-def _across(difference: Any, p: Any, share: float, xp: Any) -> Any:
-    return difference(p.swapaxes(2, 3), share, xp).swapaxes(2, 3)
+    A `share` of their leading error, by the five nodes nearest to each, is taken out. Of values that go
+    `around`, two of which are repeated at either end, at all but these.
+    """
+    inner = np.arange(2, n - 2) if around else np.arange(1, n - 1)
+    rows, near = np.arange(len(inner))[:, None], np.clip(inner - 2, 0, n - 5)[:, None] + np.arange(5)
+    first, second = np.zeros((2, len(inner), n))
+    first[rows, near], second[rows, near] = -share / 6.0 * THIRD, -share / 12.0 * FOURTH
+    beside = inner[:, None] + np.arange(-1, 2)
+    first[rows, beside] += [-0.5, 0.0, 0.5]
+    second[rows, beside] += [1.0, -2.0, 1.0]
+    return read_only(first), read_only(second)
 
 
 def _waves(p: Any, axis: int, xp: Any, around: bool) -> tuple[Any, Any]:

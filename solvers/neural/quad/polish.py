@@ -9,7 +9,6 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
 from meshonet.solvers.neural.quad import coarse_grids, o_grids
-from meshonet.solvers.neural.quad.coarse_grids import Edges
 from meshonet.solvers.neural.quad.encoding import WINSLOW
 from meshonet.solvers.neural.quad.network import Network
 
@@ -31,7 +30,7 @@ def polished(
 ) -> tuple[Floats, list[int]]:
     """Return the planes (batch, 2, ni, nj) of boundaries with equal counts, and the steps taken for each."""
     if topology == "quad":
-        coarse = coarse_grids.coarse_grids(Edges.of(boundaries), network, head)
+        coarse = coarse_grids.coarse_grids(coarse_grids.sides_of(boundaries), network, head)
     else:
         coarse = o_grids.coarse_grids(boundaries, network, head)
     counts = boundaries[0].ni, boundaries[0].nj

@@ -99,7 +99,7 @@ def spectral(mixing: Any, h: Any, xp: Any) -> Any:
     if xp is np:
         mixed = np.stack([product(mode, matrix) for mode, matrix in zip(parts, mixing, strict=True)])
     else:
-        mixed = parts @ mixing
+        mixed = xp.bmm(parts, mixing)
     return xp.fft.irfft((mixed[..., ::2] + 1j * mixed[..., 1::2]).swapaxes(0, 2), h.shape[2])
 
 
