@@ -71,6 +71,11 @@ class SamplingOptions:
         help="Nodes of a blunt trailing edge's base, its corners included; odd in an O grid, which begins in "
         "the middle of it. [default: by the cells beside it and its width]",
     )] = None
+    smooth: Annotated[float | None, _option(
+        "--smooth", metavar="TOL",
+        help="Smooth an airfoil whose coordinates ripple, by splines within TOL chords of its points, say "
+        "1e-4; its corners stay, and the report says what changed. Needs SciPy.",
+    )] = None
     corners: Annotated[str, _option(
         "--corners", metavar="auto|I,J,K,L", show_default=True,
         help="Points of an outline, counted from 0, that become the corners of a four-sided grid, "

@@ -194,11 +194,7 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     if isinstance(boundary, SpatialShape):
         return _of_volume(boundary, request, seconds)
     if not isinstance(boundary, Boundary):
-        from meshonet.geometry.shapes.domain_shape import DomainShape
-
-        if isinstance(boundary, DomainShape):
-            return _of_blocks(boundary, request, seconds)
-        return _of_base(boundary, request, seconds)
+        return _of_many(boundary, request, seconds)
     rows: tuple[HistoryRow, ...] = ()
     if solution is None:
         reached("grid")
@@ -229,6 +225,15 @@ def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[Histor
     with listening(history):
         solution = solve()
     return solution, history.of(solution)
+
+
+def _of_many(shape: BaseWake | DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
+    """Return the grid of blocks around a base or of a domain, measured."""
+    from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
+
+    if isinstance(shape, BaseWake):
+        return _of_base(shape, request, seconds)
+    return _of_blocks(shape, request, seconds)
 
 
 def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:

@@ -79,7 +79,8 @@ def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> Ba
     from meshonet.geometry.shapes.airfoil.base_wake import behind_base
 
     refuse(request.chosen, AROUND_BASE)
-    body = shape.normalised() if sampling.normalise else shape
+    body = shape.smoothed(sampling.smooth) if sampling.smooth else shape
+    body = body.normalised() if sampling.normalise else body
     lines = behind_base(body, sampling, (request.height() or 0.0) * body.unit, request.growth)
     advice = _far_field_advice(request, shape.far_field_unit)
     return replace(lines, notes=(*lines.notes, *advice))

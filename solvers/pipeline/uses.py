@@ -28,9 +28,8 @@ SETTINGS = {"polish": "auto", "answer": "valid", "blending": "arclength"}
 """Values of settings that say nothing; of others None is one."""
 
 
-_SHAPE = (
-    "topology spacing le_spacing te_spacing far_field corners normalise te wake wake_nodes base_nodes refined"
-)
+_SHAPE = "topology spacing le_spacing te_spacing far_field corners normalise te wake wake_nodes "
+_SHAPE += "base_nodes smooth refined"
 _SIDES = "spacing_south spacing_north spacing_west spacing_east"
 _FIRST = "first_cell y_plus reynolds chord_fraction growth"
 

@@ -102,6 +102,7 @@ SHAPES = COMMON | chosen("@shapes.txt -o made-{stem}.h5 -q", "*C*") | engines(MA
     "--wake": (f"{BODY} --topology c {MADE}", "OPTION 9", "nodes"),
     "--wake-nodes": (f"{BODY} --topology c {MADE}", "OPTION 11", "nodes"),
     "--base-nodes": (f"naca:2412 --res 61x15 {MADE}", "OPTION 11", "nodes"),
+    "--smooth": (f"large.dat --res 41x15 {MADE}", "OPTION 1e-3", "nodes"),
     "--corners": (f"box.csv --res 11 {MADE}", "OPTION 1,2,3,0", "nodes"),
     "--normalise": (f"large.dat --res 41x15 {MADE}", "OPTION", "nodes"),
 }  # fmt: skip

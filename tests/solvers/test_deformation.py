@@ -20,7 +20,7 @@ from meshonet.solvers.solution import Outcome
 
 @pytest.fixture(scope="module")
 def c_grid() -> Grid:
-    return meshonet.grid("naca:0012", res=(121, 49), topology="c", y_plus=1, reynolds=6e6)
+    return meshonet.grid("naca:0012", te="wedge", res=(121, 49), topology="c", y_plus=1, reynolds=6e6)
 
 
 def change_of_first_cells(before: Grid, after: Grid, name: str = "wall") -> float:
@@ -90,7 +90,7 @@ def test_a_rigid_motion_of_the_wall_turns_its_layers(c_grid: Grid) -> None:
 
 
 def test_nodes_of_another_grid_are_taken_bit_by_bit(c_grid: Grid) -> None:
-    other = meshonet.grid("naca:2412", res=(121, 49), topology="c", y_plus=1, reynolds=6e6)
+    other = meshonet.grid("naca:2412", te="wedge", res=(121, 49), topology="c", y_plus=1, reynolds=6e6)
     made = meshonet.deform(c_grid, {"wall": other})
     wall = slice(c_grid.wake, c_grid.ni - c_grid.wake)
     assert np.array_equal(made.nodes[wall, 0], other.nodes[wall, 0])
