@@ -9,7 +9,7 @@ from command_line import Meshonet
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 
-SECTION = ("naca:0012", "--res", "81x33", "--topology", "c", "--first-cell", "1e-4", "-q")
+SECTION = ("naca:0012", "--res", "81x33", "--topology", "c", "--te", "wedge", "--first-cell", "1e-4", "-q")
 
 
 @pytest.fixture(autouse=True)

@@ -219,6 +219,15 @@ def test_an_outline_that_crosses_itself_is_refused() -> None:
         meshonet.deform(channel(), {"south": loop})
 
 
+def test_a_base_with_a_block_behind_it_stays_a_base() -> None:
+    start = meshonet.grid("naca:0012", res=(121, 31), topology="c", first_cell=1e-4)
+    made = meshonet.deform(start, "naca:2412")
+    base = made.blocks[1].nodes[0]
+    (x, y), width = (base - base[0]).T, base[-1] - base[0]
+    assert np.abs(x * width[1] - y * width[0]).max() < 1e-9  # straight
+    assert np.hypot(*width) == pytest.approx(0.00252, rel=1e-3)
+
+
 def test_a_sharp_outline_for_a_blunt_wall_is_refused(c_grid: Grid) -> None:
     start = meshonet.grid("naca:0012", res=(121, 31), te="exact")
     sharp = c_grid.nodes[c_grid.wake : c_grid.ni - c_grid.wake, 0]
