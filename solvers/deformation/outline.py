@@ -24,6 +24,7 @@ from meshonet.geometry.shapes.outline import Outline
 Notes = tuple[str, ...]
 _SHARP = np.radians(60.0)
 """By which a wall turns at the edges of airfoils, and less where they are rounded."""
+_WIDEST_BASE = 0.2  # of the length of a section's outline; flatbacks have up to .13
 
 
 def on_outline(wall: Floats, outline: Airfoil | Outline) -> tuple[Floats, Notes]:
@@ -32,31 +33,30 @@ def on_outline(wall: Floats, outline: Airfoil | Outline) -> tuple[Floats, Notes]
     Raises InputError: a blunt trailing edge whose outline becomes sharp.
     """
     if isinstance(outline, Airfoil):
-        start = _middle_of_base(wall[:-1])
-        ring = np.roll(wall[:-1], -start, axis=0)
         try:
-            old = Airfoil(ring)
+            old = Airfoil(_without_base(wall[:-1]))
         except InputError:  # a wall that is no airfoil
             return _on_curve(wall, outline.curve)
-        ring, notes = _on_airfoil(ring, old, outline)
-        return _closed(ring, start), notes
+        return _on_airfoil(wall, old, outline)
     return _on_curve(wall, outline.curve)
 
 
-def _middle_of_base(ring: Floats) -> int:
-    """Return the node in the middle of the shorter way between the two sharp corners of a ring, if it has two."""
+def _without_base(ring: Floats) -> Floats:
+    """Return a ring (n, 2) without the nodes inside its base, the short way between two sharp corners."""
     corners = np.flatnonzero(np.abs(turning(ring, closed=True)) > _SHARP)
-    if len(corners) != 2:
-        return 0
-    first, last = corners
-    knots = Curve(ring, closed=True).knots
-    if knots[last] - knots[first] > 0.5 * knots[-1]:
-        first, last = last, first + len(ring)
-    return int((first + last) // 2 % len(ring))
+    if len(corners) < 2:
+        return ring
+    curve = Curve(ring, closed=True)
+    ways = np.diff(curve.knots[corners], append=curve.knots[corners[0]] + curve.length)
+    way = int(np.argmin(ways))
+    if ways[way] > _WIDEST_BASE * curve.length:
+        return ring
+    first, last = np.append(corners, corners[0] + len(ring))[way : way + 2]
+    return np.roll(ring, -last, axis=0)[: len(ring) - (last - first) + 1]
 
 
-def _on_airfoil(ring: Floats, old: Airfoil, new: Airfoil) -> tuple[Floats, Notes]:
-    """Return the nodes of a ring (n, 2), whose first lies on a base if there is one, on a new section."""
+def _on_airfoil(wall: Floats, old: Airfoil, new: Airfoil) -> tuple[Floats, Notes]:
+    ring = wall[:-1]
     rounded = float(np.abs(turning(ring, closed=True)).max()) < _SHARP
     blunt = old.blunt and not rounded
     new, notes = _with_edge(new, old.gap, blunt=blunt, rounded=rounded)
@@ -70,7 +70,7 @@ def _on_airfoil(ring: Floats, old: Airfoil, new: Airfoil) -> tuple[Floats, Notes
     before = [0.0, middle, curve.knots[last] if blunt else curve.length, curve.length]
     after = [begin, new.stations.nose, end, new.curve.length + begin]
     arcs = np.interp(curve.knots, before, after)
-    return np.roll(new.curve.at(arcs % new.curve.length), first, axis=0), notes
+    return _closed(new.curve.at(arcs % new.curve.length), first), notes
 
 
 def _with_edge(new: Airfoil, gap: float, *, blunt: bool, rounded: bool) -> tuple[Airfoil, Notes]:
