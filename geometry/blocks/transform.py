@@ -126,7 +126,8 @@ def _check_corners(corners: _Corners, k: int, kept: int) -> None:
     corner = f"a corner of {side} at ({at}), node {node}, would be cut: every {k}-th drops it"
     others = f"; {len(lost) - 1} more" if len(lost) > 1 else ""
     keeps = f"the largest number that keeps all corners is {most}"
-    raise InputError(corner + others, f"{keeps}; with {{refine}} or more nodes they stand on multiples")
+    remedy = "make the grid with {refine} or more nodes, so that its corners stand on multiples"
+    raise InputError(corner + others, f"{keeps}; {remedy}")
 
 
 def _check(counts: tuple[int, ...], k: int) -> None:

@@ -60,10 +60,10 @@ def convert(
     Examples
     --------
     >>> import meshonet
-    >>> meshonet.tfi("naca:2412", res=(41, 17)).write("fine.vts")
+    >>> meshonet.tfi("naca:2412", res=(21, 9), refine=1).write("fine.vts")
     >>> convert("fine.vts", "coarse.cgns", coarsen=2)
-    >>> meshonet.read("coarse.cgns").nodes.shape
-    (21, 9, 2)
+    >>> meshonet.read("fine.vts").nodes.shape, meshonet.read("coarse.cgns").nodes.shape
+    ((41, 17, 2), (21, 9, 2))
     """
     conversion = Conversion(
         extrude, planes, swap, normalise, coarsen, revolve, None if axis is None else AxisLine(*axis)
