@@ -20,10 +20,10 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Kind, Patch
+from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.geometry.curves.curve import Curve
 
 _ENDS: dict[Side, tuple[int, int]] = {"south": (0, 1), "north": (3, 2), "west": (0, 3), "east": (1, 2)}

@@ -18,7 +18,7 @@ import meshonet
 from meshonet.geometry.arrays import SIDES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.vertices import irregular_points
-from meshonet.geometry.quality.deviation import deviation
+from meshonet.geometry.quality.blocks import deviation
 
 DOCS = Path(__file__).parent
 CELLS = 900

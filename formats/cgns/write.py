@@ -20,13 +20,12 @@ from meshonet.formats.mesh.axis_order import first_fastest
 from meshonet.formats.mesh.metadata import Facts, facts_of
 from meshonet.formats.mesh.names import kinds, words
 from meshonet.geometry.blocks.block import face_counts
-from meshonet.geometry.blocks.extrude import plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Kind
 
 _CONDITIONS: dict[Kind, str] = {
     "wall": "BCWall", "farfield": "BCFarfield", "inlet": "BCInflow", "outlet": "BCOutflow",
-    "symmetry": "BCSymmetryPlane",
+    "symmetry": "BCSymmetryPlane", "wedge": "BCAxisymmetricWedge",
 }  # fmt: skip
 """CGNS's names of boundary conditions; kinds that are not here are general ones."""
 _IN_MEMORY = 1 << 24
@@ -54,10 +53,8 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
             base, families = bases[dimensions]
             names = _zone_names(grid, {"DataClass", *zones, *families})
             zones |= set(names)
-            described = plane_of_extruded(grid) or grid
             nodes = [
-                _write_zone(base, names[k], grid, k, facts_of(described, k, number))
-                for k in range(len(names))
+                _write_zone(base, name, grid, k, facts_of(grid, k, number)) for k, name in enumerate(names)
             ]
             write_connections(nodes, names, grid)
             for family, kind in _write_conditions(nodes, grid, zones).items():

@@ -52,7 +52,9 @@ def draw(
     Of a grid around a small body, one view near it and one of the whole. Each `every`-th grid line is drawn;
     None chooses. Raises InputError for a zoom that shows nothing.
     """
-    singles = _singles(grid)
+    if grid.topology == "blocks":
+        planar(grid)
+    singles = [Grid((block,)) for block in grid.blocks] if grid.topology == "blocks" else [grid]
     views = [zoom] if zoom else _views(grid)
     parts = [_visible(grid, singles, view) for view in views]
     figure, axes, bar = frame(views, colouring is not None)
@@ -79,20 +81,15 @@ def draw(
         each = sorted({step for pair in steps for step in pair})
         note(ax, _drawn_lines(*steps[0]) if len(steps) == 1 and len(each) > 1 else step_words(each))
     if bar is not None and mesh is not None and colouring:
-        colour_bar(bar, mesh, colouring.label, _beyond(colouring, limits))
+        below = any(bool((values < limits[0]).any()) for values in colouring.parts)
+        above = any(bool((values > limits[1]).any()) for values in colouring.parts)
+        ends = ("neither", "min", "max", "both")[below + 2 * above]  # in matplotlib's words
+        colour_bar(bar, mesh, colouring.label, ends)
     name = grid.name if len(grid.name) <= _NAME else grid.name[: _NAME - 1] + "…"
     size = shown_counts(grid) if grid.topology == "blocks" else f"{grid.ni} × {grid.nj} nodes"
     title = f"{name}   {size}".strip()
     axes[0].set_title(title, size=10, color=INK, loc="left", pad=4)
     return figure
-
-
-def _singles(grid: Grid) -> list[Grid]:
-    """Return the grid, or those of its blocks."""
-    if grid.topology != "blocks":
-        return [grid]
-    planar(grid)
-    return [Grid((block,)) for block in grid.blocks]
 
 
 def _visible(grid: Grid, singles: list[Grid], view: Box) -> list[CellsInView | None]:
@@ -142,13 +139,6 @@ def colour_bar(bar: Axes, colours: ScalarMappable, label: str, extend: str = "ne
     """Draw the scale of colours."""
     bar.figure.colorbar(colours, cax=bar, extend=extend).set_label(label, color=INK, size=9)
     bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
-
-
-def _beyond(colouring: Colouring, limits: tuple[float, float]) -> str:
-    """Return at which ends values lie beyond the colour bar, in matplotlib's words."""
-    below = any(bool((values < limits[0]).any()) for values in colouring.parts)
-    above = any(bool((values > limits[1]).any()) for values in colouring.parts)
-    return ("neither", "min", "max", "both")[below + 2 * above]
 
 
 def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | None]:

@@ -10,6 +10,7 @@ from meshonet.formats.figure.view import View, check_flat, flat_box
 from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, meant
+from meshonet.geometry.polygon.area import check_extent
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import ALL_NAMES, metric_of
 
@@ -67,6 +68,8 @@ def write(
     from meshonet.formats.figure.space import draw_in_space
 
     view = view or View()
+    low, high = grid.box
+    check_extent(float((high - low).max()))
     dates: dict[str, dict[str, str | None]] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
     with mpl.rc_context({"svg.hashsalt": "meshonet", "svg.fonttype": "none"}):
         if grid.form == "plane":

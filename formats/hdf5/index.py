@@ -117,7 +117,7 @@ def shown_parts(file: h5py.File, source: Source) -> list[Part] | None:
         problem = "shows parts in other files, which cannot be reached from here"
         raise InputError(problem, "name the file, and have its parts beside it")
     parts = list(_parts(main.id.get_create_plist(), source.path, source.split))
-    missing = [part.source for part in parts if part.source.path and not part.source.path.exists()]
+    missing = [part.source for part in parts if part.source.path and not part.source.path.is_file()]
     if missing:
         verb = "are" if len(missing) > 2 else "is"
         more = f", as {verb} {len(missing) - 1} more of {len(parts)}" if len(missing) > 1 else ""

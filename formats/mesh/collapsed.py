@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import PLACES, face_of, sides_of
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.errors import InputError
 
 Indices = NDArray[np.int64]
@@ -48,14 +49,7 @@ def with_collapsed(grid: Grid, numbers: list[Indices]) -> list[Indices]:
         first, second = (face[1:], face[:-1]) if direction == 0 else (face[:, 1:], face[:, :-1])
         pairs.append(np.stack([first[same], second[same]], axis=-1))
     joined = np.concatenate(pairs)
-    label = np.arange(1 + max(int(number.max()) for number in numbers))
-    while True:
-        least = np.minimum(label[joined[:, 0]], label[joined[:, 1]])
-        before = label.copy()
-        np.minimum.at(label, joined.ravel(), np.repeat(least, 2))
-        label = label[label]
-        if np.array_equal(label, before):
-            break
+    label = joined_labels(1 + max(int(number.max()) for number in numbers), [(joined[:, 0], joined[:, 1])])
     rank = np.cumsum(label == np.arange(len(label))) - 1
     return [rank[label[number]] for number in numbers]
 

@@ -24,10 +24,10 @@ from meshonet.formats.mesh.windows import Face, Pair, connection_of, patch_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion, check_connections
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections, order
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch, kind_of
+from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.geometry.blocks.transform import turned_patch
 from meshonet.geometry.errors import in_place
 

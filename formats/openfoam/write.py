@@ -18,6 +18,8 @@ from meshonet.formats.openfoam.patches import patches_of, with_empty_planes, wri
 from meshonet.formats.output import whole_file, whole_folder
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import check_extent
 from meshonet.geometry.shapes.spatial_shape import in_space
 
 _DICTIONARIES = {
@@ -39,6 +41,8 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     new one is whole.
     """
     grid = only_one(grids, "a case")
+    low, high = grid.box
+    check_extent(float((high - low).max()))
     if not in_space(grid):
         grid = extruded(grid, (0.0, 1.0))
     apart = node_numbers(grid)
@@ -49,6 +53,8 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     faces = all_faces(grid, numbers, parts)
     if numbers is not apart:
         faces, parts = without_collapsed(faces, parts)
+    if not len(faces.owner):
+        raise InputError("no cell of the grid has a volume", "give a grid whose nodes are apart")
     patches = patches_of(grid, parts, pairs, points)
     binary = "binary" in options or (len(points) > _SMALL and "ascii" not in options)
     for name in ("constant", "system"):

@@ -1,12 +1,11 @@
 """Reading Plot3D grids of any layout, which their length and their cells tell."""
 
 from collections.abc import Iterator
-from typing import NoReturn
 
 from meshonet.formats.format import Options
 from meshonet.formats.mesh.structured import FileBlock, grids_of_file
 from meshonet.formats.plot3d import binary, is_text, text
-from meshonet.formats.plot3d.layouts import Candidate, best
+from meshonet.formats.plot3d.layouts import best
 from meshonet.formats.plot3d.nmf import Map, read_map
 from meshonet.formats.source import Source
 from meshonet.geometry.blocks.grid import Grid
@@ -32,7 +31,12 @@ def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Gr
         every = text.candidates(source.read_bytes(), wanted)
     else:
         every = binary.candidates(memoryview(source.buffer()), wanted)
-    reading = best([candidate for candidate in every if wanted <= candidate.traits] or _misfit(every, wanted))
+    fitting = [candidate for candidate in every if wanted <= candidate.traits]
+    if not fitting:
+        fits = " or ".join(" ".join(sorted(candidate.traits)) for candidate in every[:3])
+        problem = f"is not {' '.join(sorted(wanted))}: it fits {fits}"
+        raise InputError(problem, "correct or leave out the options")
+    reading = best(fitting)
     blocks = []
     for k in reading.blocks:
         place = f"block {k + 1}, read as {reading.numbers}"
@@ -43,9 +47,3 @@ def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Gr
     if beside is not None and beside.is_file():
         known = read_map(beside, [reading.size(k) for k in reading.blocks])
     yield from grids_of_file(blocks, *known, source.stem)
-
-
-def _misfit(every: list[Candidate], wanted: Options) -> NoReturn:
-    fitting = " or ".join(" ".join(sorted(candidate.traits)) for candidate in every[:3])
-    problem = f"is not {' '.join(sorted(wanted))}: it fits {fitting}"
-    raise InputError(problem, "correct or leave out the options")

@@ -19,9 +19,9 @@ from meshonet.formats.mesh.metadata import facts_of
 from meshonet.formats.mesh.structured import grid_of_block
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.number_table import leading_numbers, write_rows
-from meshonet.formats.vtk.arrays import CUT, points_of
+from meshonet.formats.vtk.arrays import CUT
+from meshonet.formats.vtk.points import points_of
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.extrude import plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -45,7 +45,7 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
         form = "ASCII" if text else "BINARY"
         head = f"# vtk DataFile Version 3.0\nstructured grid\n{form}\nDATASET STRUCTURED_GRID\n"
         stream.write(head.encode())
-        _write_facts(stream, plane_of_extruded(grid) or grid, text=text)
+        _write_facts(stream, grid, text=text)
         stream.write(f"DIMENSIONS {ni} {nj} {nk}\n".encode())
         stream.write(f"POINTS {ni * nj * nk} double\n".encode())
         for points in points_of(grid.nodes, ">f8"):

@@ -19,7 +19,7 @@ from meshonet.formats.mesh.metadata import facts_of
 from meshonet.formats.mesh.structured import FileBlock, described_grids, grids_of_file
 from meshonet.formats.output import final_name, whole_folder
 from meshonet.formats.source import Source, printable
-from meshonet.formats.vtk.arrays import escaped
+from meshonet.formats.vtk.points import escaped
 from meshonet.formats.vtk.vts import write
 from meshonet.formats.vtk.vts_read import read_block
 from meshonet.geometry.blocks.extrude import plane_of_extruded
@@ -55,7 +55,7 @@ def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = 
             values = cell_data(grid) if cell_data else [{}] * len(grid.blocks)
             for block in range(len(grid.blocks)):
                 name = f"block-{next(files)}.vts"
-                facts = facts_of(described, block, number)
+                facts = facts_of(grid, block, number)
                 write(part / name, grid, values[block], facts=facts, block=block)
                 place = f'index="{block if several else number}"'
                 label = f"block-{block}" if several else title

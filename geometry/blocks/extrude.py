@@ -46,7 +46,11 @@ def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
     z = np.asarray(heights, dtype=np.float64)
     if len(z) < 2 or not (np.diff(z) > 0).all():
         raise InputError(f"heights {z.tolist()} do not increase", "give two or more that do")
-    nodes = [_repeated(block.nodes, z) for block in grid.blocks]
+    nodes = []
+    for block in grid.blocks:  # in planar layout
+        solid = np.empty((3, *block.counts, len(z)))
+        solid[:2], solid[2] = np.moveaxis(block.nodes, -1, 0)[..., None], z
+        nodes.append(np.moveaxis(solid, 0, -1))
     return thickened(grid, nodes, ((BACK, "symmetry"), (FRONT, "symmetry")))
 
 
@@ -103,15 +107,6 @@ def plane_of_extruded(grid: Grid) -> Grid | None:
         ]
         patches = [p for p in patches if p != Patch("south", "south", p.start, p.stop)]
     return replace(flat, patches=tuple(patches))
-
-
-def _repeated(plane: Floats, z: Floats) -> Floats:
-    """Return nodes (ni, nj, nk, 3) of a plane's (ni, nj, 2), in planar layout."""
-    ni, nj = plane.shape[:2]
-    nodes = np.empty((3, ni, nj, len(z)))
-    nodes[:2] = np.moveaxis(plane, -1, 0)[..., None]
-    nodes[2] = z
-    return np.moveaxis(nodes, 0, -1)
 
 
 def _with_walls(grid: Grid) -> list[Patch]:

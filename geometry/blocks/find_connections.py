@@ -38,7 +38,7 @@ def find_connections(
 
     Nodes are the same when they are no farther apart than `tolerance` edges, or than the digits tell that
     their coordinates were rounded to (`rounding`). Nodes of a connection need not be equal yet:
-    `with_equal_nodes` (`meshonet.geometry.blocks.equal_nodes`) makes them. `without` has stretches that are
+    `with_equal_nodes` (`meshonet.geometry.blocks.shared_nodes`) makes them. `without` has stretches that are
     known to be no interface. Where more than two sides lie on each other, a block is joined to itself first,
     then one to the next.
 

@@ -53,7 +53,9 @@ def matched_patches(grid: Grid) -> SixFaces:
     """
     patches = [block.nodes for block in grid.blocks]
     vertices = _vertices(patches)
-    first = 4 if all(_opposite(vertices, k) == k + 1 for k in (0, 2, 4)) else 0
+    # each of the first of pairs shares vertices with all but the second
+    apart = [[j for j in range(6) if not np.isin(vertices[j], vertices[k]).any()] for k in (0, 2, 4)]
+    first = 4 if apart == [[1], [3], [5]] else 0
     faces, order = _arranged(patches, vertices, first, turned=False)
     if _volume(faces) < 0:
         faces, order = _arranged(patches, vertices, first, turned=True)
@@ -82,12 +84,6 @@ def _vertices(patches: list[Floats]) -> Indices:
         remedy = "give the six faces of one volume, with all their corners"
         raise InputError(problem, remedy, place=place_of(points[at]))
     return np.searchsorted(np.flatnonzero(meeting), label).reshape(6, 2, 2)
-
-
-def _opposite(vertices: Indices, patch: int) -> int:
-    """Return the patch without a vertex of `patch`; -1 if there is none."""
-    apart = [k for k in range(6) if not np.isin(vertices[k], vertices[patch]).any()]
-    return apart[0] if len(apart) == 1 else -1
 
 
 def _arranged(

@@ -45,17 +45,13 @@ class Gate:
             raise InputError(f"this grid has no {self.metric}", remedy, parameter="fail_on")
         return figure
 
-    def beyond(self, value: float) -> bool:
-        """Say whether a figure is beyond the limit; what is not a number is."""
-        return bool(COMPARE[self.compare](value, self.limit)) or value != value
-
     def broken(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> str | None:
         """Return a line for the user if the `figure` is beyond the limit, else None.
 
         Raises InputError: a figure that this grid does not have.
         """
         figure = self.figure(figures, more)
-        if not self.beyond(figure.value):
+        if not beyond(figure.value, self.compare, self.limit):
             return None
         return f"{self._what} is {figure.value:.6g}{figure.where}, and {{fail_on}} '{self.text}'"
 
@@ -73,6 +69,11 @@ class Gate:
     @property
     def _what(self) -> str:
         return f"{self.metric}.{self.statistic}" if self.metric in ALL_NAMES else self.metric
+
+
+def beyond(value: float, compare: str, limit: float) -> bool:
+    """Say whether a figure is beyond a limit; what is not a number is."""
+    return bool(COMPARE[compare](value, limit)) or value != value
 
 
 def end_of(compare: str) -> str:

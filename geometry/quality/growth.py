@@ -4,7 +4,7 @@ The growth at a node is the ratio of the two steps of a grid line that meet ther
 smaller: 1 for equal steps. Lines run on over the seam of an O grid and over the wake of a C grid.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,30 +71,30 @@ class Tally:
         here = np.unravel_index(int(values.argmax()), values.shape)
         number = len(place) - values.ndim
         at = (*place[:number], *(first + int(k) for first, k in zip(place[number:], here, strict=True)))
-        self.add_summed(float(values[here]), float(values.sum()), values.size, at, along)
-        if self._values is not None:
-            self._values.append(values.ravel())
+        self.add_summed(float(values[here]), float(values.sum()), values.size, at, along, [values])
 
     def add_summed(
-        self, high: float, total: float, count: int, at: tuple[int, ...], along: str | None = None
+        self,
+        high: float,
+        total: float,
+        count: int,
+        at: tuple[int, ...],
+        along: str | None,
+        values: Sequence[Floats | Singles],
     ) -> None:
-        """Add `count` values, the greatest of them and their sum, the greatest at node or cell `at`."""
+        """Add `count` `values`, the greatest of them and their sum, the greatest at node or cell `at`."""
         if high > self._max:
             self._max, self._at, self._along = high, at, along
         self._total += total
         self._count += count
+        if self._values is not None:
+            self._values += [part.ravel() for part in values]
 
     def add_all(self, other: "Tally") -> None:
         """Add what another one holds, its values where both keep them."""
         if other._count:
-            self.add_summed(other._max, other._total, other._count, other._at, other._along)
-        if self._values is not None and other._values is not None:
-            self._values.extend(other._values)
-
-    def keep(self, values: Singles) -> None:
-        """Keep values that were added summed."""
-        if self._values is not None and values.size:
-            self._values.append(values.ravel())
+            values = other._values or ()
+            self.add_summed(other._max, other._total, other._count, other._at, other._along, values)
 
     @property
     def extreme(self) -> Extreme | None:

@@ -157,9 +157,8 @@ def _solid_inside(grid: Grid, kept: bool) -> Iterator[BlockLines]:
                 at = number, *(int(k) for k in where[plane, axis, m])
                 high, total = float(summary[plane, axis, m, 0]), float(summary[:, axis, m, 1].sum())
                 if size:
-                    tally.add_summed(high, total, size, at, DIRECTIONS[axis])
-                    if values is not None:
-                        tally.keep(values[axis, m][inner])
+                    own = [] if values is None else [values[axis, m][inner]]
+                    tally.add_summed(high, total, size, at, DIRECTIONS[axis], own)
             yield BlockLines(number, axis, True, *measures)
 
 

@@ -22,7 +22,7 @@ from typing import Literal
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.figure import Figure
 from meshonet.geometry.quality.figures import Figures
-from meshonet.geometry.quality.gates import COMPARE, Gate, end_of, in_short
+from meshonet.geometry.quality.gates import Gate, beyond, end_of, in_short
 
 Level = Literal["warn", "fail"]
 Verdict = Literal["pass", "warn", "fail", "none"]
@@ -36,10 +36,6 @@ class Limit:
     compare: str
     """One of `COMPARE`."""
     value: float
-
-    def broken(self, value: float) -> bool:
-        """Say whether `value` fulfils the condition; what is not a number does."""
-        return bool(COMPARE[self.compare](value, self.value)) or value != value
 
 
 @dataclass(frozen=True)
@@ -83,7 +79,7 @@ class CheckResult:
     def worst(self) -> Limit | None:
         """The limit that the figure is beyond, the one that fails it where it is beyond several."""
         limits = self.check.limits if self.figure else ()
-        broken = [limit for limit in limits if self.figure and limit.broken(self.figure.value)]
+        broken = [x for x in limits if self.figure and beyond(self.figure.value, x.compare, x.value)]
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":

@@ -10,7 +10,7 @@ from meshonet.geometry.quality.blocks import extreme_dict
 from meshonet.geometry.quality.compare import Difference, compare
 from meshonet.geometry.quality.figure import Figure
 from meshonet.geometry.quality.figures import Figures
-from meshonet.geometry.quality.gates import Gate, Judgement
+from meshonet.geometry.quality.gates import Gate, Judgement, beyond
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.profiles import CheckResult, ProfileReport, profile_report
 from meshonet.geometry.quality.walls import Spread, WallRow
@@ -103,7 +103,7 @@ class QualityReport:
         more = self._compared()
         figures = [gate.figure(self.figures, more) for gate in gates]
         pairs = zip(gates, figures, strict=True)
-        return [(gate, figure, gate.beyond(figure.value)) for gate, figure in pairs]
+        return [(gate, figure, beyond(figure.value, gate.compare, gate.limit)) for gate, figure in pairs]
 
     def _compared(self) -> dict[str, Figure]:
         """Return the figures of the comparison."""

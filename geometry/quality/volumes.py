@@ -83,19 +83,18 @@ def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
     cells = sum(sizes)
     kept = slice(None) if percentiles and cells <= FEW else NONE
     runs = [_run_over(*each, kept) for each in zip(grid.blocks, volumes, strict=True)]
+    low, high = np.stack([run.low for run in runs]), np.stack([run.high for run in runs])
+    total = np.sum([run.total for run in runs], axis=0)
     metrics = {}
     for k, metric in enumerate(SOLID_METRICS):
-        low = min(range(len(runs)), key=lambda n: float(runs[n].low[k]))
-        high = max(range(len(runs)), key=lambda n: float(runs[n].high[k]))
-        block = low if metric.worst == "min" else high
-        where = runs[block].where[k, 0 if metric.worst == "min" else 1]
+        end = 0 if metric.worst == "min" else 1
+        block = int(high[:, k].argmax() if end else low[:, k].argmin())
         ends: list[float | None] = [None, None]
         if percentiles:
             parts = [run.values[k] for run in runs] if kept != NONE else _metric(grid, volumes, k)
             ends = [*percentiles_of(np.concatenate([part.ravel() for part in parts]), PERCENTS)]
-        mean = float(sum(float(run.total[k]) for run in runs)) / cells
-        span = float(runs[low].low[k]), mean, float(runs[high].high[k])
-        metrics[metric.name] = Summary(*span, (block, *map(int, where)), *ends)
+        span = float(low[:, k].min()), float(total[k]) / cells, float(high[:, k].max())
+        metrics[metric.name] = Summary(*span, (block, *map(int, runs[block].where[k, end])), *ends)
     folded = sum(count_folded_solids(block.nodes) for block in grid.blocks)
     doubtful = folded
     if metrics["bezier_ratio"].min <= 0:

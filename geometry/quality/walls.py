@@ -89,47 +89,36 @@ class _WallPart:
 
 
 def _wall_part(grid: Grid, patch: Patch) -> _WallPart:
-    if grid.form == "volume":
-        return _solid_wall_part(grid, patch)
-    lines = leaving(grid, patch)
-    steps = np.diff(lines, axis=1)
-    heights = norms(steps)
-    equal = np.abs(heights - heights[:, :1]) <= SAME * heights[:, :1]
-    alike = np.where(equal.all(axis=1), equal.shape[1], np.argmin(equal, axis=1))
-    along = np.diff(lines[:, 0], axis=0)
-    off = [_off_square(along, steps[:-1, 0]), _off_square(along, steps[1:, 0])]
-    return _WallPart(heights[:, 0], np.stack(off), int(alike.min()))
-
-
-def _solid_wall_part(grid: Grid, patch: Patch) -> _WallPart:
     layers = rows_at(grid, patch, DEPTH)
     steps = np.diff(layers, axis=0)
     heights = norms(steps)
     equal = np.abs(heights - heights[0]) <= SAME * heights[0]
     alike = np.where(equal.all(axis=0), len(equal), np.argmin(equal, axis=0))
-    along, across = np.diff(layers[0], axis=0), np.diff(layers[0], axis=1)
+    if grid.form == "volume":
+        off = _off_normal(layers[0], steps[0])
+    else:
+        along = np.diff(layers[0], axis=0)
+        off = [_off_square(along, steps[0, :-1]), _off_square(along, steps[0, 1:])]
+    return _WallPart(heights[0].ravel(), np.stack(off), int(alike.min()))
+
+
+def _off_normal(wall: Floats, away: Floats) -> list[Floats]:
+    """Return how far edges (n, m, 3) off a wall of a volume are from the normals at its cells' corners."""
+    along, across = np.diff(wall, axis=0), np.diff(wall, axis=1)
     off = []
     for a in (0, 1):
         for b in (0, 1):
             u, v = (along[:, 1:], along[:, :-1])[1 - b], (across[1:], across[:-1])[1 - a]
-            w = steps[0, a : len(across) - 1 + a, b : along.shape[1] - 1 + b]
+            w = away[a : len(across) - 1 + a, b : along.shape[1] - 1 + b]
             normal = np.cross(u, v)
             off.append(np.degrees(arctan2(norms(np.cross(normal, w)), np.abs((normal * w).sum(axis=-1)))))
-    return _WallPart(heights[0].ravel(), np.stack(off), int(alike.min()))
+    return off
 
 
 def _row(name: str, side: str | None, parts: Sequence[_WallPart], *, percentile: bool = False) -> WallRow:
     heights = _spread([part.heights for part in parts], percentile=percentile)
     off = _spread([part.off for part in parts], percentile=percentile)
     return WallRow(name, side, heights, off, min(part.equal for part in parts))
-
-
-def leaving(grid: Grid, patch: Patch) -> Floats:
-    """Return the lines (n, depth, d) that leave the nodes of `patch` of a block of two directions."""
-    nodes = grid.blocks[patch.block].nodes
-    nodes = nodes if patch.side in ("south", "north") else nodes.swapaxes(0, 1)
-    nodes = nodes[patch.start : patch.stop + 1]
-    return (nodes if patch.side in ("south", "west") else nodes[:, ::-1])[:, :DEPTH]
 
 
 def _off_square(along: Floats, away: Floats) -> Floats:

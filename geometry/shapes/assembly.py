@@ -76,7 +76,7 @@ def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:
         return shape
     if isinstance(shape, Boundary) and shape.topology == "quad":
         loop = _edges_loop(shape)
-    elif isinstance(shape, Outline) and _inside(shape, sampling):
+    elif isinstance(shape, Outline) and sampling.topology.replace("auto", shape.topology) == "quad":
         loop = ring_loop(shape.curve.points, hole=False, corners=shape.corners)
     else:
         return assembled([shape], ["body"], sampling, shape.name)
@@ -89,11 +89,6 @@ def far_loop(middle: Floats, radius: float) -> Loop:
     angle = np.linspace(0.0, 2.0 * np.pi, CIRCLE, endpoint=False)
     points = middle + radius * np.stack([cos(angle), sin(angle)], axis=1)
     return Loop(Curve(points, closed=True, corners=()), names=(FARFIELD,))
-
-
-def _inside(shape: Outline, sampling: Sampling) -> bool:
-    topology = shape.topology if sampling.topology == "auto" else sampling.topology
-    return topology == "quad"
 
 
 def _bodies(shape: Shape, name: str, sampling: Sampling) -> list[Loop]:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from meshonet.geometry.quality.solid_lines import solid_lines
-
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.vertices import vertices
 from meshonet.geometry.quality.growth import Extreme
-from meshonet.geometry.quality.lines import Lines, lines
+from meshonet.geometry.quality.lines import Lines, lines, solid_lines
 from meshonet.geometry.quality.verdicts import named
 from meshonet.geometry.quality.walls import wall_rows
 

@@ -83,7 +83,8 @@ def test_json_says_what_was_converted(meshonet: Meshonet, grid_vts: Path) -> Non
 def test_a_batch_becomes_one_file_each_or_one_for_all(meshonet: Meshonet, three_h5: Path) -> None:
     meshonet("tfi", three_h5, "-o", "{name}.vts")
     assert meshonet("convert", "flat.vts", "low.vts", "-o", "p3d/{stem}.p3d").code == 0
-    assert sorted(path.name for path in Path("p3d").iterdir()) == ["flat.p3d", "low.p3d"]
+    names = sorted(path.name for path in Path("p3d").iterdir())
+    assert names == ["flat.nmf", "flat.p3d", "low.nmf", "low.p3d"]
     assert meshonet("convert", "flat.vts", "low.vts", "both.h5").code == 0
     assert len(list(read_grids("both.h5"))) == 2
 
@@ -192,7 +193,10 @@ def test_a_pipe_needs_no_file(meshonet: Meshonet, process: Process, grid_vts: Pa
         (("grid.vts", "grid.abc"), "its ending '.abc' is not known; choose the format with --to"),
         (("grid.vts", "grid.p3d", "--extrude", "0"), "--extrude: height 0 is not positive"),
         (("grid.vts", "grid.p3d", "--extrude", "inf"), "--extrude: height inf is not positive"),
-        (("grid.vts", "grid.p3d", "--planes", "3"), "--planes: there is no height; give --extrude as well"),
+        (
+            ("grid.vts", "grid.p3d", "--planes", "3"),
+            "--planes: there is no height; give --extrude or --revolve as well",
+        ),
         (("grid.vts", "grid.p3d", "--extrude", "1", "--planes", "1"), "'--planes': 1 is not in the range"),
         (("grid.vts", "grid.geo", "--extrude", "1"), "geo holds flat grids only; write one of"),
         (("missing.vts", "grid.p3d"), "missing.vts: no such file"),

@@ -8,10 +8,10 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 
 
 def _of(lattices: list[Floats], name: str, patches: tuple[Patch, ...] = ()) -> Grid:

@@ -176,3 +176,9 @@ def test_a_box_beside_the_grid_is_refused() -> None:
 )
 def test_lines_left_out_are_told_in_words(steps: tuple[int, int], words: str) -> None:
     assert _drawn_lines(*steps) == words
+
+
+@pytest.mark.parametrize("nodes", [np.zeros((5, 4, 2)), np.ones((3, 3, 3, 3))])
+def test_a_grid_of_one_point_is_refused(nodes: np.ndarray, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="the points have no extent"):
+        Picture().draw("png", tmp_path / "a.png", [Grid.from_nodes(nodes)])

@@ -97,6 +97,13 @@ def test_a_missing_part_gets_one_line_that_names_it(files: PartFiles) -> None:
         next(read_grids(str(files.index)))
 
 
+def test_a_part_that_is_a_pipe_is_not_waited_for(files: PartFiles) -> None:
+    files.path(1).unlink()
+    os.mkfifo(files.path(1))
+    with pytest.raises(InputError, match=r"its part .*out/part-00001.h5 is missing; put it back"):
+        next(read_grids(str(files.index)))
+
+
 def names_and_errors(grids: Iterator[Grid]) -> list[str]:
     outcomes = []
     while True:

@@ -16,6 +16,7 @@ from meshonet.formats.openfoam.write import write_grids
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.errors import InputError
 
 MAKES = [channel, ring, c_grid]
 PATCHES = {
@@ -181,3 +182,10 @@ def test_a_case_is_written_into_the_folder_that_is_named(
     assert file_names(folder) == sorted([marker.name, "constant", "system"])
     assert (marker.stat().st_size, (folder / "constant/polyMesh/points").exists()) == (0, True)
     assert folder == Path() or not Path("constant").exists()
+
+
+def test_a_grid_of_one_point_is_refused(tmp_path: Path) -> None:
+    for nodes in (np.zeros((5, 4, 2)), np.ones((3, 3, 3, 3))):
+        with pytest.raises(InputError, match="the points have no extent"):
+            write_grids(tmp_path / "case.foam", [Grid.from_nodes(nodes)])
+    assert file_names(tmp_path) == []

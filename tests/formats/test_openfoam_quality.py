@@ -14,10 +14,10 @@ from format_shapes import c_grid, ring
 from meshonet.formats.openfoam.write import write_grids
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.geometry.quality.checkmesh import faces
 
 sys.path.append(str(Path(__file__).parents[1] / "geometry"))

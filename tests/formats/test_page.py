@@ -22,6 +22,7 @@ from meshonet.formats.figure.page.page import write_page
 from meshonet.formats.figure.slices import parse_slice
 from meshonet.formats.figure.view import View
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import per_cell_of_blocks
 
@@ -120,6 +121,15 @@ def test_names_cannot_break_out_of_a_page(tmp_path: Path) -> None:
     assert made.facts["name"] == "</script><b>O&M"
     assert "<title>&lt;/script&gt;&lt;b&gt;O&amp;M</title>" in made.text
     assert "</script><b>" not in made.text
+
+
+def test_names_of_patches_cannot_break_out_of_a_page(tmp_path: Path) -> None:
+    names = ["</script>", "<!--<script>"]
+    patches = tuple(Patch(name, side, 0, 4) for name, side in zip(names, ("south", "north"), strict=True))
+    nodes = np.stack(np.meshgrid(np.arange(5.0), np.arange(4.0), indexing="ij"), axis=-1)
+    made = page(Grid.from_nodes(nodes, "quad", patches), tmp_path)
+    assert {edge["name"] for edge in made.facts["edges"]} >= set(names)
+    assert "<!--<script>" not in made.text
 
 
 def test_the_same_grid_gives_the_same_page(tmp_path: Path) -> None:

@@ -41,6 +41,12 @@ def test_a_named_pipe_is_read_to_its_end(tmp_path: Path) -> None:
     assert (source.read_bytes(), source.suffix, source.size) == (b"through", ".vts", 7)
 
 
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="no such devices here")
+def test_a_device_which_may_have_no_end_is_refused() -> None:
+    with pytest.raises(InputError, match="/dev/zero: is a device; name a file"):
+        open_source("/dev/zero")
+
+
 def test_nothing_on_standard_input_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", Pipe())
     with pytest.raises(InputError, match="-: is empty; give a file"):

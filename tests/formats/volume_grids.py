@@ -14,10 +14,10 @@ from many_blocks import passage, sector, step
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import PLACES, Block
 from meshonet.geometry.blocks.connection import Connection, Motion
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 
 HEIGHTS = (0.0, 0.3, 0.7, 1.0, 1.6)
 

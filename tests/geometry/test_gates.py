@@ -126,11 +126,6 @@ def test_every_figure_is_a_gate_and_only_what_is_named_is_measured() -> None:
         assert parse_gate(f"{name}>5").metric == name
 
 
-def test_what_is_not_a_number_is_beyond_every_gate() -> None:
-    assert parse_gate("growth>2").beyond(float("nan"))
-    assert parse_gate("far_field<2").beyond(float("nan"))
-
-
 def test_a_figure_that_a_grid_lacks_is_refused() -> None:
     with pytest.raises(InputError, match="this grid has no far_field; use folded, max_angle"):
         parse_gate("far_field<20").broken(figures_of(parallelogram()))

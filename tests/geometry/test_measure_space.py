@@ -11,9 +11,9 @@ from space_grids import lattice, pipe, sphere_patches
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import (
     count_folded,

@@ -6,11 +6,11 @@ import pytest
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.figures import Figures
+from meshonet.geometry.quality.gates import beyond
 from meshonet.geometry.quality.measure import measure
 from meshonet.geometry.quality.profiles import (
     PROFILES,
     CheckResult,
-    Limit,
     ProfileReport,
     profile_report,
 )
@@ -112,6 +112,6 @@ def test_growth_is_taken_away_from_the_wall() -> None:
 
 
 def test_what_is_no_number_breaks_every_limit() -> None:
-    assert Limit("fail", "<", 0.3).broken(float("nan"))
-    assert Limit("fail", ">", 4).broken(float("nan"))
-    assert not Limit("fail", ">", 4).broken(4.0)
+    assert beyond(float("nan"), "<", 0.3)
+    assert beyond(float("nan"), ">", 4)
+    assert not beyond(4.0, ">", 4)

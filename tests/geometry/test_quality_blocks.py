@@ -12,10 +12,9 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.vertices import irregular_points, vertices
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.blocks import block_figures
+from meshonet.geometry.quality.blocks import block_figures, deviation
 from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.quality.compare import compare
-from meshonet.geometry.quality.deviation import deviation
 from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import parse_gates
 from meshonet.geometry.quality.growth import growth

@@ -11,11 +11,10 @@ from space_grids import lattice, pipe, sphere_patches, turned
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.blocks.shared_nodes import node_count, shared_nodes
+from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.geometry.blocks.transform import coarser_grid, normalised
 from meshonet.geometry.blocks.transform import turned as quarter_turn
 from meshonet.geometry.errors import InputError
@@ -106,9 +105,8 @@ def test_growth_and_bend_are_those_of_numpy() -> None:
 
 def test_nodes_are_counted_once() -> None:
     for grid in (shell(split=3), joined([pipe(inner=0.2)]), joined(sphere_patches())):
-        counts = [block.counts for block in grid.blocks]
-        numbers = shared_nodes(counts, grid.connections)
-        assert node_count(counts, grid.connections) == 1 + max(int(number.max()) for number in numbers)
+        points = np.concatenate([block.nodes.reshape(-1, 3) for block in grid.blocks])
+        assert block_figures(grid).nodes == len(np.unique(points, axis=0))
 
 
 def test_the_report_of_a_volume_is_json_with_both_tests_and_places_in_space() -> None:

@@ -34,9 +34,7 @@ def alike(mesh: HexMesh) -> Targets:
     return [tuple(np.full_like(each, np.log(0.08)) for each in edges) for edges in wanted]  # type: ignore[misc]
 
 
-def value(
-    mesh: HexMesh, weights: Weights, targets: Targets
-) -> tuple[float, Floats]:
+def value(mesh: HexMesh, weights: Weights, targets: Targets) -> tuple[float, Floats]:
     problem = HexProblem(mesh, ~mesh.outer, targets)
     problem.descent.weigh(*weights)
     slopes = np.empty((3, np.count_nonzero(~mesh.outer)))
@@ -100,9 +98,7 @@ def test_cuts_into_blocks_change_nothing(weights: Weights) -> None:
 
 @pytest.mark.parametrize("weights", [VALID, UNFOLDING])
 @pytest.mark.parametrize("make", [lambda: cut(bent(12, 9, 17)), lambda: perturbed(shell(), 0.2)])
-def test_slopes_are_those_of_the_value(
-    make: Callable[[], Grid], weights: Weights
-) -> None:
+def test_slopes_are_those_of_the_value(make: Callable[[], Grid], weights: Weights) -> None:
     mesh = hex_mesh_of(make())
     targets = wanted_edges(mesh, ~mesh.outer)
     _, slopes = value(mesh, weights, targets)
