@@ -34,7 +34,7 @@ _GROWTH = 1.135  # growth of wake cells that is enough, and below which cells ar
 _SHARES = 0.2, 0.23  # smallest and largest part of all cells that one side of the wake takes by itself
 _RAMP = 3.0  # cells of a wake over which growth sets in: the lines that leave its first ones converge
 _LATE = 0.05  # part by which cells at the outlet grow faster than on average, and those at the edge slower
-STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
+_STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
 _LEAST_WALL = 5  # nodes of a wall, its trailing edge counted twice
 
 
@@ -91,7 +91,7 @@ class WakeLine:
         upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
         along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
         angle = math.atan2(axis[0] * along[1] - axis[1] * along[0], product(axis, along))
-        slope = math.tan(min(max(angle, -STEEPEST), STEEPEST))
+        slope = math.tan(min(max(angle, -_STEEPEST), _STEEPEST))
         return cls(wall[0], axis, slope, chord, length)
 
     def nodes(self, first: float, cells: int) -> Floats:

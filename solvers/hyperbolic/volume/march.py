@@ -1,4 +1,4 @@
-"""Volumes marched from surfaces of many patches; the height of first cells is met exactly.
+"""Volumes marched from multi-patch surfaces, with exact first-cell height.
 
 ::
 
@@ -6,12 +6,13 @@
                          ^                                                         |
                          +--------------- other smoothing, smaller steps ----------+
 
-The equations stand in ``kernels/surfaces/step.c``, what is tried while cells are folded in
+The equations are in ``kernels/surfaces/step.c``, the settings tried while cells are folded in
 `meshonet.solvers.hyperbolic.volume.settings`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -19,16 +20,22 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import BadCell, NoValidGridError
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, worst_solids
+from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, measure_volumes, worst_solids
 from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 from meshonet.geometry.threads import MANY_VISITS, threads_for
 from meshonet.kernels._native import respace_lines, surface_march
 from meshonet.solvers.hyperbolic.volume.blocks import blocks_of, volume_grid
 from meshonet.solvers.hyperbolic.volume.graph import MarchGraph, march_graph
+from meshonet.solvers.hyperbolic.volume.limited_growth import (
+    growth_of_levels,
+    limit_growth,
+    slower_steps,
+)
 from meshonet.solvers.hyperbolic.volume.settings import ATTEMPTS, Smoothing, VolumeMarch
 from meshonet.solvers.hyperbolic.volume.symmetry import (
     free_edges_note,
@@ -41,13 +48,14 @@ from meshonet.solvers.stages import filling
 
 __all__ = ["VolumeMarch", "march_surface"]
 
-FADE = 12.0  # cells over which what first cells needed fades away along a line
+FADE = 12.0  # cells over which the correction of first cells fades out along a line
 SWEEPS = 10  # of the smoothing of steps along lines
-WORST = 10  # folded cells that a refusal names
+_SLOWER = 2  # further marches by smaller steps where cells grow too much
+WORST = 10  # folded cells named in the error message
 
 
 class _Volume(NamedTuple):
-    """Blocks of a march, how many cells it came from the wall, and how many of all are folded."""
+    """Blocks of a march, `made` layers of cells off the wall, with `folded` folded cells."""
 
     blocks: tuple[Block, ...]
     made: int
@@ -56,11 +64,11 @@ class _Volume(NamedTuple):
 
 @timed
 def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
-    """Return the volume between a surface and a far field, a block a patch.
+    """Return the volume between a surface and a far field, with one block per patch.
 
     i and j of a block are those of its patch, k goes from the wall (``bottom``) to the far field (``top``).
     Sides in planes of symmetry are patches ``symmetry``, free ones ``free``; all others are connected. First
-    cells are as high as asked, along every line.
+    cells have the given height along every line.
 
     Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` has what differs.
 
@@ -70,7 +78,7 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
     planes, inside = symmetry_planes(surface, settings.symmetry)
     nodes = in_planes(surface, planes, inside)
     steps = settings.steps(surface.size)
-    volume, tries = _best(surface, planes, inside, nodes, steps)
+    volume, tries = _best(surface, planes, inside, nodes, steps, settings.limit)
     if volume.made < len(steps) or volume.folded:
         raise _refusal(volume, len(steps))
     grid = volume_grid(surface, volume.blocks, np.any(inside, axis=0))
@@ -86,29 +94,74 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
 
 
 def _best(
-    surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, steps: Floats
-) -> tuple[_Volume, int]:
-    """Return the first volume without folded cells, or that which comes closest, and how many were tried."""
+    surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, steps: Floats,
+    growth: float,
+) -> tuple[_Volume, int]:  # fmt: skip
+    """Return the first volume without folded cells, or else the best, and the number of attempts.
+
+    The first is marched again by smaller steps where its cells grow by more than `growth`.
+    """
     best: _Volume | None = None
     for tries, smoothing in enumerate(ATTEMPTS, start=1):
         graph = march_graph(surface, planes, inside, smoothing.splay, smoothing.boost)
-        lines = _respaced(march_levels(surface, graph, nodes, steps, smoothing), graph, steps)
-        _keep_planes(lines, surface, planes, inside)
-        made = lines.shape[2] - 1
-        blocks = blocks_of(surface, lines) if made else ()
-        folded = sum(count_folded_solids(block.nodes, BEZIER) for block in blocks)
-        volume = _Volume(blocks, made, folded)
-        if made == len(steps) and not folded:
-            return volume, tries
-        if best is None or (made, -folded) > (best.made, -best.folded):
+
+        def marched(steps: Floats, graph: MarchGraph = graph, smoothing: Smoothing = smoothing) -> Floats:
+            lines = _respaced(march_levels(surface, graph, nodes, steps, smoothing), graph, steps)
+            _keep_planes(lines, surface, planes, inside)
+            return lines
+
+        lines = marched(steps)
+        volume = _volume(surface, lines)
+        if volume.made == len(steps) and not volume.folded:
+            return _with_growth(surface, lines, marched, steps, growth) or volume, tries
+        if best is None or (volume.made, -volume.folded) > (best.made, -best.folded):
             best = volume
     return best or volume, len(ATTEMPTS)
+
+
+def _volume(surface: Surface, lines: Floats) -> _Volume:
+    made = lines.shape[2] - 1
+    blocks = blocks_of(surface, lines) if made else ()
+    return _Volume(blocks, made, sum(count_folded_solids(block.nodes, BEZIER) for block in blocks))
+
+
+def _with_growth(
+    surface: Surface, lines: Floats, marched: Callable[[Floats], Floats], steps: Floats, growth: float
+) -> _Volume | None:
+    """Return a valid volume whose cells grow by no more than `growth` along its lines, None where none is.
+
+    Of marches by smaller and smaller steps, whose nodes are moved along the lines by what these leave, it is
+    that with the best cells.
+    """
+    tried = [(lines, steps)]
+    for _ in range(_SLOWER):
+        levels = growth_of_levels(tried[-1][0])
+        if levels.max() <= growth:
+            break
+        slower = slower_steps(tried[-1][1], levels, growth)
+        tried.append((marched(slower), slower))
+        if tried[-1][0].shape[2] <= len(slower):
+            break
+    best, most = None, (False, 0.0)
+    for made, wanted in tried:
+        if made.shape[2] > len(wanted):
+            limit_growth(made, growth)
+            volume = _volume(surface, made)
+            even = bool(growth_of_levels(made).max() <= growth)
+            found = even, 0.0 if volume.folded else _least_jacobian(volume.blocks)
+            if found[1] > 0.0 and found > most:
+                best, most = volume, found
+    return best
+
+
+def _least_jacobian(blocks: tuple[Block, ...]) -> float:
+    return measure_volumes(Grid(blocks, ()))["scaled_jacobian"].min
 
 
 def march_levels(
     surface: Surface, graph: MarchGraph, nodes: Floats, steps: Floats, smoothing: Smoothing
 ) -> Floats:
-    """Return levels (made + 1, 3, n) of a march by `steps` (m,) as far as it goes, nodes as in `graph`."""
+    """Return the levels (made + 1, 3, n) of a march by `steps` (m,), until it fails; nodes as in `graph`."""
     levels = np.empty((len(steps) + 1, 3, len(nodes)))
     levels[0] = nodes[graph.order].T
     numbers = smoothing.numbers(0.5 * surface.size)
@@ -119,7 +172,7 @@ def march_levels(
 
 
 def _respaced(levels: Floats, graph: MarchGraph, steps: Floats) -> Floats:
-    """Return the lines (3, n, levels) of a march, nodes moved along them so that first cells are exact."""
+    """Return the lines (3, n, levels) of a march, with nodes moved along them to exact first-cell heights."""
     made = len(levels) - 1
     lines = np.empty((3, levels.shape[2], made + 1))
     if made < 2:
@@ -131,7 +184,7 @@ def _respaced(levels: Floats, graph: MarchGraph, steps: Floats) -> Floats:
 
 
 def _keep_planes(lines: Floats, surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> None:
-    """Put what rounding moved out of planes of symmetry back, in place."""
+    """Move nodes back, in place, that rounding moved out of planes of symmetry."""
     edges = surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
         lines[plane.axis, edges[flags]] = plane.value
