@@ -36,7 +36,7 @@ HEAD = """# Deformed grids: folded cells, first-cell heights, time
 
 <!-- made by python benchmarks/bench_deform.py --page docs/benchmarks/deform.md -->
 
-This page compares `meshonet deform` with inverse-distance weighting (IDW): folded cells, first-cell
+Use this page to compare `meshonet deform` with inverse-distance weighting (IDW): folded cells, first-cell
 heights, angles and CPU time. For its use see [deforming grids](../guide/deform.md).
 
 The deformations are random (seed {seed}). *airfoils*: the thickness is multiplied by 0.9 to 1.1 and the

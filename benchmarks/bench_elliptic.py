@@ -37,7 +37,7 @@ HEAD = """# Elliptic solvers: time, convergence, memory
 
 <!-- made by python benchmarks/bench_elliptic.py --largest 3200 --page docs/benchmarks/elliptic.md -->
 
-This page gives CPU time, convergence and memory of `solve-pde` with the methods `winslow`,
+Use this page to find CPU time, convergence and memory of `solve-pde` with the methods `winslow`,
 `thomas-middlecoff` and `steger-sorenson`. For the methods see [elliptic grids](../theory/elliptic.md).
 
 Times are CPU times of one thread on {processor}, in float64, while other programs used the machine.

@@ -32,7 +32,7 @@ HEAD = """# GPU
 
 <!-- made by python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md -->
 
-This page gives the speed of training and of batched neural operators on a GPU. For its use see
+Use this page to find the speed of training and of batched neural operators on a GPU. For its use see
 [threads and GPUs](../guide/threads-and-gpu.md). `python benchmarks/bench_gpu.py --page
 docs/benchmarks/gpu.md` fills it in, in less than eight minutes:
 

@@ -47,7 +47,7 @@ HEAD = """# Marched grids for boundary layers: quality and time
 
 <!-- made by python benchmarks/bench_hyperbolic.py --page docs/benchmarks/marching.md -->
 
-This page gives the quality and the CPU time of marched grids with a prescribed size and first-cell
+Use this page to find the quality and the CPU time of marched grids with a prescribed size and first-cell
 height. For their use see [boundary layers](../guide/boundary-layers.md), for the method see
 [marching](../theory/marching.md).
 

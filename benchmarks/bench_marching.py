@@ -39,7 +39,7 @@ HEAD = """# Volumes marched from surfaces: quality and time
 
 <!-- made by python benchmarks/bench_marching.py --page docs/benchmarks/marching-surfaces.md -->
 
-This page gives the quality and the CPU time of volume grids that are marched from surfaces. For the
+Use this page to find the quality and the CPU time of volume grids that are marched from surfaces. For the
 method see [marching from surfaces](../guide/marching-surfaces.md).
 
 - *levels*: number of node layers from the surface to the far field. *first cell, distance*: prescribed

@@ -241,7 +241,7 @@ HEAD = """# All methods compared: airfoils and four-sided domains
 
 <!-- made by python benchmarks/bench_operator.py --page docs/benchmarks/o-grids.md (make bench) -->
 
-This page gives, for each method, the CPU time and the distance of its grid to a converged solution. For
+Use this page to find, for each method, the CPU time and the distance of its grid to a converged solution. For
 short advice see [choosing a method](../start/choosing-a-method.md).
 
 **Timing.** All methods of a table ran on the same boundaries, in one run, on {machine}, while other

@@ -29,7 +29,7 @@ HEAD = """# Interactive pages: size and time
 
 <!-- made by python benchmarks/bench_pages.py --page docs/benchmarks/pages.md -->
 
-This page gives, for `meshonet plot -o grid.html`, the size of the HTML page, the time to write it, and
+Use this page to find, for `meshonet plot -o grid.html`, the size of the HTML page, the time to write it, and
 the time until the browser has drawn the grid for the first time. The browser is Chromium without a
 graphics card, on a shared machine with two cores; with a graphics card it draws sooner. Times are medians
 of three runs. For the use of the pages see [pictures](../guide/pictures.md).

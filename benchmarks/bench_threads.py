@@ -51,7 +51,7 @@ HEAD = """# Threads
 
 <!-- made by python benchmarks/bench_threads.py --page docs/benchmarks/threads.md -->
 
-This page gives the speed-up of a second thread on one large grid. [Threads and
+Use this page to find the speed-up of a second thread on one large grid. [Threads and
 GPUs](../guide/threads-and-gpu.md) explains how to set the number of threads. Times are wall-clock
 seconds, the minimum over several repetitions in which the numbers of threads alternate; the speed-up is
 the ratio of the minima. CPU times (one thread / two threads) are summed over all threads and include

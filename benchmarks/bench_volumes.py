@@ -34,7 +34,7 @@ HEAD = """# Volumes inside six faces
 
 <!-- made by python benchmarks/bench_volumes.py --page docs/benchmarks/volumes.md -->
 
-This page gives the CPU time and the quality of volume grids inside six faces. For their use see
+Use this page to find the CPU time and the quality of volume grids inside six faces. For their use see
 [volumes](../guide/volumes.md). Times are CPU times of one thread, the minimum of several runs. The table
 compares them with the time of copying the nodes into memory that is already allocated. Each cell corner
 counts the largest deviation from 90 degrees of its three angles. SJ is the scaled Jacobian at the

@@ -48,7 +48,7 @@ HEAD = """# Volumes from sections: wings, blades, pipes
 
 <!-- made by python benchmarks/bench_wings.py --airfoils FOLDER --page docs/benchmarks/wings.md -->
 
-This page gives the number of random wings for which a valid volume grid is generated, the quality of
+Use this page to find the number of random wings for which a valid volume grid is generated, the quality of
 these grids and the CPU time. For their use see [wings](../guide/wings.md) and [pipes](../guide/pipes.md).
 
 Each of the {count} wings has a random pair of {files} airfoil files as sections, sharp and blunt, with a
