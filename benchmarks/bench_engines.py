@@ -40,8 +40,8 @@ HEAD = """# Parallel engines for batches
 
 <!-- made by python benchmarks/bench_engines.py --airfoils FOLDER --page docs/benchmarks/engines.md -->
 
-Use this page to find the speed-up of a batch command from several processes, and what is lost if one of them is
-killed. An *engine* is what distributes the inputs over the processes: Python's own processes, Dask or
+Use this page to find the speed-up of a batch command from several processes, and what is lost if one of them
+is killed. An *engine* is what distributes the inputs over the processes: Python's own processes, Dask or
 MPI. [Many grids on many machines](../guide/many-machines.md) explains how to use them.
 """
 SPEED = """
