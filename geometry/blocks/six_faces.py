@@ -134,7 +134,7 @@ class SixFaces:
         )
 
     def at(self, knots: list[Floats], places: list[Floats]) -> SixFaces:
-        """Return the faces at other parameters: nodes are at `knots` of each direction and wanted at `places`.
+        """Return the faces at other parameters: nodes are at `knots` per direction and wanted at `places`.
 
         Both lists increase from 0 to 1. Corners are kept, and nodes of an edge stay on that edge.
         """

@@ -166,7 +166,7 @@ def limited(
 
 
 def _ranges(turn: Floats, length: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return least and largest angles (n,) of the tangents from the chords before their points, and the slack.
+    """Return least and largest angles (n,) of tangents from the chords before their points, and the slack.
 
     They lie between the two chords, within the slack. Where one of the intervals is a step (its ends turn in
     opposite directions), the shorter the step is relative to the other interval, the less the tangent may
