@@ -32,12 +32,12 @@ def solve(matrix: Any, right: Any) -> Floats:
     matrix
         Shape (..., m, m).
     right
-            Shape (..., m), one vector per matrix, or (..., m, n); the leading axes are those of `matrix`.
+        Shape (..., m), one vector per matrix, or (..., m, n); the leading axes are those of `matrix`.
 
     Returns
     -------
     Floats
-            Same shape as `right`.
+        Same shape as `right`.
 
     Raises
     ------

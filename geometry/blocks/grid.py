@@ -111,7 +111,7 @@ class Grid(Connected):
         Returns
         -------
         Grid
-                The grid.
+            The grid.
 
         Raises
         ------
@@ -259,7 +259,7 @@ class Grid(Connected):
         Returns
         -------
         pyvista.StructuredGrid or pyvista.MultiBlock
-                One structured grid for each block.
+            One structured grid for each block.
 
         Raises
         ------

@@ -77,7 +77,7 @@ class Domain:
         Raises
         ------
         InputError
-                The number of names differs from that of polygons, or of stretches.
+            The number of names differs from that of polygons, or of stretches.
 
         Examples
         --------

@@ -20,7 +20,7 @@ class Criteria:
     gates : tuple of Gate, optional
         Conditions under which a grid fails.
     profiles : tuple of str, optional
-            Names in `meshonet.geometry.quality.profiles.PROFILES`.
+        Names in `meshonet.geometry.quality.profiles.PROFILES`.
     """
 
     gates: tuple[Gate, ...] = ()

@@ -98,11 +98,11 @@ class Judgement:
     Parameters
     ----------
     problems : tuple of str
-            A line for each gate, and each check of a profile, that failed.
-        beyond : tuple of str
-            The same in short, including the warnings of profiles: ``max_angle 178.2 > 170``.
-        replaced : tuple of str
-            Limits of gates that replace those of profiles: ``box_ratio > 4000``.
+        A line for each gate, and each check of a profile, that failed.
+    beyond : tuple of str
+        The same in short, including the warnings of profiles: ``max_angle 178.2 > 170``.
+    replaced : tuple of str
+        Limits of gates that replace those of profiles: ``box_ratio > 4000``.
     """
 
     problems: tuple[str, ...] = ()

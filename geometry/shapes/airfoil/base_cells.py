@@ -1,4 +1,4 @@
-"""Cells on a blunt base and beside it: where they are unlike, those off the corners grow fast."""
+"""Wall cells on both sides of a base corner: if their sizes differ much, cells off the corner grow fast."""
 
 import numpy as np
 
@@ -9,9 +9,9 @@ UNLIKE = 1.5
 
 
 def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[str, ...]:
-    """Return a note where the wall cells at the lower corner of a base are unlike; the upper one mirrors it.
+    """Return a note if wall cell sizes jump at the lower corner of a base; the upper corner mirrors it.
 
-    `wall` (n, 2) runs from the middle of the base, which is `base` long and ends at `corner` (2,).
+    `wall` (n, 2) runs from the middle of the base, which has length `base` and ends at `corner` (2,).
     """
     k = int(np.argmin(np.hypot(*(wall[: len(wall) // 2] - corner).T)))
     if k == 0:
