@@ -107,8 +107,9 @@ class WakeLine:
 def growing(first: float, length: float, cells: int) -> Floats:
     """Return distances (cells + 1,) in units of `first`, from 0 to `length`, of growing cells.
 
-    From cell k to the next, of n, the logarithm of the size increases by g (1 - exp(-k/m)) (1 + b (2k/n -
-    1)).
+    From cell k of n to the next, the logarithm of the size increases by
+
+        g (1 - exp(-k/m)) (1 + b (2k/n - 1))
     """
     if first * cells >= length or cells < 2:
         return np.arange(cells + 1.0)

@@ -144,7 +144,7 @@ def farthest_arc(curve: Curve, point: Floats) -> float:
     slopes = _slopes(curve, point, arcs := np.array([low, high]))
     if slopes[0] <= 0 or slopes[1] >= 0:
         return float(s[best[0]])
-    for _ in range(2):  # bisection of all candidates at once: a call costs more than a point
+    for _ in range(2):  # subdivision, all parts at once: a call costs more than a point
         arcs = np.linspace(low, high, _PARTS + 1)
         slopes = _slopes(curve, point, arcs)
         k = max(int(np.argmax(slopes <= 0)), 1)

@@ -31,7 +31,7 @@ _POINTS = 24  # points on a fillet
 _TURN = 0.5
 """Nodes of half a base that turns by 90 degrees that follow its turning, for each that follows its length."""
 _MORE = 1.3  # factor up to which cells are added so that neither half has too few
-_NEAR = 0.1  # chords from the corner within which the surface gets additional points of the curve
+_NEAR = 0.1  # chords from the corner within which the surface gets new points, taken from the curve
 REACH = 4.0
 """Largest length of the wedge in widths of the base: 14 degrees at the tip between parallel surfaces."""
 LEAST = 1.0
