@@ -18,6 +18,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.util import find_spec
+from itertools import starmap
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -28,16 +29,14 @@ from page import arguments, publish
 from meshonet.formats.hdf5.parts import PartFiles
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.families.draw import draws
-from meshonet_cli.batch.item import Item, Pair
+from meshonet_cli.batch.drawn import DrawnInputs
+from meshonet_cli.batch.item import Item, Pair, attempted
 from meshonet_cli.batch.parts import (
     PartDone,
     PartMaker,
     PartTask,
     deliver_parts,
-    one_after_the_other,
-    parts_of,
 )
-from meshonet_cli.batch.sources import DrawnInputs
 from meshonet_cli.report.timed import delivered
 from meshonet_cli.tasks.boundaries import itself
 from meshonet_cli.terminal.session import Session
@@ -142,7 +141,7 @@ def make(index: Path, members: int, size: int, watched: list[float]) -> dict[str
     marks = {max(1, members // size) * tenth // 10 for tenth in range(1, 11)}
 
     def outcomes() -> Iterator[tuple[PartTask, PartDone | Exception]]:
-        for part, done in one_after_the_other(maker, parts_of(inputs, size)):
+        for part, done in attempted(maker, starmap(PartTask, inputs.parts(size))):
             yield part, done
             if part.number + 1 in marks:
                 watched.append(resident())

@@ -30,7 +30,7 @@ from meshonet.geometry.families import procedural
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.hyperbolic.march import hyperbolic
-from meshonet.solvers.pipeline.choose_method import elliptic, fewer_on_quads
+from meshonet.solvers.pipeline.automatic import elliptic, fewer_on_quads
 from meshonet.solvers.pipeline.methods import method_named
 
 SEED = 20_000_003

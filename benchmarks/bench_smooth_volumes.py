@@ -32,7 +32,8 @@ from meshonet.geometry.quality.measure import measure
 from meshonet.geometry.surface.surface import surface_of
 from meshonet.geometry.threads import limited_to
 from meshonet.geometry.volume.hex_mesh import hex_mesh_of
-from meshonet.solvers.energy.hexes import SHAPE, SMOOTHNESS, HexProblem
+from meshonet.solvers.energy.hex_functional import OPTIMAL
+from meshonet.solvers.energy.hexes import HexProblem
 from meshonet.solvers.hyperbolic.volume.march import march_surface
 from meshonet.solvers.smoothing.volume_spacing import wanted_edges
 from meshonet.solvers.smoothing.volumes import smooth_volumes
@@ -57,7 +58,7 @@ def cost(grid: Grid) -> float:
     mesh = hex_mesh_of(grid)
     with limited_to(1):
         problem = HexProblem(mesh, ~mesh.outer, wanted_edges(mesh, ~mesh.outer))
-    problem.descent.weigh(SHAPE, SMOOTHNESS)
+    problem.descent.weigh(OPTIMAL.shape, OPTIMAL.smoothness)
     begun = time.process_time()
     done = problem.descent.run(0.0, ITERATIONS, ITERATIONS + 1)[2]
     return 1e9 * (time.process_time() - begun) / (done * len(mesh.nodes))

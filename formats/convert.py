@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from meshonet.formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
@@ -9,6 +10,7 @@ from meshonet.formats.source import LARGEST, open_source
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.revolve import AxisLine, Revolution, revolution, revolved
 from meshonet.geometry.blocks.transform import coarser_grid, normalised, turned
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
@@ -21,10 +23,12 @@ class Conversion:
     Parameters
     ----------
     extrude : height in z that a 3D grid gets; None leaves grids flat.
-    planes : planes of nodes in z; None stands for two.
+    planes : planes of nodes in z, or about the axis; None stands for two, or those that `Revolution` says.
     swap : have xi run along the sides that eta ran along.
     normalise : scale to unit chord or unit length.
     coarsen : keep every so many-th node.
+    revolve : degrees that a 3D grid turns by about `axis`; None leaves grids flat.
+    axis : line in the plane; None is the x axis.
     """
 
     extrude: float | None = None
@@ -32,12 +36,22 @@ class Conversion:
     swap: bool = False
     normalise: bool = False
     coarsen: int = 1
+    revolve: float | None = None
+    axis: AxisLine | None = None
+
+    def turn(self) -> Revolution | None:
+        """Return how grids are turned about an axis, None if they are not."""
+        turn = revolution(self.revolve, self.planes, self.axis)
+        if turn is not None and self.extrude is not None:
+            raise InputError("{extrude} and {revolve} both make grids 3D", "give one of them")
+        return turn
 
     def heights(self) -> tuple[float, ...]:
         """Return z of each plane, none for a flat grid; InputError for a height that is not positive."""
         if self.extrude is None:
-            if self.planes is not None:
-                raise InputError("there is no height", "give {extrude} as well", parameter="planes")
+            if self.planes is not None and self.revolve is None:
+                remedy = "give {extrude} or {revolve} as well"
+                raise InputError("there is no height", remedy, parameter="planes")
             return ()
         if not 0 < self.extrude < LARGEST:
             raise InputError(f"height {self.extrude:g} is not positive", "use e.g. 1", parameter="extrude")
@@ -61,7 +75,7 @@ class Conversion:
 
     def of_boundaries(self, source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
         """Say whether boundaries are written: nothing changes grids, and one of the files holds no grids."""
-        if self.heights() or self.swap or self.coarsen > 1:
+        if self.heights() or self.turn() or self.swap or self.coarsen > 1:
             return False
         try:
             written = format_for_output(output, to_format, "boundaries")
@@ -72,16 +86,17 @@ class Conversion:
         return source != "-" and format_of(open_source(source), from_format).read_grids is None
 
     def extruder(self, output: str, to_format: str | None) -> Callable[[Path, Iterable[Grid]], None] | None:
-        """Return what writes grids extruded to `output`, None for flat ones; InputError for a flat format."""
-        heights = self.heights()
-        if not heights:
+        """Return what writes grids made 3D to `output`, None for flat ones; InputError for a flat format."""
+        heights, turn = self.heights(), self.turn()
+        if not heights and turn is None:
             return None
+        solid = partial(extruded, heights=heights) if turn is None else partial(revolved, turn=turn)
         record = format_for_output(output, to_format)
         write = record.write_grids
         if write is None or "volumes" not in record.space:
             able = ", ".join(each.name for each in formats() if "volumes" in each.space)
             raise InputError(f"{record.name} holds flat grids only", f"write one of {able}", source=output)
-        return lambda path, grids: write(path, (extruded(grid, heights) for grid in grids))
+        return lambda path, grids: write(path, map(solid, grids))
 
 
 def plot3d_variant(

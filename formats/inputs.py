@@ -47,12 +47,12 @@ _WITH_FOLDER = (".h5", ".hdf5", ".vtm")
 
 def readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
     """Return the endings of files that are taken from folders and archives, but those of pictures."""
-    read = (
-        f
-        for f in formats()
-        if f.read_grids is not None or (f.read_shapes is not None and not grids_only and f.name != "svg")
-    )
-    return frozenset(suffix for record in read for suffix in record.suffixes)
+    suffixes: set[str] = set()
+    for record in formats():
+        shapes = record.read_shapes is not None and not grids_only and record.name != "svg"
+        if record.read_grids is not None or shapes:
+            suffixes.update(record.suffixes)
+    return frozenset(suffixes)
 
 
 class Numbered(NamedTuple):
@@ -89,7 +89,7 @@ class Inputs:
     shard: tuple[int, int] = (1, 1)
 
     def __post_init__(self) -> None:
-        streams = [word for word in self.words if word in ("-", "@-")]
+        streams = list(filter(("-", "@-").__contains__, self.words))
         if len(streams) > 1:
             raise InputError("standard input is named twice", "name - once", source="-")
         if streams and sys.stdin.isatty():
@@ -157,7 +157,7 @@ class Inputs:
     @cached_property
     def _begun(self) -> int:
         """How many inputs there are, of which no more than `_BEGINNING` are looked for."""
-        return sum(1 for _ in islice(self, _BEGINNING))
+        return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
         """Return how many members the shard has, files that hold several counted once; None from a pipe."""
@@ -199,29 +199,27 @@ class _Walk:
 
     def __init__(self, inputs: Inputs) -> None:
         self._inputs = inputs
-        self._patterns = [pattern.lower() for pattern in inputs.pick]
+        self._patterns = list(map(str.lower, inputs.pick))
         self.seen = self.taken = 0
         self.example = ""
 
     def of(self, words: Iterable[str], lists: tuple[str, ...] = ()) -> Iterator[str | InputError]:
         for word in words:
+            file = bool(lists) and _split(word)[1] in self._inputs.suffixes  # by its ending, in a list
             try:
-                yield from self._of_word(word, lists)
+                if word.startswith("@"):
+                    yield from self._of_list(word[1:], lists)
+                elif not file and _stands_for_many(word):
+                    before = self.seen
+                    yield from self._of_archive(word) if is_archive(word) else self._below(word, "")
+                    if self.seen == before:
+                        known = " ".join(sorted(self._inputs.suffixes))
+                        problem, place = "holds no file that can be read", printable(word)
+                        raise InputError(problem, f"endings are {known}", source=place)
+                elif not lists or self._takes(word.replace(":", "") if is_designation(word) else word):
+                    yield word
             except InputError as error:
                 yield error
-
-    def _of_word(self, word: str, lists: tuple[str, ...]) -> Iterator[str | InputError]:
-        if word.startswith("@"):
-            yield from self._of_list(word[1:], lists)
-        elif not (lists and _split(word)[1] in self._inputs.suffixes) and _stands_for_many(word):
-            before = self.seen
-            yield from self._of_archive(word) if is_archive(word) else self._below(word, "")
-            if self.seen == before:
-                known = " ".join(sorted(self._inputs.suffixes))
-                problem, place = "holds no file that can be read", printable(word)
-                raise InputError(problem, f"endings are {known}", source=place)
-        elif not lists or self._takes(word.replace(":", "") if is_designation(word) else word):
-            yield word
 
     def _of_list(self, name: str, lists: tuple[str, ...]) -> Iterator[str | InputError]:
         if not name:

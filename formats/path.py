@@ -52,7 +52,7 @@ def path_of(text: str) -> Path:
 
 def _points(source: Source) -> Floats:
     """Return the points (n, 3) of a text."""
-    rows = [line for block in table(read_lines(decode(source.read_bytes()))) for line in block]
+    rows = [line for block in table(read_lines(decode(source.text_bytes()))) for line in block]
     if len(rows) > MOST_POINTS:
         raise InputError(f"{len(rows)} points", f"give at most {MOST_POINTS}")
     for line in rows:

@@ -9,7 +9,7 @@ from typing import Literal, TypeVar
 
 from meshonet.formats.format import Format, later
 from meshonet.formats.source import Source, nearest, open_source, printable
-from meshonet.formats.table import TABLE
+from meshonet.formats.table import BY_SUFFIX, TABLE
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError, in_source, meant
 from meshonet.geometry.shapes.shape import Shape
@@ -21,7 +21,7 @@ T = TypeVar("T")
 _OLD_NAMES = {
     "gmsh41": "gmsh:4.1",
     "gmsh41-ascii": "gmsh:4.1,ascii",
-    **{name: f"meshio:{name}" for name in ("stl", "ply", "obj", "off", "abaqus", "medit")},
+    **dict.fromkeys(("stl", "ply", "obj", "off", "abaqus", "medit"), "meshio"),
 }
 _DESIGNATIONS = {
     "naca:": "meshonet.geometry.shapes.airfoil.naca:naca",
@@ -38,13 +38,12 @@ def format_named(name: str) -> Format:
     """
     word, _, options = name.lower().lstrip(".").partition(":")
     if word in _OLD_NAMES:
-        word, _, own = _OLD_NAMES[word].partition(":")
-        return TABLE[word].with_options(f"{own}:{options}")
+        base, _, own = _OLD_NAMES[word].partition(":")
+        return TABLE[base].with_options(f"{own or word}:{options}")
     if word in TABLE:
         return TABLE[word].with_options(options)
-    for record in TABLE.values():
-        if f".{word}" in record.suffixes:
-            return record.with_options(f"{record.suffix_options.get(f'.{word}', '')}:{options}")
+    for record in BY_SUFFIX.get(f".{word}", ()):
+        return record.with_options(f"{record.suffix_options.get(f'.{word}', '')}:{options}")
     family, _, own = word.partition("-")
     if own and family in TABLE:  # as in plot3d-binary, which was a format of its own that read any other too
         record = TABLE[family]
@@ -63,11 +62,11 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
     """Return the format of a source to be read; InputError where neither its ending nor its content tells."""
     if fmt:
         return format_named(fmt)
-    claimed = _by_suffix(source.suffix)
+    claimed = BY_SUFFIX.get(source.suffix, [])
     if len(claimed) == 1:
         return claimed[0]
     head = source.head()
-    for record in claimed or formats():
+    for record in claimed or TABLE.values():
         if record.sniff is not None and record.sniff(head):
             return record
     if claimed:
@@ -86,19 +85,19 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
         raise InputError("the output has no name", remedy, parameter="output")
     suffix = Path(path_text).suffix.lower()
     if fmt or path_text == "-":
-        claimed: tuple[Format, ...] = (format_named(fmt or "hdf5"),)
+        claimed = [format_named(fmt or "hdf5")]
     else:
-        claimed = _by_suffix(suffix)
+        claimed = BY_SUFFIX.get(suffix, [])
         if not claimed:
             what = f"ending {suffix!r} is not known" if suffix else "name has no ending to tell the format by"
-            near = meant(suffix, (end for record in TABLE.values() for end in record.suffixes))
+            near = meant(suffix, BY_SUFFIX)
             remedy = f"{near}choose the format with {{to_format}}; {_known()}"
             raise InputError(f"its {what}", remedy, source=printable(path_text))
     for record in claimed:
         if getattr(record, f"write_{kind}") is not None:
-            plain = ":" not in record.name
-            return record.with_options(record.suffix_options.get(suffix, "")) if plain else record
-    able = ", ".join(record.name for record in formats() if getattr(record, f"write_{kind}") is not None)
+            options = "" if ":" in record.name else record.suffix_options.get(suffix, "")
+            return record.with_options(options) if options else record
+    able = ", ".join(record.name for record in TABLE.values() if getattr(record, f"write_{kind}") is not None)
     problem = f"{claimed[0].name} cannot hold {kind}"
     raise InputError(problem, f"write one of {able}", source=printable(path_text))
 
@@ -129,7 +128,9 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
         word, _, rest = text.partition(":")
         return iter([later(_DESIGNATIONS[f"{word.lower()}:"])(rest)])
     source = source_of(text)
-    record = _selectable(source, format_of(source, fmt))
+    record = format_of(source, fmt)
+    if source.split or source.rows:
+        _check_selection(source, record)
     if record.read_shapes is not None:
         return _Records(source, partial(record.read_shapes, source))
     if record.read_grids is not None:
@@ -149,7 +150,9 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
         remedy = f"make a grid of it first: meshonet infer {text} -o grid.vts"
         raise InputError("is a shape, not a grid", remedy, source=text)
     source = source_of(text)
-    record = _selectable(source, format_of(source, fmt))
+    record = format_of(source, fmt)
+    if source.split or source.rows:
+        _check_selection(source, record)
     if record.read_grids is not None:
         return _Records(source, partial(record.read_grids, source))
     if record.read_shapes is not None and record.write_grids is not None:
@@ -189,24 +192,18 @@ class _Records(Iterator[T]):
             raise InputError(problem, "check the file", source=self._source.name) from error
 
 
-def _selectable(source: Source, record: Format) -> Format:
+def _check_selection(source: Source, record: Format) -> None:
+    """Raise InputError where samples are selected of a file that is no dataset."""
     if record.name != "hdf5" and source.split:
         problem = f"{record.name} files do not say which samples are to {source.split}"
         raise InputError(problem, f"leave #{source.split} out", source=source.name)
-    if record.name != "hdf5" and source.rows:
+    if record.name != "hdf5":
         problem = f"samples of {record.name} files have no numbers"
         raise InputError(problem, "leave out what is behind #", source=source.name)
-    return record
-
-
-def _by_suffix(suffix: str) -> tuple[Format, ...]:
-    return tuple(record for record in TABLE.values() if suffix and suffix in record.suffixes)
 
 
 def _known() -> str:
-    return "known endings: " + " ".join(
-        sorted({word for record in TABLE.values() for word in record.suffixes})
-    )
+    return "known endings: " + " ".join(sorted(BY_SUFFIX))
 
 
 def source_of(text: str) -> Source:
@@ -223,7 +220,7 @@ def source_of(text: str) -> Source:
         if match and f"{match[1].lower()}:" in _DESIGNATIONS:
             remedy = f"did you mean {match[1].lower()}:{match[2]}?"
             raise InputError("no such file", remedy, source=printable(text)) from None
-        claimed = _by_suffix(path.suffix.lower())
+        claimed = BY_SUFFIX.get(path.suffix.lower(), [])
         if path.is_file() and claimed and not any(each.read_shapes or each.read_grids for each in claimed):
             raise _unreadable(claimed[0], printable(text)) from None
         raise

@@ -25,6 +25,10 @@ _LIKENESS = 0.75
 """Of names of files, which share their endings."""
 _MAPPED = 1 << 24
 """Bytes from which a file is mapped into memory instead of read."""
+_MOST_TEXT = 1 << 24
+"""Bytes of a text: an outline of a million points is a mistake."""
+_MOST_PIPED = 1 << 31
+"""Bytes of a stream, which are kept in memory."""
 LARGEST = 1e150
 """Coordinates in files must be below this, so that areas and their sums are finite."""
 
@@ -69,6 +73,13 @@ class Source:
         """Return everything."""
         return self.data if self.data is not None else self._file().read_bytes()
 
+    def text_bytes(self) -> bytes:
+        """Return everything of a text. Raises InputError, before it is read: more than `_MOST_TEXT` bytes."""
+        if self.size > _MOST_TEXT:
+            problem = f"{self.size >> 20} MB are too much for a text of points"
+            raise InputError(problem, f"give a file below {_MOST_TEXT >> 20} MB", source=self.name)
+        return self.read_bytes()
+
     def buffer(self) -> bytes | mmap.mmap:
         """Return everything; of a large file its pages, which the system reads when they are looked at."""
         if self.data is not None or self.size < _MAPPED:
@@ -100,7 +111,9 @@ def open_source(text: str) -> Source:
 
     Raises InputError: no such file, a folder, a file that may not be read, nothing in it.
     """
-    text, split, rows = _selected(text)
+    split, rows = "", None
+    if "#" in text:
+        text, split, rows = _selected(text)
     try:
         source = replace(_opened(text), split=split, rows=rows)
     except FileNotFoundError:
@@ -125,6 +138,8 @@ def printable(text: str) -> str:
     >>> print(printable("a\x1b[31m.dat"))
     a\x1b[31m.dat
     """
+    if text.isprintable():
+        return text
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
@@ -160,7 +175,7 @@ def nearest(path: Path) -> str:
 
 def _opened(text: str) -> Source:
     if text == "-":
-        return Source("-", data=sys.stdin.buffer.read())
+        return Source("-", data=_piped(sys.stdin.buffer, "-"))
     path = Path(text)
     try:
         mode = path.stat().st_mode
@@ -172,9 +187,17 @@ def _opened(text: str) -> Source:
             return Source(printable(text), data=read_member(*member))
     if stat.S_ISDIR(mode):
         raise InputError("is a folder", "name a file in it", source=printable(text))
-    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):  # which may have no end
-        raise InputError("is a device", "name a file", source=printable(text))
+    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
+        raise InputError("is a device", "name a file, or - for standard input", source=printable(text))
     with path.open("rb") as stream:
         if stat.S_ISREG(mode):
             return Source(printable(text), path=path)
-        return Source(printable(text), data=stream.read())
+        return Source(printable(text), data=_piped(stream, printable(text)))
+
+
+def _piped(stream: BinaryIO, name: str) -> bytes:
+    data = stream.read(_MOST_PIPED + 1)
+    if len(data) > _MOST_PIPED:
+        problem = f"is a stream of more than {_MOST_PIPED >> 30} GB"
+        raise InputError(problem, "write it to a file and name that", source=name)
+    return data

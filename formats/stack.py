@@ -5,6 +5,9 @@
     kind = "wing"              # wing, blade or duct
     tip = "round"              # of a wing: round, flat or open
     between = "linear"         # or smooth: cubics through three and more sections
+    tip_spacing = 0.001        # of a wing: last cells along the span, in chords of the last section
+    le_spacing = 0.002         # cells at leading edges, in chords of each section
+    te_spacing = 0.001         # and at trailing edges
 
     [[sections]]               # the root
     airfoil = "naca:2412"      # or a file, looked for beside this one
@@ -35,6 +38,7 @@ from meshonet.geometry.sections.stack import BETWEEN, KINDS, TIPS, Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.outline import Outline
 
+_SPACINGS = "tip_spacing", "le_spacing", "te_spacing"
 _STEEPEST = 85.0
 """Degrees of sweep and dihedral; at 90 the next section would be infinitely far away."""
 
@@ -52,7 +56,7 @@ def read_stack(source: Source) -> Stack:
     """Return the stack of a source (see `stack_of`)."""
     with in_source(source.name):
         data = toml_table(source)
-        data.only("kind", "tip", "between", "name", "about", "sections")
+        data.only("kind", "tip", "between", *_SPACINGS, "name", "about", "sections")
         about = data.pair("about", QUARTER)
         sections: list[Section] = []
         for row in data.rows("sections", least=2):
@@ -62,6 +66,7 @@ def read_stack(source: Source) -> Stack:
             kind=data.word("kind", KINDS, "wing"),  # type: ignore[arg-type]
             tip=data.word("tip", TIPS, "round"),  # type: ignore[arg-type]
             between=data.word("between", BETWEEN, "linear"),  # type: ignore[arg-type]
+            **{key: data.number(key) for key in _SPACINGS if key in data.data},
             name=data.text("name", source.stem or "stack"),
         )
 
@@ -104,6 +109,8 @@ def _shape(row: Table, folder: Path) -> Airfoil | Outline:
         problem = "stands beside outline" if keys else "is missing"
         raise row.error("airfoil", problem, remedy)
     text = row.text(keys[0])
+    if not is_designation(text) and (folder / text).exists() and not (folder / text).is_file():
+        raise row.error(keys[0], f"{printable(text)} is no regular file", remedy)
     try:
         shapes = list(read_shapes(text if is_designation(text) else str(folder / text)))
     except InputError as error:

@@ -46,12 +46,13 @@ def _format(name: str, endings: str, description: str, functions: str, **more: A
 
 def _write(write: Any, name: str, path: Path, grids: Iterable[Grid], *rest: Any, **more: Any) -> None:
     """Write grids by `write`, of the format `name`, once each of them is one that the format can hold."""
-    write(path, (_held(grid, name) for grid in grids), *rest, **more)
+    write(path, map(partial(_held, TABLE[name]), grids), *rest, **more)
 
 
-def _held(grid: Grid, name: str) -> Grid:
-    record = TABLE[name]
-    for kind in kinds_in_space(grid):
+def _held(record: Format, grid: Grid) -> Grid:
+    """Return the grid, or raise InputError: the format cannot hold it."""
+    name = record.name
+    for kind in kinds_in_space(grid) if grid.form != "plane" else ():
         if kind not in record.space:
             able = ", ".join(other.name for other in _FORMATS if kind in other.space and other.write_grids)
             held = ", ".join(("grids in the plane", *record.space))
@@ -170,6 +171,12 @@ _FORMATS: tuple[Format, ...] = (
     ),
 )  # fmt: skip
 
-TABLE = {record.name: record for record in _FORMATS}
-"""Formats by name. Where several share an ending, writing takes the first that can, and reading asks each
+TABLE: dict[str, Format] = {}
+"""Formats by name."""
+BY_SUFFIX: dict[str, list[Format]] = {}
+"""Formats by ending. Where several share an ending, writing takes the first that can, and reading asks each
 whether the content is its own, so the strict ones stand first; the last one answers for what none knows."""
+for _record in _FORMATS:
+    TABLE[_record.name] = _record
+    for _suffix in _record.suffixes:
+        BY_SUFFIX.setdefault(_suffix, []).append(_record)

@@ -46,10 +46,12 @@ class Table:
         return self._number(key, self.data.get(key))
 
     def positive(self, key: str) -> float:
-        """Return a number above 0."""
+        """Return a number above 0, and so far above it that products with others are."""
         value = self.number(key)
         if not value > 0:
             raise self.error(key, f"{value:g} is not positive", "use more than 0")
+        if value < 1e-12:
+            raise self.error(key, f"{value:g} is out of range", "use more than 1e-12")
         return value
 
     def text(self, key: str, default: str | None = None) -> str:
@@ -107,7 +109,7 @@ def toml_table(source: Source) -> Table:
     Raises InputError: it is no TOML; says where.
     """
     try:
-        return Table(tomllib.loads(source.read_bytes().decode("utf-8")))
+        return Table(tomllib.loads(source.text_bytes().decode("utf-8")))
     except (ValueError, RecursionError) as error:  # also integers of more digits than Python reads
         raise InputError(f"is no TOML: {printable(str(error))}", "correct it, or give another file") from None
 

@@ -177,10 +177,6 @@ def trace_rays(
     tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
     limit: int, room: int,
 ) -> tuple[Indices, Floats, Indices, Floats] | None: ...  # fmt: skip
-def walk_map(
-    tables: TriangleMap, corners: Indices, points: Floats, start: Indices, at: Floats, first: Indices,
-    targets: Floats, limit: int,
-) -> Floats: ...  # fmt: skip
 def nearest_points(places: Floats, points: Floats) -> tuple[Indices, Floats]: ...
 
 # quads
@@ -260,8 +256,10 @@ class HexDescent:
         self, shape: float, smoothness: float, power: int = 2, epsilon: float = 0.0, size: float = 0.0
     ) -> None: ...  # fmt: skip
     def run(
-        self, gain: float, most: int, renewal: int, still: float = ..., reach: float = ..., farthest: float = ...
+        self, gain: float, most: int, renewal: int, still: float = ..., reach: float = ...,
+        farthest: float = ...,
     ) -> tuple[float, float, int]: ...  # fmt: skip
+    def smallest(self) -> float: ...
     def evaluate(self, gradient: Floats) -> tuple[float, float]: ...
 
 # surfaces

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.blocks.boundary import Boundary as Boundary
     from meshonet.geometry.blocks.connection import Motion as Motion
     from meshonet.geometry.blocks.grid import Grid as Grid
+    from meshonet.geometry.blocks.revolve import Revolution as Revolution
     from meshonet.geometry.domain.domain import Domain as Domain
     from meshonet.geometry.errors import InputError as InputError
     from meshonet.geometry.errors import MeshonetError as MeshonetError
@@ -87,6 +88,7 @@ _MODULES = {
     "meshonet.geometry.quality.report": ("QualityReport",),
     "meshonet.geometry.sections.section": ("Section",),
     "meshonet.geometry.sections.stack": ("Stack",),
+    "meshonet.geometry.blocks.revolve": ("Revolution",),
     "meshonet.geometry.spacing.sampling": ("Sampling",),
     "meshonet.solvers.pipeline.methods": ("METHODS",),
     "meshonet.solvers.pipeline.make_grid": ("make_grid", "make_grids"),

@@ -28,11 +28,11 @@ import typer.core
 
 from meshonet import __version__
 from meshonet_cli.commands import COMMANDS, Command
-from meshonet_cli.terminal.stage_line import stopping_lines
-from meshonet_cli.terminal.stopping import install
+from meshonet_cli.terminal.stopping import LINES, hide_warnings, install
 
 INTERRUPTED, BAD_INPUT = 130, 2
 """Exit codes: of Ctrl-C as shells have it, and of input that cannot be used."""
+_SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 
 
 def _version(wanted: bool) -> None:
@@ -76,24 +76,30 @@ class Plain(typer.core.TyperCommand):
 
 
 def application(commands: Sequence[Command] = COMMANDS, *, overview: bool = False) -> Any:
-    """Return the parser of `commands`; an `overview` knows no more than their names and summaries.
+    """Return the parser of `commands`, or of the only one's words; an `overview` has names and summaries.
 
     Commands are loaded for their options, which takes a tenth of a second for all of them.
     """
     app = typer.Typer(
+        add_completion=len(commands) > 1,
         name="meshonet",
         epilog="\b\nStart with:  meshonet infer airfoil.dat --res 200 -o grid.vts\n"
         "Exit codes:  0 done, 1 check failed, 2 bad usage or input, 3 no valid grid, 130 interrupted",
         rich_markup_mode=None,  # rich costs 0.2 s at every --help
         pretty_exceptions_enable=False,
-        context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+        context_settings=_SETTINGS,
     )
-    app.callback()(options)
+    if len(commands) > 1:
+        app.callback()(options)
     for command in commands:
         if overview:
             app.command(command.name, help=command.summary)(lambda: None)
-        else:
-            app.command(command.name, epilog=command.epilog, cls=Plain)(command.function)
+            continue
+        from meshonet_cli.options.groups import expanded
+
+        function, examples = command.loaded()
+        epilog = "\n  ".join(["\b\nExamples:", *examples])  # of which \b keeps the lines
+        app.command(command.name, epilog=epilog, cls=Plain, context_settings=_SETTINGS)(expanded(function))
     return typer.main.get_command(app)
 
 
@@ -101,12 +107,16 @@ def run(arguments: Sequence[str]) -> int:
     """Run the command line on `arguments` (without the program's name) and return its exit code."""
     debug = "--debug" in arguments
     words = list(arguments) or ["--help"]
-    meant = [command for command in COMMANDS if command.name == words[0]]
-    overview = not meant and "_MESHONET_COMPLETE" not in os.environ
+    completion = "_MESHONET_COMPLETE" in os.environ
+    meant = [command for command in COMMANDS if command.name == words[0] and not completion]
+    name = f"meshonet {meant[0].name}" if meant else "meshonet"
     try:
-        program = application(meant or COMMANDS, overview=overview)
-        with stopping_lines():
-            code: Any = program.main(words, prog_name="meshonet", standalone_mode=False)
+        program = application(meant or COMMANDS, overview=not (meant or completion))
+        try:
+            code: Any = program.main(words[len(meant) :], prog_name=name, standalone_mode=False)
+        finally:
+            for line in [*LINES]:
+                line.stop()
     except (KeyboardInterrupt, typer.Abort):
         return _interrupted()
     except BrokenPipeError:
@@ -120,8 +130,9 @@ def run(arguments: Sequence[str]) -> int:
             import traceback
 
             traceback.print_exc()
-        name = f"meshonet {meant[0].name}" if meant else "meshonet"
-        print(f"error: {_explained(error, name)}", file=sys.stderr)  # noqa: T201
+        from meshonet_cli.terminal.text import quoted
+
+        print(quoted(f"error: {_explained(error, name)}"), file=sys.stderr)  # noqa: T201
         return int(getattr(error, "exit_code", BAD_INPUT))
     return _interrupted() if code == INTERRUPTED else int(code or 0)
 
@@ -131,17 +142,15 @@ def main() -> NoReturn:
     install()
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # names from files, on a terminal that lacks them
-    code = _on_ranks(sys.argv[1:]) if _names_mpi(sys.argv) else run(sys.argv[1:])
+    words = sys.argv[1:]
+    hide_warnings()
+    mpi = "--engine=mpi" in words or ("--engine", "mpi") in pairwise(words)
+    code = _on_ranks(words) if mpi else run(words)
     with contextlib.suppress(BrokenPipeError):
         sys.stdout.flush()
         sys.exit(code)
     _silence_stdout()
     sys.exit(code)
-
-
-def _names_mpi(words: Sequence[str]) -> bool:
-    """Say whether ``--engine mpi`` is among the words."""
-    return "--engine=mpi" in words or ("--engine", "mpi") in pairwise(words)
 
 
 def _on_ranks(arguments: Sequence[str]) -> int:

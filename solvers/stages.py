@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import time
 from collections.abc import Callable, Iterator
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -62,6 +63,15 @@ def watching(watcher: Watcher) -> contextlib.AbstractContextManager[None]:
 def reached(name: str, unit: str = "", done: int = 0, count: int = 0) -> None:
     """Call the watchers: the stage `name` begins, or has `done` so many of `count` steps."""
     _watchers(Stage(name, unit, count, lambda: done))
+
+
+@contextlib.contextmanager
+def stage(name: str, seconds: dict[str, float]) -> Iterator[None]:
+    """Call the watchers: the stage `name` begins; what the block takes is added to its `seconds`."""
+    reached(name)
+    begun = time.perf_counter()
+    yield
+    seconds[name] = seconds.get(name, 0.0) + time.perf_counter() - begun
 
 
 @contextlib.contextmanager

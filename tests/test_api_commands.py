@@ -45,7 +45,7 @@ def test_a_file_of_several_grids_is_refused(tmp_path: Path) -> None:
     write = format_named("hdf5").write_grids
     assert write is not None
     write(tmp_path / "two.h5", [sheared("a"), sheared("b")])
-    with pytest.raises(InputError, match="holds several grids; read them one by one"):
+    with pytest.raises(InputError, match="holds several, where a grid is asked for; read them one by one"):
         single_grid(tmp_path / "two.h5")
 
 

@@ -19,8 +19,15 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet_cli.commands import COMMANDS
 
 ROOT = Path(__file__).parents[1]
-EXAMPLES = [(command.name, example) for command in COMMANDS for example in command.examples]
+EXAMPLES = [(command.name, example) for command in COMMANDS for example in command.loaded()[1]]
 SLOW = ("train",)  # an hour; here it only has to get as far as asking for its dataset
+
+
+def test_the_domains_say_how_they_are_written() -> None:
+    program = [sys.executable, "examples/domains/domains.py", "--help"]
+    done = subprocess.run(program, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert "usage: domains.py [-h] folder" in done.stdout
+    assert "writes each as GeoJSON into FOLDER" in done.stdout
 
 
 @pytest.fixture
@@ -90,7 +97,7 @@ def test_the_examples_of_the_help_work(folder: Path, command: str, example: str)
 
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.name)
 def test_every_help_shows_its_examples(folder: Path, command: object) -> None:
-    name, examples = command.name, command.examples  # type: ignore[attr-defined]
+    name, examples = command.name, command.loaded()[1]  # type: ignore[attr-defined]
     told = shell(f"meshonet {name} --help", folder).stdout
     assert told == shell(f"meshonet {name} -h", folder).stdout
     assert examples

@@ -5,8 +5,8 @@ python examples/domains/domains.py FOLDER     writes each as GeoJSON into FOLDER
 
 from __future__ import annotations
 
+import argparse
 import json
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -210,5 +210,9 @@ def write_all(folder: Path, seeds: range = range(0)) -> list[Path]:
 
 
 if __name__ == "__main__":
-    for path in write_all(Path(sys.argv[1])):
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("folder", type=Path, help="where each domain is written as GeoJSON")
+    for path in write_all(parser.parse_args().folder):
         print(path)

@@ -8,7 +8,7 @@ number by the skin friction of a flat plate; the grid is marched from the wall.
 
 import meshonet
 
-grid = meshonet.grid("naca:2412", res=(250, 90), y_plus=1, reynolds=6e6, topology="c")
+grid = meshonet.grid("naca:2412", res=(250, 90), y_plus=1, reynolds=6e6, topology="c", te="wedge")
 meshonet.plot(grid, "trailing-edge.png", zoom=(0.9, 1.1, -0.08, 0.08))
 
 # %%

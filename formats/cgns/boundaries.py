@@ -22,6 +22,7 @@ Points = NDArray[np.int64]
 _KINDS: tuple[tuple[str, Kind], ...] = (
     ("BCWall", "wall"), ("BCFarfield", "farfield"), ("BCInflow", "inlet"), ("BCTunnelInflow", "inlet"),
     ("BCOutflow", "outlet"), ("BCTunnelOutflow", "outlet"), ("BCSymmetry", "symmetry"),
+    ("BCAxisymmetricWedge", "wedge"),
 )  # fmt: skip
 """Kinds of boundary by the start of CGNS's name of the condition (SIDS, BCType_t)."""
 _NOTHING = ("Null", "BCTypeNull")

@@ -25,7 +25,7 @@ from meshonet.geometry.blocks.patches import Kind
 
 _CONDITIONS: dict[Kind, str] = {
     "wall": "BCWall", "farfield": "BCFarfield", "inlet": "BCInflow", "outlet": "BCOutflow",
-    "symmetry": "BCSymmetryPlane",
+    "symmetry": "BCSymmetryPlane", "wedge": "BCAxisymmetricWedge",
 }  # fmt: skip
 """CGNS's names of boundary conditions; kinds that are not here are general ones."""
 _IN_MEMORY = 1 << 24

@@ -44,9 +44,10 @@ def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure
     if grid.form != "volume":
         raise InputError("a surface has no slices", "slice volumes", parameter="slice")
     if where.index is None:
-        return _cut_figure(grid, cut(grid, where, values), colouring, view)
+        box = flat_box(view.zoom, where.direction)
+        return _cut_figure(grid, cut(grid, where, values), colouring, view, box)
     sheets = layers(grid, where, values)
-    flat = _flattened(sheets)
+    flat, across = _flattened(sheets)
     if flat is None:
         return _seen(grid, sheets, colouring, view)
     blocks = tuple(Block(nodes) for nodes in flat)
@@ -54,7 +55,7 @@ def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure
     if colouring:
         shown = tuple(sheet.values for sheet in sheets if sheet.values is not None)
         colouring = replace(colouring, values=shown)
-    return draw(plane, colouring, flat_box(view.zoom), view.every)
+    return draw(plane, colouring, flat_box(view.zoom, across), view.every)
 
 
 def _surface(grid: Grid, values: list[Floats] | None) -> list[CellSheet]:
@@ -70,14 +71,17 @@ def _surface(grid: Grid, values: list[Floats] | None) -> list[CellSheet]:
     return sheets
 
 
-def _flattened(sheets: Sequence[CellSheet]) -> list[Floats] | None:
-    """Return the nodes (n, m, 2) of sheets that are in one plane of two axes, None where they are not."""
+def _flattened(sheets: Sequence[CellSheet]) -> tuple[list[Floats] | None, int]:
+    """Return the nodes (n, m, 2) of sheets that are in one plane of two axes, and the axis across it.
+
+    There are none where the sheets are not in one such plane.
+    """
     every = np.concatenate([sheet.nodes.reshape(-1, 3) for sheet in sheets])
     extent = np.ptp(every, axis=0)
     across = int(extent.argmin())
     if extent[across] > _FLAT * extent.max():
-        return None
-    return [np.delete(sheet.nodes, across, axis=2) for sheet in sheets]
+        return None, across
+    return [np.delete(sheet.nodes, across, axis=2) for sheet in sheets], across
 
 
 def _seen(grid: Grid, sheets: Sequence[CellSheet], colouring: Colouring | None, view: View) -> Figure:
@@ -132,7 +136,9 @@ def _within(sheet: CellSheet, zoom: tuple[float, ...] | None) -> Any:
     return ((centre >= low) & (centre <= high)).all(axis=-1)
 
 
-def _cut_figure(grid: Grid, polygons: Cut, colouring: Colouring | None, view: View) -> Figure:
+def _cut_figure(
+    grid: Grid, polygons: Cut, colouring: Colouring | None, view: View, zoom: Box | None
+) -> Figure:
     """Return a picture of the polygons in which a plane cuts cells."""
     from matplotlib.collections import PolyCollection
 
@@ -140,7 +146,7 @@ def _cut_figure(grid: Grid, polygons: Cut, colouring: Colouring | None, view: Vi
     low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
     pad = 0.02 * float((high - low).max())
     whole = float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)
-    box = flat_box(view.zoom) or whole
+    box = zoom or whole
     figure, (ax,), bar = frame([box], colouring is not None)
     limits = limits_of(colouring, [] if polygons.values is None else [polygons.values])
     pixels = ax.get_window_extent().width / (box[1] - box[0])

@@ -73,10 +73,15 @@ def check_flat(view: View) -> None:
             raise InputError("the grid is in the plane", f"leave {{{name}}} out", parameter=name)
 
 
-def flat_box(zoom: tuple[float, ...] | None) -> Box | None:
-    """Return the box of a flat picture; raise InputError for one in space."""
+def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box | None:
+    """Return the box of a flat picture: of one in space, that of the directions other than `across`.
+
+    Raises InputError: a box in space for a grid in the plane.
+    """
     if zoom is None:
         return None
+    if len(zoom) == 6 and across is not None:
+        zoom = zoom[: 2 * across] + zoom[2 * across + 2 :]
     if len(zoom) != 4:
         raise InputError("this picture is flat", "use x0,x1,y0,y1 of its two directions", parameter="zoom")
     return zoom[0], zoom[1], zoom[2], zoom[3]

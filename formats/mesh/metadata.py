@@ -8,7 +8,6 @@ from typing import TypeAlias
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import kind_of
-from meshonet.geometry.shapes.spatial_shape import in_space
 
 Facts: TypeAlias = Mapping[str, Sequence[str]]
 """Texts by the name of what they say."""
@@ -23,30 +22,41 @@ def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]
     the provenance; with the grid's `number` in its file, by which its blocks know each other,
     `grid_of_blocks` makes a grid. An extruded grid has those of its plane, so that it is read as that again.
     """
-    space = in_space(grid)
+    space = grid.form != "plane"
     if space:
         from meshonet.geometry.blocks.extrude import plane_of_extruded
 
         grid = plane_of_extruded(grid) or grid
-        space = in_space(grid)
+        space = grid.form != "plane"
     of_blocks = grid.topology == "blocks"
-    several = of_blocks and (len(grid.blocks) > 1 or not space)
-    first = block == 0
-    provenance = json.dumps(dict(grid.provenance), default=plain) if grid.provenance and first else ""
-    patches = [patch for patch in grid.patches if patch.block == block]
-    by_name = all(patch.kind == kind_of(patch.name) for patch in patches)
-    facts: dict[str, list[str]] = {
-        "topology": [grid.topology],
-        "name": [grid.name],
-        "parts": [f"{p.side} {p.start} {p.stop} {p.name}" for p in patches],
-        "kinds": [] if by_name else [patch.kind for patch in patches],
-        "across": [" ".join(map(str, patch.across or ())) for patch in patches],
-        "coordinates": ["3" if space else ""],
-        "provenance": [provenance],
-        "block": [f"{number} {block}" if several else ""],
-        "connections": [connections_text(grid.connections) if of_blocks and first else ""],
-    }
-    return {name: texts for name, texts in facts.items() if any(texts)}
+    facts: dict[str, list[str]] = {"topology": [grid.topology]}
+    if grid.name:
+        facts["name"] = [grid.name]
+    parts: list[str] = []
+    kinds: list[str] = []
+    across: list[str] = []
+    by_name = True
+    for patch in grid.patches:
+        if patch.block == block:
+            parts.append(f"{patch.side} {patch.start} {patch.stop} {patch.name}")
+            kinds.append(patch.kind)
+            across.append(" ".join(map(str, patch.across or ())))
+            by_name &= patch.kind == kind_of(patch.name)
+    if parts:
+        facts["parts"] = parts
+    if not by_name:
+        facts["kinds"] = kinds
+    if any(across):
+        facts["across"] = across
+    if space:
+        facts["coordinates"] = ["3"]
+    if grid.provenance and block == 0:
+        facts["provenance"] = [json.dumps(dict(grid.provenance), default=plain)]
+    if of_blocks and (len(grid.blocks) > 1 or not space):
+        facts["block"] = [f"{number} {block}"]
+    if of_blocks and block == 0:
+        facts["connections"] = [connections_text(grid.connections)]
+    return facts
 
 
 def plain(value: object) -> object:

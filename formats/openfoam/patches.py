@@ -19,7 +19,7 @@ PLANES = ""
 """Key, which no name is, of the part that the two planes of a grid one cell thick make."""
 EMPTY = "frontAndBack"
 """Title of their patch, of type ``empty``."""
-_TYPES: dict[Kind, str] = {"wall": "wall", "symmetry": "symmetry"}
+_TYPES: dict[Kind, str] = {"wall": "wall", "symmetry": "symmetry", "wedge": "wedge"}
 """OpenFOAM's types of patches; kinds that are not here are ``patch``."""
 _FLAT = 1e-15
 """A symmetry plane is one whose unit normals differ by no more, squared (symmetryPlanePolyPatch.C)."""

@@ -18,6 +18,7 @@ from meshonet.formats.openfoam.patches import patches_of, with_empty_planes, wri
 from meshonet.formats.output import whole_file, whole_folder
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent
 from meshonet.geometry.shapes.spatial_shape import in_space
 
@@ -52,6 +53,8 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
     faces = all_faces(grid, numbers, parts)
     if numbers is not apart:
         faces, parts = without_collapsed(faces, parts)
+    if not len(faces.owner):
+        raise InputError("no cell of the grid has a volume", "give a grid whose nodes are apart")
     patches = patches_of(grid, parts, pairs, points)
     binary = "binary" in options or (len(points) > _SMALL and "ascii" not in options)
     for name in ("constant", "system"):

@@ -10,6 +10,8 @@ https://m-selig.ae.illinois.edu/ads/coord_database.html
 
 import re
 from collections.abc import Iterator
+from itertools import chain
+from operator import attrgetter
 
 import numpy as np
 
@@ -28,7 +30,7 @@ _ASK = "give an airfoil as lines of x y from the trailing edge round to it again
 
 def read_shapes(source: Source) -> Iterator[Airfoil]:
     """Yield the airfoil of a file; InputError, with its line, where there is none."""
-    yield parse(decode(source.read_bytes()), source.name, source.stem)
+    yield parse(decode(source.text_bytes()), source.name, source.stem)
 
 
 def parse(text: str, source: str, stem: str = "") -> Airfoil:
@@ -41,10 +43,13 @@ def parse(text: str, source: str, stem: str = "") -> Airfoil:
         lines = read_lines(text)
         rows, blocks, counts = _data(lines)
         points, order, upper = _once_around(*_columns(rows), blocks)
-        _check_run(points, [rows[k].number for k in order])
-        places = [f"line {rows[k].number}" for k in order]
-        notes = (*left_out(lines), *_wrong_counts(counts, len(rows), upper))
-        return Airfoil(points, _name(lines, rows[0].number) or stem or source, places, notes)
+        numbers = [rows[k].number for k in order]
+        _check_run(points, numbers)
+        notes = left_out(lines)
+        if counts is not None:
+            notes += _wrong_counts(counts, len(rows), upper)
+        name = _name(lines, rows[0].number) or stem or source
+        return Airfoil(points, name, list(map("line {}".format, numbers)), notes)
 
 
 def sniff(head: bytes) -> bool:
@@ -64,29 +69,43 @@ def _name(lines: list[Line], first: int) -> str:
 def _data(lines: list[Line]) -> tuple[list[Line], list[int], Line | None]:
     """Return the rows that are coordinates, where among them a new block starts, and Lednicer's counts."""
     blocks = table(lines)
-    count = sum(map(len, blocks))
-    if count > MOST_POINTS:
-        raise InputError(f"{count} points", f"an airfoil file has a few hundred; give at most {MOST_POINTS}")
-    if count < 3:
-        raise InputError(f"{count} lines of coordinates", _ASK)
-    widths = [len(line.values) for block in blocks for line in block]
-    usual = max(set(widths), key=lambda w: (widths.count(w), -w))
-    # a longer row among the data has a remark behind it, above the data it is a heading of its own
-    third = [line.number for block in blocks for line in block if len(line.values) == usual][:3][-1]
-    fits = [
-        [
-            line
-            for line in block
-            if len(line.values) == usual or (len(line.values) > usual and line.number > third)
-        ]
-        for block in blocks
-    ]
-    blocks = [block for block in fits if block]
+    rows = list(chain.from_iterable(blocks))
+    if len(rows) > MOST_POINTS:
+        problem = f"{len(rows)} points"
+        raise InputError(problem, f"an airfoil file has a few hundred; give at most {MOST_POINTS}")
+    if len(rows) < 3:
+        raise InputError(f"{len(rows)} lines of coordinates", _ASK)
+    widths = [len(line.values) for line in rows]
+    usual = widths[0]
+    if len(set(widths)) > 1:
+        usual = max(sorted(set(widths)), key=widths.count)
+        blocks = _of_width(blocks, usual)
     while len(blocks) > 1 and len(blocks[-1]) < 3 and _is_apart(blocks, lines):
         blocks.pop()  # numbers in the prose behind the data
-    rows = [line for block in blocks for line in block]
+    rows = list(chain.from_iterable(blocks))
     starts = np.cumsum([0, *map(len, blocks[:-1])]).tolist()
-    return _without_heading(_without_mark(rows), starts, usual)
+    points = _points(rows)
+    if len(rows) >= 8 and points[-1, 0] == points[-1, 1] and _outside(points[-1], points[3:-1], by=0.5):
+        rows.pop()  # an end mark such as 999 999: the same number twice, far outside the data
+    return _without_heading(rows, starts) if usual == 2 else (rows, starts, None)
+
+
+def _of_width(blocks: list[list[Line]], usual: int) -> list[list[Line]]:
+    """Return blocks without rows of other counts of numbers.
+
+    A longer row among the data has a remark behind it, above the data it is a heading of its own.
+    """
+    third = [line.number for block in blocks for line in block if len(line.values) == usual][:3][-1]
+    fits = [
+        [n for n in block if len(n.values) == usual or (len(n.values) > usual and n.number > third)]
+        for block in blocks
+    ]
+    return [block for block in fits if block]
+
+
+def _points(rows: list[Line]) -> Floats:
+    """Return the first two numbers of rows (n, 2)."""
+    return np.array([line.values[:2] for line in rows])
 
 
 def _is_apart(blocks: list[list[Line]], lines: list[Line]) -> bool:
@@ -98,15 +117,6 @@ def _is_apart(blocks: list[list[Line]], lines: list[Line]) -> bool:
     return _outside(np.array(last.values[:2]), points)
 
 
-def _without_mark(rows: list[Line]) -> list[Line]:
-    """Return rows without an end mark such as 999 999: the same number twice, far outside the data."""
-    if len(rows) < 8:
-        return rows
-    points, last = (np.array([line.values[:2] for line in part]) for part in (rows[3:-1], rows[-1:]))
-    marked = last[0, 0] == last[0, 1] and _outside(last[0], points, by=0.5)
-    return rows[:-1] if marked else rows
-
-
 def _outside(point: Floats, points: Floats, by: float = 1.0) -> bool:
     """Say whether a point (2,) lies more than the extent of the others, times `by`, outside their box."""
     low, high = points.min(axis=0), points.max(axis=0)
@@ -114,9 +124,7 @@ def _outside(point: Floats, points: Floats, by: float = 1.0) -> bool:
     return bool((point < low - reach).any() or (point > high + reach).any())
 
 
-def _without_heading(
-    rows: list[Line], starts: list[int], width: int
-) -> tuple[list[Line], list[int], Line | None]:
+def _without_heading(rows: list[Line], starts: list[int]) -> tuple[list[Line], list[int], Line | None]:
     """Return rows and starts of blocks without rows of numbers above the data that are no coordinates.
 
     Those are Lednicer's counts, which are returned too, and names or conditions that happen to be numbers:
@@ -124,24 +132,26 @@ def _without_heading(
     the points next to them.
     """
     counts = None
-    if width != 2:
-        return rows, starts, counts
     for k in reversed(range(min(4, len(rows) - 4))):
         if _are_counts(rows[k], len(rows) - k - 1, len(rows) - k - 1):
             return rows[k + 1 :], [0, int(rows[k].values[0])], rows[k]
+    points = _points(rows)
     while len(rows) > 4:
-        rest = np.array([line.values[:2] for line in rows[1:]])
-        point = np.array(rows[0].values[:2])
-        extent = extent_of(rest)
-        apart = float(np.hypot(*(rest[[0, -1]] - point).T).min())
-        whole = "." not in rows[0].text and sum("." in line.text for line in rows[1:]) > 0.8 * len(rest)
-        named = any(re.fullmatch(r"0\d+", word) for word in rows[0].text.split())
-        if not (_outside(point, rest) or (whole and (named or apart > 0.2 * extent))):
+        point, rest = points[0], points[1:]
+        named = re.search(r"(?<!\S)0\d+(?!\S)", rows[0].text) is not None
+        if not _outside(point, rest) and ("." in rows[0].text or not _unlike(rows, rest, point, named)):
             break
         if not named and _are_counts(rows[0], len(rest) // 2, 2 * len(rest)):
             counts = rows[0]
-        rows, starts = rows[1:], sorted({max(start - 1, 0) for start in starts})
+        rows, points, starts = rows[1:], rest, sorted({max(start - 1, 0) for start in starts})
     return rows, starts, counts
+
+
+def _unlike(rows: list[Line], rest: Floats, point: Floats, named: bool) -> bool:
+    """Say whether a first row of whole numbers is unlike the others: a number with a 0 in front, or apart."""
+    apart = float(np.hypot(*(rest[[0, -1]] - point).T).min())
+    fractions = sum("." in line.text for line in rows[1:])
+    return fractions > 0.8 * len(rest) and (named or apart > 0.2 * extent_of(rest))
 
 
 def _are_counts(line: Line, least: int, most: int) -> bool:
@@ -151,10 +161,8 @@ def _are_counts(line: Line, least: int, most: int) -> bool:
     return whole and min(upper, lower) >= 2 and least <= upper + lower <= most
 
 
-def _wrong_counts(counts: Line | None, points: int, upper: int) -> tuple[str, ...]:
+def _wrong_counts(counts: Line, points: int, upper: int) -> tuple[str, ...]:
     """Return a note when a file announces other counts of points than its two surfaces have."""
-    if counts is None:
-        return ()
     first, both = counts.values[0], sum(counts.values[:2])
     if (upper or first) == first and points == both:
         return ()
@@ -165,12 +173,12 @@ def _wrong_counts(counts: Line | None, points: int, upper: int) -> tuple[str, ..
 
 def _columns(rows: list[Line]) -> tuple[Floats, list[int]]:
     """Return points (n, 2) and the row each stands in, from tables of two or more columns."""
-    width = min(len(line.values) for line in rows)
+    width, index = min(map(len, map(attrgetter("values"), rows))), list(range(len(rows)))
+    if width == 2:
+        return _points(rows), index
     values = np.array([line.values[:width] for line in rows])
-    index = list(range(len(rows)))
-    numbered = values[0, 0] in (0, 1) and np.array_equal(values[:, 0], values[0, 0] + np.arange(len(rows)))
-    if width > 2 and numbered:
-        values, width = values[:, 1:], width - 1
+    if values[0, 0] in (0, 1) and np.array_equal(values[:, 0], values[0, 0] + np.arange(len(rows))):
+        values, width = values[:, 1:], width - 1  # numbered
     if width == 3 and np.ptp(values[:, 2]) > 0 and np.ptp(values[:, 1]) == 0:
         return values[:, [0, 2]], index  # x and z, in a plane of constant y
     runs = [_monotone(values[:, k]) for k in range(width)]
@@ -202,15 +210,16 @@ def _once_around(points: Floats, index: list[int], starts: list[int]) -> tuple[F
     n = len(points)
     steps = np.hypot(*np.diff(points, axis=0).T)
     half = [n // 2] if n == 2 * len(set(index)) else []  # two surfaces side by side
-    breaks = {k for k in (*starts, *half, int(np.argmax(steps)) + 1) if 2 <= k <= n - 2}
     best, order, first = 0.98 * _way_round(points), np.arange(n), 0
-    for k in sorted(breaks):
+    for k in sorted({*starts, *half, int(np.argmax(steps)) + 1}):
+        if not 2 <= k <= n - 2:
+            continue
         turned = np.concatenate([np.arange(k)[::-1], np.arange(k, n)])
         length = _way_round(points[turned])
         if length < best:
             ahead = points[turned[[0, -1]], 0].max() < points[[0, k], 0].min()
             best, order, first = length, np.roll(turned, -k) if ahead else turned, k
-    return points[order], [index[k] for k in order], first
+    return points[order], np.array(index)[order].tolist(), first
 
 
 def _way_round(points: Floats) -> float:
@@ -234,9 +243,9 @@ def _check_run(points: Floats, numbers: list[int]) -> None:
             problem = f"({x:g}, {y:g}) lies far from the points before and after it"
             raise InputError(problem, "correct or remove it", place=f"line {numbers[k]}")
     back = np.flatnonzero(np.hypot(*(points - points[0]).T) < 0.02 * extent)
-    closed = [k for k in back.tolist() if 8 <= k < n - 7 and length[k] > 0.02 * extent]
-    if closed or length.sum() > 3.5 * extent:
-        k = closed[0] if closed else int(np.argmax(length))
+    closed = back[(back >= 8) & (back < n - 7) & (length[back] > 0.02 * extent)]
+    if len(closed) or length.sum() > 3.5 * extent:
+        k = int(closed[0]) if len(closed) else int(np.argmax(length))
         raise InputError(
             f"the points go more than once around: widest step, line {numbers[k]} to {numbers[(k + 1) % n]}",
             "give one element alone, " + _ASK.removeprefix("give an airfoil "),

@@ -35,7 +35,7 @@ MOST_POINTS = 100_000
 
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes of a file; InputError, with its line, where there is none."""
-    yield from parse(decode(source.read_bytes()), source.name, source.stem)
+    yield from parse(decode(source.text_bytes()), source.name, source.stem)
 
 
 def parse(text: str, source: str, stem: str = "") -> list[Shape]:

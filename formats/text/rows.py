@@ -7,6 +7,8 @@ separate columns.
 
 import re
 from functools import lru_cache
+from itertools import count
+from operator import attrgetter
 from typing import Literal, NamedTuple
 
 from meshonet.formats.source import LARGEST
@@ -103,7 +105,7 @@ def _lines(text: str) -> tuple[Line, ...]:
     if len(texts) > MOST_LINES:
         problem = f"{len(texts)} lines are too many for a file of points"
         raise InputError(problem, f"give at most {MOST_LINES}")
-    return tuple(_line(number, line) for number, line in enumerate(texts, start=1))
+    return tuple(map(_line, count(1), texts))
 
 
 def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
@@ -112,9 +114,11 @@ def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
         lines = read_lines(decode(head))
     except InputError:
         return False
-    rows = [line for line in lines if line.kind == "row"]
-    fitting = sum(len(line.values) in counts for line in rows)
-    return fitting >= least and fitting >= 0.8 * len(rows)
+    rows = fitting = 0
+    for line in lines:
+        rows += line.kind == "row"
+        fitting += line.kind == "row" and len(line.values) in counts
+    return fitting >= least and fitting >= 0.8 * rows
 
 
 def table(lines: list[Line]) -> list[list[Line]]:
@@ -126,7 +130,7 @@ def table(lines: list[Line]) -> list[list[Line]]:
     Raises InputError: a damaged line with no prose between it and the next row, or a broken one between two
     rows.
     """
-    kinds: list[Kind] = ["blank", *(line.kind for line in lines), "blank"]
+    kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
     blocks: list[list[Line]] = [[]]
     for k, line in enumerate(lines):
         beside = kinds[k], kinds[k + 2]
@@ -182,7 +186,7 @@ def _line(number: int, text: str) -> Line:
     if not words:
         return Line(number, "blank", (), text)
     bare = _REMARK.sub("", text).strip() if len(text) <= 4000 else ""
-    if not bare:
+    if not bare or (bare[0].isalpha() and not _MEANT.fullmatch(_SPLIT.split(bare, maxsplit=1)[0])):
         return Line(number, "text", (), text)
     return _difficult(number, text, _words(bare))
 

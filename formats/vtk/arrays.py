@@ -2,10 +2,9 @@
 
 import base64
 import binascii
-import math
 import re
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.source import printable
-from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 
 _KINDS = {
@@ -23,8 +21,6 @@ _KINDS = {
 """NumPy's number types by VTK's names."""
 CUT = "the file is cut short or its sizes are wrong: write it again"
 """The remedy where a file ends too soon."""
-_BLOCK_NODES = 1 << 15
-"""Nodes laid out at a time: 24 bytes each stay in the second-level cache."""
 _MOST_SHRINKING = 1 << 15
 """LZMA shrinks zeros some ten thousand times, zlib a thousand; a claim far beyond is refused."""
 
@@ -147,25 +143,3 @@ def _inflater(compressor: str) -> Callable[[memoryview, int], bytes]:
         return lambda packed, most: LZMADecompressor().decompress(packed, most)
     remedy = "write it with zlib (vtkZLibDataCompressor) or none"
     raise InputError(f"compressor {compressor[:60]!r} cannot be read", remedy)
-
-
-def points_of(nodes: Floats, dtype: str) -> Iterator[NDArray[Any]]:
-    """Yield nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) as points (n, 3), i fastest, some rows at a time.
-
-    Nodes in the plane get z = 0.
-    """
-    *counts, coordinates = nodes.shape
-    last = len(counts) - 1
-    step = max(1, _BLOCK_NODES * counts[-1] // math.prod(counts))
-    for start in range(0, counts[-1], step):
-        part = nodes[(slice(None),) * last + (slice(start, start + step),)]
-        points = np.zeros((*part.shape[last::-1], 3), dtype)
-        points[..., :coordinates] = part.transpose(*range(last, -1, -1), last + 1)
-        yield points.reshape(-1, 3)
-
-
-def escaped(text: str) -> str:
-    """Return `text` for an XML attribute; xml.sax has this too, behind 30 ms of network modules."""
-    for plain, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;")):
-        text = text.replace(plain, entity)
-    return printable(text)

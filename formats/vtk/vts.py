@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from meshonet.formats.format import only_one
 from meshonet.formats.mesh.metadata import Facts, facts_of
-from meshonet.formats.vtk.arrays import escaped, points_of
+from meshonet.formats.vtk.points import escaped, points_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -53,7 +53,9 @@ def write(
     (`meshonet.formats.mesh.metadata.facts_of`).
     """
     nodes = grid.blocks[block].nodes
-    cells = {name: _cell_values(name, values, nodes) for name, values in (cell_data or {}).items()}
+    cells = dict(cell_data or {})
+    for name, values in cells.items():
+        cells[name] = _cell_values(name, values, nodes)
     facts = facts_of(grid) if facts is None else facts
     ni, nj, nk = (*grid.blocks[block].counts, 1)[:3]
     with path.open("wb") as stream:
@@ -73,7 +75,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def _head(dims: tuple[int, int, int], facts: Facts, cells: Mapping[str, NDArray[Any]]) -> str:
-    extent = " ".join(f"0 {n - 1}" for n in dims)
+    extent = "0 {} 0 {} 0 {}".format(*(np.array(dims) - 1))
     offset = 8 + 24 * math.prod(dims)
     arrays = []
     for name, values in cells.items():
@@ -90,7 +92,7 @@ def _field_data(facts: Facts) -> list[str]:
     """Return the FieldData element; VTK spells strings as signed bytes, each string ended by a zero."""
     lines = ["    <FieldData>"]
     for name, texts in facts.items():
-        codes = " ".join(map(str, np.frombuffer("".join(text + "\0" for text in texts).encode(), np.int8)))
+        codes = " ".join(map(str, np.frombuffer("\0".join([*texts, ""]).encode(), np.int8)))
         tag = f'Array type="String" Name="{name}" NumberOfTuples="{len(texts)}" format="ascii"'
         lines.append(f"      <{tag}>{codes}</Array>")
     return [*lines, "    </FieldData>"]

@@ -80,7 +80,9 @@ def face_of(values: AnyArray, side: Side) -> AnyArray:
 
 def part_of(values: AnyArray, span: Range) -> AnyArray:
     """Return a view of `values` (n, m, ...) at the nodes of `span`, first and last included."""
-    return values[tuple(slice(first, last + 1) for first, last in span)]  # type: ignore[return-value]
+    for axis, (first, last) in enumerate(span):
+        values = values[(slice(None),) * axis + (slice(first, last + 1),)]  # type: ignore[assignment]
+    return values
 
 
 def face_counts(counts: tuple[int, ...], side: Side) -> tuple[int, ...]:

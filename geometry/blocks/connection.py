@@ -111,12 +111,12 @@ class Connection:
 
     def nodes(self, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the nodes of both sides in one order, (n, d) or (n, m, d); `transform` moves the first."""
-        own, donor = (part_of(face(block, side), span) for block, side, span in self.ends)
+        own = part_of(face(self.block, self.side), self.range)
+        donor = part_of(face(self.donor, self.donor_side), self.donor_range)
         if len(self.orientation) != own.ndim - 1:
             raise InputError(f"{self} has {len(self.orientation)} directions", f"give {own.ndim - 1}")
-        axes = [abs(direction) - 1 for direction in self.orientation]
-        donor = donor.transpose(*axes, donor.ndim - 1)
-        donor = donor[tuple(slice(None, None, -1 if d < 0 else 1) for d in self.orientation)]
+        donor = donor.transpose(*(np.abs(self.orientation) - 1), donor.ndim - 1)
+        donor = np.flip(donor, tuple(np.flatnonzero(np.less(self.orientation, 0)).tolist()))
         return (self.transform(own) if self.transform else own), donor
 
     def check(self, face: Face) -> None:
@@ -171,13 +171,13 @@ def check_connections(connections: Sequence[Connection], counts: Sequence[tuple[
         for block, side, span in each.ends:
             known = 0 <= block < len(counts) and side in sides_of(counts[block])
             most = face_counts(counts[block], side) if known else ()
-            if len(span) != len(most) or any(
-                not 0 <= start < stop < n for (start, stop), n in zip(span, most, strict=True)
-            ):
+            for (start, stop), n in zip(span, most, strict=False):
+                known &= 0 <= start < stop < n
+            if not known or len(span) != len(most):
                 raise InputError(f"{each} leaves its side", "connect sides and nodes that there are")
         if len(each.orientation) != len(each.range):
             raise InputError(f"{each} has {len(each.orientation)} directions", f"give {len(each.range)}")
-        if sorted(abs(way) for way in each.orientation) != list(range(1, len(each.range) + 1)):
+        if sorted(map(abs, each.orientation)) != list(range(1, len(each.range) + 1)):
             raise InputError(f"{each} has directions {each.orientation}", "give each direction once")
 
 

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +23,7 @@ import numpy as np
 
 from meshonet.above import ABOVE
 from meshonet.geometry.arrays import Floats, Side, Topology
-from meshonet.geometry.blocks.block import Block, Form, Range, check_alike, form_of, part_of
+from meshonet.geometry.blocks.block import Block, Form, Range, check_alike, face_of, form_of, part_of
 from meshonet.geometry.blocks.connection import (
     Connected,
     Connection,
@@ -36,6 +37,9 @@ from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
     from meshonet.geometry.summary import Quality
+
+
+_COUNTS = attrgetter("counts")
 
 
 @dataclass(frozen=True)
@@ -85,8 +89,9 @@ class Grid(Connected):
     def __post_init__(self) -> None:
         if not self.blocks:
             raise InputError("a grid without blocks", "give at least one")
-        check_alike(self.blocks)
-        counts = [block.counts for block in self.blocks]
+        if len(self.blocks) > 1:
+            check_alike(self.blocks)
+        counts = list(map(_COUNTS, self.blocks))
         check_patches(self.patches, counts)
         check_connections(self.connections, counts)
         for connection in self.connections:
@@ -138,7 +143,7 @@ class Grid(Connected):
         """``quad``, ``o`` or ``c`` for a single planar block, by its connections; otherwise ``blocks``."""
         if self.form != "plane":
             return "blocks"
-        return topology_of([block.counts for block in self.blocks], self.connections)
+        return topology_of(list(map(_COUNTS, self.blocks)), self.connections)
 
     @property
     def form(self) -> Form:
@@ -180,7 +185,7 @@ class Grid(Connected):
 
     def face(self, block: int, side: Side) -> Floats:
         """Return the nodes of a side of a block."""
-        return self.blocks[block].face(side)
+        return face_of(self.blocks[block].nodes, side)
 
     def at(self, patch: Patch) -> Floats:
         """Return the nodes (n, d) or (n, m, d) of a patch."""

@@ -8,17 +8,21 @@ from meshonet.geometry.arrays import SIDES, Side, Topology
 from meshonet.geometry.blocks.block import PLACES, Range, face_counts, sides_of
 from meshonet.geometry.errors import InputError
 
-Kind: TypeAlias = Literal["wall", "farfield", "inlet", "outlet", "symmetry", "periodic", "interface", "other"]
+Kind: TypeAlias = Literal[
+    "wall", "farfield", "inlet", "outlet", "symmetry", "wedge", "periodic", "interface", "other"
+]
 
-_SIGNS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
-    ("farfield", ("far", "freestream")),
-    ("inlet", ("inlet", "inflow")),
-    ("outlet", ("outlet", "outflow")),
-    ("symmetry", ("symm",)),
-    ("wall", ("wall", "airfoil", "body", "surface", "blade")),
-    ("periodic", ("periodic",)),
-    ("interface", ("interface", "wake")),
-)
+_SIGNS: tuple[tuple[Kind, str], ...] = (
+    ("farfield", "far"), ("farfield", "freestream"),
+    ("inlet", "inlet"), ("inlet", "inflow"),
+    ("outlet", "outlet"), ("outlet", "outflow"),
+    ("symmetry", "symm"),
+    ("wedge", "wedge"),
+    ("wall", "wall"), ("wall", "airfoil"), ("wall", "body"), ("wall", "surface"), ("wall", "blade"),
+    ("periodic", "periodic"),
+    ("interface", "interface"), ("interface", "wake"),
+)  # fmt: skip
+"""Kinds of boundary, and what names of them have in them; the first that fits counts."""
 
 
 def kind_of(name: str) -> Kind:
@@ -28,7 +32,10 @@ def kind_of(name: str) -> Kind:
     ('wall', 'other')
     """
     low = name.lower()
-    return next((kind for kind, signs in _SIGNS if any(sign in low for sign in signs)), "other")
+    for kind, sign in _SIGNS:
+        if sign in low:
+            return kind
+    return "other"
 
 
 @dataclass(frozen=True)

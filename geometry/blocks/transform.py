@@ -18,7 +18,7 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats, Side
-from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.block import Block, part_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
@@ -74,13 +74,32 @@ _Corners: TypeAlias = list[tuple[str, int, Floats]]
 
 
 def _corners_of_patches(grid: Grid) -> _Corners:
-    """Return the corners inside the patches of a planar grid; the ends of patches are checked separately."""
+    """Return the corners inside patches, in volumes inside walls; ends of patches are checked separately."""
     if grid.form != "plane":
-        return []
+        walls = (patch for patch in grid.patches if patch.kind == "wall" and grid.form == "volume")
+        return [corner for patch in walls for corner in _corners_in_space(grid, patch)]
     ring = grid.periodic
     lines = (
         (patch.side, patch.start, grid.face(patch.block, patch.side)[patch.start : patch.stop + 1], ring)
         for patch in grid.patches
+    )
+    return _corners_of(lines)
+
+
+def _corners_in_space(grid: Grid, patch: Patch) -> _Corners:
+    """Return the corners of three lines along each direction of a patch in space."""
+    face = grid.face(patch.block, patch.side)
+    span = patch.range(face.shape[:-1])
+    nodes = part_of(face, span)
+    lines = (
+        (
+            patch.side,
+            span[axis][0],
+            np.take(nodes, k * (nodes.shape[1 - axis] - 1) // 2, axis=1 - axis),
+            False,
+        )
+        for axis in (0, 1)
+        for k in range(3)
     )
     return _corners_of(lines)
 
@@ -101,11 +120,13 @@ def _check_corners(corners: _Corners, k: int, kept: int) -> None:
     if not lost:
         return
     most = math.gcd(kept, *(node for _, node, _ in corners))
-    side, node, (x, y) = lost[0]
-    corner = f"a corner of {side} at ({x:.6g}, {y:.6g}), node {node}, would be cut: every {k}-th drops it"
+    side, node, place = lost[0]
+    at = ", ".join(f"{x:.6g}" for x in place)
+    corner = f"a corner of {side} at ({at}), node {node}, would be cut: every {k}-th drops it"
     others = f"; {len(lost) - 1} more" if len(lost) > 1 else ""
     keeps = f"the largest number that keeps all corners is {most}"
-    raise InputError(corner + others, f"{keeps}; with {{refine}} or more nodes they stand on multiples")
+    remedy = "make the grid with {refine} or more nodes, so that its corners stand on multiples"
+    raise InputError(corner + others, f"{keeps}; {remedy}")
 
 
 def _check(counts: tuple[int, ...], k: int) -> None:

@@ -11,6 +11,7 @@ may also coincide, as the cut of a grid that goes all the way round.
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,10 +38,12 @@ def check_edges(boundary: Boundary) -> None:
         return
     lines = _lines(boundary)
     path = np.concatenate(lines)
-    joints = np.cumsum([len(line) for line in lines[:-1]]) - 1  # segments that only join one line to the next
-    ends = np.array([line[k] for line in lines for k in (0, -1)])
+    joints = (
+        np.cumsum(list(map(len, lines[:-1])), dtype=np.intp) - 1
+    )  # segments that only join one line to the next
+    ends = path[np.concatenate([[0], joints, joints + 1, [-1]])]
     crossings = find_crossings(path, closed=False, limit=_MOST)
-    for crossing in sorted(crossings, key=lambda c: (c.first, c.second)):
+    for crossing in sorted(crossings, key=attrgetter("first", "second")):
         if crossing.first in joints or crossing.second in joints or _shares_end(path, crossing, ends):
             continue
         raise InputError(_where(boundary, path, crossing), REMEDY)

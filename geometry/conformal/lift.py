@@ -22,6 +22,7 @@ Theodorsen & Garrick, NACA Report 452 (1933); Karman & Trefftz, Z. Flugtech. Mot
 """
 
 from dataclasses import dataclass
+from itertools import starmap
 from typing import Any
 
 import numpy as np
@@ -98,7 +99,7 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
     if not 0.9 < winding < 1.1:
         remedy = "use a method without a conformal map for this shape"
         raise InputError("the wall does not wind once around its middle", remedy)
-    return Lift(centre, quarter, tuple(Corner(*removal) for removal in removed), pole, phase), w, corners
+    return Lift(centre, quarter, tuple(starmap(Corner, removed)), pole, phase), w, corners
 
 
 def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:

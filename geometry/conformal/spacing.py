@@ -15,6 +15,7 @@ Theodorsen & Garrick, NACA Report 452 (1933); Henrici, Applied and Computational
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.conformal.lift import lift_body, mirrored
@@ -22,7 +23,6 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import inner_slopes
 from meshonet.geometry.elementary import cos, exp, power, times
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.spacing.along_curve import first_within
 
 ANGLES = 1024  # points on the circle at which the angle is computed
@@ -32,7 +32,7 @@ DENSE = 640  # points that represent the whole wall
 
 
 def conformal_knots(
-    curve: Curve, marks: Floats, count: int, at: Indices | None = None, steps: tuple[int, ...] = (1,)
+    curve: Curve, marks: Floats, count: int, at: NDArray[np.intp] | None = None, steps: tuple[int, ...] = (1,)
 ) -> Floats:
     """Return arc lengths (count,) on a closed curve at equal steps of the circle's angle.
 
@@ -53,7 +53,13 @@ def conformal_knots(
 
 
 def _one_way(
-    curve: Curve, marks: Floats, count: int, at: Indices | None, steps: tuple[int, ...], *, mirror: bool
+    curve: Curve,
+    marks: Floats,
+    count: int,
+    at: NDArray[np.intp] | None,
+    steps: tuple[int, ...],
+    *,
+    mirror: bool,
 ) -> Floats:
     """Return arc lengths (count,), walking clockwise, or counter-clockwise along the mirrored curve."""
     s, u = _dense(curve, marks)
@@ -103,11 +109,11 @@ def _circle_angle(phi: Floats, psi: Floats) -> Floats:
     return np.asarray(angle - angle[0])
 
 
-def _shared_out(marks: Floats, count: int, at: Indices | None, steps: tuple[int, ...]) -> Floats:
+def _shared_out(marks: Floats, count: int, at: NDArray[np.intp] | None, steps: tuple[int, ...]) -> Floats:
     """Return rising angles (count,) from 0 to 2 pi, in nearly equal steps, with every mark on a node."""
     cells = count - 1
     rank = np.arange(len(marks))
-    nodes: Floats | Indices
+    nodes: Floats | NDArray[np.intp]
     if at is not None:
         nodes = at
     else:

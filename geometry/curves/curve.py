@@ -75,7 +75,8 @@ class Curve:
         start, stop = spline_slopes(self.points, closed=closed, corners=self.corner_index)
         first, last = h * start, h * stop
         if straight is not None:
-            first, last = (np.where(straight[:, None], chord, slope) for slope in (first, last))
+            along = straight[:, None]
+            first, last = np.where(along, chord, first), np.where(along, chord, last)
         self._cubic = cubics(ends[:-1], chord, first, last)
         self._measure(len(h))
 

@@ -52,9 +52,10 @@ class Draw:
         if self.family is None:
             module = import_module(f"meshonet.geometry.families.{RANDOM[self.kind]}")
             drawn: Boundary = module.boundary(np.random.default_rng([self.seed, self.index]), ni, nj)
-            return drawn
+            return replace(drawn, name=self.name)
         origin = Origin((("parameter", self.parameter),), self.split)
-        return replace(self.family.boundary(self.parameter, ni, nj), origin=origin)
+        drawn = self.family.boundary(self.parameter, ni, nj)
+        return replace(drawn, name=self.name, origin=origin)
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 
@@ -106,7 +107,7 @@ def shared_point(p: Floats, end: Floats, i: int, j: int) -> tuple[float, float]:
         along = r / product(r, r)
         inside = sorted(
             [(0.0, a), (1.0, b), (float(product(w, along)), c), (float(product(d - a, along)), d)],
-            key=lambda q: q[0],
+            key=itemgetter(0),
         )
         x, y = inside[1][1]
     return float(x), float(y)

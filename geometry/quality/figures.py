@@ -17,6 +17,9 @@ from meshonet.geometry.quality.metrics import metrics_of
 from meshonet.geometry.quality.walls import WallRow, wall_rows
 from meshonet.geometry.summary import Quality
 
+_SAME = 1e-9
+"""Part of its extent by which the ends of a closed line may be apart."""
+
 
 @dataclass(frozen=True, eq=False)
 class Figures:
@@ -99,13 +102,33 @@ class Figures:
         wall = np.concatenate([_points(grid, patch) for patch in self.walls])
         beyond = grid.nodes[:, -1] if grid.around_body else np.concatenate(far)
         middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))
-        start = wall[np.argmax(norms(wall - middle))]
-        chord = float(norms(wall - start).max())
+        chord = max(self._chords(), default=0.0) or _longest(wall[:, None])
         return Figure(float(norms(beyond - middle).min()) / chord)
+
+    def _chords(self) -> list[float]:
+        """Return the longest extents of closed lines on walls of a volume, which go around sections."""
+        if self.grid.form != "volume":
+            return []
+        walls = [self.grid.at(patch) for patch in self.walls]
+        lines = [each for wall in walls for each in (wall, wall.swapaxes(0, 1)) if _closed(each)]
+        return [_longest(each) for each in lines]
 
 
 def _figure(extreme: Extreme | None) -> Figure | None:
     return None if extreme is None else Figure(extreme.max, extreme.at, extreme.along)
+
+
+def _closed(lines: Floats) -> bool:
+    """Say whether lines (n, m, 3) along the first axis end where they begin."""
+    return bool((norms(lines[-1] - lines[0]) <= _SAME * norms(np.ptp(lines, axis=0))).all())
+
+
+def _longest(lines: Floats) -> float:
+    """Return the longest extent of lines (n, m, d) along the first axis, from the end of each."""
+    middle = 0.5 * (lines.min(axis=0) + lines.max(axis=0))
+    farthest = np.argmax(norms(lines - middle), axis=0)
+    start = lines[farthest, np.arange(lines.shape[1])]
+    return float(norms(lines - start).max())
 
 
 def _greatest(extremes: Iterable[Extreme]) -> Figure | None:

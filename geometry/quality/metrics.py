@@ -54,6 +54,7 @@ Geuzaine, Geometrical validity of curvilinear finite elements, J. Comput. Phys. 
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Literal
 
 from meshonet.geometry.arrays import Floats
@@ -74,6 +75,7 @@ class Metric:
     cells; None for metrics of the compiled kernels."""
 
 
+_NAME = attrgetter("name")
 METRICS: tuple[Metric, ...] = ()
 """Metrics of all cells, in the plane, on surfaces and in volumes, each with its function."""
 
@@ -88,7 +90,7 @@ QUAD_METRICS: tuple[Metric, ...] = (
     Metric("area_ratio", "", "max", "area against the neighbours'"),
 )
 
-NAMES: tuple[str, ...] = tuple(metric.name for metric in QUAD_METRICS)
+NAMES: tuple[str, ...] = tuple(map(_NAME, QUAD_METRICS))
 
 # those of kernels/solids/solids.h, in its order
 SOLID_METRICS: tuple[Metric, ...] = (
@@ -104,8 +106,8 @@ SOLID_METRICS: tuple[Metric, ...] = (
     Metric("volume_ratio", "", "max", "volume against the neighbours'"),
 )
 
-SOLID_NAMES: tuple[str, ...] = tuple(metric.name for metric in SOLID_METRICS)
-ALL_NAMES = tuple(dict.fromkeys((*NAMES, *SOLID_NAMES, *(metric.name for metric in METRICS))))
+SOLID_NAMES: tuple[str, ...] = tuple(map(_NAME, SOLID_METRICS))
+ALL_NAMES = tuple(dict.fromkeys((*NAMES, *SOLID_NAMES, *map(_NAME, METRICS))))
 """Names of the metrics of planes, surfaces and volumes."""
 
 

@@ -20,4 +20,4 @@ def named(at: tuple[int, ...]) -> str:
     ('block=3, i=0, j=7', 'block=0, i=1, j=2, k=3')
     """
     names = ("i", "j") if len(at) == 2 else ("block", "i", "j", "k")
-    return ", ".join(f"{name}={k}" for name, k in zip(names, at, strict=False))
+    return ", ".join(map("{}={}".format, names, at))

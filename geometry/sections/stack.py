@@ -35,19 +35,26 @@ class Stack:
         Tip of a wing; ``open`` means none.
     between : {'linear', 'smooth'}, optional
         Interpolation between sections: ``linear``, or ``smooth`` by cubics in z that do not overshoot.
+    tip_spacing : float, optional
+        Length of the last cells along the span of a wing, in chords of the last section.
+    le_spacing, te_spacing : float, optional
+        Length of the cells at leading and trailing edges, in chords of each section.
     name : str, optional
         Name of the stack in the input.
 
     Raises
     ------
     InputError
-        Fewer than two sections; z that does not increase.
+        Fewer than two sections; z that does not increase; lengths that are not positive, or of no use.
     """
 
     sections: tuple[Section, ...]
     kind: Kind = "wing"
     tip: Tip = "round"
     between: Between = "linear"
+    tip_spacing: float | None = None
+    le_spacing: float | None = None
+    te_spacing: float | None = None
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -58,6 +65,12 @@ class Stack:
         ):  # fmt: skip
             if value not in known:
                 raise InputError(f"{key} {value!r} is not known", "use " + "/".join(known), place=key)
+        for key in ("tip_spacing", "le_spacing", "te_spacing"):
+            value = getattr(self, key)
+            if value is not None and not 0.0 < value < 1.0:
+                raise InputError(f"{value:g} chords", "use more than 0 and less than 1", place=key)
+            if value is not None and (self.kind == "duct" or (key == "tip_spacing" and self.kind != "wing")):
+                raise InputError(f"a {self.kind} has no such edge", "leave it out", place=key)
         for k, (before, after) in enumerate(pairwise(self.sections)):
             if not after.z > before.z:
                 problem = f"z is {after.z:g} behind {before.z:g}"

@@ -90,6 +90,8 @@ class Outline:
                 "leave {te} out, or write the points of an airfoil to a .dat file",
             ),
             (sampling.wake or sampling.wake_nodes, "only an airfoil has a wake", "leave {wake} out"),
+            (sampling.smooth, "only an airfoil can be smoothed", "leave {smooth} out"),
+            (sampling.base_nodes, "only an airfoil has a base", "leave {base_nodes} out"),
             (sampling.normalise, "only an airfoil can be normalised", "leave {normalise} out"),
             (
                 sampling.corners is not None and not quad,

@@ -31,5 +31,5 @@ def edges_of(shape: Shape, sampling: Sampling) -> Boundary:
     boundary = shape.boundary(sampling)
     if boundary is not shape:
         check_edges(boundary)
-    notes = tuple(note for note in getattr(shape, "notes", ()) if note not in boundary.notes)
-    return replace(boundary, notes=(*notes, *boundary.notes)) if notes else boundary
+    notes = tuple(dict.fromkeys((*getattr(shape, "notes", ()), *boundary.notes)))
+    return boundary if notes == boundary.notes else replace(boundary, notes=notes)

@@ -34,7 +34,7 @@ _GROWTH = 1.135  # sufficient growth ratio of wake cells, below which the wall h
 _SHARES = 0.2, 0.23  # smallest and largest fraction of all cells on one side of the wake, by default
 _RAMP = 3.0  # cells of a wake over which growth sets in: the lines that leave its first ones converge
 _LATE = 0.05  # fraction by which growth is faster at the outlet than on average, and slower at the edge
-STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
+_STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
 _LEAST_WALL = 5  # fewest nodes of a wall, with its trailing edge counted twice
 
 
@@ -91,7 +91,7 @@ class WakeLine:
         upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
         along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
         angle = math.atan2(axis[0] * along[1] - axis[1] * along[0], product(axis, along))
-        slope = math.tan(min(max(angle, -STEEPEST), STEEPEST))
+        slope = math.tan(min(max(angle, -_STEEPEST), _STEEPEST))
         return cls(wall[0], axis, slope, chord, length)
 
     def nodes(self, first: float, cells: int) -> Floats:

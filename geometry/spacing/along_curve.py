@@ -3,12 +3,12 @@
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.spacing.laws import LAWS, Spacing
 
 MANY = 64
@@ -89,7 +89,7 @@ def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), s
     return out
 
 
-def _nearest(place: Floats, stays: list[int], step: int) -> Indices | None:
+def _nearest(place: Floats, stays: list[int], step: int) -> NDArray[np.intp] | None:
     """Return the nodes (m,) nearest to corners at fractional indices (m,), among multiples of `step`.
 
     They differ from each other and from those that stay; None if there are too few.

@@ -55,13 +55,15 @@ class Sampling:
     base_nodes : int, optional
         Number of nodes on a blunt base, both corners included, odd on a body in an O grid; None derives it
         from the cells next to the base and its width.
+    smooth : float, optional
+        Replace the points of an airfoil by those of smoothing splines that deviate by at
+        most this many chords; corners are kept. Needs SciPy.
     refined : int, optional
         Corners are on nodes whose index is a multiple of this, so that the grid can be coarsened by it.
     viscous : bool, optional
         Cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
     normalise : bool, optional
         Move the leading edge to (0, 0) and the trailing edge to (1, 0).
-    Put the leading edge at (0, 0) and the trailing edge at (1, 0).
 
     Raises
     ------
@@ -84,6 +86,7 @@ class Sampling:
     viscous: bool = False
     nk: int | None = None
     base_nodes: int | None = None
+    smooth: float | None = None
     refined: int = 1
 
     def __post_init__(self) -> None:
@@ -108,6 +111,8 @@ class Sampling:
             raise InputError(f"the wake has {self.wake_nodes} nodes", f"use 3 to {MOST_NODES}")
         if self.base_nodes is not None and not 3 <= self.base_nodes <= MOST_NODES:
             raise InputError(f"the base has {self.base_nodes} nodes", f"use 3 to {MOST_NODES}")
+        if self.smooth is not None and not 1e-7 <= self.smooth <= 1e-2:
+            raise InputError(f"{self.smooth:g} chords", "use 1e-7 to 0.01", parameter="smooth")
         if self.corners is not None and len(set(self.corners)) != 4:
             problem = f"corners {self.corners} are not four different points"
             raise InputError(problem, "give four point indices")
@@ -120,7 +125,7 @@ class Sampling:
         """
         if self.refined > 1:
             return (self.refined,)
-        return tuple(step for step in MULTIPLES if cells % step == 0)
+        return MULTIPLES[MULTIPLES.index(math.gcd(cells, MULTIPLES[0])) :]
 
     @property
     def radius(self) -> float:

@@ -18,7 +18,6 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
     the chord; `chord_fraction` is x in chords.
 
     Raises InputError: a value out of range, or x too small for a turbulent boundary layer.
-    there.
 
     >>> f"{first_cell(1.0, 6e6):.3g}"
     '4.23e-06'

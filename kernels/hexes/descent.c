@@ -1,6 +1,7 @@
 /* What steps.c needs of the functional over hexahedra: moves, values and a preconditioner, which is the stiffness of each
    node, and in one block D M⁻¹ D (spectrum.h). */
 #include "descent.h"
+#include "clones.h"
 #include <math.h>
 #include <string.h>
 
@@ -32,31 +33,41 @@ static void set_nodes(HexDescent *d, const double *at, ptrdiff_t first, ptrdiff_
             d->x[3 * d->free[k] + c] = at[c * d->count + k];
 }
 
-/* Sums of one plane of forces on nodes from `first` on, in the order of their places. */
-static void gather(const HexDescent *d, const double *force, double *to, ptrdiff_t first, ptrdiff_t last)
+/* Sums of `planes` of forces on nodes from `first` on, in the order of their places. */
+static void gather(const HexDescent *d, int planes, double *to, ptrdiff_t first, ptrdiff_t last)
 {
+    const ptrdiff_t P = d->mesh.places;
     for (ptrdiff_t k = first; k < last; k++) {
-        double sum = 0.0;
-        for (ptrdiff_t p = d->start[k]; p < d->start[k + 1]; p++)
-            sum += force[d->place[p]];
-        to[k] = sum;
+        const double *g = d->mesh.g + d->place[d->start[k]];
+        for (int c = 0; c < planes; c++)
+            to[c * d->count + k] = g[c * P];
+        for (ptrdiff_t p = d->start[k] + 1; p < d->start[k + 1]; p++)
+            for (int c = 0; c < planes; c++)
+                to[c * d->count + k] += d->mesh.g[c * P + d->place[p]];
     }
+}
+
+MESHONET_CLONES
+static void move_nodes(HexDescent *d, ptrdiff_t first, ptrdiff_t last)
+{
+    const float *restrict direction = d->steps.direction;
+    const double *restrict here = d->here, factor = d->factor;
+    double *restrict there = d->there;
+    for (int c = 0; c < 3; c++)
+        for (ptrdiff_t k = c * d->count + first; k < c * d->count + last; k++)
+            there[k] = here[k] + (factor > 0.0 ? factor * (double)direction[k] : 0.0);
+    set_nodes(d, there, first, last);
 }
 
 static void value_work(void *data, Member member)
 {
     HexDescent *d = data;
     ptrdiff_t first, last;
-    const float *restrict direction = d->steps.direction;
     team_share(d->count, member, &first, &last);
-    for (int c = 0; c < 3; c++)
-        for (ptrdiff_t k = c * d->count + first; k < c * d->count + last; k++)
-            d->there[k] = d->here[k] + (d->factor > 0.0 ? d->factor * (double)direction[k] : 0.0);
-    set_nodes(d, d->there, first, last);
+    move_nodes(d, first, last);
     team_wait(member);
     hex_energy(&d->mesh, &d->weights, d->x, d->room + (size_t)member.rank * hex_room(&d->mesh), member);
-    for (int c = 0; c < 3; c++)
-        gather(d, d->mesh.g + c * d->mesh.places, d->steps.fresh + c * d->count, first, last);
+    gather(d, 3, d->steps.fresh, first, last);
 }
 
 static void stiffness_work(void *data, Member member)
@@ -68,7 +79,7 @@ static void stiffness_work(void *data, Member member)
     team_wait(member);
     hex_stiffness(&d->mesh, &d->weights, d->x, d->spectrum.m[0] == 0,
                   d->room + (size_t)member.rank * hex_room(&d->mesh), member);
-    gather(d, d->mesh.g, d->stiffness, first, last);
+    gather(d, 1, d->stiffness, first, last);
 }
 
 static double attempt(void *problem, double factor, double *smallest)
@@ -107,6 +118,7 @@ static void precondition(void *problem, const double *gradient, float *result)
             result[c * d->count + k] = (float)(gradient[c * d->count + k] / d->stiffness[k]);
 }
 
+MESHONET_CLONES
 static double largest_move(void *problem)
 {
     const HexDescent *d = problem;
@@ -133,16 +145,29 @@ void hex_descent_renew(HexDescent *d)
         spectrum3_renew(&d->spectrum, &d->weights, d->stiffness);
 }
 
+static void take_nodes(HexDescent *d)
+{
+    for (ptrdiff_t k = 0; k < d->count; k++)
+        for (int c = 0; c < 3; c++)
+            d->here[c * d->count + k] = d->x[3 * d->free[k] + c];
+}
+
 void hex_descent_start(HexDescent *d)
 {
     Steps *s = &d->steps;
     s->problem = d, s->attempt = attempt, s->keep = keep, s->precondition = precondition;
     s->largest_move = largest_move;
-    for (ptrdiff_t k = 0; k < d->count; k++)
-        for (int c = 0; c < 3; c++)
-            d->here[c * d->count + k] = d->x[3 * d->free[k] + c];
+    take_nodes(d);
     hex_descent_renew(d);
     steps_start(s);
+}
+
+double hex_descent_smallest(HexDescent *d)
+{
+    double smallest;
+    take_nodes(d);
+    attempt(d, 0.0, &smallest);
+    return smallest;
 }
 
 void hex_descent_end(HexDescent *d)

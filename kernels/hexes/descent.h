@@ -33,3 +33,6 @@ void hex_descent_place(HexDescent *d, double *doubles, float *floats);
 void hex_descent_start(HexDescent *d);
 void hex_descent_renew(HexDescent *d);
 void hex_descent_end(HexDescent *d);
+
+/* The smallest Jacobian at x. */
+double hex_descent_smallest(HexDescent *d);

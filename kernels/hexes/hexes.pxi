@@ -49,6 +49,7 @@ cdef extern from "hexes/descent.h":
     void hex_descent_start(CHexDescent *d) nogil
     void hex_descent_renew(CHexDescent *d) nogil
     void hex_descent_end(CHexDescent *d) nogil
+    double hex_descent_smallest(CHexDescent *d) nogil
 
 
 cdef class HexDescent:
@@ -91,6 +92,9 @@ cdef class HexDescent:
         d.threads, d.count, d.sliding_count, d.weights.cells = min(max(threads, 1), 64), count, slid, cells
         d.x = fills(nodes, (n, 3))
         d.free, d.start = reads_places(places[0], (count,), n), reads_starts(places[1], count, len(places[2]))
+        for k in range(count):
+            if d.start[k] == d.start[k + 1]:
+                raise ValueError("nodes without places")
         d.place = <const int32_t *>numbers(places[2], b"i", 4, places[2].shape, False)
         for k in range(len(places[2])):
             if not 0 <= d.place[k] < at:
@@ -144,6 +148,13 @@ cdef class HexDescent:
         with nogil:
             hex_descent_end(&self.state)
         return steps.value, steps.smallest, done
+
+    def smallest(self):
+        """Return the smallest Jacobian where the nodes are."""
+        cdef double smallest
+        with nogil:
+            smallest = hex_descent_smallest(&self.state)
+        return smallest
 
     def evaluate(self, gradient):
         """Return the functional and the smallest Jacobian at the current nodes; fill `gradient` (3, free nodes)."""

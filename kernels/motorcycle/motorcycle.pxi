@@ -30,11 +30,6 @@ cdef extern from "motorcycle/trace.h":
     ptrdiff_t c_trace_rays "trace_rays"(const RayLines *lines, const RayStart *starts, ptrdiff_t rays, ptrdiff_t limit,
                                         RayEnd *ends, RayPiece *pieces, ptrdiff_t room) nogil
 
-cdef extern from "motorcycle/walk.h":
-    void c_walk_map "walk_map"(const TriangleMap *map, const ptrdiff_t *corners, const MapPoint *points, const ptrdiff_t *start,
-                               const MapPoint *at, const ptrdiff_t *first, ptrdiff_t walks, const MapPoint *targets,
-                               ptrdiff_t limit, MapPoint *reached) nogil
-
 
 cdef TriangleMap seamless(tuple tables) except *:
     """Return the map whose coordinates are (t, 3, 2) and whose tables are (t, 3)."""
@@ -116,21 +111,3 @@ def trace_rays(tuple tables, node, port, ptrdiff_t nodes, ptrdiff_t ports, doubl
         free(ends)
         free(pieces)
     return whole[0], real[0], whole[1], real[1]
-
-
-def walk_map(tuple tables, corners, points, start, at, first, targets, ptrdiff_t limit):
-    """Return the points (m, 2) that straight walks over a map reach; see ``motorcycle/walk.h``."""
-    cdef TriangleMap seamless_map = seamless(tables)
-    cdef ptrdiff_t walks = len(start), count = len(targets), t = seamless_map.triangles
-    cdef const ptrdiff_t *corner = reads_places(corners, (t, 3), len(points))
-    cdef const ptrdiff_t *starts = reads_places(start, (walks,), t)
-    cdef const ptrdiff_t *firsts = reads_starts(first, walks, count)
-    if firsts[0] != 0 or firsts[walks] != count:
-        raise ValueError("visits beyond the last")
-    cdef Read plane = reads(points, (len(points), 2)), froms = reads(at, (walks, 2)), goals = reads(targets, (count, 2))
-    reached = np.empty((count, 2))
-    cdef Written to = fills(reached, (count, 2))
-    with nogil:
-        c_walk_map(&seamless_map, corner, <const MapPoint *>plane, starts, <const MapPoint *>froms, firsts, walks,
-                   <const MapPoint *>goals, limit, <MapPoint *>to)
-    return reached

@@ -45,7 +45,6 @@ def deform(
     Returns
     -------
     Grid
-        A grid that follows a changed boundary, its layers as they were.
 
     Raises
     ------
@@ -88,7 +87,6 @@ def rotation(degrees: float, about: Sequence[float] = (0.0, 0.0)) -> Motion:
     Returns
     -------
     Motion
-        The motion that turns the plane counter-clockwise about a point (2,).
 
     Raises
     ------

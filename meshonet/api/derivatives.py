@@ -30,7 +30,6 @@ def deform_derivative(
     Returns
     -------
     DeformationDerivative
-        The deformed grid with the derivative of its nodes by those of the walls.
 
     Raises
     ------
@@ -72,7 +71,6 @@ def optimum_derivative(
     Returns
     -------
     OptimumDerivative
-        The derivative of a four-sided grid that solves equations by the nodes of its rim.
 
     Raises
     ------

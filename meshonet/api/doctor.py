@@ -17,6 +17,7 @@ ADDS = {
     "train": "training of models, gradients, GPUs: meshonet train, infer --device",
     "dxf": "DXF drawings as domains",
     "pyvista": "grid.to_pyvista()",
+    "smooth": "smoothing splines through points of airfoils: --smooth",
     "dask": "batches on many machines: --engine dask",
     "mpi": "batches on many machines: --engine mpi",
 }

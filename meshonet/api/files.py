@@ -82,7 +82,6 @@ def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
     Returns
     -------
     Grid or shape
-        The grid of a file, or the shape of one without grids or of a designation ``naca:2412``.
 
     Raises
     ------
@@ -94,21 +93,19 @@ def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
     >>> read("naca:2412").name
     'NACA 2412'
     """
-    nothing = "holds nothing", "give a file with a boundary or a grid in it"
-    several = "holds several grids or boundaries", "use read_all"
-    return only(read_all(path, from_format=from_format), str(path), nothing, several)
+    return only(read_all(path, from_format=from_format), path, "a boundary or a grid", "use read_all")
 
 
-def only(records: Iterator[T], source: str, nothing: tuple[str, str], several: tuple[str, str]) -> T:
-    """Return the only one of the records of a source.
+def only(records: Iterator[T], source: str | Path, what: str, remedy: str = "give a file with one") -> T:
+    """Return the only one of the records of a source, `what` it holds.
 
-    Raises InputError: there is none, or another one; `nothing` and `several` are problem and remedy then.
+    Raises InputError: there is none, or another one; `remedy` then.
     """
     record = next(records, None)
     if record is None:
-        raise InputError(*nothing, source=source)
+        raise InputError("holds nothing", f"give a file with {what} in it", source=str(source))
     if next(records, None) is not None:
-        raise InputError(*several, source=source)
+        raise InputError(f"holds several, where {what} is asked for", remedy, source=str(source))
     return record
 
 

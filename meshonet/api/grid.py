@@ -63,7 +63,6 @@ def grid(
     Returns
     -------
     Grid
-        A valid grid inside a boundary, around a body, of the blocks of a domain, or of a volume.
 
     Raises
     ------
@@ -106,16 +105,11 @@ def tfi(shape: AnyShape, *, res: Counts | None = None, method: str = "tfi", **pa
     Returns
     -------
     Grid
-        A grid by transfinite interpolation.
 
     Raises
     ------
-    InputError
-        A shape or parameter that cannot be used.
-    NoValidGridError
-        Cells are folded, and `allow_invalid` was not given.
-    SolverError
-        The method diverged.
+    InputError, NoValidGridError, SolverError
+        As of `grid`.
 
     Examples
     --------
@@ -136,16 +130,11 @@ def solve_pde(shape: AnyShape, *, res: Counts | None = None, method: str = "auto
     Returns
     -------
     Grid
-        A grid by elliptic equations, a variational method or marching.
 
     Raises
     ------
-    InputError
-        A shape or parameter that cannot be used.
-    NoValidGridError
-        Cells are folded, and `allow_invalid` was not given.
-    SolverError
-        The method diverged.
+    InputError, NoValidGridError, SolverError
+        As of `grid`.
 
     Examples
     --------
@@ -166,16 +155,11 @@ def infer(shape: AnyShape, *, res: Counts | None = None, model: str | None = Non
     Returns
     -------
     Grid
-        The grid that measures best, or that of an operator.
 
     Raises
     ------
-    InputError
-        A shape or parameter that cannot be used.
-    NoValidGridError
-        Cells are folded, and `allow_invalid` was not given.
-    SolverError
-        The method diverged.
+    InputError, NoValidGridError, SolverError
+        As of `grid`.
 
     Examples
     --------
@@ -202,7 +186,6 @@ def sample_boundary(
     Returns
     -------
     Boundary
-        The four edges of a shape.
 
     Raises
     ------
@@ -252,7 +235,6 @@ def sample_family(
     Returns
     -------
     list of Boundary
-        Boundaries drawn at random from a family, as ``sample-boundary --family`` does.
 
     Raises
     ------

@@ -31,7 +31,8 @@ def plot(
     metric : str, optional
         Colours the cells; None draws lines only.
     zoom : tuple of float, optional
-        x0, x1, y0, y1 of the part to show, with z0, z1 of a picture in space; None shows all.
+        x0, x1, y0, y1 of the part to show, with z0, z1 of a picture in space, of a slice either; None shows
+        all.
     every : int, optional
         Draw every so many-th grid line; None chooses by the resolution of the picture.
     slice : str, optional

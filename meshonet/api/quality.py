@@ -111,8 +111,4 @@ def single_grid(grid: Grid | str | Path) -> Grid:
     """
     if isinstance(grid, Grid):
         return grid
-    nothing, several = (
-        ("holds no grid", "use a file with one"),
-        ("holds several grids", "read them one by one"),
-    )
-    return only(read_grids(str(grid)), str(grid), nothing, several)
+    return only(read_grids(str(grid)), grid, "a grid", "read them one by one")

@@ -30,7 +30,6 @@ def stack(
     Returns
     -------
     Grid
-        The volume around a wing or blade, or inside a duct, from sections placed in space.
 
     Raises
     ------

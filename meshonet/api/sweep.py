@@ -11,6 +11,7 @@ from meshonet.formats.path import path_of
 from meshonet.formats.section import read_sections
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.revolve import Revolution
 from meshonet.geometry.curves.path import Path, SplinePath
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.shapes.domain_shape import DomainShape
@@ -19,8 +20,8 @@ from meshonet.solvers.pipeline.parameters import Counts, grid_request
 from meshonet.solvers.pipeline.sweeps import make_sweep
 from meshonet.solvers.sweeping.sweep import Sweep
 
-AnyPath: TypeAlias = str | File | Floats | Path
-"""A file, points (n, 3) that a smooth curve goes through, or a path itself."""
+AnyPath: TypeAlias = str | File | Floats | Path | Revolution
+"""A file, points (n, 3) that a smooth curve goes through, a path itself, or a turn about an axis."""
 
 
 def sweep(
@@ -41,8 +42,9 @@ def sweep(
     ----------
     outline : str, Path, array, Grid, Boundary or Domain
         ``circle:RADIUS``, a file with a closed curve, a domain or a planar grid, or what these are.
-    path : str, Path or array (n, 3)
-        A file, points that a smooth curve goes through, or a path itself.
+    path : str, Path, array (n, 3) or Revolution
+        A file, points that a smooth curve goes through, a path itself, or a turn about an axis
+        (`meshonet.Revolution`).
     planes : int, optional
         As of `meshonet.Sweep`, like the next three.
     up : tuple of 3 float, optional
@@ -62,7 +64,6 @@ def sweep(
     Returns
     -------
     Grid
-        The volume of a cross-section carried along a curve in space.
 
     Raises
     ------
@@ -85,9 +86,7 @@ def sweep(
 
 def _section(outline: AnyShape) -> Any:
     if isinstance(outline, str | File):
-        nothing = "holds nothing", "give a file with a closed curve or a planar grid in it"
-        several = "holds several shapes", "give a file with one"
-        return only(read_sections(str(outline)), str(outline), nothing, several)
+        return only(read_sections(str(outline)), outline, "a closed curve or a planar grid")
     if isinstance(outline, Domain):
         return DomainShape(outline)
     return Outline(outline) if isinstance(outline, np.ndarray) else outline

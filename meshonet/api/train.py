@@ -11,6 +11,7 @@ from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.split import WAYS, split
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.neural.devices import INSTALL_TORCH
 
 if TYPE_CHECKING:
     from meshonet.solvers.neural.fit.loop import Progress
@@ -101,7 +102,7 @@ def train(
     try:
         import torch
     except ImportError:
-        raise InputError("training needs torch", "install it: pip install 'meshonet[train]'") from None
+        raise InputError("training needs torch", INSTALL_TORCH) from None
     from meshonet.solvers.neural.fit.team import team
     from meshonet.solvers.neural.fit.train import standard
     from meshonet.solvers.neural.fit.train import train as fit

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import string
 import sys
@@ -16,15 +17,20 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet_cli.batch.item import NO_NUMBER, Item
+from meshonet_cli.batch.settings import Files
 
 if TYPE_CHECKING:
     from meshonet.formats.hdf5.parts import PartFiles
     from meshonet.formats.inputs import Inputs
     from meshonet.geometry.layout.layout import Layout
-    from meshonet_cli.batch.sources import DrawnInputs
+    from meshonet_cli.batch.drawn import DrawnInputs
 
 FIELDS = ("stem", "index", "name")
 """Fields of a pattern for names of outputs."""
+_FORM = re.compile(r"(?:[^{}]?[<>=^])?[-+ ]?#?\d{0,3}[,_]?(?:\.\d{0,3})?[sdxXobn]?")
+"""Formats of fields: of a width of three digits at the most, and none that makes characters of numbers."""
+_LONGEST_NAME = 255
+"""Bytes of a file's name that the file systems of Linux, macOS and Windows take."""
 MANY = 10_000
 """Inputs of which more are written as a dataset in parts."""
 _PART_BYTES, _LIKELY_NODES = 1 << 28, 40_000
@@ -48,11 +54,12 @@ class Destination:
         part_size: int | None = None, nodes: int | None = None,
     ) -> None:  # fmt: skip
         self.text, self.kind, self._part_size, self._nodes = text, kind, part_size, nodes
-        self.each = _has_fields(text)
+        self.each = bool(_fields(text))
         self.format = format_for_output(text, fmt, kind)
         self._put = put or getattr(self.format, f"write_{kind}")
         self._taken: dict[str, str] = {}
-        if part_size is not None and not self._can_have_parts:
+        self.can_have_parts = self.format.name == "hdf5" and not self.each and text != "-"
+        if part_size is not None and not self.can_have_parts:
             remedy = "write one .h5 file, or leave it out"
             raise InputError("only a dataset has parts", remedy, parameter="part_size")
         if text == "-" and sys.stdout.isatty():
@@ -68,8 +75,11 @@ class Destination:
         if item.index == NO_NUMBER and "index" in _fields(self.text):
             problem = "is one of several in its file, which {shard} leaves without a number"
             raise InputError(problem, "use {{name}} in place of {{index}}", source=item.label)
-        name = re.sub(r"[^\w.+-]+", "_", item.what.name).strip("._") or item.stem
+        name = re.sub(r"[^\w.+-]+", "_", item.name).strip("._") or item.stem
         path = self.format.file_at(self.text.format(stem=item.stem, index=item.index, name=name))
+        if max(len(os.fsencode(part)) for part in Path(path).parts) > _LONGEST_NAME:
+            problem = f"its output has a name of more than {_LONGEST_NAME} bytes"
+            raise InputError(problem, f"use a shorter -o {_escaped(self.text)[:80]}", source=item.label)
         place = str(Path(path).parent) if self.format.fills_folder else path
         if place in self._taken:
             raise InputError(
@@ -80,20 +90,16 @@ class Destination:
         self._taken[place] = item.label
         return path
 
-    def check_room(self, *, several: bool) -> None:
+    def check_room(self) -> None:
         """Raise InputError when several inputs would go into a file that holds one."""
-        if several and not self.holds_many:
+        if not (self.each or self.format.many):
             raise InputError(
                 f"several inputs and one {self.format.name} file, which holds one",
                 f"use -o '{_escaped(_pattern(self.text))}' or one .h5",
                 source=self.text,
             )
 
-    @property
-    def _can_have_parts(self) -> bool:
-        return self.format.name == "hdf5" and not self.each and self.text != "-"
-
-    def part_size_for(self, inputs: Inputs | DrawnInputs, *, skip_existing: bool, elsewhere: bool) -> int:
+    def part_size_for(self, inputs: Inputs | DrawnInputs, files: Files, *, elsewhere: bool) -> int:
         """Return how many inputs a part of the dataset has, 0 where it is no dataset in parts.
 
         Parts are written where they are asked for, by jobs that share the work, where parts are to be
@@ -102,8 +108,9 @@ class Destination:
 
         Raises InputError: there is another dataset, which parts would replace or which cannot be continued.
         """
-        if not self._can_have_parts or not inputs.more_than(0):
+        if not inputs.more_than(0):
             return 0
+        skip_existing = files.skip_existing
         index = Path(self.text)
         shared = inputs.shard != (1, 1)
         continued = skip_existing and index.with_suffix("").is_dir()
@@ -126,14 +133,9 @@ class Destination:
         request = digest_of(self.kind, str(size), described(make))
         return PartFiles(Path(self.text), request, size)
 
-    @property
-    def holds_many(self) -> bool:
-        """Whether more than one member can go there."""
-        return self.each or self.format.many
-
-    def check_only(self, item: Item[Any]) -> None:
-        """Raise InputError when `item` is one of several and there is room for one."""
-        if not (item.only or self.holds_many):
+    def check_several(self, item: Item[Any]) -> None:
+        """Raise InputError when there is room for one, and `item` is one of several in its file."""
+        if not (self.each or self.format.many):
             raise InputError(
                 f"holds several grids or boundaries, and a {self.format.name} file holds one",
                 f"use -o '{_escaped(_pattern(self.text, 'index'))}' or one .h5",
@@ -177,23 +179,26 @@ def _pattern(text: str, field: str = "stem") -> str:
 
 
 def _fields(text: str) -> list[str]:
-    return [field for _, field, _, _ in string.Formatter().parse(text) if field is not None]
-
-
-def _has_fields(text: str) -> bool:
+    """Return the fields of a pattern. Raises InputError: one that is not known, or that cannot be filled."""
+    if "{" not in text and "}" not in text:
+        return []
+    fields: list[str] = []
+    problem, remedy = (
+        "has a field that is not known",
+        "use {{stem}}, {{index}} or {{name}}; write {{ and }} for braces",
+    )
     try:
-        fields = _fields(text)
+        for _, field, form, _ in string.Formatter().parse(text):
+            if field is not None and field not in FIELDS:
+                raise ValueError
+            if field is not None and not _FORM.fullmatch(form or ""):
+                problem, remedy = "has a field in a format that makes no name", "use e.g. {{index:04d}}"
+                raise ValueError
+            fields += [field] if field else []
         text.format(stem="", index=0, name="")
-    except (ValueError, KeyError, IndexError, AttributeError):
-        fields = [""]
-    unknown = [field for field in fields if field not in FIELDS]
-    if unknown:
-        raise InputError(
-            f"{_escaped(repr(text))} has a field that is not known",
-            "use {{stem}}, {{index}} or {{name}}; write {{ and }} for braces",
-            source="-o",
-        )
-    return bool(fields)
+    except ValueError:
+        raise InputError(f"{_escaped(repr(text[:200]))} {problem}", remedy, source="-o") from None
+    return fields
 
 
 def same_size(what: Grid | Boundary | Layout, size: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from meshonet.formats.source import printable
 
@@ -13,31 +13,7 @@ if TYPE_CHECKING:
     from meshonet_cli.report.timed import Timed
 
 
-class Named(Protocol):
-    """What inputs hold: shapes and grids have names."""
-
-    @property
-    def name(self) -> str:
-        """What the input calls it."""
-        ...
-
-
-@dataclass(frozen=True)
-class Name:
-    """A name that stands for the thing."""
-
-    name: str
-
-
-@dataclass(frozen=True)
-class Unreadable:
-    """Stands for a member that cannot be read."""
-
-    error: Exception
-    name: str = ""
-
-
-T = TypeVar("T", bound=Named)
+T = TypeVar("T")
 V = TypeVar("V")
 NO_NUMBER = -1
 """Index of a member of a shard, of which it is not known how many members come before it."""
@@ -49,21 +25,22 @@ class Item(Generic[T]):
 
     index: int  # counted from 0 over all inputs, or NO_NUMBER
     source: str  # the input as the user wrote it
-    what: T  # the shape or grid
+    what: T  # the shape or grid, or the error that stands for one that cannot be read
     seconds: float  # spent on reading it
+    name: str = ""  # what the input calls it
     only: bool = True  # whether its source holds nothing else
     called: str = ""  # its stem, where it comes from several files
     path: str = ""  # of its own file, where it has one
 
-    def without_content(self) -> Item[Name]:
-        """Return the same member with nothing but the name of what it holds."""
-        return replace(self, what=Name(self.what.name))  # type: ignore[arg-type, return-value]
+    def without_content(self) -> Item[None]:
+        """Return the same member without what it holds, to be sent to another process."""
+        return replace(self, what=None)  # type: ignore[arg-type, return-value]
 
     @property
     def label(self) -> str:
         """How messages call it."""
         source = "stdin" if self.source == "-" else printable(self.source)
-        return source if self.only else f"{source}[{self.what.name or self.index}]"
+        return source if self.only else f"{source}[{self.name or self.index}]"
 
     @property
     def stem(self) -> str:
@@ -86,6 +63,15 @@ Pair: TypeAlias = tuple[Item[Any], Outcome]
 """A member and what comes of it."""
 Make: TypeAlias = Callable[[Iterable[Item[Any]]], Iterator[Pair]]
 """Makes members in order; what other processes are to do can be pickled."""
+
+
+def attempted(make: Callable[[T], V], each: Iterable[T]) -> Iterator[tuple[T, V | Exception]]:
+    """Yield each with what `make` makes of it, or the error that it ended in."""
+    for one in each:
+        try:
+            yield one, make(one)
+        except Exception as error:
+            yield one, error
 
 
 def made(outcome: V | Exception) -> V:

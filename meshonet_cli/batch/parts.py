@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from itertools import starmap
 from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.hdf5.parts import Failed, OtherPartsError, PartFiles, State
-from meshonet.formats.inputs import Inputs
 from meshonet.geometry.errors import InputError, MeshonetError
+from meshonet.solvers.stages import stage
 from meshonet_cli.batch.destination import same_size
 from meshonet_cli.batch.input_digests import digests_of
-from meshonet_cli.batch.item import Item, Make, Unreadable, made
-from meshonet_cli.batch.sources import DrawnInputs, records
+from meshonet_cli.batch.item import Item, Make, made
+from meshonet_cli.batch.sources import records
 from meshonet_cli.terminal.errors import explained
 
 if TYPE_CHECKING:
@@ -31,11 +30,6 @@ class PartTask:
 
     number: int
     inputs: tuple[str | InputError | Draw, ...]
-
-
-def parts_of(inputs: Inputs | DrawnInputs, size: int) -> Iterator[PartTask]:
-    """Yield the tasks that make the parts of a shard, of `size` inputs each, as inputs are found."""
-    return starmap(PartTask, inputs.parts(size))
 
 
 @dataclass
@@ -100,8 +94,8 @@ class PartMaker:
 
         def readable() -> Iterator[Item[Any]]:
             for item in records(part.inputs, self.read):
-                if isinstance(item.what, Unreadable):
-                    fail(item, item.what.error)
+                if isinstance(item.what, Exception):
+                    fail(item, item.what)
                 else:
                     yield item
 
@@ -112,22 +106,13 @@ class PartMaker:
             except Exception as error:
                 fail(item, error)
                 continue
-            with report.timed("write"):
+            with stage("write", report.seconds):
                 yield what
             done.members.append((item, report))
         done.members.sort(key=lambda member: member[0].index)
 
 
 Outcomes = Iterator[tuple[PartTask, PartDone | Exception]]
-
-
-def one_after_the_other(make: Callable[[PartTask], PartDone], parts: Iterable[PartTask]) -> Outcomes:
-    """Yield what `make` makes of parts in this process, or the errors that they ended in."""
-    for part in parts:
-        try:
-            yield part, make(part)
-        except Exception as error:
-            yield part, error
 
 
 def deliver_parts(
@@ -144,7 +129,7 @@ def deliver_parts(
     not to be skipped.
     """
     files.check(skip_existing=skip_existing)
-    session.batch = True
+    session.batch, session.dataset = True, str(files.index)
     last = -1
     for part, done in outcomes:
         last = part.number

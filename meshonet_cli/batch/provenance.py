@@ -21,7 +21,7 @@ def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
     >>> provenance(["tfi", "a b.csv", "-o", "grid.vts", "--res", "80"])["command"]
     "meshonet tfi 'a b.csv' --res 80"
     """
-    line = tuple(abridged(sys.argv[1:]) if arguments is None else arguments)
+    line = tuple(sys.argv[1:] if arguments is None else arguments)
     return {"software": f"meshonet {__version__}", "command": _command(line)}
 
 
@@ -31,6 +31,8 @@ def abridged(words: Sequence[str]) -> list[str]:
     >>> abridged(["tfi", *(f"{k}.csv" for k in range(40)), "--res", "80"])
     ['tfi', '0.csv', '[38 more]', '39.csv', '--res', '80']
     """
+    if len(words) <= _MOST_NAMED:
+        return list(words)
     kept: list[str] = []
     for option, run in groupby(words, lambda word: word.startswith("-")):
         names = list(run)
@@ -42,7 +44,7 @@ def abridged(words: Sequence[str]) -> list[str]:
 @lru_cache(maxsize=1)
 def _command(words: tuple[str, ...]) -> str:
     kept = ["meshonet"]
-    taken = iter(words)
+    taken = iter(abridged(words))
     for word in taken:
         if word in ("-o", "--output"):
             next(taken, None)

@@ -2,45 +2,33 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain, islice
+from itertools import chain, starmap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.registry import Kind
-from meshonet.geometry.errors import InputError, MeshonetError
-from meshonet.solvers.stages import reached
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.stages import stage
 from meshonet_cli.batch.destination import Destination, same_size
-from meshonet_cli.batch.executors.engine import HERE, Engine
-from meshonet_cli.batch.files import Files
-from meshonet_cli.batch.item import Item, Make, Outcome, Pair, made
+from meshonet_cli.batch.item import Item, Make, Pair, attempted, made
+from meshonet_cli.batch.settings import HERE, Engine, Files
 from meshonet_cli.batch.sources import assembly, members_of
 from meshonet_cli.terminal.session import Session
 
 if TYPE_CHECKING:
     from meshonet.geometry.spacing.sampling import Sampling
-    from meshonet_cli.batch.executors.workers import Workers
     from meshonet_cli.report.timed import Timed
 
-_TASK_SECONDS, _MOST_AT_ONCE = 0.1, 64  # how long tasks of several members are, and how large
 Written = Callable[[Any, str], None]
 """Takes the report and the path of each member that is written."""
 
 
 def each(make: Callable[..., tuple[Any, Timed]], **settings: Any) -> Make:
     """Return what makes members one by one by a function of a member and `settings`."""
-    return partial(_one_by_one, make=partial(make, **settings))
-
-
-def _one_by_one(members: Iterable[Item[Any]], make: Callable[..., tuple[Any, Timed]]) -> Iterator[Pair]:
-    for member in members:
-        try:
-            yield member, make(member)
-        except Exception as error:
-            yield member, error
+    return partial(attempted, partial(make, **settings))
 
 
 @dataclass(frozen=True)
@@ -94,12 +82,13 @@ class Batch:
             files.output, files.to_format, task.kind, task.put, part_size=files.part_size, nodes=task.nodes
         )
         several = task.assembled is None and self.inputs.more_than(1)
-        destination.check_room(several=several)
+        if several:
+            destination.check_room()
         session.check_output(files.output)
         if task.assembled is not None:
             members = assembly(self.inputs, task.read, task.assembled, session)
-        elif size := destination.part_size_for(
-            self.inputs, skip_existing=files.skip_existing, elsewhere=self.engine.elsewhere
+        elif destination.can_have_parts and (
+            size := destination.part_size_for(self.inputs, files, elsewhere=self.engine.elsewhere)
         ):
             self._deliver_parts(task, destination, size, written)
             return
@@ -108,31 +97,43 @@ class Batch:
         leading = next(members, None)
         if leading is None:
             return
-        destination.check_only(leading)
-        items = chain([leading], members)
-        if destination.each or not session.batch:
-            for item, outcome in self._pairs(task, self._with_paths(items, destination), destination):
+        if not leading.only:
+            destination.check_several(leading)
+        items: Iterator[Item[Any]] = chain([leading], members)
+        single = destination.each or not session.batch
+        if single:
+            items = self._with_paths(items, destination)
+        work = MemberWork(task.make, destination if single else None)
+        if self.engine.here or not session.batch:
+            pairs = work(items)
+        else:
+            from meshonet_cli.batch.executors.sharing import shared
+
+            pairs = shared(work, items, task.together, self.engine, session.warn)
+        if single:
+            for item, outcome in pairs:
                 with session.member(item.label, item.source):
                     written(made(outcome)[1], item.path)
             return
-        stream = self._streamed(self._pairs(task, items, None), destination, written)
+        session.dataset = destination.text
+        stream = self._streamed(pairs, destination, written)
         first = next(stream, None)
         if first is not None:
             destination.write(destination.text, chain([first], stream))
 
     def _deliver_parts(self, task: BatchTask, destination: Destination, size: int, written: Written) -> None:
         """Deliver a dataset in parts of so many inputs, each made by a worker."""
-        from meshonet_cli.batch.parts import PartMaker, deliver_parts, one_after_the_other, parts_of
+        from meshonet_cli.batch.parts import PartMaker, PartTask, deliver_parts
 
         files = destination.part_files(task.make, size)
         skip = self.files.skip_existing
-        maker = PartMaker(files, task.kind, task.read, _MemberWork(task.make, None), skip)
-        parts, whole = parts_of(self.inputs, size), self.inputs.shard == (1, 1)
+        maker = PartMaker(files, task.kind, task.read, MemberWork(task.make, None), skip)
+        parts, whole = starmap(PartTask, self.inputs.parts(size)), self.inputs.shard == (1, 1)
         report = partial(
             deliver_parts, files=files, session=self.session, written=written, skip_existing=skip, whole=whole
         )
         if self.engine.here:
-            report(one_after_the_other(maker, parts))
+            report(attempted(maker, parts))
             return
         with self.engine.workers(self.session.warn) as workers:
             report(workers.in_order(maker, parts, workers.count))
@@ -147,26 +148,6 @@ class Batch:
                 else:
                     yield replace(item, path=path)
 
-    def _pairs(
-        self, task: BatchTask, todo: Iterator[Item[Any]], destination: Destination | None
-    ) -> Iterator[Pair]:
-        """Yield members in order and what comes of each, by workers where there are several."""
-        work = _MemberWork(task.make, destination)
-        if self.engine.here or not self.session.batch:
-            yield from work(todo)
-            return
-        groups = _Groups(todo, task.together)
-        with self.engine.workers(self.session.warn) as workers:
-            # where many are made together, their grids are what takes memory
-            ahead = workers.count if task.together == 1 else 1
-            for group, outcome in workers.in_order(work.timed, groups, ahead):
-                if isinstance(outcome, Exception):
-                    yield from _apart(work, group, outcome, workers)
-                else:
-                    done, seconds = outcome
-                    groups.learn(seconds / len(group))
-                    yield from done
-
     def _streamed(self, pairs: Iterator[Pair], destination: Destination, written: Written) -> Iterator[Any]:
         """Yield what goes into one file; each is reported when the writer comes back for the next one."""
         size = ""
@@ -179,69 +160,32 @@ class Batch:
                 fits = True
             if not fits:
                 continue
-            reached("write")
-            with report.timed("write"):
+            with stage("write", report.seconds):
                 yield what
             written(report, destination.text)
 
 
 @dataclass(frozen=True)
-class _MemberWork:
+class MemberWork:
     """What is done to members, here or in another process: make, and write each to its own file."""
 
     make: Make
     destination: Destination | None
 
     def __call__(self, todo: Iterable[Item[Any]]) -> Iterator[Pair]:
-        for item, outcome in self.make(todo):
-            if isinstance(outcome, InputError) and outcome.source == item.what.name:
+        """Yield members, without what they hold, and what comes of them."""
+        for item, made_of in self.make(todo):
+            outcome, bare = made_of, item.without_content()
+            if isinstance(outcome, InputError) and outcome.source == item.name:
                 outcome.source = ""  # all that the library knows; the member's label says more
-            yield item.without_content(), self._written(outcome, item)
-
-    def timed(self, todo: Iterable[Item[Any]]) -> tuple[list[Pair], float]:
-        """Return all at once, and the seconds that it took."""
-        begun = time.perf_counter()
-        return list(self(todo)), time.perf_counter() - begun
-
-    def _written(self, outcome: Outcome, item: Item[Any]) -> Outcome:
-        if isinstance(outcome, Exception):
-            return outcome
-        what, report = outcome
-        report.item = item.without_content()
-        if self.destination is None:
-            return what, report
-        try:
-            reached("write")
-            with report.timed("write"):
-                self.destination.write(item.path, [what])
-        except Exception as error:
-            return error
-        return None, report
-
-
-class _Groups:
-    """Members in groups, each a task: of one size, or, if that is 1, of as many as are done in no time."""
-
-    def __init__(self, todo: Iterator[Item[Any]], size: int) -> None:
-        self._todo, self._size, self._grows = todo, size, size == 1
-
-    def __iter__(self) -> Iterator[list[Item[Any]]]:
-        while group := list(islice(self._todo, self._size)):
-            yield group
-
-    def learn(self, seconds: float) -> None:
-        """Take note of how long a member took."""
-        if self._grows:
-            self._size = max(1, min(_MOST_AT_ONCE, int(_TASK_SECONDS / max(seconds, 1e-6))))
-
-
-def _apart(work: _MemberWork, group: list[Item[Any]], error: Exception, workers: Workers) -> Iterator[Pair]:
-    """Yield what workers make of a group, one by one, of which one ended its worker twice."""
-    for item in group:
-        pairs: list[Pair] = [(item.without_content(), error)]
-        if len(group) > 1:
-            try:
-                pairs, _ = workers.alone(work.timed, [item])
-            except MeshonetError as own:
-                pairs = [(item.without_content(), own)]
-        yield from pairs
+            elif not isinstance(outcome, Exception):
+                what, report = outcome
+                report.item = bare
+                if self.destination is not None:
+                    try:
+                        with stage("write", report.seconds):
+                            self.destination.write(item.path, [what])
+                        outcome = None, report
+                    except Exception as error:
+                        outcome = error
+            yield bare, outcome

@@ -15,26 +15,11 @@ class Command(NamedTuple):
     name: str
     summary: str
 
-    @property
-    def function(self) -> Callable[..., Any]:
-        """What does it."""
-        function: Callable[..., Any] = getattr(self._module, self.name.replace("-", "_"))
-        return function
-
-    @property
-    def examples(self) -> tuple[str, ...]:
-        """Examples of its use."""
-        examples: tuple[str, ...] = self._module.EXAMPLES
-        return examples
-
-    @property
-    def epilog(self) -> str:
-        r"""The examples as the end of the help text; ``\b`` keeps their lines."""
-        return "\b\nExamples:\n" + "\n".join(f"  {example}" for example in self.examples)
-
-    @property
-    def _module(self) -> Any:
-        return import_module(f"{__name__}.{self.name.replace('-', '_')}")
+    def loaded(self) -> tuple[Callable[..., Any], tuple[str, ...]]:
+        """Return the function and the examples of its use."""
+        name = self.name.replace("-", "_")
+        module = import_module(f"{__name__}.{name}")
+        return getattr(module, name), module.EXAMPLES
 
 
 COMMANDS: tuple[Command, ...] = (

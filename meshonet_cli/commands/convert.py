@@ -14,6 +14,7 @@ EXAMPLES = (
     "meshonet convert grids/*.vts -o 'plot3d/{stem}.p3d'",
     "meshonet tfi duct.csv --res 41x21 -o - | meshonet convert - coarse.vts --coarsen 2",
     "meshonet convert grid.vts case/case.foam --extrude 0.1",
+    "meshonet convert grid.vts wedge/case.foam --revolve 5 --axis 0,-40,1,0",
     "meshonet convert grid.vts grid.p3d --plot3d fortran,big,single",
     "meshonet convert --list-formats",
 )
@@ -21,7 +22,7 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 
 # fmt: off
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ConvertedFiles(o.FileOptions):
     """Files of other formats."""
 
@@ -32,11 +33,9 @@ class ConvertedFiles(o.FileOptions):
     )] = ""
 
 
-@o.expanded
 def convert(
     files: ConvertedFiles,
-    many: o.InputOptions,
-    printing: o.PrintOptions,
+    run: o.InputOptions,
     names: Annotated[list[str] | None, typer.Argument(
         metavar="IN... [OUT]", show_default=False,
         help="Files to read, or - for standard input; without -o the last name is the file to write.",
@@ -47,7 +46,8 @@ def convert(
     )] = None,
     planes: Annotated[int | None, _option(
         "--planes", metavar="K", min=2, max=10_000,
-        help="With --extrude: planes of nodes in z, one more than cells. [default: 2]",
+        help="With --extrude or --revolve: planes of nodes, one more than cells. [default: 2, or cells of up "
+        "to 4 degrees]",
     )] = None,
     plot3d: Annotated[str | None, _output(
         "--plot3d", metavar="WORDS",
@@ -69,6 +69,8 @@ def convert(
         help="Keep every K-th node along xi and eta; K must divide the number of cells along both, and "
         "the nodes at which walls have corners.",
     )] = None,
+    revolve: o.Revolve = None,
+    axis: o.Axis = None,
     list_formats: Annotated[bool, _output(
         "--list-formats", help="Print what can be read and written, and stop.",
     )] = False,
@@ -79,11 +81,12 @@ def convert(
     from meshonet_cli.tasks.conversions import convert_files, print_formats
 
     if list_formats:
-        return print_formats(printing.session())
+        return print_formats(run.session())
     *sources, target = words = [*(names or []), *([files.output] if files.output else [])] or [""]
     if not sources:
         remedy = f"name it: meshonet convert {words[0] or 'IN'} OUT"
         raise InputError("there is no file to write", remedy, source="convert")
-    batch = printing.batch(many.of(sources), replace(files, output=target))
-    return convert_files(batch, Conversion(extrude, planes, swap, normalise, coarsen or 1), plot3d)
+    batch = run.batch(run.inputs(sources), replace(files, output=target))
+    conversion = Conversion(extrude, planes, swap, normalise, coarsen or 1, revolve, o.axis_of(axis))
+    return convert_files(batch, conversion, plot3d)
 # fmt: on

@@ -15,13 +15,10 @@ _option = o.option_of(o.METHOD)
 
 
 # fmt: off
-@o.expanded
 def deform(
     grid: o.Grids,
-    many: o.InputOptions,
     files: o.FileOptions,
-    printing: o.PrintOptions,
-    workers: o.EngineOptions,
+    run: o.RunOptions,
     gates: o.GateOptions,
     wall: Annotated[list[str] | None, _option(
         "--wall", metavar="[NAME=]FILE",
@@ -44,7 +41,7 @@ def deform(
 
     walls = walls_of(wall or (), rotate or (), shift or ())
     return write_deformed(
-        printing.batch(many.of(grid, grids=True), files, workers), walls, gates.criteria(),
+        run.batch(run.inputs(grid, grids=True), files), walls, gates.criteria(),
         allow_invalid=allow_invalid, threads=threads,
     )
 # fmt: on

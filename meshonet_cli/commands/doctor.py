@@ -1,7 +1,5 @@
 """``meshonet doctor``."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -31,11 +29,11 @@ def doctor(as_json: o.AsJson = False) -> int:
     return session.finish() or int(not _well(findings))
 
 
-def _well(findings: Sequence[Finding]) -> bool:
+def _well(findings: "Sequence[Finding]") -> bool:
     return all(finding.well is not False for finding in findings)
 
 
-def findings_text(findings: Sequence[Finding]) -> str:
+def findings_text(findings: "Sequence[Finding]") -> str:
     """Return findings by their groups, a line each, and whether all is well."""
     lines: list[str] = []
     width = max(len(finding.name) for finding in findings)

@@ -17,7 +17,6 @@ _option = o.option_of(o.METHOD)
 
 
 # fmt: off
-@o.expanded
 def infer(
     boundary: o.Boundaries,
     grids: o.GridOptions,
@@ -58,5 +57,6 @@ def infer(
 
     settings = {"model": model, "polish": o.polish_steps(polish), "answer": answer, "device": device}
     request = grids.request("best", settings, volume, refine=refine, blocks=blocks, **domain.parameters())
-    return write_grids(grids.batch(boundary), request, grids.gates.criteria(), assemble=domain.assemble)
+    batch = grids.batch(grids.inputs(boundary), grids)
+    return write_grids(batch, request, grids.criteria(), assemble=domain.assemble)
 # fmt: on

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from meshonet_cli import options as o
-from meshonet_cli.batch.files import Files
+from meshonet_cli.batch.settings import Files
 
 EXAMPLES = (
     "meshonet layout plate.geojson -o plate.json",
@@ -19,7 +19,7 @@ _sampling = o.option_of(o.SAMPLING)
 
 
 # fmt: off
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class LayoutFiles(Files):
     """Files of layouts."""
 
@@ -32,7 +32,6 @@ class LayoutFiles(Files):
     skip_existing: o.SkipExisting = False
 
 
-@o.expanded
 def layout(
     domain: Annotated[list[str], typer.Argument(
         metavar="DOMAIN", show_default=False,
@@ -40,10 +39,8 @@ def layout(
         "airfoil, naca:2412, or - for standard input.",
     )],
     files: LayoutFiles,
-    many: o.InputOptions,
     blocks: o.DomainOptions,
-    printing: o.PrintOptions,
-    workers: o.EngineOptions,
+    run: o.RunOptions,
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R", help="Distance of the far field, in chords of all bodies. [default: 15]",
     )] = None,
@@ -57,7 +54,7 @@ def layout(
 
     first = {"first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds}
     return write_layouts(
-        printing.batch(many.of(domain), files, workers), blocks.parameters() | first, far_field,
+        run.batch(run.inputs(domain), files), blocks.parameters() | first, far_field,
         assemble=blocks.assemble,
     )
 # fmt: on

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from meshonet_cli import options as o
+from meshonet_cli.batch.settings import Files
 
 EXAMPLES = (
     "meshonet plot grid.vts -o grid.png",
@@ -19,8 +20,8 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 
 # fmt: off
-@dataclass(frozen=True)
-class PictureFiles(o.SectionFiles):
+@dataclass(frozen=True, kw_only=True)
+class PictureFiles(Files):
     """Files of pictures."""
 
     output: Annotated[str, _output(
@@ -33,20 +34,21 @@ class PictureFiles(o.SectionFiles):
         "--to", metavar="FORMAT",
         help="png, svg, pdf or html, when the ending does not say. [default on standard output: png]",
     )] = None
+    from_format: o.From = None
+    skip_existing: o.SkipExisting = False
 
 
-@o.expanded
 def plot(
     grid: o.Grids,
     files: PictureFiles,
-    many: o.InputOptions,
-    printing: o.PrintOptions,
+    run: o.InputOptions,
     metric: Annotated[str, _option(
         "--metric", metavar="METRIC", show_default=True,
         help="Colour the cells by this metric; none draws lines only.",
     )] = "max_angle",
     zoom: Annotated[str | None, _option(
-        "--zoom", metavar="x0,x1,y0,y1", help="Show this part only; in space x0,x1,y0,y1,z0,z1.",
+        "--zoom", metavar="x0,x1,y0,y1",
+        help="Show this part only; in space x0,x1,y0,y1,z0,z1, of a --slice either.",
     )] = None,
     slice_: Annotated[str | None, _option(
         "--slice", metavar="SLICE",
@@ -67,5 +69,5 @@ def plot(
 
     box, direction = o.numbers(zoom, (4, 6), *_BOX), o.numbers(seen_from, (2,), *_DIRECTION)
     picture = Picture(box, every, slice_, direction, None if metric == "none" else metric)
-    return plot_grids(printing.batch(many.of(grid, grids=True), files), picture)
+    return plot_grids(run.batch(run.inputs(grid, grids=True), files), picture)
 # fmt: on

@@ -17,11 +17,9 @@ _check, _output = o.option_of(o.CHECKS), o.option_of(o.IO)
 
 
 # fmt: off
-@o.expanded
 def quality(
     grid: o.Grids,
-    many: o.InputOptions,
-    printing: o.PrintOptions,
+    run: o.InputOptions,
     gates: o.GateOptions,
     plot: Annotated[str | None, _output(
         "--plot", metavar="F.png", help="Draw the grid, coloured by max_angle.",
@@ -58,7 +56,7 @@ def quality(
     o.only_with("compare", compare is not None, pair=pair)
     with limited_to(threads):
         return measure_grids(
-            many.of(grid, grids=True), printing.session(),
+            run.inputs(grid, grids=True), run.session(),
             fmt=from_format, criteria=gates.criteria(COMPARED if compare else ()), compare=compare,
             pairing=pair or "auto", summary=summary, plot=plot, html=html, per_cell=per_cell,
         )

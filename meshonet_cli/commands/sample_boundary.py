@@ -16,13 +16,10 @@ _option = o.option_of(o.SAMPLING)
 
 
 # fmt: off
-@o.expanded
 def sample_boundary(
     sampling: o.SamplingOptions,
     files: o.FileOptions,
-    printing: o.PrintOptions,
-    workers: o.EngineOptions,
-    many: o.InputOptions,
+    run: o.RunOptions,
     source: Annotated[list[str] | None, typer.Argument(
         metavar="SOURCE", show_default=False,
         help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input; a "
@@ -58,7 +55,7 @@ def sample_boundary(
     """Turn geometry into boundaries of four edges."""
     from meshonet.geometry.errors import InputError
     from meshonet.geometry.families.draw import draws
-    from meshonet_cli.batch.sources import DrawnInputs
+    from meshonet_cli.batch.drawn import DrawnInputs
     from meshonet_cli.tasks.boundaries import write_boundaries
 
     if bool(source) == bool(family):
@@ -66,9 +63,9 @@ def sample_boundary(
         raise InputError(problem, "give one of them, see meshonet sample-boundary --help")
     o.only_with("family", family is not None, range=spread, split=split, count=count, seed=seed)
     inputs = (
-        DrawnInputs(draws(family, 1 if count is None else count, spread, seed or 0, split), many.part())
+        DrawnInputs(draws(family, 1 if count is None else count, spread, seed or 0, split), run.part())
         if family
-        else many.of(source or [])
+        else run.inputs(source or [])
     )
-    return write_boundaries(printing.batch(inputs, files, workers), sampling.settings(), sensors)
+    return write_boundaries(run.batch(inputs, files), sampling.placed(), sensors)
 # fmt: on

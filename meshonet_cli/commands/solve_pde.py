@@ -33,7 +33,6 @@ else:
 
 
 # fmt: off
-@o.expanded
 def solve_pde(
     boundary: o.Boundaries,
     grids: o.GridOptions,
@@ -87,6 +86,6 @@ def solve_pde(
         refine=refine, initial=initial_grid(initial), history=history is not None, slide=slide,
         wall_angle=wall_angle, repair_margin=repair_margin, blocks=blocks, **domain.parameters(),
     )
-    criteria = grids.gates.criteria()
-    return write_grids(grids.batch(boundary), request, criteria, history=history, assemble=domain.assemble)
+    batch, criteria = grids.batch(grids.inputs(boundary), grids), grids.criteria()
+    return write_grids(batch, request, criteria, history=history, assemble=domain.assemble)
 # fmt: on

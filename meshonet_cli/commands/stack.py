@@ -1,10 +1,12 @@
 """``meshonet stack``."""
 
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import typer
 
 from meshonet_cli import options as o
+from meshonet_cli.batch.settings import Files
 
 EXAMPLES = (
     "meshonet stack wing.toml -o wing.h5",
@@ -16,18 +18,24 @@ _layer = o.option_of(o.BOUNDARY_LAYER)
 
 
 # fmt: off
-@o.expanded
+@dataclass(frozen=True, kw_only=True)
+class VolumeFiles(Files):
+    """Files of volumes, whose inputs have one format."""
+
+    output: o.Output
+    to_format: o.To = None
+    skip_existing: o.SkipExisting = False
+
+
 def stack(
     sections: Annotated[list[str], typer.Argument(
         metavar="SECTIONS.toml", show_default=False,
         help="File with two sections or more: airfoil (a file or naca:2412), chord, z, and where needed x, y "
         "and twist, or sweep and dihedral; or - for standard input.",
     )],
-    files: o.VolumeFiles,
-    many: o.InputOptions,
-    printing: o.PrintOptions,
+    files: VolumeFiles,
+    run: o.RunOptions,
     gates: o.GateOptions,
-    workers: o.EngineOptions,
     around: Annotated[int | None, _sampling(
         "--around", metavar="N", help="Nodes around a section, an odd number. [default: 129]",
     )] = None,
@@ -47,6 +55,11 @@ def stack(
         help="How a wing ends: half as high as thick, flat, or not closed. [default: what the file says, or "
         "round]",
     )] = None,
+    revolve: Annotated[float | None, _volume(
+        "--revolve", metavar="DEG",
+        help="Have z of blades and ducts turn about an axis, by this from the first section to the last.",
+    )] = None,
+    axis: o.Axis = None,
     surface: Annotated[bool, _volume(
         "--surface", help="Write the patches of the surface only, for other programs or solve-pde.",
     )] = False,
@@ -73,10 +86,11 @@ def stack(
     chosen = {
         "around": around, "span": span, "base": base, "far_field": far_field, "first_cell": first_cell,
         "y_plus": y_plus, "reynolds": reynolds, "layers": layers, "growth": growth, "threads": threads,
+        "revolve": revolve, "axis": o.axis_of(axis),
     }
     parameters = {name: value for name, value in chosen.items() if value is not None}
     return write_stacks(
-        printing.batch(many.of(sections, suffixes=(".toml",)), files, workers),
+        run.batch(run.inputs(sections, suffixes=(".toml",)), files),
         parameters | {"allow_invalid": allow_invalid}, gates.criteria(), tip=tip, surface=surface,
     )
 # fmt: on

@@ -1,32 +1,43 @@
 """``meshonet sweep``."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
 
 from meshonet_cli import options as o
+from meshonet_cli.batch.settings import Files
 
 EXAMPLES = (
     "meshonet sweep circle:0.5 bend.toml -o pipe.h5",
     "meshonet sweep circle:0.5 bend.toml --first-cell 0.005 -o layers.h5",
+    "meshonet sweep circle:0.5 --revolve 90 --axis 0,-2,1,0 -o elbow.h5",
     "meshonet sweep duct.csv path.csv --res 41x21 --twist 45 -o duct.h5",
 )
 _sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
 
 
 # fmt: off
-@o.expanded
+@dataclass(frozen=True, kw_only=True)
+class SectionFiles(Files):
+    """Files of volumes, and the format of their sections."""
+
+    output: o.Output
+    from_format: o.From = None
+    to_format: o.To = None
+    skip_existing: o.SkipExisting = False
+
+
 def sweep(
     names: Annotated[list[str], typer.Argument(
-        metavar="OUTLINE... PATH", show_default=False,
+        metavar="OUTLINE... [PATH]", show_default=False,
         help="Cross-sections: circle:RADIUS, or a file with a closed curve, a domain, a layout or a planar "
-        "grid. Then the path of all: a file of points x y z, one a line, or lines and arcs in TOML.",
+        "grid. Then the path of all, unless there is --revolve: a file of points x y z, one a line, or lines "
+        "and arcs in TOML.",
     )],
-    many: o.InputOptions,
-    printing: o.PrintOptions,
+    run: o.RunOptions,
     gates: o.GateOptions,
-    workers: o.EngineOptions,
-    files: o.SectionFiles,
+    files: SectionFiles,
     res: Annotated[str | None, _sampling(
         "--res", metavar="N|NIxNJ", help="Nodes along the sides of a four-sided section. [default: 65x33]",
     )] = None,
@@ -52,6 +63,8 @@ def sweep(
         "--scale", metavar="F", show_default=True,
         help="Size of the section at the end, in sizes at the start.",
     )] = 1.0,
+    revolve: o.Revolve = None,
+    axis: o.Axis = None,
     cells: Annotated[int | None, o.option_of(o.DOMAIN)(
         "--cells", metavar="N",
         help="About so many cells in the section. [default: 88 around a circle, or 2500]",
@@ -78,11 +91,13 @@ def sweep(
     threads: o.Threads = None,
 ) -> int:
     """Make volumes of pipes and ducts, cross-sections carried along curves."""
+    from meshonet.geometry.blocks.revolve import revolution
     from meshonet.geometry.errors import InputError
     from meshonet.solvers.sweeping.sweep import Sweep
     from meshonet_cli.tasks.volumes import write_sweeps
 
-    *outlines, path = names
+    turn = revolution(revolve, planes, o.axis_of(axis))
+    outlines, path = (names, turn) if turn else (names[:-1], names[-1])
     if not outlines:
         remedy = f"name it: meshonet sweep {path} PATH -o pipe.h5"
         raise InputError("there is no path", remedy, source="sweep")
@@ -92,7 +107,8 @@ def sweep(
         "allow_invalid": allow_invalid, "threads": threads,
     }
     direction = o.numbers(up, (3,), "a direction", "use X,Y,Z, e.g. 0,0,1", "up")
-    batch = printing.batch(many.of(outlines), files, workers)
-    settings = Sweep(planes, direction, twist, scale)
+    batch, settings = run.batch(run.inputs(outlines), files), Sweep(planes, direction, twist, scale)
+    if turn and settings != Sweep(planes):
+        raise InputError("{up}, {twist} and {scale} belong to a path", "leave them out")
     return write_sweeps(batch, path, section, settings, gates.criteria(), around=around)
 # fmt: on

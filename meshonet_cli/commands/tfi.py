@@ -20,7 +20,6 @@ _option = o.option_of(o.METHOD)
 
 
 # fmt: off
-@o.expanded
 def tfi(
     boundary: o.Boundaries,
     grids: o.GridOptions,
@@ -38,5 +37,5 @@ def tfi(
     from meshonet_cli.tasks.grids import write_grids
 
     request = grids.request(method, {"blending": blending}, sides)
-    return write_grids(grids.batch(boundary), request, grids.gates.criteria())
+    return write_grids(grids.batch(grids.inputs(boundary), grids), request, grids.criteria())
 # fmt: on

@@ -19,7 +19,7 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 
 # fmt: off
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class TrainOptions:
     """Parameters of `meshonet.train`."""
 
@@ -98,7 +98,6 @@ class TrainOptions:
     from_format: o.From = None
 
 
-@o.expanded
 def train(
     dataset: Annotated[list[str], typer.Argument(
         metavar="DATASET", show_default=False,

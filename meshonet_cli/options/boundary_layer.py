@@ -35,7 +35,7 @@ Reynolds = Annotated[float | None, _option(
 )]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class LayerOptions:
     """First cells at walls."""
 
@@ -57,7 +57,7 @@ class LayerOptions:
     )] = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SideOptions:
     """First cells off single sides of four-sided domains."""
 

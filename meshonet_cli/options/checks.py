@@ -1,7 +1,5 @@
 """Options that say what a grid must be to be written, and what ends the program with 1."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -30,7 +28,7 @@ AllowInvalid = Annotated[bool, _option(
 )]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class CheckOptions:
     """What a grid must be."""
 
@@ -42,7 +40,7 @@ class CheckOptions:
     allow_invalid: AllowInvalid = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class GateOptions:
     """What a grid must be to pass."""
 
@@ -60,17 +58,18 @@ class GateOptions:
         "when one fails; repeatable. The page on quality in the documentation lists them.",
     )] = None
 
-    def criteria(self, more: Sequence[str] = ()) -> Criteria:
+    def criteria(self, more: Sequence[str] = ()) -> "Criteria":
         """Return gates and profiles; gates may name figures of `more` too.
 
         Raises InputError: a gate that is none.
         """
         from meshonet.geometry.quality.criteria import Criteria
 
-        profiles = tuple(profile.value for profile in self.profile or ())
-        if not self.fail_on:
-            return Criteria((), profiles)
+        if not (self.fail_on or self.profile):
+            return Criteria()
         from meshonet.geometry.quality.gates import parse_gates
 
-        return Criteria(parse_gates(self.fail_on, more), profiles)
+        return Criteria(
+            parse_gates(self.fail_on or (), more), tuple(profile.value for profile in self.profile or ())
+        )
 # fmt: on

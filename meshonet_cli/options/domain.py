@@ -1,7 +1,5 @@
 """Options of domains that are made as many blocks."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -22,7 +20,7 @@ Walls = Annotated[str | None, _option(
 )]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DomainOptions:
     """How a domain is split into blocks. Each of these but --assemble asks for blocks."""
 
@@ -60,16 +58,15 @@ class DomainOptions:
 
     def parameters(self) -> dict[str, Any]:
         """Return them for the library; raise InputError for what cannot be read."""
-        values = {name: value for name, value in vars(self).items() if name != "assemble"}
-        return values | {
-            "layout": None if self.layout is None else _layout(self.layout),
-            "pitch": numbers(self.pitch, (2,), "a vector", "use DX,DY, e.g. 0,0.8", "pitch"),
-            "walls": () if self.walls is None else tuple(name.strip() for name in self.walls.split(",")),
-        }
+        values = dict(vars(self), walls=())
+        del values["assemble"]
+        if self.layout is not None:
+            from meshonet.formats.layout.read import layout_of
+
+            values["layout"] = layout_of(self.layout)
+        if self.pitch is not None:
+            values["pitch"] = numbers(self.pitch, (2,), "a vector", "use DX,DY, e.g. 0,0.8", "pitch")
+        if self.walls is not None:
+            values["walls"] = tuple(map(str.strip, self.walls.split(",")))
+        return values
 # fmt: on
-
-
-def _layout(text: str) -> Any:
-    from meshonet.formats.layout.read import layout_of
-
-    return layout_of(text)

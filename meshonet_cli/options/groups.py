@@ -3,8 +3,8 @@
 import dataclasses
 import functools
 import inspect
-from collections.abc import Callable, Iterator, Mapping
-from typing import Annotated, Any, get_origin, get_type_hints
+from collections.abc import Callable
+from typing import Annotated, Any, get_origin
 
 import typer
 
@@ -25,46 +25,35 @@ def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
 
     The options of a block are declared once, with their defaults, and the function has them by group::
 
-        @expanded
         def tfi(boundary: Boundaries, grids: GridOptions, sides: SideOptions): ...
     """
-    signature, hints = inspect.signature(function), get_type_hints(function, include_extras=True)
+    options: list[inspect.Parameter] = []
+    blocks: list[tuple[str, Any, list[str]]] = []
+    for parameter in inspect.signature(function).parameters.values():
+        block = parameter.annotation
+        if not (isinstance(block, type) and dataclasses.is_dataclass(block)):
+            options.append(parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY))
+            continue
+        blocks.append((parameter.name, block, []))
+        for each in inspect.signature(block).parameters.values():
+            if get_origin(each.annotation) is Annotated:
+                blocks[-1][2].append(each.name)
+                options.append(each.replace(kind=inspect.Parameter.KEYWORD_ONLY))
 
     @functools.wraps(function)
     def call(**values: Any) -> Any:
-        return function(**_filled(signature, hints, values))
+        for name, made, own in blocks:
+            values[name] = made(**dict(zip(own, map(values.pop, own), strict=True)))
+        return function(**values)
 
-    ordered = sorted(
-        (each.replace(kind=inspect.Parameter.KEYWORD_ONLY) for each in _options(signature, hints)),
-        key=lambda each: each.default is not inspect.Parameter.empty,
-    )
-    call.__signature__ = signature.replace(parameters=ordered)  # type: ignore[attr-defined]
-    call.__annotations__ = {each.name: each.annotation for each in ordered}
+    call.__signature__ = inspect.Signature(options)  # type: ignore[attr-defined]
+    call.__annotations__ = {}
     return call
 
 
-def _fields(block: Any) -> tuple[inspect.Signature, dict[str, Any]]:
-    return inspect.signature(block), get_type_hints(block, include_extras=True)
-
-
-def _options(signature: inspect.Signature, hints: Mapping[str, Any]) -> Iterator[inspect.Parameter]:
-    """Yield the options among parameters, which are annotated as such, and those of blocks."""
-    for name, parameter in signature.parameters.items():
-        if dataclasses.is_dataclass(hints[name]):
-            yield from _options(*_fields(hints[name]))
-        elif get_origin(hints[name]) is Annotated:
-            yield parameter.replace(annotation=hints[name])
-
-
-def _filled(signature: inspect.Signature, hints: Mapping[str, Any], values: dict[str, Any]) -> dict[str, Any]:
-    """Return parameters by name, blocks made of the values of their options."""
-    made: dict[str, Any] = {}
-    for name in signature.parameters:
-        if dataclasses.is_dataclass(hints[name]):
-            made[name] = hints[name](**_filled(*_fields(hints[name]), values))
-        elif name in values:
-            made[name] = values[name]
-    return made
+def values_of(block: Any, options: object) -> dict[str, Any]:
+    """Return by name the fields of a `block`, a dataclass, that `options`, derived from it, have."""
+    return {each.name: getattr(options, each.name) for each in dataclasses.fields(block)}
 
 
 def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:

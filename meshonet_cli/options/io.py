@@ -1,21 +1,18 @@
 """Options that say what is read, which of many inputs, what is written and what is printed."""
 
-from __future__ import annotations
-
+import re
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from meshonet_cli.batch.files import Files
+from meshonet_cli.batch.settings import Engine, EngineName, Files
 from meshonet_cli.options.groups import IO, bad_value, option_of
 
 if TYPE_CHECKING:
     from meshonet.formats.inputs import Inputs
     from meshonet_cli.batch.run import Batch
-    from meshonet_cli.batch.sources import DrawnInputs
-    from meshonet_cli.options.engine import EngineOptions
     from meshonet_cli.terminal.session import Session
 
 _option = option_of(IO)
@@ -60,30 +57,18 @@ PartSize = Annotated[int | None, _option(
 Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")]
 
 
-@dataclass(frozen=True)
-class VolumeFiles(Files):
-    """Files of a command whose inputs have one format and which writes no datasets in parts."""
-
-    output: Output
-    to_format: To = None
-    skip_existing: SkipExisting = False
-
-
-@dataclass(frozen=True)
-class SectionFiles(VolumeFiles):
-    """Files of a command that writes no datasets in parts."""
-
-    from_format: From = None
-
-
-@dataclass(frozen=True)
-class FileOptions(SectionFiles):
+@dataclass(frozen=True, kw_only=True)
+class FileOptions(Files):
     """Files of a command that turns files into files or datasets."""
 
+    output: Output
+    from_format: From = None
+    to_format: To = None
+    skip_existing: SkipExisting = False
     part_size: PartSize = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PrintOptions:
     """What is printed."""
 
@@ -91,25 +76,16 @@ class PrintOptions:
     quiet: Annotated[bool, _option("-q", "--quiet", help="Print warnings and errors only.")] = False
     debug: Debug = False
 
-    def session(self) -> Session:
+    def session(self) -> "Session":
         """Return the session that prints so."""
         from meshonet_cli.terminal.session import Session
 
         return Session(quiet=self.quiet, as_json=self.as_json, debug=self.debug)
 
-    def batch(
-        self, inputs: Inputs | DrawnInputs, files: Files, workers: EngineOptions | None = None
-    ) -> Batch:
-        """Return the run over inputs that prints so."""
-        from meshonet_cli.batch.run import Batch
 
-        session = self.session()
-        return Batch(inputs, files, session, workers.chosen()) if workers else Batch(inputs, files, session)
-
-
-@dataclass(frozen=True)
-class InputOptions:
-    """Which inputs are taken of folders, zip archives and lists, and which of all inputs."""
+@dataclass(frozen=True, kw_only=True)
+class InputOptions(PrintOptions):
+    """Which inputs are taken of folders, zip archives and lists, which of all inputs, what is printed."""
 
     pick: Annotated[list[str] | None, _option(
         "--pick", metavar="PATTERN",
@@ -121,9 +97,10 @@ class InputOptions:
         help="Take every N-th input from the K-th on, for N jobs that share the work; of a dataset in parts, "
         "every N-th part.",
     )] = None
-# fmt: on
 
-    def of(self, words: Sequence[str], *, grids: bool = False, suffixes: Sequence[str] = ()) -> Inputs:
+    def inputs(
+        self, words: Sequence[str], *, grids: bool = False, suffixes: Sequence[str] = ()
+    ) -> "Inputs":
         """Return the inputs that `words` name: shapes, or `grids`, or files of other endings.
 
         Raises InputError: as `Inputs`; a shard that is none.
@@ -131,13 +108,42 @@ class InputOptions:
         from meshonet.formats.inputs import Inputs, readable_suffixes
 
         endings = frozenset(suffixes) or readable_suffixes(grids_only=grids)
-        return Inputs(tuple(words), endings, tuple(self.pick or ()), self.part())
+        return Inputs(tuple(words), endings, tuple(self.pick or ()), self.part() if self.shard else (1, 1))
 
     def part(self) -> tuple[int, int]:
         """Return K and N of the shard, 1 and 1 for all inputs. Raises InputError: it is none."""
-        if self.shard is None:
-            return 1, 1
-        words = self.shard.split("/")
-        if len(words) != 2 or not all(word.isascii() and word.isdigit() and len(word) < 10 for word in words):
-            raise bad_value(self.shard, "a shard", "use K/N, e.g. 3/8 for the third of eight", "shard")
-        return int(words[0]), int(words[1])
+        match = re.fullmatch(r"(\d{1,9})/(\d{1,9})", self.shard or "1/1", re.ASCII)
+        if match is None:
+            raise bad_value(str(self.shard), "a shard", "use K/N, e.g. 3/8 for the third of eight", "shard")
+        return int(match[1]), int(match[2])
+
+    def batch(self, inputs: Any, files: Files) -> "Batch":
+        """Return the run over `inputs`, in this process."""
+        from meshonet_cli.batch.run import Batch
+
+        return Batch(inputs, files, self.session())
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunOptions(InputOptions):
+    """Options of inputs and printing, and where members of a batch are worked on."""
+
+    jobs: Annotated[int, _option(
+        "--jobs", metavar="N", min=1, max=1024, show_default=True, help="Processes for a batch.",
+    )] = 1
+    engine: Annotated[EngineName, _option(
+        "--engine", metavar="processes|dask|mpi", show_default=True,
+        help="What works on a batch: --jobs processes, a Dask cluster, or the ranks of MPI (mpiexec -n N "
+        "meshonet ...).",
+    )] = "processes"
+    scheduler: Annotated[str | None, _option(
+        "--scheduler", metavar="ADDRESS",
+        help="Scheduler of the Dask cluster, e.g. tcp://head:8786. [default: a cluster of --jobs processes "
+        "here]",
+    )] = None
+
+    def batch(self, inputs: Any, files: Files) -> "Batch":
+        """Return the run over `inputs`. Raises InputError: options that do not go together."""
+        engine = Engine(self.engine, self.jobs, self.scheduler)
+        return replace(super().batch(inputs, files), engine=engine)
+# fmt: on

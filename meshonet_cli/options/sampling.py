@@ -1,18 +1,15 @@
 """Options that say how the nodes of a boundary are placed."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from meshonet.geometry.spacing.laws import LAWS
-from meshonet_cli.options.groups import SAMPLING, bad_value, option_of
+from meshonet_cli.options.groups import SAMPLING, bad_value, option_of, values_of
 
 if TYPE_CHECKING:
     from meshonet.geometry.spacing.sampling import Sampling
 
-if TYPE_CHECKING:
     SpacingName: TypeAlias = str
 else:
     SpacingName = Literal[tuple(LAWS)]
@@ -28,7 +25,7 @@ Resolution = Annotated[str | None, _option(
 )]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SamplingOptions:
     """How the nodes of a boundary are placed."""
 
@@ -74,6 +71,11 @@ class SamplingOptions:
         help="Nodes of a blunt trailing edge's base, its corners included; odd in an O grid, which begins in "
         "the middle of it. [default: by the cells beside it and its width]",
     )] = None
+    smooth: Annotated[float | None, _option(
+        "--smooth", metavar="TOL",
+        help="Smooth an airfoil whose coordinates ripple, by splines within TOL chords of its points, say "
+        "1e-4; its corners stay, and the report says what changed. Needs SciPy.",
+    )] = None
     corners: Annotated[str, _option(
         "--corners", metavar="auto|I,J,K,L", show_default=True,
         help="Points of an outline, counted from 0, that become the corners of a four-sided grid, "
@@ -83,13 +85,15 @@ class SamplingOptions:
         "--normalise", help="Move the leading edge to (0, 0) and the trailing edge to (1, 0).",
     )] = False
 
-    def settings(self) -> Sampling:
+    def placed(self) -> "Sampling":
         """Return them for the library; raise InputError for what cannot be read or is out of range."""
         from meshonet.geometry.spacing.sampling import Sampling
 
-        rest = {name: value for name, value in vars(self).items() if name not in ("res", "corners")}
         ni, nj, nk = (None, None, None) if self.res is None else resolution(self.res)
-        return Sampling(ni, nj, corners=four_corners(self.corners), nk=nk, **rest)
+        given = values_of(SamplingOptions, self)
+        del given["res"]
+        corners = None if self.corners == "auto" else four_corners(self.corners)
+        return Sampling(ni, nj, nk=nk, **given | {"corners": corners})
 # fmt: on
 
 
@@ -108,14 +112,12 @@ def resolution(text: str) -> tuple[int, int, int | None]:
     return ni, int(match[2] or ni), int(match[3]) if match[3] else None
 
 
-def four_corners(text: str) -> tuple[int, int, int, int] | None:
-    """Return the four indices of ``I,J,K,L``, or None for ``auto``, or raise InputError.
+def four_corners(text: str) -> tuple[int, int, int, int]:
+    """Return the four indices of ``I,J,K,L``, or raise InputError.
 
-    >>> four_corners("0,10,20,30"), four_corners("auto")
-    ((0, 10, 20, 30), None)
+    >>> four_corners("0,10,20,30")
+    (0, 10, 20, 30)
     """
-    if text == "auto":
-        return None
     words = text.split(",")
     if len(words) != 4 or not all(re.fullmatch(r"\s*\d{1,9}\s*", word, re.ASCII) for word in words):
         raise bad_value(text, "four points", "use auto or I,J,K,L, e.g. 0,40,60,100", "corners")

@@ -1,9 +1,12 @@
 """Options of grids in space."""
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
-from meshonet_cli.options.groups import VOLUME, option_of
+from meshonet_cli.options.groups import VOLUME, numbers, option_of
+
+if TYPE_CHECKING:
+    from meshonet.geometry.blocks.revolve import AxisLine
 
 _option = option_of(VOLUME)
 
@@ -14,8 +17,31 @@ Layers = Annotated[int | None, _option(
     "a growth of 1.2 needs]",
 )]
 
+Revolve = Annotated[float | None, _option(
+    "--revolve", metavar="DEG",
+    help="Turn the plane about an axis by this: up to 10 degrees a wedge of one cell, below 360 a sector, "
+    "360 a whole turn.",
+)]
+Axis = Annotated[str | None, _option(
+    "--axis", metavar="x|y|X,Y,DX,DY",
+    help="With --revolve: the axis, or a point on a line in the plane and its direction. [default: x]",
+)]
 
-@dataclass(frozen=True)
+
+def axis_of(text: str | None) -> "AxisLine | None":
+    """Return the line that the words of an option mean, None for none.
+
+    Raises InputError: other words than an axis or four numbers.
+    """
+    from meshonet.geometry.blocks.revolve import AxisLine
+
+    named = {"x": "0,0,1,0", "y": "0,0,0,1"}
+    words, remedy = named.get(text or "", text), "use x, y or X,Y,DX,DY, e.g. 0,-2,1,0"
+    given = numbers(words, (4,), "an axis", remedy, "axis")
+    return None if given is None else AxisLine(*given)
+
+
+@dataclass(frozen=True, kw_only=True)
 class VolumeOptions:
     """How a volume is marched from a surface, or filled inside six faces."""
 

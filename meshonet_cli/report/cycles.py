@@ -1,13 +1,17 @@
 """Cycles as they run: on the terminal, and in the file of ``--history``."""
 
+import contextlib
+import csv
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import astuple, fields
 from pathlib import Path
 
-from meshonet.formats.output import check_place
+from meshonet.formats.output import check_place, whole_file
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.progress import Cycle, HistoryRow
+from meshonet.solvers.progress import Cycle, HistoryRow, listening
+from meshonet_cli.report.grid import Report
+from meshonet_cli.terminal.session import Session
 
 COLUMNS = ("input", *(each.name for each in fields(HistoryRow)))  # of the file
 INTERVAL = 0.1  # least seconds between two texts on the terminal
@@ -30,19 +34,32 @@ class Live:
         self._show(f"{cycle.ni}x{cycle.nj}: cycle {cycle.number}, residual {cycle.residual:.1e}{folded}")
 
 
-def check_file(text: str | None) -> None:
-    """Raise InputError when a file of cycles does not end in ``.csv`` or has no folder to be in."""
-    if text is None:
-        return
-    if Path(text).suffix.lower() != ".csv":
-        raise InputError("cycles are written as a table of commas", "name a file, F.csv", source="--history")
-    check_place(Path(text), text)
+@contextlib.contextmanager
+def followed(session: Session, history: str | None) -> Iterator[Callable[[Report, str], None]]:
+    """Show cycles on a terminal, and write those of the reports that the given function takes to `history`.
+
+    Raises InputError: a file that does not end in ``.csv`` or has no folder to be in.
+    """
+    if history is not None:
+        if Path(history).suffix.lower() != ".csv":
+            remedy = "name a file, F.csv"
+            raise InputError("cycles are written as a table of commas", remedy, source="--history")
+        check_place(Path(history), history)
+    cycles: list[tuple[str, Iterable[HistoryRow]]] = []
+
+    def written(report: Report, path: str) -> None:
+        cycles.append((report.item.label, report.history))
+        session.written(report, path)
+
+    with listening(Live(session.status)) if session.live else contextlib.nullcontext():
+        yield written
+    if history is not None and cycles:
+        with whole_file(history) as file:
+            _write(file, cycles)
 
 
-def write(path: Path, members: Iterable[tuple[str, Iterable[HistoryRow]]]) -> None:
+def _write(path: Path, members: Iterable[tuple[str, Iterable[HistoryRow]]]) -> None:
     """Write the cycles of all members, each under its label, to `path`."""
-    import csv
-
     with path.open("w", newline="", encoding="utf-8") as stream:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow(COLUMNS)

@@ -79,20 +79,21 @@ class Report(Timed):
     def lines(self) -> str:
         """Return the report of a single grid for people."""
         angle = self.quality["max_angle"]
-        rows = {
-            "method": self._method + (f", model {self.model}" if self.model else "") + _after(self.path),
-            "residual": f"{self.residual:.1e} after {self.cycles} cycle{'' if self.cycles == 1 else 's'}"
-            if self.residual is not None
-            else "",
-            "folded": f"{self.quality.folded} of {self.quality.cells} cells",
-            "max angle": f"{angle.max:.1f} degrees at {named(angle.worst)}; mean {angle.mean:.1f}",
-            "time": self.times(),
-        }
-        head = f"{self.item.label} -> {self.output}: {self._size()}, {self.topology} grid"
-        if counts := self._along_wall():
+        kind = "multi-block" if self.topology == "blocks" else self.topology
+        head = f"{self.item.label} -> {self.output}: {self._size()}, {kind} grid"
+        if self.wake:
+            counts = self._along_wall()
             head += f" with {counts['body_nodes']} nodes on the body and {counts['wake_nodes']} on the wake"
-        notes = [f"  {with_options(note)}" for note in self.notes]
-        return "\n".join([head, *(f"  {name:<10} {text}" for name, text in rows.items() if text), *notes])
+        lines = [head, f"method     {self._made()}" + (f", model {self.model}" if self.model else "")]
+        if self.residual is not None:
+            cycles = f"{self.cycles} cycle{'' if self.cycles == 1 else 's'}"
+            lines.append(f"residual   {self.residual:.1e} after {cycles}")
+        lines += [
+            f"folded     {self.quality.folded} of {self.quality.cells} cells",
+            f"max angle  {angle.max:.1f} degrees at {named(angle.worst)}; mean {angle.mean:.1f}",
+            f"time       {self.times()}",
+        ]
+        return "\n  ".join([*lines, *map(with_options, self.notes)])
 
     def line(self) -> str:
         """Return the report of a member of a batch for people: one line, and what was changed below it."""
@@ -100,7 +101,7 @@ class Report(Timed):
         head = (
             f"{self.item.label} -> {self.output}: {self._size(short=True)}, "
             f"{self.quality.folded} folded, max angle {angle:.1f}, "
-            f"{self._method}{_after(self.path)}, {span(self.seconds['total'])}"
+            f"{self._made()}, {span(self.seconds['total'])}"
         )
         return "\n  ".join([head, *changes_in(self.notes)])
 
@@ -110,9 +111,10 @@ class Report(Timed):
             return {}
         return {"body_nodes": self.ni - 2 * self.wake, "wake_nodes": self.wake + 1}
 
-    @property
-    def _method(self) -> str:
-        return _METHODS.get(self.method, self.method)
+    def _made(self) -> str:
+        """Return the method and what came after it."""
+        method = _METHODS.get(self.method, self.method)
+        return f"{method}, then {', '.join(self.path)}" if self.path else method
 
     def _size(self, *, short: bool = False) -> str:
         """Return how large the grid is."""
@@ -126,7 +128,3 @@ class Report(Timed):
             return size
         irregular = len(self.blocks.irregular)
         return f"{size}, {irregular or 'no'} irregular {'vertex' if irregular == 1 else 'vertices'}"
-
-
-def _after(path: tuple[str, ...]) -> str:
-    return f", then {', '.join(path)}" if path else ""

@@ -39,7 +39,7 @@ class Measured(Timed):
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
-        member = {"input": self.item.source, "name": self.item.what.name}
+        member = {"input": self.item.source, "name": self.item.name}
         end = {"seconds": self.times_json(), "gates_not_met": gates_not_met(self.judgement)}
         return member | self.report.as_dict() | end
 

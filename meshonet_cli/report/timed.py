@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
-import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -35,13 +33,6 @@ class Timed:
     def __post_init__(self) -> None:
         self.seconds = {"read": self.item.seconds}
 
-    @contextlib.contextmanager
-    def timed(self, stage: str) -> Iterator[None]:
-        """Add the time that the block takes to `stage`."""
-        begun = time.perf_counter()
-        yield
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - begun
-
     @property
     def warning(self) -> str:
         """What a user must know even when nothing else is printed."""
@@ -64,16 +55,15 @@ class Timed:
         return self.lines()
 
     def finished(self, path: str | None) -> None:
-        """Note where the result is and add the stages up."""
+        """Note where the result is and add the stages up, in the order of `STAGES`, others behind them."""
         self.output = path
-        known = [stage for stage in STAGES if stage in self.seconds]
-        others = [stage for stage in self.seconds if stage not in STAGES]
-        self.seconds = {stage: self.seconds[stage] for stage in known + others}
+        in_order = sorted(self.seconds, key=(*STAGES, *self.seconds).index)
+        self.seconds = {stage: self.seconds[stage] for stage in in_order}
         self.seconds["total"] = sum(self.seconds.values())
 
     def member_json(self) -> dict[str, Any]:
         """Return for JSON which member this is, and where its result."""
-        return {"input": self.item.source, "name": self.item.what.name, "output": self.output}
+        return {"input": self.item.source, "name": self.item.name, "output": self.output}
 
     def times(self) -> str:
         """Return the stages for people."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from functools import partial
 from typing import Any
@@ -13,9 +12,10 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.draw import Draw
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.stages import stage
+from meshonet_cli.batch.drawn import DrawnInputs
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import Batch, BatchTask, each
-from meshonet_cli.batch.sources import DrawnInputs
 from meshonet_cli.report.timed import Delivered, delivered, part_names
 
 EDGE_NODES = 1000
@@ -42,10 +42,11 @@ def itself(member: Draw) -> Iterator[Draw]:
 
 
 def _sampled(item: Item[Shape], sampling: Sampling, sensors: int | None) -> tuple[Boundary, Delivered]:
-    begun = time.perf_counter()
-    boundary = edges_of(item.what, sampling)
-    if sensors is not None:
-        boundary = boundary.with_sensors(sensors)
+    seconds: dict[str, float] = {}
+    with stage("boundary", seconds):
+        boundary = edges_of(item.what, sampling)
+        if sensors is not None:
+            boundary = boundary.with_sensors(sensors)
     report = delivered(item, boundary, part_names(boundary), notes=boundary.notes)
-    report.seconds["boundary"] = time.perf_counter() - begun
+    report.seconds |= seconds
     return boundary, report

@@ -80,9 +80,7 @@ def _put(walls: dict[str, NewWall] | dict[str, Motion], name: str, new: NewWall,
 def _read(file: str, text: str) -> NewWall:
     if not file.strip():
         raise bad_value(text, "a file", "give the new shape of a wall", "wall")
-    nothing = "holds nothing", "give a file with the new shape of a wall"
-    several = "holds several shapes", "give a file with one"
-    return only(read_all(file), file, nothing, several)
+    return only(read_all(file), file, "the new shape of a wall")
 
 
 def _turn(text: str) -> tuple[str, Motion]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from operator import attrgetter
+from typing import Any
 
-from meshonet.formats.output import whole_file
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.criteria import Criteria
@@ -18,23 +17,20 @@ from meshonet.solvers.pipeline.choose_method import method_of
 from meshonet.solvers.pipeline.make_grid import MOST_NODES, make_grids_of
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.result import Result
+from meshonet.solvers.stages import stage
 from meshonet_cli.batch.item import Item, Outcome, Pair, made
 from meshonet_cli.batch.provenance import provenance
 from meshonet_cli.batch.run import Batch, BatchTask
 from meshonet_cli.report.grid import Report
 
-if TYPE_CHECKING:
-    from meshonet.solvers.progress import HistoryRow
-    from meshonet_cli.terminal.session import Session
-
-SHARED = 16  # members that one of several processes gets at a time at the most, when they are solved together
+SHARED = 16  # members that one of several processes gets at a time at the most, fewer of large grids
 
 
 def _grids(
     members: Iterable[Item[Shape]], request: GridRequest, criteria: Criteria, detailed: bool
 ) -> Iterator[Pair]:
     """Yield each member with its grid and report, or the error that it ended in."""
-    for member, result in make_grids_of(((member, member.what) for member in members), request):
+    for member, result in make_grids_of(members, request, attrgetter("what")):
         outcome: Outcome
         try:
             outcome = reported(member, made(result), criteria, detailed=detailed)
@@ -60,13 +56,12 @@ def reported(
         residual=solution.residual, cycles=solution.cycles, notes=result.notes, history=result.history,
     )  # fmt: skip
     report.seconds |= result.seconds
-    if grid.topology == "blocks":
-        from meshonet.geometry.quality.blocks import block_counts, block_figures
+    with stage("quality", report.seconds):
+        if grid.topology == "blocks":
+            from meshonet.geometry.quality.blocks import block_counts, block_figures
 
-        with report.timed("quality"):
             report.blocks = block_figures(grid, result.quality) if detailed else block_counts(grid)
-    if criteria:
-        with report.timed("quality"):
+        if criteria:
             report.judgement = criteria.judge(grid, result.quality)
     return grid.with_provenance(**provenance()), report
 
@@ -83,46 +78,21 @@ def write_grids(
     request = replace(request, threads=batch.engine.threads(request.threads))
     session, sampling = batch.session, request.sampling
     nodes = (sampling.ni or DEFAULT_NI) * (sampling.nj or DEFAULT_NJ)
+    alone = method_of(request).together is None
     task = BatchTask(
         partial(read_shapes, fmt=batch.files.from_format),
         partial(_grids, request=request, criteria=criteria, detailed=session.as_json),
         nodes=None if request.asks_for_blocks else nodes,
-        together=_together(request), assembled=sampling if assemble else None,
+        together=1 if alone else max(1, min(SHARED, MOST_NODES // nodes)),
+        assembled=sampling if assemble else None,
     )  # fmt: skip
-    if history:
-        from meshonet_cli.report.cycles import check_file
+    if not (history or session.live):
+        return batch.run(task)
+    from meshonet_cli.report.cycles import followed
 
-        check_file(history)
-    cycles: list[tuple[str, Iterable[HistoryRow]]] = []
-
-    def written(report: Report, path: str) -> None:
-        if history:
-            cycles.append((report.item.label, report.history))
-        session.written(report, path)
-
-    with _shown_live(session) if session.live else contextlib.nullcontext():
+    with followed(session, history) as written:
         batch.deliver(task, written)
-    if history and cycles:
-        from meshonet_cli.report.cycles import write
-
-        with whole_file(history) as file:
-            write(file, cycles)
     return session.finish()
-
-
-def _shown_live(session: Session) -> contextlib.AbstractContextManager[None]:
-    from meshonet.solvers.progress import listening
-    from meshonet_cli.report.cycles import Live
-
-    return listening(Live(session.status))
-
-
-def _together(request: GridRequest) -> int:
-    """Return how many members one of several processes gets at a time: fewer when grids are large."""
-    if method_of(request).together is None:
-        return 1
-    nodes = (request.sampling.ni or 1) * (request.sampling.nj or 1)
-    return max(1, min(SHARED, MOST_NODES // nodes))
 
 
 def initial_grid(text: str | None) -> Grid | None:

@@ -1,6 +1,5 @@
 """The grids of `quality`."""
 
-import time
 from collections.abc import Sequence
 from functools import partial
 
@@ -16,7 +15,7 @@ from meshonet.geometry.blocks.match_grids import GridMatcher, Pairing
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.criteria import Criteria
 from meshonet.geometry.quality.gates import Gate
-from meshonet.solvers.stages import reached
+from meshonet.solvers.stages import reached, stage
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.sources import members_of
 from meshonet_cli.report.quality import Measured
@@ -39,27 +38,28 @@ def measure_grids(
     outputs = [_picture_file(plot)] if plot else []
     outputs += [_metrics_file(per_cell)] if per_cell else []
     for destination in outputs:
-        destination.check_room(several=inputs.more_than(1))
+        if inputs.more_than(1):
+            destination.check_room()
         if destination.text == "-":
             raise InputError("standard output has the table", "write to a file", source="-")
     page = _page(html, gates) if html else None
     references = GridMatcher(read_grids(compare), pairing) if compare else None
     for item in members_of(inputs, partial(read_grids, fmt=fmt), session):
         with session.member(item.label, item.source):
-            begun = time.perf_counter()
-            reference = references.match(item.what.name) if references else None
-            paired = time.perf_counter()
-            reached("quality")
-            report = quality(item.what, profile=criteria.profiles, compare=reference)
-            report = report.under(gates)
-            measured = Measured(item, report, report.judgement(gates), judged=bool(criteria))
-            measured.seconds["quality"] = time.perf_counter() - paired
+            seconds: dict[str, float] = {}
+            reference = None
             if references:
-                measured.seconds["compare"] = paired - begun
+                with stage("compare", seconds):
+                    reference = references.match(item.name)
+            with stage("quality", seconds):
+                report = quality(item.what, profile=criteria.profiles, compare=reference).under(gates)
+                judgement = report.judgement(gates)
+            measured = Measured(item, report, judgement, judged=bool(criteria))
+            measured.seconds |= seconds
             for destination in outputs:
-                destination.check_only(item)
-                reached("write")
-                with measured.timed("write"):
+                if not item.only:
+                    destination.check_several(item)
+                with stage("write", measured.seconds):
                     destination.write(destination.path(item), [item.what])
             measured.finished(None)
             if summary:

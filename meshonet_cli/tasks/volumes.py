@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Any
@@ -12,6 +11,7 @@ from meshonet.formats.path import path_of
 from meshonet.formats.section import read_sections
 from meshonet.formats.stack import stack_of
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.revolve import Revolution
 from meshonet.geometry.curves.path import Path
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import change_facts
@@ -23,6 +23,7 @@ from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
 from meshonet.solvers.pipeline.sweeps import make_sweep
 from meshonet.solvers.stacking.request import StackRequest, stack_request
+from meshonet.solvers.stages import stage
 from meshonet.solvers.sweeping.sweep import Sweep
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.provenance import provenance
@@ -57,29 +58,29 @@ def _stacked(item: Item[Stack], request: StackRequest, criteria: Criteria) -> tu
 
 
 def _surface(item: Item[Stack], request: StackRequest) -> tuple[Grid, Delivered]:
-    begun = time.perf_counter()
-    grid, notes = stack_surface(item.what, request)
+    seconds: dict[str, float] = {}
+    with stage("grid", seconds):
+        grid, notes = stack_surface(item.what, request)
     report = delivered(item, grid, part_names(grid), "surface", notes=notes)
-    report.seconds["grid"] = time.perf_counter() - begun
+    report.seconds |= seconds
     return grid.with_provenance(**change_facts(notes), **provenance()), report
 
 
 def write_sweeps(
-    batch: Batch, path: str, section: Mapping[str, Any], settings: Sweep, criteria: Criteria,
+    batch: Batch, path: str | Revolution, section: Mapping[str, Any], settings: Sweep, criteria: Criteria,
     *, around: int | None = None,
 ) -> int:  # fmt: skip
-    """Write the volumes of the sections of the inputs along a path; return the exit code."""
+    """Write the volumes of the sections of the inputs along a path or about an axis; return the exit code."""
     parameters = domain_parameters(_shared(section, batch)) | {"percentiles": criteria.percentiles}
     res = parameters.pop("res")
     request = grid_request(res=None if res is None else _counts(res), **parameters)
-    make = each(
-        _swept, path=path_of(path), request=request, settings=settings, criteria=criteria, around=around
-    )
+    way = path_of(path) if isinstance(path, str) else path
+    make = each(_swept, path=way, request=request, settings=settings, criteria=criteria, around=around)
     return batch.run(BatchTask(partial(read_sections, fmt=batch.files.from_format), make, nodes=VOLUME_NODES))
 
 
 def _swept(
-    item: Item[Shape], path: Path, request: GridRequest, settings: Sweep, criteria: Criteria,
+    item: Item[Shape], path: Path | Revolution, request: GridRequest, settings: Sweep, criteria: Criteria,
     around: int | None,
 ) -> tuple[Grid, Report]:  # fmt: skip
     return reported(item, make_sweep(item.what, path, request, settings, around), criteria)

@@ -11,36 +11,24 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet.geometry.notes import advice_in, changes_in
 from meshonet_cli.terminal.errors import explained, with_options
-from meshonet_cli.terminal.stage_line import StageLine
 from meshonet_cli.terminal.stopping import check
-from meshonet_cli.terminal.text import bar
+from meshonet_cli.terminal.text import bar, quoted
 
 if TYPE_CHECKING:
     from meshonet_cli.report.timed import Timed
-    from meshonet_cli.terminal.summary import MemberRow
+    from meshonet_cli.terminal.stage_line import StageLine
+    from meshonet_cli.terminal.summary import BatchSummary, MemberRow
 
 GATE_NOT_MET = 1
 """Exit code where a gate is broken."""
 SAME_ERRORS = 3
 """How many inputs are named that end in the same error; the others are counted."""
-
-
-class Printed(Protocol):
-    """A report of something that is done."""
-
-    def as_json(self) -> Mapping[str, Any]:
-        """Return what ``--json`` prints."""
-        ...
-
-    def lines(self) -> str:
-        """Return it in full."""
-        ...
 
 
 class Session:
@@ -57,14 +45,16 @@ class Session:
         self.batch = False
         self.summary = False
         """Whether a table of all members is the result."""
+        self.dataset = ""
+        """The one file that all members go into."""
         self.rows: list[MemberRow] = []
         self._stdout_is_taken = False
         self._errors: Counter[str] = Counter()
         self.members = self.done = self.failed = self.skipped = self.beyond = self.changed = 0
         self._advice: dict[str, None] = {}  # what is told once, at the end of a batch
         self._begun = time.perf_counter()
-        self._bar = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
-        self._bar_shown = False
+        self.live = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+        self._shown = False
         self._text = ""  # of what goes on
         self._line: StageLine | None = None
         self._writing = threading.RLock()  # the line is drawn by a thread
@@ -118,24 +108,25 @@ class Session:
         if report.warning:
             self.warn(report.warning)
         self.done += 1
-        if not self.batch:
+        if self._line and not self.batch:
             self._unwatch()
         if self.as_json:
             self.result(report.as_json())
         else:
             self.note(report.line() if self.batch else report.lines())
-        self.changed += bool(changes_in(report.notes))
-        self._advice |= dict.fromkeys(advice_in(report.notes))
+        if report.notes:
+            self.changed += bool(changes_in(report.notes))
+            self._advice |= dict.fromkeys(advice_in(report.notes))
         if row := report.row():
             self.judge(row)
 
-    def show(self, report: Printed) -> None:
+    def show(self, report: Timed) -> None:
         """Print a report that is itself the result: on standard output, in full, unless quiet."""
         self.done += 1
         if self.as_json or not self.quiet:
             self.conclude(report)
 
-    def conclude(self, total: Printed) -> None:
+    def conclude(self, total: Timed | BatchSummary) -> None:
         """Print the report of all members together: on standard output, even when quiet."""
         if self.as_json:
             self.result(total.as_json())
@@ -154,8 +145,9 @@ class Session:
     def print(self, text: str) -> None:
         """Print on standard output."""
         with self._writing:
-            self._clear()
-            print(text, flush=True)  # noqa: T201
+            if self._shown:
+                self._clear()
+            print(quoted(text), flush=True)  # noqa: T201
 
     def check_output(self, output: str) -> None:
         """Raise InputError when results and JSON would share standard output."""
@@ -165,14 +157,9 @@ class Session:
                 "--json and -o - both want standard output", "write the result to a file", source="-o"
             )
 
-    @property
-    def live(self) -> bool:
-        """Whether progress is shown: on a terminal that can, unless quiet."""
-        return self._bar
-
     def status(self, text: str) -> None:
         """Show on a terminal what is going on, in place of what was shown before."""
-        if self._bar:
+        if self.live:
             self._text = text
             if self._line:
                 self._line.detail = text
@@ -184,14 +171,16 @@ class Session:
         Not with JSON; nor where standard output is a pipe, whose reader may have a line of its own.
         """
         leads = os.environ.get("RANK", "0") == "0"  # of several processes under torchrun
-        if self._bar and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):
+        if self.live and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):
+            from meshonet_cli.terminal.stage_line import StageLine
+
             self._line = StageLine(self._draw, self._clear)
 
     def begin(self, name: str, count: int | None = None) -> None:
         """Show on a terminal which member of how many (None: not known) is at work; stop if asked to."""
         check()
         self.members += 1
-        if self.batch:
+        if self._line and self.batch:
             self._unwatch()
         done = self.members - 1
         if count and done < count > 1:
@@ -204,7 +193,7 @@ class Session:
     def progress(self, done: int, count: int, text: str) -> bool:
         """Show on a terminal how far one long task is; return whether there is a terminal."""
         self.status(f"{bar(done, count)} {text}")
-        return self._bar
+        return self.live
 
     def skip(self, name: str, path: str, remark: str = "") -> None:
         """Report a member whose result is there already."""
@@ -213,8 +202,10 @@ class Session:
 
     def finish(self) -> int:
         """Report how a batch went, with a table where it was judged, and return the exit code."""
-        self._unwatch()
-        self._clear()
+        if self._line:
+            self._unwatch()
+        if self._shown:
+            self._clear()
         for problem, count in self._errors.items():
             if problem and count > SAME_ERRORS:
                 more = count - SAME_ERRORS
@@ -226,7 +217,8 @@ class Session:
             gates = f" ({self.beyond} of them beyond a gate)" if self.beyond else ""
             parts = [f"{self.done} done{gates}", f"{self.skipped} there already" if self.skipped else "",
                      f"{self.failed} failed" if self.failed else ""]  # fmt: skip
-            self._write(", ".join(part for part in parts if part) + f" in {spent:.2f} s")
+            left_out = f" and not in {self.dataset}" if self.failed and self.done and self.dataset else ""
+            self._write(", ".join(filter(None, parts)) + left_out + f" in {spent:.2f} s")
             if self.changed:
                 changed = "1 shape was" if self.changed == 1 else f"{self.changed} shapes were"
                 self._write(f"{changed} changed, as is said below the line of the grid")
@@ -245,8 +237,9 @@ class Session:
 
     def _write(self, text: str) -> None:
         with self._writing:
-            self._clear()
-            print(text, file=sys.stderr)  # noqa: T201
+            if self._shown:
+                self._clear()
+            print(quoted(text), file=sys.stderr)  # noqa: T201
 
     def _draw(self) -> None:
         with self._writing:
@@ -255,7 +248,7 @@ class Session:
             width = (os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1
             sys.stderr.write(printable(text)[:width])
             sys.stderr.flush()
-            self._bar_shown = True
+            self._shown = True
 
     def _unwatch(self) -> None:
         if self._line:
@@ -263,10 +256,11 @@ class Session:
             self._line = None
 
     def _clear(self) -> None:
-        if self._bar_shown:
+        """Wipe what is shown, if it is still there: the thread of a line may have done so."""
+        if self._shown:
             sys.stderr.write("\r\x1b[2K")
             sys.stderr.flush()
-            self._bar_shown = False
+            self._shown = False
 
 
 def _is_pipe(descriptor: int) -> bool:

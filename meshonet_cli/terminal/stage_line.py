@@ -9,27 +9,21 @@ from __future__ import annotations
 import contextlib
 import threading
 import time
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
+from meshonet.solvers.stages import Stage, watching
+from meshonet_cli.terminal.stopping import LINES
 from meshonet_cli.terminal.text import bar, duration
-
-if TYPE_CHECKING:
-    from meshonet.solvers.stages import Stage
 
 DELAY = 1.0  # seconds without a line: most work is done by then
 INTERVAL = 0.2  # seconds between two lines
 HELD = 1.0  # seconds to wait for a terminal that is held, at the most
-
-_running: list[StageLine] = []
 
 
 class StageLine:
     """Calls `draw` five times a second, from the second second on until it is stopped, and then `clear`."""
 
     def __init__(self, draw: Callable[[], None], clear: Callable[[], None]) -> None:
-        from meshonet.solvers.stages import Stage, watching  # numpy, which a list of commands does not need
-
         self._draw, self._clear = draw, clear
         self.detail = ""  # of the stage
         self._begun = self._since = time.perf_counter()
@@ -39,12 +33,12 @@ class StageLine:
         self._watching.enter_context(watching(self._reached))
         self._thread = threading.Thread(target=self._run, name="stage line", daemon=True)
         self._thread.start()
-        _running.append(self)
+        LINES.append(self)
 
     def stop(self) -> None:
         """End the thread, wait until it draws no more, and clear the line."""
-        if self in _running:
-            _running.remove(self)
+        if self in LINES:
+            LINES.remove(self)
             self._stopped.set()
             self._thread.join(HELD)
             self._watching.close()
@@ -78,13 +72,3 @@ class StageLine:
             while not self._stopped.wait(wait):
                 self._draw()
                 wait = INTERVAL
-
-
-@contextlib.contextmanager
-def stopping_lines() -> Iterator[None]:
-    """Stop lines that still run at the end of the block, however it ends."""
-    try:
-        yield
-    finally:
-        for line in [*_running]:
-            line.stop()

@@ -5,8 +5,13 @@ batch, raises what was dropped.
 """
 
 import signal
+import sys
+import warnings
 from types import FrameType
-from typing import NoReturn
+from typing import Any, NoReturn
+
+LINES: list[Any] = []
+"""Lines on the terminal that are drawn by threads, to be stopped when the program ends, however it does."""
 
 _asked: list[BaseException] = []
 
@@ -21,6 +26,12 @@ def install() -> None:
         number = getattr(signal, name, None)  # not every system has SIGHUP
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, handler)
+
+
+def hide_warnings() -> None:
+    """Keep Python's warnings, which are about the source, to ``--debug``: users are told by notes."""
+    if not sys.warnoptions and "--debug" not in sys.argv:
+        warnings.simplefilter("ignore")
 
 
 def check() -> None:

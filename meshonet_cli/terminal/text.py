@@ -1,5 +1,7 @@
 """Numbers and tables as text."""
 
+from meshonet.formats.source import printable
+
 _BAR_LENGTH = 24
 """Characters of a bar of progress."""
 
@@ -13,6 +15,16 @@ def aligned(rows: list[list[str]]) -> str:
         cells += [text.rjust(width) for text, width in zip(others, widths[1:], strict=True)]
         lines.append("  ".join(cells).rstrip())
     return "\n".join(lines)
+
+
+def quoted(text: str) -> str:
+    r"""Return lines of text for a terminal, on which escape sequences in names of files must not act.
+
+    >>> print(quoted("a\x1b[31m.dat\nb"))
+    a\x1b[31m.dat
+    b
+    """
+    return text if text.isprintable() else "\n".join(map(printable, text.split("\n")))
 
 
 def figure(value: float) -> str:

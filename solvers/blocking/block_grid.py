@@ -1,21 +1,16 @@
-"""From a domain to a valid grid of blocks."""
+"""A layout with as many cells as asked for, its nodes optimised."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
-from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.quality.measure import count_folded_in
-from meshonet.solvers.blocking.decomposition.collapse.collapse import irregular_inside
-from meshonet.solvers.blocking.decomposition.decompose import Timings, decompose
+from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.decomposition.errors import most_folded
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
@@ -37,46 +32,6 @@ MOST_CUT_OFF = 9.5e-4
 """With that many cells, what they cut off less what they add, before wall nodes are held closer at bends."""
 HELD_BACK = 0.6
 """Part of the angle that a wall may turn by along an edge, from then on from round to round."""
-
-
-@dataclass(frozen=True)
-class BlockFacts:
-    """What a grid of blocks was made of."""
-
-    blocks: int
-    cells: int
-    irregular: int
-    """Nodes inside where other than four blocks meet."""
-    timings: Timings
-
-
-def block_grid(
-    domain: Domain,
-    *,
-    cells: int | None = None,
-    cell_size: float | None = None,
-    layout: Layout | None = None,
-) -> tuple[Grid, Layout, BlockFacts]:
-    """Return a grid of blocks of a domain, the layout whose nodes it has, and what it was made of.
-
-    Parameters
-    ----------
-    cells : about how many in all, within 20 % where the blocks allow it; `CELLS` by default.
-    cell_size : length of edges instead, in the domain's unit.
-    layout : blocks to take, in the same domain; by default they are found.
-
-    Raises BlockingError: no blocks were found. NoValidGridError: cells stay folded.
-    """
-    timings = Timings()
-    layout = layout or decompose(domain, timings=timings)
-    fine = fine_layout(layout, cells=cells, cell_size=cell_size, timings=timings)
-    with timings.stage("grid"):
-        grid = to_grid(fine)
-    folded = count_folded_in(grid)
-    if folded:
-        raise NoValidGridError(f"{folded} cells of the blocks stay folded")
-    facts = BlockFacts(len(fine.blocks), fine.cells, irregular_inside(fine.mesh), timings)
-    return grid, fine, facts
 
 
 def fine_layout(

@@ -18,6 +18,8 @@ LAYERED_CELLS = 20_000
 """Cells where nobody asked for a count and there are layers."""
 MOST_CELLS = 20_000_000
 MOST_HALVINGS = 8
+LARGEST_PITCH = 1e12
+"""In the unit of the blade; squares of coordinates stay far below what numbers can be."""
 
 
 @dataclass(frozen=True)
@@ -81,9 +83,10 @@ class BlockRequest(FirstCell):
         if self.walls and not self.at_walls:
             problem = "{walls} without a first cell"
             raise InputError(problem, "give {first_cell} or {y_plus} as well")
-        if self.pitch is not None and not 0 < math.hypot(*self.pitch) < math.inf:
-            remedy = "give DX,DY from one blade to the next"
-            raise InputError("a pitch of no length", remedy, parameter="pitch")
+        if self.pitch is not None and not 0 < math.hypot(*self.pitch) < LARGEST_PITCH:
+            remedy = f"give DX,DY from one blade to the next, below {LARGEST_PITCH:g}"
+            length = math.hypot(*self.pitch)
+            raise InputError(f"a pitch of length {length:g}", remedy, parameter="pitch")
         for name in ("inlet", "outlet"):
             if getattr(self, name) is not None and self.pitch is None:
                 remedy = f"give {{pitch}} as well, or drop {{{name}}}"

@@ -5,6 +5,8 @@ both are A/2. Winslow's equations get there only as the cells shrink; a nudge of
 node gets there at once, and dies out within a few cells.
 """
 
+from functools import partial
+
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
@@ -26,7 +28,7 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
     if not corners or len(grid.eta) < 4:
         return
     reach, shift = shifts(grid, lift, wall, corners)
-    grid.nudge(product(reach, shift), lambda eta: fading(eta, float(grid.eta[1])))
+    grid.nudge(product(reach, shift), partial(fading, first=float(grid.eta[1])))
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
@@ -36,7 +38,7 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
     apart = np.minimum(between, n - between) + n * np.eye(len(corners))
     width = np.minimum(CELLS, 0.5 * apart.min(axis=0))
     first = grid.at(corners, 1)
-    beside = grid.at([(c + d) % n for c in corners for d in (-1, 1)], 1).reshape(-1, 2)
+    beside = grid.at((np.add.outer(corners, (-1, 1)) % n).ravel().tolist(), 1).reshape(-1, 2)
     cells = np.abs(np.remainder((beside - first[:, None]).imag + np.pi, 2.0 * np.pi) - np.pi).min(axis=1)
     limit = LARGEST * np.maximum(cells, step)  # evenly spaced walls have wide cells at an edge
     offset = np.subtract.outer(np.arange(n), corners)

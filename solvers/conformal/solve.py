@@ -51,7 +51,7 @@ def solve(
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()
-    lifted = [_lifted(boundary) for boundary in boundaries]
+    lifted = list(map(_lifted, boundaries))
     starts = iter(_starts([body for body, _ in lifted if isinstance(body, StripWalls)], correction))
     shared = (time.perf_counter() - begun) / max(len(boundaries), 1)
     solutions = []
@@ -103,7 +103,7 @@ def _lifted(boundary: Boundary) -> tuple[StripWalls | InputError, bool]:
 def _starts(bodies: Sequence[StripWalls], correction: Correction | None) -> list[Complexes]:
     """Return where Picard's iteration starts for each body: the harmonic base, and the correction."""
     ends = [(modes(body.wall), modes(body.far)) for body in bodies]
-    added: Iterable[Complexes | float] = (0.0 for _ in bodies)
+    added: Iterable[Complexes | float] = [0.0] * len(bodies)
     if correction is not None and bodies:
         wall, far = (np.array(side) for side in zip(*ends, strict=True))
         added = correction(wall, far, np.array([body.hand for body in bodies]))

@@ -24,6 +24,7 @@ from meshonet.geometry.shapes.outline import Outline
 Notes = tuple[str, ...]
 _SHARP = np.radians(60.0)
 """By which a wall turns at the edges of airfoils, and less where they are rounded."""
+_WIDEST_BASE = 0.2  # of the length of a section's outline; flatbacks have up to .13
 
 
 def on_outline(wall: Floats, outline: Airfoil | Outline) -> tuple[Floats, Notes]:
@@ -33,11 +34,25 @@ def on_outline(wall: Floats, outline: Airfoil | Outline) -> tuple[Floats, Notes]
     """
     if isinstance(outline, Airfoil):
         try:
-            old = Airfoil(wall[:-1])
+            old = Airfoil(_without_base(wall[:-1]))
         except InputError:  # a wall that is no airfoil
             return _on_curve(wall, outline.curve)
         return _on_airfoil(wall, old, outline)
     return _on_curve(wall, outline.curve)
+
+
+def _without_base(ring: Floats) -> Floats:
+    """Return a ring (n, 2) without the nodes inside its base, the short way between two sharp corners."""
+    corners = np.flatnonzero(np.abs(turning(ring, closed=True)) > _SHARP)
+    if len(corners) < 2:
+        return ring
+    curve = Curve(ring, closed=True)
+    ways = np.diff(curve.knots[corners], append=curve.knots[corners[0]] + curve.length)
+    way = int(np.argmin(ways))
+    if ways[way] > _WIDEST_BASE * curve.length:
+        return ring
+    first, last = np.append(corners, corners[0] + len(ring))[way : way + 2]
+    return np.roll(ring, -last, axis=0)[: len(ring) - (last - first) + 1]
 
 
 def _on_airfoil(wall: Floats, old: Airfoil, new: Airfoil) -> tuple[Floats, Notes]:

@@ -1,16 +1,18 @@
 """What variational volumes minimise: open angles, even cells, lengths that change gradually.
 
-With u, v, w the edges along xi, eta and zeta at a corner of a cell, each over the mean length of its
-direction, J = det(u, v, w) and l the lengths of the edges of one family::
+With u, v, w the edges along xi, eta and zeta at a corner of a cell, each over the length that is wanted,
+J = det(u, v, w) and l the lengths of the edges of one family::
 
     E = mean over the corners of cells of
             (1-q) (|u × v|² + |v × w|² + |w × u|²) / (3J) + q (|u|² |v|² |w|² / J²)^p
-      + β mean of the squares of (n_e - 1) Δ_e log l, all three families, along all three directions e
+      + β mean of the squares of N^(1/3) Δ_e log l, all three families, along all three directions e
 
 The first term is the discrete form of Winslow's functional: infinite at J = 0, so that a descent keeps a
 valid grid valid. The second is 1/sin² of the corner's solid angle, to the power p; the third tells equal
 cells from stripes of alternating ones. Folded grids are minimised with χ = (J + √(J² + ε²)) / 2 > 0 in place
 of J.
+
+Between six faces the mean length of a direction is wanted, in given blocks about what edges have.
 
 The other functional wants cells like cubes. With T the Jacobian matrix of a cell's trilinear map, its columns
 u, v, w over the same length::

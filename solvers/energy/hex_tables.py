@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,19 +51,25 @@ class HexTables:
     place: NDArray[np.int32]
 
 
-def tables_of(mesh: HexMesh, moves: Bools, targets: Targets, lengths: Sequence[Floats]) -> HexTables:
-    """Return the tables of a mesh of which nodes `moves` (n,) are free and cells have wanted `lengths`."""
+def tables_of(
+    mesh: HexMesh, moves: Bools, targets: Targets, lengths: Sequence[Floats], turned: bool = True
+) -> HexTables:
+    """Return the tables of a mesh of which nodes `moves` (n,) are free and cells have wanted `lengths`.
+
+    Blocks may be `turned`, so that their longest direction is the last.
+    """
     parts = [
-        _part(wider, np.append(moves, False), wanted, sizes)
+        _part(wider, np.append(moves, False), wanted, sizes, turned)
         for wider, wanted, sizes in zip(mesh.beyond, targets, lengths, strict=True)
     ]
     rows: list[list[int]] = []
     starts = np.zeros(3, dtype=np.int64)
-    own, places = [np.empty(0, np.intp)], [np.empty(0, np.intp)]
+    own: list[NDArray[Any]] = [np.empty(0, np.intp)]
+    places: list[NDArray[Any]] = [np.empty(0, np.intp)]
     for part in parts:
         if part is None:
             continue
-        node, _, _, skip, busy = part
+        node, skip, busy = part[0], part[3], part[4]
         rows.append([*node.shape, *starts.tolist()])
         inner = (slice(1, -1),) * 3
         own.append(node[inner].ravel())
@@ -72,14 +78,16 @@ def tables_of(mesh: HexMesh, moves: Bools, targets: Targets, lengths: Sequence[F
     tables = [[each[k] for each in parts if each is not None] for k in range(5)]
     shapes = ((0,), (3, 0), (3, 0), (0,), (0,))
     kinds = np.int32, np.float32, np.float64, np.uint8, np.bool_
-    joined = [
-        np.concatenate(
-            [np.empty(shape, kind), *(np.reshape(e, (*shape[:-1], -1)).astype(kind) for e in each)], axis=-1
-        )
+    joined: list[Any] = [
+        np.concatenate([np.reshape(part, (*shape[:-1], -1)) for part in each], axis=-1)
+        if each
+        else np.empty(shape, kind)
         for each, shape, kind in zip(tables, shapes, kinds, strict=True)
     ]
     free, start, place = _forces(moves, np.concatenate(own), np.concatenate(places))
-    return HexTables(np.array(rows, dtype=np.int64).reshape(-1, 6), *joined, free, start, place)
+    node, target, inverse, skip, busy = joined
+    blocks = np.array(rows, dtype=np.int64).reshape(-1, 6)
+    return HexTables(blocks, node, target, inverse, skip, busy, free, start, place)
 
 
 def cell_lengths(edges: Sequence[Floats]) -> Floats:
@@ -92,14 +100,17 @@ def cell_lengths(edges: Sequence[Floats]) -> Floats:
     return exp(np.stack(means))
 
 
-_Part: TypeAlias = tuple[Indices, Floats, Floats, NDArray[np.uint8], Bools]
+_Part: TypeAlias = tuple[NDArray[np.int32], Floats, Floats, NDArray[np.uint8], Bools]
 
 
-def _part(lattice: Indices, free: Bools, wanted: BlockTargets, lengths: Floats) -> _Part | None:
+def _part(
+    lattice: Indices, free: Bools, wanted: BlockTargets, lengths: Floats, turned: bool
+) -> _Part | None:  # fmt: skip
     """Return the tables of a block around what moves; None if nothing does. `free` of -1 is False."""
-    last = int(np.argmax(lattice.shape))
+    last = int(np.argmax(lattice.shape)) if turned else 2
     axes = [(last + 1) % 3, (last + 2) % 3, last]
-    lattice, edges = lattice.transpose(axes), [wanted[axis].transpose(axes) for axis in axes]
+    lattice = lattice.transpose(axes)
+    edges = [wanted[axis].transpose(axes) for axis in axes]
     lengths = lengths[axes].transpose(0, *(axis + 1 for axis in axes))
     moving = any_corner(free[lattice[1:-1, 1:-1, 1:-1]])
     where = [np.flatnonzero(moving.any(axis=tuple({0, 1, 2} - {axis}))) for axis in range(3)]
@@ -118,7 +129,13 @@ def _part(lattice: Indices, free: Bools, wanted: BlockTargets, lengths: Floats) 
     some = (skip != 255).any(axis=2).ravel()
     busy = np.zeros((node.shape[0] - 2) * (node.shape[1] - 2), dtype=bool)
     busy[: len(some)] = some
-    return node, target[(slice(None), *inside)], 1.0 / lengths[(slice(None), *cells)], skip, busy
+    return (
+        node.astype(np.int32),
+        target[(slice(None), *inside)],
+        1.0 / lengths[(slice(None), *cells)],
+        skip,
+        busy,
+    )
 
 
 def _collapsed(nodes: Indices) -> NDArray[np.uint8]:

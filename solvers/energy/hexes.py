@@ -30,8 +30,10 @@ REACH = 0.5
 ROUNDS, ROUND = 20, 10
 """Rounds of unfolding at the most, and iterations of each."""
 NARROW = 8  # rounds after which ε is 0.3 of what it would be
+WITHOUT_GAIN = 6
+"""Rounds without gain after which unfolding is given up."""
 SIZE = 0.1
-"""Weight of volumes in unfolding, where the size of cells is free."""
+"""Weight of the volumes of cells in unfolding."""
 NEARLY = 0.05
 """Smallest Jacobian, 1 in a cell of wanted lengths, below which cells are opened before all else."""
 OPENED = 20, 10, 10
@@ -57,7 +59,7 @@ class Slides:
         return Slides(place[some], self.projections[some])
 
     def kept(self, before: Floats, after: Floats, moves: Bools) -> Floats:
-        """Return nodes (n, 3) `after` moves, of those that may move, and that slide exactly where they may be."""
+        """Return nodes (n, 3) `after` a move, of those that may, exactly where those that slide may be."""
         nodes, at = after.copy(), self.nodes
         nodes[at] = before[at] + (self.projections * (after[at] - before[at])[:, None]).sum(axis=2)
         nodes[~moves] = before[~moves]
@@ -84,8 +86,6 @@ class HexOptimum:
 class HexProblem:
     """The descent of a mesh of which nodes `moves` (n,) are free."""
 
-    size = SIZE
-
     def __init__(self, mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides | None = None) -> None:
         self.mesh, self.moves, self.iterations = mesh, moves, 0
         self.slides = Slides.none() if slides is None else slides
@@ -99,8 +99,8 @@ class HexProblem:
         self.descent = descent_of(self.nodes, tables, 1.0 / sizes, mesh.cells, (unknowns, projections))
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Take `most` iterations, fewer where little is gained; return the smallest Jacobian and the value."""
-        size = self.size if epsilon > 0.0 else 0.0
+        """Take `most` iterations, fewer without gain; return the smallest Jacobian and the value."""
+        size = SIZE if epsilon > 0.0 else 0.0
         self.descent.weigh(weights.shape, weights.smoothness, weights.power, epsilon, size)
         value, smallest, done = self.descent.run(weights.gain, most, RENEWED, STILL, REACH)
         self.iterations += done
@@ -108,15 +108,19 @@ class HexProblem:
 
     def smallest(self) -> float:
         """Return the smallest corner Jacobian, 1 in a cell of wanted lengths."""
-        return self.run(UNFOLDING, 0, 1.0)[0]
+        self.descent.weigh(UNFOLDING.shape, 0.0, 1, 1.0)
+        return self.descent.smallest()
 
     def unfold(self, smallest: float, rounds: int = ROUNDS, iterations: int = ROUND) -> float:
         """Lower the regularised functional while a Jacobian is not positive; return the smallest."""
+        best, idle = smallest, 0
         for count in range(rounds):
-            if smallest > 0.0:
+            if smallest > 0.0 or idle == WITHOUT_GAIN:
                 break
             epsilon = np.sqrt(1e-4 + 0.04 * smallest * smallest) * (1.0 if count < NARROW else 0.3)
             smallest = self.run(UNFOLDING, iterations, float(epsilon))[0]
+            idle = 0 if smallest > 0.9 * best else idle + 1
+            best = max(best, smallest)
         return smallest
 
     def open(self) -> float:

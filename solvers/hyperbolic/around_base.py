@@ -27,7 +27,7 @@ from meshonet.solvers.hyperbolic.march import check_layers, marched
 from meshonet.solvers.solution import Solution, timed
 
 _FULL = 0.95  # part of the H block's mean cell that its first ones reach, far behind
-_FADE = 8.0  # cells over which the correction of first cells off the base fades out
+_FADE = 1.0  # widths of the base over which the correction of first cells off it fades out
 
 
 @timed
@@ -62,8 +62,8 @@ def _h_block(lines: BaseWake, first: float) -> tuple[Floats, Floats]:
     """Return the steps (k,) at both wake lines and the nodes (k, m, 2) of the block between them."""
     ways = lines.upper - lines.lower
     width, cells = norms(ways), len(lines.base) - 1
-    behind = norms(lines.lower - lines.lower[0]) / lines.chord
-    ends = np.minimum(first * opening(behind), _FULL * width / cells)
+    behind = norms(lines.lower - lines.lower[0])
+    ends = np.minimum(first * opening(behind / lines.chord), _FULL * width / cells)
     ends[0] = float(norms(lines.base[1] - lines.base[0]))
     t = end_fractions(ends / width, cells)[..., None]
     nodes = planar_nodes(len(lines.lower), cells + 1)
@@ -71,7 +71,7 @@ def _h_block(lines: BaseWake, first: float) -> tuple[Floats, Floats]:
     nodes[:, 0], nodes[:, -1], nodes[0] = lines.lower, lines.upper, lines.base
     inner = nodes[:, 1:-1]
     x, y = (np.ascontiguousarray(inner[..., axis].T) for axis in (0, 1))
-    fade = exp(-np.maximum(np.arange(len(nodes)) - 1.0, 0.0) / _FADE)
+    fade = exp(-np.maximum(behind - behind[1], 0.0) / (_FADE * width[0]))
     redistribute(x, y, np.full(len(x), first), fade, threads_for(x.size))
     inner[..., 0], inner[..., 1] = x.T, y.T
     nodes[-1, 1:-1] = (lines.lower[-1] + t[-1] * ways[-1])[1:-1]

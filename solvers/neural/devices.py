@@ -22,6 +22,11 @@ if TYPE_CHECKING:
 
 Device = Literal["cpu", "cuda"]
 
+INSTALL_TORCH = (
+    "install it: pip install 'meshonet[train]', without a GPU behind pip install torch "
+    "--index-url https://download.pytorch.org/whl/cpu, which is a tenth as large"
+)
+"""Remedy where torch is not there."""
 STEPS = 3  # Picard steps of "auto" after the strip network
 
 
@@ -43,7 +48,7 @@ def solve_on(
     try:
         import torch
     except ImportError:
-        raise InputError("{device} needs torch", "install it: pip install 'meshonet[train]'") from None
+        raise InputError("{device} needs torch", INSTALL_TORCH) from None
     if device == "cuda" and not torch.cuda.is_available():
         remedy = "use {device} cpu, or leave it out"
         raise InputError("torch sees no CUDA device", remedy, parameter="device")

@@ -7,8 +7,7 @@ from dataclasses import fields, replace
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from meshonet.geometry.errors import InputError, NoValidGridError
-from meshonet.geometry.quality.measure import count_folded_in, worst_cells_of
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.assembly import assembled, domain_of
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.shape import Shape
@@ -16,6 +15,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.blocking.request import BlockRequest
 from meshonet.solvers.pipeline.uses import MANY, SMOOTHED, refuse
 from meshonet.solvers.solution import Solution
+from meshonet.solvers.stages import stage
 
 if TYPE_CHECKING:
     from meshonet.geometry.blocks.grid import Grid
@@ -53,8 +53,7 @@ def smooths(shape: DomainShape, request: GridRequest) -> bool:
 def smoothed(grid: Grid, request: GridRequest) -> Solution:
     """Return a given grid of many blocks smoothed, and as often refined and smoothed again as is asked for.
 
-    Raises InputError: as `smooth`; with refinement, a connection of a part of a side; NoValidGridError: cells
-    are still folded, and that was not allowed.
+    Raises InputError: as `smooth`; with refinement, a connection of a part of a side.
     """
     from meshonet.solvers.smoothing.refine import refined
     from meshonet.solvers.smoothing.smooth import ITERATIONS, smooth
@@ -65,20 +64,7 @@ def smoothed(grid: Grid, request: GridRequest) -> Solution:
     for _ in range(request.refine):
         solution = smooth(refined(solution.grid, 2), slide=bool(request.slide), iterations=iterations)
     seconds = {"grid": perf_counter() - begun}
-    if not request.allow_invalid:
-        _refuse_folded(solution.grid)
     return replace(solution, seconds=seconds)
-
-
-def _refuse_folded(grid: Grid) -> None:
-    worst = worst_cells_of(grid)
-    if worst:
-        folded = count_folded_in(grid)
-        cells = sum((block.counts[0] - 1) * (block.counts[1] - 1) for block in grid.blocks)
-        problem = (
-            f"{folded} of {cells} cells stay folded; find other blocks with {{cells}}, or {{allow_invalid}}"
-        )
-        raise NoValidGridError(problem, worst)
 
 
 def check_asked(request: GridRequest) -> None:
@@ -96,13 +82,13 @@ def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str
     They have as many cells as are asked for, or those that they were found with. Raises InputError: as
     `as_blocks`; SolverError: no blocks are found.
     """
-    begun = perf_counter()
-    from meshonet.solvers.blocking.make import find_layout
-
-    loaded = perf_counter()
-    _check_use(request)
-    layout = find_layout(_domain(shape, request), block_request(request))
-    return layout, {"load": loaded - begun, "layout": perf_counter() - loaded}
+    seconds: dict[str, float] = {}
+    with stage("load", seconds):
+        from meshonet.solvers.blocking.make import find_layout
+    with stage("layout", seconds):
+        _check_use(request)
+        layout = find_layout(_domain(shape, request), block_request(request))
+    return layout, seconds
 
 
 def block_request(request: GridRequest) -> BlockRequest:

@@ -2,34 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.arrays import TOPOLOGIES
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.pipeline.methods import (
-    Method,
-    OneByOne,
-    UnknownSettingError,
-    Wrapper,
-    method_named,
-    solved,
-)
+from meshonet.solvers.pipeline.methods import OneByOne, UnknownSettingError, method_named
 from meshonet.solvers.pipeline.request import OneBlock
 from meshonet.solvers.solution import Solution
 
 if TYPE_CHECKING:
     from meshonet.solvers.pipeline.layered import FirstCells
+    from meshonet.solvers.pipeline.methods import Method
 
 NETWORK_SETTINGS = ("model", "polish", "device")
 """Settings of the operator any of which asks for a network."""
-FEWER_NODES = {"winslow": (512, 257), "variational": (257, 129)}
-"""Nodes along a direction above which a method solves on fewer unless a number is given, and how many.
-
-Over random domains at 513 x 513 the mean angle is then within 0.01 degrees of the full solve's.
-"""
 
 
 def method_of(request: OneBlock) -> Method:
@@ -54,9 +42,17 @@ def method_of(request: OneBlock) -> Method:
 
 
 def _base(request: OneBlock) -> Method:
-    """Return the method with its settings, on all nodes."""
+    """Return the method with its settings, on all nodes.
+
+    A network is taken where one is asked for by name or settings, else what measures best without.
+    """
     if request.by_network or request.method == "best":
-        return _network_or_best(request)
+        if ":" in request.method or set(NETWORK_SETTINGS).intersection(request.chosen):
+            return method_named(request.method if request.by_network else "operator", **request.settings)
+        for setting in request.settings:
+            if setting not in (*NETWORK_SETTINGS, "answer"):
+                raise UnknownSettingError("operator", setting)
+        return Best()
     if request.method == "auto":
         return method_named("winslow", **request.settings)
     if request.method == "hyperbolic":  # whose settings are the first cells
@@ -64,21 +60,11 @@ def _base(request: OneBlock) -> Method:
     return method_named(request.method, **request.settings, **_angle(request))
 
 
-def _network_or_best(request: OneBlock) -> Method:
-    """Return a network where one is asked for by name or settings, else what measures best without."""
-    if ":" in request.method or any(name in request.chosen for name in NETWORK_SETTINGS):
-        name = request.method if request.by_network else "operator"
-        return method_named(name, **request.settings)
-    for setting in request.settings:
-        if setting not in (*NETWORK_SETTINGS, "answer"):
-            raise UnknownSettingError("operator", setting)
-    return Best()
-
-
 def _at_any_resolution(request: OneBlock, base: Method) -> Method:
     """Return `base` on fewer nodes where that is asked for, or left open and as good."""
     open_method = request.by_network or request.method == "best"
     if request.refine:
+        from meshonet.solvers.pipeline.automatic import Anew
         from meshonet.solvers.pipeline.sequence import Sequenced
 
         return Sequenced(Anew(base) if open_method else base, request.refine)
@@ -88,6 +74,8 @@ def _at_any_resolution(request: OneBlock, base: Method) -> Method:
         return Coarse(base, request.coarse)
     if open_method or request.coarse is None or request.settings or request.initial is not None:
         return base
+    from meshonet.solvers.pipeline.automatic import elliptic, fewer_on_quads
+
     return elliptic() if request.method == "auto" else fewer_on_quads(base)
 
 
@@ -106,77 +94,6 @@ def _angle(request: OneBlock) -> dict[str, float]:
 
 
 @dataclass(frozen=True)
-class Auto(OneByOne):
-    """A method for each topology."""
-
-    quad: Method
-    o: Method
-    c: Method
-    name: str = "auto"
-
-    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary by the method of its topology."""
-        return solved(getattr(self, boundary.topology), boundary, start)
-
-
-@dataclass(frozen=True)
-class Fewer(Wrapper):
-    """`method` on fewer nodes where that measures as good; where those fold, on twice as many."""
-
-    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary, on all nodes when there is a grid to start from."""
-        above, n = FEWER_NODES.get(self.name, (0, 0))
-        if not n or start is not None or max(boundary.ni, boundary.nj) <= above:
-            return self.inner(boundary, start)
-        from meshonet.solvers.pipeline.coarse import Coarse
-
-        solution = Coarse(self.method, n).solve_one(boundary)
-        if count_folded(solution.grid.nodes) == 0:
-            return solution
-        finer = Coarse(self.method, 2 * n - 1).solve_one(boundary)
-        return min(finer, solution, key=lambda each: count_folded(each.grid.nodes))
-
-
-@dataclass(frozen=True)
-class Anew(Wrapper):
-    """`method` from nothing, also where there is a grid to start from."""
-
-    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
-        """Return the solution of a boundary."""
-        return self.inner(boundary)
-
-
-@dataclass(frozen=True)
-class AroundWake(OneByOne):
-    """C grids: marched with a first cell of its own choice, or where that does not suit variational.
-
-    Winslow's lines lean by 70 degrees along the wake, where small cells face large ones of the far field.
-    """
-
-    note: str = ""  # begins the notes, before the method's name
-    name: str = "auto"
-
-    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
-        """Return the solution of a boundary; a march starts from the wall, and from no grid."""
-        from meshonet.solvers.hyperbolic.default_spacing import march_by_default
-
-        solution = march_by_default(boundary) or Fewer(method_named("variational")).solve_one(boundary)
-        notes = (f"{self.note} {solution.method}", *solution.notes) if self.note else solution.notes
-        return replace(solution, notes=notes)
-
-
-def elliptic() -> Auto:
-    """Return what ``auto`` is among the equations: Winslow's, and around wakes a march."""
-    winslow = method_named("winslow")
-    return Auto(Fewer(winslow), winslow, AroundWake())
-
-
-def fewer_on_quads(method: Method) -> Auto:
-    """Return `method`, on fewer nodes in large four-sided domains."""
-    return Auto(Fewer(method), method, method, method.name)
-
-
-@dataclass(frozen=True)
 class Best(OneByOne):
     """What measures best: conformal grids around bodies, variational ones in quads, marches around wakes."""
 
@@ -184,6 +101,8 @@ class Best(OneByOne):
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
         """Return the solution of a boundary; only the variational method starts from a grid."""
+        if boundary.topology != "o":
+            from meshonet.solvers.pipeline.automatic import AroundWake, Fewer
         if boundary.topology == "quad":
             return Fewer(method_named("variational")).solve_one(boundary, start)
         if boundary.topology == "c":

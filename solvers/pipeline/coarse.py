@@ -13,7 +13,8 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
-from meshonet.solvers.pipeline.methods import METHODS, Wrapper
+from meshonet.solvers.pipeline.methods import METHODS
+from meshonet.solvers.pipeline.wrapper import Wrapper
 from meshonet.solvers.solution import Solution
 
 LEAST_NODES = 9  # fewest coarse nodes along a direction that describe anything

@@ -1,15 +1,21 @@
 """The guard: a folded grid is repaired, made again by another method, or refused."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, NoValidGridError, SolverError
 from meshonet.geometry.quality.measure import count_folded, worst_cells
-from meshonet.solvers.pipeline.methods import Method, method_named
+from meshonet.solvers.pipeline.methods import method_named
 from meshonet.solvers.solution import Outcome, Solution
+
+if TYPE_CHECKING:
+    from meshonet.solvers.pipeline.methods import Method
 
 ORDER = ("winslow", "tfi")  # methods that follow where a grid cannot be repaired
 
@@ -48,16 +54,6 @@ def guard(
     if allow_invalid:
         return replace(solution, outcome=Outcome.FOLDED)
     raise failure
-
-
-def refuse_folded(solution: Solution) -> None:
-    """Raise NoValidGridError when cells are folded that nobody is to repair."""
-    grid = solution.grid
-    folded = count_folded(grid.nodes)
-    if folded:
-        cells = (grid.ni - 1) * (grid.nj - 1)
-        remedy = "use {repair}, an elliptic method or {allow_invalid}"
-        raise NoValidGridError(f"{folded} of {cells} cells are folded; {remedy}", worst_cells(grid.nodes))
 
 
 def _ways(

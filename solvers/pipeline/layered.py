@@ -8,10 +8,12 @@
     anything else ---------------- solve --------------------+
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.blocks.boundary import Boundary
@@ -19,9 +21,13 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.layers.first_cells import Heights
 from meshonet.solvers.pipeline.fallback import guard
-from meshonet.solvers.pipeline.methods import Each, Method, Wrapper, method_named, solved
+from meshonet.solvers.pipeline.methods import Each, method_named, solved
 from meshonet.solvers.pipeline.uses import CHANNEL, MARCHED, refuse
+from meshonet.solvers.pipeline.wrapper import Wrapper
 from meshonet.solvers.solution import Solution
+
+if TYPE_CHECKING:
+    from meshonet.solvers.pipeline.methods import Method
 
 UPRIGHT_DEGREES = 0.3  # by which lines may lean at walls whose nodes have slid
 LEANING_DEGREES = 1.0  # by which they may lean when sources have turned them

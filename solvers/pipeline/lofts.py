@@ -42,7 +42,7 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
 
     Raises InputError: counts that do not suffice; NoValidGridError: a section's own grid is folded.
     """
-    plan = around(stack.sections, request.around, gap=request.base)
+    plan = around(request.around, gap=request.base, edge=stack.te_spacing, nose=stack.le_spacing)
     height = request.height() * stack.chord
     least = height / stack.chord
     rows = request.layers or 1 + cells_for_growth(least, request.far_field, request.growth or _GROWTH)

@@ -5,33 +5,34 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING, TypeVar
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import MeshonetError
-from meshonet.geometry.quality.measure import count_folded, measure
-from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.choose_method import method_of
-from meshonet.solvers.pipeline.methods import Method
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.result import Result, judged, with_changes
+from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.pipeline.sample_shape import sampled
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.stages import reached
+from meshonet.solvers.stages import reached, stage
 
 if TYPE_CHECKING:
+    from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
     from meshonet.geometry.shapes.domain_shape import DomainShape
+    from meshonet.solvers.pipeline.methods import Method
     from meshonet.solvers.progress import HistoryRow
 
 K = TypeVar("K")
 MOST_TOGETHER = 64  # shapes that are solved together at the most
 MOST_NODES = 1 << 22  # nodes of grids from which no more are solved together: some hundred MB
 _OTHER_METHODS = "try {method} variational, or {allow_invalid}"  # where cells of a volume fold
+_NOT_REPAIRED = "use {repair}, an elliptic method or {allow_invalid}"  # where cells of one block do
 
 
 def make_grid(shape: Shape, request: GridRequest) -> Result:
@@ -47,7 +48,6 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
     Returns
     -------
     Result
-        The grid of `shape` that `request` describes.
 
     Raises
     ------
@@ -103,25 +103,31 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     >>> [result.grid.name for result in results]
     ['NACA 0012', 'NACA 2412']
     """
-    return (result for _, result in make_grids_of(((None, shape) for shape in shapes), request))
+    return (result for _, result in make_grids_of(shapes, request, lambda shape: shape))
 
 
 def make_grids_of(
-    shapes: Iterable[tuple[K, Shape]], request: GridRequest
+    keys: Iterable[K], request: GridRequest, shape_of: Callable[[K], Shape]
 ) -> Iterator[tuple[K, Result | Exception]]:
-    """Yield what each of the shapes belongs to and its grid or error, as `make_grids` does.
+    """Yield each of the keys with the grid of its shape, or the error, as `make_grids` does.
 
     Raises InputError: the method does not have such settings.
     """
     method = method_of(request)
-    shapes = iter(shapes)
-    while group := _group(shapes, request, MOST_TOGETHER if method.together else 1):
+    keys = iter(keys)
+    while group := _group(keys, request, MOST_TOGETHER if method.together else 1, shape_of):
         if len(group) > 1:
             with limited_to(request.threads):
                 _solve_together([member for _, member in group], method)
         while group:
             key, member = group.popleft()
-            yield key, _finished_or_error(member, method, request)
+            result: Result | Exception
+            try:
+                with limited_to(request.threads):
+                    result = _finished(member, method, request)
+            except Exception as error:
+                result = error
+            yield key, result
 
 
 @dataclass
@@ -129,21 +135,24 @@ class _Member:
     """A shape on its way: its boundary or what went wrong, and its solution once it was made with others."""
 
     boundary: Boundary | BaseWake | DomainShape | SpatialShape | Exception
-    seconds: dict[str, float] = field(default_factory=dict)
+    seconds: dict[str, float]
     solution: Solution | None = None
 
 
-def _group(shapes: Iterator[tuple[K, Shape]], request: GridRequest, most: int) -> deque[tuple[K, _Member]]:
+def _group(
+    keys: Iterator[K], request: GridRequest, most: int, shape_of: Callable[[K], Shape]
+) -> deque[tuple[K, _Member]]:
     group: deque[tuple[K, _Member]] = deque()
     nodes = 0
-    for key, shape in islice(shapes, most):
-        reached("boundary")
-        begun = time.perf_counter()
+    for key in islice(keys, most):
+        seconds: dict[str, float] = {}
+        boundary: Boundary | BaseWake | DomainShape | SpatialShape | Exception
         try:
-            boundary: Boundary | BaseWake | DomainShape | SpatialShape | Exception = sampled(shape, request)
+            with stage("boundary", seconds):
+                boundary = sampled(shape_of(key), request)
         except Exception as error:
             boundary = error
-        group.append((key, _Member(boundary, {"boundary": time.perf_counter() - begun})))
+        group.append((key, _Member(boundary, seconds)))
         nodes += boundary.ni * boundary.nj if isinstance(boundary, Boundary) else 0
         if nodes >= MOST_NODES:
             break
@@ -177,14 +186,6 @@ def _solve_together(group: Iterable[_Member], method: Method) -> None:
         _add_times(member.seconds, solution, share)
 
 
-def _finished_or_error(member: _Member, method: Method, request: GridRequest) -> Result | Exception:
-    try:
-        with limited_to(request.threads):
-            return _finished(member, method, request)
-    except Exception as error:
-        return error
-
-
 def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     """Return what comes of a member: solved if it is not yet, checked and measured."""
     boundary, solution, seconds = member.boundary, member.solution, member.seconds
@@ -192,10 +193,8 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
         raise boundary
     if isinstance(boundary, SpatialShape):
         return _of_volume(boundary, request, seconds)
-    if isinstance(boundary, BaseWake):
-        return _of_base(boundary, request, seconds)
     if not isinstance(boundary, Boundary):
-        return _of_blocks(boundary, request, seconds)
+        return _of_many(boundary, request, seconds)
     rows: tuple[HistoryRow, ...] = ()
     if solution is None:
         reached("grid")
@@ -207,18 +206,15 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
             solution = method.solve([boundary], start)[0]
         _add_times(seconds, solution, time.perf_counter() - begun)
     elif request.history:
-        _, rows = _with_history(lambda: solution)
-    reached("guard")
-    begun = time.perf_counter()
-    checked = _checked(solution, boundary, request)
-    notes = (*boundary.notes, *solution.notes, *_changed_first_cells(solution, checked))
-    seconds["guard"] = seconds.get("guard", 0.0) + time.perf_counter() - begun
-    reached("quality")
-    begun = time.perf_counter()
-    quality = measure(checked.grid, percentiles=request.percentiles)
-    seconds["quality"] = time.perf_counter() - begun
-    checked = replace(checked, grid=replace(checked.grid, origin=boundary.origin))
-    return Result(with_changes(checked, notes), quality, seconds, notes, rows)
+        made = solution
+        _, rows = _with_history(lambda: made)
+    notes = (*boundary.notes, *solution.notes)
+    with stage("guard", seconds):
+        if request.repairs() and count_folded(solution.grid.nodes):
+            solution, more = _repaired(solution, boundary, request)
+            notes += more
+    solution = replace(solution, grid=replace(solution.grid, origin=boundary.origin), notes=notes)
+    return judged(solution, seconds, request, remedy=_NOT_REPAIRED, history=rows)
 
 
 def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[HistoryRow, ...]]:
@@ -231,6 +227,15 @@ def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[Histor
     return solution, history.of(solution)
 
 
+def _of_many(shape: BaseWake | DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
+    """Return the grid of blocks around a base or of a domain, measured."""
+    from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
+
+    if isinstance(shape, BaseWake):
+        return _of_base(shape, request, seconds)
+    return _of_blocks(shape, request, seconds)
+
+
 def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
     """Return the grid of blocks of a domain, measured."""
     from meshonet.solvers.pipeline.blocks import block_request, smoothed, smooths
@@ -241,7 +246,7 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
         solution = smoothed(shape.given, request)
         seconds |= {"load": time.perf_counter() - begun - solution.seconds["grid"], **solution.seconds}
         solution = replace(solution, notes=(*shape.notes, *solution.notes))
-        return judged(solution, seconds, request, remedy="")
+        return judged(solution, seconds, request, remedy="find other blocks with {cells}, or {allow_invalid}")
     from meshonet.solvers.blocking.make import make_blocks
 
     loaded = time.perf_counter()
@@ -282,30 +287,23 @@ def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, flo
 
 def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> None:
     """Add the stages of a solve that took `spent` seconds: what it took beside its grid was loading."""
-    stages = {stage: solution.seconds[stage] for stage in ("grid", "guard") if stage in solution.seconds}
-    rest = "load" if "grid" in stages else "grid"
-    seconds |= stages | {rest: max(spent - sum(stages.values()), 0.0)}
+    rest = "load" if "grid" in solution.seconds else "grid"
+    for name in ("grid", "guard"):
+        if name in solution.seconds:
+            seconds[name] = solution.seconds[name]
+            spent -= seconds[name]
+    seconds[rest] = max(spent, 0.0)
 
 
-def _checked(solution: Solution, boundary: Boundary, request: GridRequest) -> Solution:
-    if not count_folded(solution.grid.nodes):
-        return solution
-    from meshonet.solvers.pipeline.fallback import guard, refuse_folded
-
-    if request.repairs():
-        return guard(solution, boundary, allow_invalid=request.allow_invalid, margin=request.repair_margin)
-    if not request.allow_invalid:
-        refuse_folded(solution)
-    return solution
-
-
-def _changed_first_cells(solution: Solution, checked: Solution) -> tuple[str, ...]:
-    """Return what there is to say of first cells that the guard changed."""
-    if checked.path == solution.path or not solution.first_cells:
-        return ()
+def _repaired(
+    solution: Solution, boundary: Boundary, request: GridRequest
+) -> tuple[Solution, tuple[str, ...]]:
+    """Return the solution of a folded grid made valid by the guard, and what there is to say of it."""
     from meshonet.solvers.layers.redistribute import worst_first_cell
+    from meshonet.solvers.pipeline.fallback import guard
 
-    error = worst_first_cell(checked)
-    if error < 1e-8:
-        return ()
-    return (f"the guard changed first cells: their heights are off by up to {error:.1g} of what was asked",)
+    valid = guard(solution, boundary, allow_invalid=request.allow_invalid, margin=request.repair_margin)
+    if valid.path == solution.path or not solution.first_cells or worst_first_cell(valid) < 1e-8:
+        return valid, ()
+    off = f"their heights are off by up to {worst_first_cell(valid):.1g} of what was asked"
+    return valid, (f"the guard changed first cells: {off}",)

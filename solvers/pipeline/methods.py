@@ -22,26 +22,25 @@ if TYPE_CHECKING:
     from meshonet.geometry.blocks.grid import Grid
     from meshonet.solvers.solution import Solution
 
+    class Method(Protocol):
+        """A way from boundaries to grids: frozen settings and one function."""
 
-class Method(Protocol):
-    """A way from boundaries to grids: frozen settings and one function."""
+        @property
+        def name(self) -> str:
+            """What it is called, as in `METHODS`."""
+            ...
 
-    @property
-    def name(self) -> str:
-        """What it is called, as in `METHODS`."""
-        ...
+        @property
+        def together(self) -> Topology | None:
+            """The topology of boundaries that it solves faster in one call; None: one after the other."""
+            ...
 
-    @property
-    def together(self) -> Topology | None:
-        """The topology of boundaries that it solves faster in one call; None: one after the other."""
-        ...
+        def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
+            """Return a solution for each of the boundaries, which may start from a grid each.
 
-    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-        """Return a solution for each of the boundaries, which may start from a grid each.
-
-        Raises MeshonetError: one of them cannot be solved; the others are then best solved one by one.
-        """
-        ...
+            Raises MeshonetError: one of them cannot be solved; the others are then best solved one by one.
+            """
+            ...
 
 
 class OneByOne:
@@ -51,8 +50,8 @@ class OneByOne:
 
     def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
         """Return a solution for each of the boundaries, which may start from a grid each."""
-        starts: Sequence[Grid | None] = [None] * len(problems) if start is None else start
-        return [self.solve_one(*pair) for pair in zip(problems, starts, strict=True)]
+        starts: Sequence[Grid | None] = start or [None] * len(problems)
+        return list(map(self.solve_one, problems, starts))
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
         """Return the solution of one boundary."""
@@ -62,22 +61,6 @@ class OneByOne:
 def solved(method: Method, boundary: Boundary, start: Grid | None) -> Solution:
     """Return the solution of one boundary by `method`."""
     return method.solve([boundary], None if start is None else [start])[0]
-
-
-@dataclass(frozen=True)
-class Wrapper(OneByOne):
-    """Solves by calling another method, whose name it has."""
-
-    method: Method
-
-    @property
-    def name(self) -> str:
-        """That of the method."""
-        return self.method.name
-
-    def inner(self, boundary: Boundary, initial: Grid | None = None) -> Solution:
-        """Return the other method's solution of one boundary."""
-        return solved(self.method, boundary, initial)
 
 
 @dataclass(frozen=True)

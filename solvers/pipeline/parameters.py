@@ -32,7 +32,6 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
     Returns
     -------
     GridRequest
-        The request with the parameters, of the sampling, the request or the method.
 
     Raises
     ------

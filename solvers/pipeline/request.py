@@ -57,7 +57,10 @@ class OneBlock(Request):
     @property
     def sides(self) -> dict[str, float]:
         """Heights of first cells off single sides, by the side."""
-        return {side: h for side in SIDES if (h := getattr(self, f"spacing_{side}")) is not None}
+        heights = self.spacing_south, self.spacing_east, self.spacing_north, self.spacing_west
+        if heights == (None,) * 4:
+            return {}
+        return {side: h for side, h in zip(SIDES, heights, strict=True) if h is not None}
 
     @property
     def algebraic(self) -> bool:
@@ -102,7 +105,7 @@ class ManyBlocks(Request):
     @property
     def asks_for_blocks(self) -> tuple[str, ...]:
         """Names of the options that are given and that only many blocks have a use for."""
-        return tuple(name for name in FOR_MANY if getattr(self, name) not in (None, ()))
+        return tuple(filter(FOR_MANY.__contains__, self.chosen))
 
 
 @dataclass(frozen=True)

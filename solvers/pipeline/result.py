@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -13,7 +12,7 @@ from meshonet.geometry.notes import change_facts
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.summary import Quality
 from meshonet.solvers.solution import Outcome, Solution
-from meshonet.solvers.stages import reached
+from meshonet.solvers.stages import stage
 
 if TYPE_CHECKING:
     from meshonet.solvers.deformation.request import DeformRequest
@@ -65,22 +64,19 @@ def judged(
     request: GridRequest | StackRequest | DeformRequest,
     *,
     remedy: str,
+    history: tuple[HistoryRow, ...] = (),
 ) -> Result:
     """Return a solution with its quality, whose time is added to `seconds` by stage.
 
-    Raises NoValidGridError: cells are folded, which is not allowed; `remedy` says what to try.
+    Its grid says, in files too, what was changed of the shape. Raises NoValidGridError: cells are folded,
+    which is not allowed; `remedy` says what to try.
     """
-    reached("quality")
-    begun = time.perf_counter()
-    quality = measure(solution.grid, percentiles=request.percentiles)
-    seconds["quality"] = time.perf_counter() - begun
+    with stage("quality", seconds):
+        quality = measure(solution.grid, percentiles=request.percentiles)
     if quality.folded and not request.allow_invalid:
         problem = f"{quality.folded} of {quality.cells} cells are folded; {remedy}"
         raise NoValidGridError(problem, worst_cells_of(solution.grid))
-    return Result(with_changes(solution, solution.notes), quality, seconds, solution.notes)
-
-
-def with_changes(solution: Solution, notes: tuple[str, ...]) -> Solution:
-    """Return a solution whose grid says, in files too, what was changed of the shape by its `notes`."""
-    facts = change_facts(notes)
-    return replace(solution, grid=solution.grid.with_provenance(**facts)) if facts else solution
+    facts = change_facts(solution.notes) if solution.notes else {}
+    if facts:
+        solution = replace(solution, grid=solution.grid.with_provenance(**facts))
+    return Result(solution, quality, seconds, solution.notes, history)

@@ -39,7 +39,10 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
         remedy = "use meshonet.grid, or make a shape of it: meshonet.read or Domain.of_polygons"
         what = "points" if isinstance(shape, np.ndarray) else "a name"
         raise InputError(f"make_grid takes shapes, not {what}", remedy)
-    check_plane(request)
+    refuse(filter(IN_SPACE.__contains__, request.chosen), ONE)
+    if request.sampling.nk is not None:
+        problem = f"{request.sampling.nk} nodes along a third direction of a grid in the plane"
+        raise InputError(problem, "give NI x NJ", parameter="res")
     if request.asks_for_blocks or getattr(shape, "many", False):
         from meshonet.solvers.pipeline.blocks import as_blocks
 
@@ -54,7 +57,7 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
     if request.refine:
         boundary = edges_of(shape, _finer(sampling, shape, boundary, 2**request.refine))
     unit = getattr(shape, "far_field_unit", "")
-    if boundary.topology == "quad" or not unit:
+    if boundary.topology == "quad" or not (unit and request.at_walls):
         return boundary
     return replace(boundary, notes=(*boundary.notes, *_far_field_advice(request, unit)))
 
@@ -76,18 +79,11 @@ def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> Ba
     from meshonet.geometry.shapes.airfoil.base_wake import behind_base
 
     refuse(request.chosen, AROUND_BASE)
-    body = shape.normalised() if sampling.normalise else shape
+    body = shape.smoothed(sampling.smooth) if sampling.smooth else shape
+    body = body.normalised() if sampling.normalise else body
     lines = behind_base(body, sampling, (request.height() or 0.0) * body.unit, request.growth)
     advice = _far_field_advice(request, shape.far_field_unit)
     return replace(lines, notes=(*lines.notes, *advice))
-
-
-def check_plane(request: GridRequest) -> None:
-    """Raise InputError for parameters that only grids in space have a use for."""
-    refuse((name for name in request.chosen if name in IN_SPACE), ONE)
-    if request.sampling.nk is not None:
-        problem = f"{request.sampling.nk} nodes along a third direction of a grid in the plane"
-        raise InputError(problem, "give NI x NJ", parameter="res")
 
 
 def _far_field_advice(request: GridRequest, unit: str) -> tuple[str, ...]:

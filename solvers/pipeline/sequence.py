@@ -16,7 +16,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.transform import coarser_boundary
 from meshonet.solvers.algebraic.resample.grids import refine_grid
-from meshonet.solvers.pipeline.methods import Wrapper
+from meshonet.solvers.pipeline.wrapper import Wrapper
 from meshonet.solvers.solution import Solution
 
 

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
+from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.revolve import bent
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.result import Result, judged
+from meshonet.solvers.pipeline.wall_facts import wall_facts
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stacking.wing_surface import wing_surface
-from meshonet.solvers.stages import reached
+from meshonet.solvers.stages import stage
 
 _REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"  # where cells fold
 
@@ -45,37 +47,36 @@ def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
 
 def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
     """Return the volume between the planar grids of a blade's or a duct's sections."""
-    reached("grid")
-    begun = time.perf_counter()
-    from meshonet.solvers.pipeline.lofts import blade_volume, duct_volume
+    with stage("grid", seconds):
+        from meshonet.solvers.pipeline.lofts import blade_volume, duct_volume
 
-    grid, notes = (blade_volume if stack.kind == "blade" else duct_volume)(stack, request)
-    seconds["grid"] = time.perf_counter() - begun
+        grid, notes = (blade_volume if stack.kind == "blade" else duct_volume)(stack, request)
+        if request.turn is not None:
+            blocks = bent([block.nodes for block in grid.blocks], request.turn)
+            grid = replace(grid, blocks=tuple(map(Block, blocks)))
     note = request.height_note(f"on a chord of {stack.chord:.6g}", stack.chord)
     return Solution(grid, "loft", notes=(*notes, note) if note else notes)
 
 
 def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
     """Return the volume marched from the surface of a wing, whose root lies in a plane of symmetry."""
-    begun = time.perf_counter()
-    from meshonet.geometry.surface.surface import surface_of
-    from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_surface
-
-    reached("boundary")
-    loaded = time.perf_counter()
-    grid, notes = wing_surface(stack, request.surface)
-    surface = surface_of(grid)
-    seconds["boundary"] = time.perf_counter() - loaded
+    if request.turn is not None:
+        problem = "a wing is not turned about an axis"
+        raise InputError(problem, "leave {revolve} out, or make a blade or duct", parameter="revolve")
+    with stage("load", seconds):
+        from meshonet.geometry.surface.surface import surface_of
+        from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_surface
+    with stage("boundary", seconds):
+        grid, notes = wing_surface(stack, request.surface)
+        surface = surface_of(grid)
     chord = stack.chord
     settings = VolumeMarch(
         first_cell=request.height() * chord, layers=request.layers, far_field=request.far_field * chord,
         symmetry="z", growth=request.growth,
     )  # fmt: skip
-    seconds["load"] = loaded - begun
-    reached("grid")
-    begun = time.perf_counter()
-    solution = march_surface(surface, settings)
-    seconds["grid"] = time.perf_counter() - begun
+    with stage("grid", seconds):
+        solution = march_surface(surface, settings)
     note = request.height_note(f"on a chord of {chord:.6g}", chord)
-    notes = (*notes, *[note] * bool(note), *solution.notes)
+    facts = wall_facts(solution.grid, settings.limit if request.layers is None else request.growth)
+    notes = (*notes, *[note] * bool(note), *solution.notes, *facts)
     return replace(solution, grid=replace(solution.grid, name=stack.name), notes=notes)

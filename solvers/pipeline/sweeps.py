@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import time
-
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.revolve import FLOWS, Revolution, revolved
 from meshonet.geometry.curves.path import Path
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.threads import limited_to
@@ -12,17 +11,17 @@ from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.pipeline.sections import section_grid
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.stages import reached
-from meshonet.solvers.sweeping.sweep import Sweep, reach_of, self_crossing, sweep
+from meshonet.solvers.stages import stage
+from meshonet.solvers.sweeping.sweep import Sweep, reach_of, self_crossing, sweep, walled
 
 _REMEDY = "use a wider bend, a smaller section or more {planes}"  # where cells fold
 
 
 def make_sweep(
-    shape: Shape | Grid, path: Path, request: GridRequest, settings: Sweep | None = None,
+    shape: Shape | Grid, path: Path | Revolution, request: GridRequest, settings: Sweep | None = None,
     around: int | None = None,
 ) -> Result:  # fmt: skip
-    """Return the volume of a cross-section carried along a path, measured.
+    """Return the volume of a cross-section carried along a path, or about an axis, measured.
 
     `request` and `around` say how the planar grid of the section is made (`section_grid`).
 
@@ -31,19 +30,22 @@ def make_sweep(
     """
     seconds: dict[str, float] = {}
     with limited_to(request.threads):
-        begun = time.perf_counter()
-        section, notes = section_grid(shape, request, around)
-        seconds["boundary"] = time.perf_counter() - begun
-        reached("grid")
-        begun = time.perf_counter()
-        grid = sweep(section, path, settings)
-        crossing = self_crossing(path, reach_of(section))
-        if crossing is not None:
-            where = "({:.4g}, {:.4g}, {:.4g})".format(*crossing)
-            notes = (
-                *notes,
-                f"the path comes back near itself: the volume may run through itself near {where}",
-            )
-        seconds["grid"] = time.perf_counter() - begun
+        with stage("boundary", seconds):
+            section, notes = section_grid(shape, request, around)
+        with stage("grid", seconds):
+            if isinstance(path, Revolution):
+                grid = revolved(walled(section), path, FLOWS)
+            else:
+                grid = sweep(section, path, settings)
+                notes = (*notes, *_crossing_notes(path, section))
         solution = Solution(grid, "sweep", notes=notes)
         return judged(solution, seconds, request, remedy=_REMEDY)
+
+
+def _crossing_notes(path: Path, section: Grid) -> tuple[str, ...]:
+    """Return what there is to say of a path that comes back to itself."""
+    crossing = self_crossing(path, reach_of(section))
+    if crossing is None:
+        return ()
+    where = "({:.4g}, {:.4g}, {:.4g})".format(*crossing)
+    return (f"the path comes back near itself: the volume may run through itself near {where}",)

@@ -28,9 +28,8 @@ SETTINGS = {"polish": "auto", "answer": "valid", "blending": "arclength"}
 """Values of settings that say nothing; of others None is one."""
 
 
-_SHAPE = (
-    "topology spacing le_spacing te_spacing far_field corners normalise te wake wake_nodes base_nodes refined"
-)
+_SHAPE = "topology spacing le_spacing te_spacing far_field corners normalise te wake wake_nodes "
+_SHAPE += "base_nodes smooth refined"
 _SIDES = "spacing_south spacing_north spacing_west spacing_east"
 _FIRST = "first_cell y_plus reynolds chord_fraction growth"
 
@@ -75,13 +74,18 @@ IN_SPACE = _row("layers symmetry energy")
 
 def chosen(request: Request) -> tuple[str, ...]:
     """Return names of the options that are not what they are by default, settings at the end."""
-    given, plain = vars(request.sampling), vars(Sampling())
-    names = ["res" if name in COUNTED else name for name in plain if given[name] != plain[name]]
+    names: list[str] = []
+    plain = vars(Sampling())
+    for name, value in vars(request.sampling).items():
+        if value != plain[name]:
+            names.append("res" if name in COUNTED else name)
     for each in fields(request):
         value = getattr(request, each.name)
         if each.name not in ALWAYS and value != each.default and value is not False:
             names.append(each.name)
-    names += [name for name, value in request.settings.items() if value != SETTINGS.get(name)]
+    for name, value in request.settings.items():
+        if value != SETTINGS.get(name):
+            names.append(name)
     return tuple(dict.fromkeys(names))
 
 

@@ -26,6 +26,8 @@ FEW = 12
 """Cells of a piece of a line up to which it is not coarsened."""
 SMALL = 4000
 """Nodes up to which a mesh has no coarser copy."""
+FEWER = 0.6
+"""Part of the nodes that a copy has at the most: another one would cost more than it gains."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +50,9 @@ def coarser(mesh: HexMesh) -> CoarserCopy | None:
     """Return a copy of a mesh with about half of the nodes along each direction, None if it has few."""
     kept = tuple(tuple(_halved(sorted(cuts)) for cuts in block) for block in _cuts(mesh))
     lattices = [block[np.ix_(*each)] for block, each in zip(mesh.blocks, kept, strict=True)]
-    if len(mesh.nodes) <= SMALL or sum(each.size for each in lattices) > 0.6 * sum(b.size for b in mesh.blocks):
+    if len(mesh.nodes) <= SMALL or sum(each.size for each in lattices) > 0.6 * sum(
+        b.size for b in mesh.blocks
+    ):
         return None
     nodes = np.unique(np.concatenate([each.ravel() for each in lattices]))
     rank = np.full(len(mesh.nodes), -1)
@@ -126,7 +130,7 @@ def carried(mesh: HexMesh, copy: CoarserCopy, values: Floats, targets: Targets) 
 
 
 def _between(values: Floats, kept: Indices, lengths: Floats) -> Floats:
-    """Return values (n, ..., 3) between those (m, ..., 3) at layers `kept`, by the lengths (n-1, ...) of edges."""
+    """Return values (n, ..., 3) between those at layers `kept`, by the lengths (n-1, ...) of edges."""
     place = np.concatenate([np.zeros((1, *lengths.shape[1:])), np.cumsum(lengths, axis=0)])
     low = np.clip(np.searchsorted(kept, np.arange(len(place)), side="right") - 1, 0, len(kept) - 2)
     before, after = place[kept[low]], place[kept[low + 1]]

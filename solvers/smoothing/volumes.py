@@ -101,11 +101,7 @@ def _unfolded(
         mesh, measured = _with_fewer(mesh, mesh, measured, near, targets, slides)
         if not measured.folded:
             return mesh, measured, targets
-    for begin in (_begun, _same, _anew):
-        start = begin(mesh, moves, targets, slides)
-        if start is mesh and begin is not _same:
-            continue
-        wanted = wanted_edges(start, moves) if begin is _anew else targets
+    for start, wanted in _starts(mesh, moves, targets, slides):
         fewer, now = _with_fewer(mesh, start, measured, moves, wanted, slides)
         if fewer is not mesh:
             mesh, measured, targets = fewer, now, wanted
@@ -114,12 +110,16 @@ def _unfolded(
     return mesh, measured, targets
 
 
-def _same(mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides) -> HexMesh:
-    return mesh
-
-
-def _anew(mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides) -> HexMesh:
-    return mesh.with_nodes(harmonic(mesh, ~mesh.outer))
+def _starts(
+    mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides
+) -> Iterator[tuple[HexMesh, Targets]]:  # fmt: skip
+    """Yield what all nodes may be unfolded from, and the edges that are then wanted."""
+    begun = _begun(mesh, moves, targets, slides)
+    if begun is not mesh:
+        yield begun, targets
+    yield mesh, targets
+    anew = mesh.with_nodes(harmonic(mesh, ~mesh.outer))
+    yield anew, wanted_edges(anew, moves)
 
 
 def _begun(mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides) -> HexMesh:
@@ -129,7 +129,7 @@ def _begun(mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides) -> Hex
     if copy is None or optimum is None:
         return mesh
     moved = mesh.nodes + carried(mesh, copy, optimum - copy.mesh.nodes, targets)
-    starts = [mesh.with_nodes(slides.kept(mesh.nodes, nodes, moves)) for nodes in (moved,)]
+    starts = [mesh.with_nodes(slides.kept(mesh.nodes, moved, moves))]
     if measures(starts[0]).folded > _SOME * mesh.cells:
         filled = carried(mesh, copy, optimum, targets)
         starts.append(mesh.with_nodes(slides.kept(mesh.nodes, filled, moves)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
+from meshonet.geometry.blocks.revolve import AxisLine, Revolution, revolution
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.first_cell import FirstCell
 from meshonet.geometry.spacing.growth import check_growth
@@ -37,6 +38,10 @@ class StackRequest(FirstCell):
         Ratio of neighbouring cells away from the wall, where `layers` is not given; None is 1.2.
     far_field : float, optional
         Distance of the far field.
+    revolve : float, optional
+        Degrees about an axis that z becomes, from the first section of a blade or duct to the last.
+    axis : AxisLine, optional
+        That axis, in the plane of the sections; None is the x axis.
     threads : int, optional
         Threads that kernels work with; None: all there are.
     percentiles : bool, optional
@@ -56,6 +61,8 @@ class StackRequest(FirstCell):
     layers: int | None = None
     growth: float | None = None
     far_field: float = DEFAULT_FAR_FIELD
+    revolve: float | None = None
+    axis: AxisLine | None = None
     threads: int | None = None
     percentiles: bool = False
     allow_invalid: bool = False
@@ -73,8 +80,16 @@ class StackRequest(FirstCell):
         check_growth(self.growth)
         if self.layers is not None and self.growth is not None:
             raise InputError("{layers} and {growth} both say how many there are", "give one of them")
+        turn = self.turn
+        if turn is not None and turn.closed:
+            raise InputError("a whole turn", "use less than 360", parameter="revolve")
         if self.threads is not None and self.threads < 1:
             raise InputError(f"{self.threads} threads", "use 1 or more", parameter="threads")
+
+    @property
+    def turn(self) -> Revolution | None:
+        """How z becomes an angle."""
+        return revolution(self.revolve, None, self.axis)
 
     @property
     def surface(self) -> WingSurface:

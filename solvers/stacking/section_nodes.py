@@ -4,7 +4,7 @@
 
             n - h ...  upper side  ... nose        0 is the middle of the base; h cells go from there to each
       0 |                                )         of its corners, the rest to the two sides in equal parts,
-        h  ...  lower side  ...  nose  '           by the same law of arc length on every side
+        h  ...  lower side  ...  nose  '           by laws of arc length
                                                    (drawn clockwise; nodes run upper side first)
 
 A section whose base is lower than `gap` is opened to it: its thickness grows by what is missing, in
@@ -13,13 +13,12 @@ proportion to the distance from the nose.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.elementary import log, product
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.self_intersection import find_crossing
@@ -46,26 +45,38 @@ class Around:
     ----------
     cells : of a side.
     base : cells of the base, an even number.
-    law : from the length along a side to places on it.
     gap : least height of the base in chords.
+    edge, nose : cells beside the base and at the nose, in chords; None: `_EDGE_CELL` of those on the base,
+        and `_NOSE_CELL` of the mean cell.
     """
 
     cells: int
     base: int
-    law: TanhLaw
     gap: float
+    edge: float | None = None
+    nose: float | None = None
 
     @property
     def nodes(self) -> int:
         """Nodes around, the first repeated."""
         return 2 * self.cells + self.base + 1
 
+    def law(self, height: float, length: float) -> TanhLaw:
+        """Return the law from base to nose on a side so long, beside a base so high, both in chords.
 
-def around(sections: tuple[Section, ...], nodes: int, *, gap: float = GAP, base: int = BASE_CELLS) -> Around:
-    """Return the law of `nodes` nodes around all `sections`, the first node repeated at the end.
+        Raises InputError: cells of a length that so many nodes do not allow.
+        """
+        edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
+        first = edge if self.edge is None else self.edge / length
+        last = _NOSE_CELL / self.cells if self.nose is None else self.nose / length
+        return TanhLaw.fitted(self.cells, first, last)
 
-    Cells beside the base are `_EDGE_CELL` of those on it in the mean of all sections, those at the nose
-    `_NOSE_CELL` of the mean cell.
+
+def around(
+    nodes: int, *, gap: float = GAP, base: int = BASE_CELLS,
+    edge: float | None = None, nose: float | None = None,
+) -> Around:  # fmt: skip
+    """Return where `nodes` nodes lie around sections, the first node repeated at the end.
 
     Raises InputError: too few nodes, or an even number.
     """
@@ -75,11 +86,7 @@ def around(sections: tuple[Section, ...], nodes: int, *, gap: float = GAP, base:
         raise InputError(problem, remedy, parameter="around")
     if not 0 < gap < 0.2:
         raise InputError(f"a base of {gap:g} chords", "use more than 0 and less than 0.2", parameter="base")
-    cells = (nodes - 1 - base) // 2
-    heights = [max(_base_height(section), gap) for section in sections]
-    step = _EDGE_CELL * math.exp(np.mean(log(heights))) / base
-    edge, nose = min(step, 1.0 / cells), _NOSE_CELL / cells
-    return Around(cells, base, TanhLaw.fitted(cells, edge, nose), gap)
+    return Around((nodes - 1 - base) // 2, base, gap, edge, nose)
 
 
 def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
@@ -113,19 +120,15 @@ def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
     return nodes, note
 
 
-def _base_height(section: Section) -> float:
-    """Return the height of a section's base in chords, 0 where it has none."""
-    shape = section.shape
-    return shape.gap / shape.unit if isinstance(shape, Airfoil) and shape.blunt else 0.0
-
-
 def _airfoil_sides(shape: Airfoil, plan: Around) -> tuple[Floats, Floats]:
     """Return nodes (cells + 1, 2) of the upper and of the lower side, both from the base to the nose."""
-    stations, s = shape.stations, plan.law(np.linspace(0.0, 1.0, plan.cells + 1))
-    lower = stations.half_base + (stations.nose - stations.half_base) * s
-    upper = stations.upper - (stations.upper - stations.nose) * s
+    stations, q = shape.stations, np.linspace(0.0, 1.0, plan.cells + 1)
+    height = shape.gap / shape.unit if shape.blunt else 0.0
+    below, above = stations.nose - stations.half_base, stations.upper - stations.nose
+    lower = stations.half_base + below * plan.law(height, below / shape.unit)(q)
+    upper = stations.upper - above * plan.law(height, above / shape.unit)(q)
     nodes = shape.curve.at(np.concatenate([upper, lower]))
-    sides = nodes[: len(s)], nodes[len(s) :]
+    sides = nodes[: len(q)], nodes[len(q) :]
     sides[0][-1] = sides[1][-1]
     return sides
 
@@ -135,6 +138,9 @@ def _outline_sides(shape: Outline, plan: Around) -> tuple[Floats, Floats, Floats
 
     Steps are equal on each half of the curve, from its rightmost place to that which is farthest from it.
     """
+    if plan.edge is not None or plan.nose is not None:
+        problem = f"{shape.name or 'a closed curve'} has neither leading nor trailing edge"
+        raise InputError(problem, "leave le_spacing and te_spacing out")
     curve, half = shape.clockwise(), plan.base // 2
     nose = farthest_arc(curve, curve.points[0])
     q = np.linspace(0.0, 1.0, plan.cells + half + 1)

@@ -23,11 +23,17 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.elementary import cos, product, sin
+from meshonet.solvers.sweeping.ring_steps import ring_steps
 
 CORE = 0.5
 """Part of the thickness that the core reaches across."""
+ROWS = 6
+"""Rows of the ring."""
+_EVEN = 1.12  # ratio of the last cells of the ring and those of the core, which needs not be 1
+_RATIO = 1.5  # of neighbouring rows of the ring, at the most
+_FINE = 65  # places on each line of the ring by which its length is measured
 _CLEAR = 1.3  # by which the core stays farther from nose and edge than the nodes that face its ends
-_NOSE, _EDGE = 0.35, 0.4  # and at least so many thicknesses of the section there
+_NOSE, _EDGE = 0.35, 0.3  # and at least so many thicknesses of the section there
 
 
 @dataclass(frozen=True)
@@ -37,18 +43,13 @@ class Cap:
     Parameters
     ----------
     short : cells on each side of an edge that end at a short side of the core.
-    rows : cells of the ring, from the section's edge to the core.
+    rows : cells of the ring, from the section's edge to the core, whose cells they lead to by one ratio.
     bulge : height over the height of a half circle on the section; 0 is flat.
     """
 
     short: int = 4
-    rows: int = 6
+    rows: int = ROWS
     bulge: float = 1.0
-
-    def first_row(self, loop: Floats) -> float:
-        """Return the width of the outermost cells where the section `loop` (n, 2) is thickest."""
-        half = 0.5 * float(norms(_sides(loop)[1]).max()) * 2.0
-        return half * (math.acos(CORE) * max(self.bulge, 0.3) if self.bulge else 1.0 - CORE) / self.rows
 
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:
         """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
@@ -62,17 +63,39 @@ class Cap:
         across = (1.0 - b[..., None]) * upper[:, None] + b[..., None] * lower[:, None]
         height = self.bulge * half[:, None] * np.sqrt(1.0 - (CORE * (1.0 - 2.0 * b)) ** 2)
         core = np.concatenate([across, loop[0, 2] + height[..., None]], axis=-1)
+        return self._ring(loop, core), core
+
+    def _ring(self, loop: Floats, core: Floats) -> Floats:
+        """Return the nodes (n, rows + 1, 3) between the edge of the section and that of the core."""
         inner = _edge(core)
-        phi = np.linspace(0.0, math.acos(CORE), self.rows + 1)
-        if self.bulge:
-            inwards, rise = (1.0 - cos(phi)) / (1.0 - CORE), sin(phi) / sin(phi[-1])
-        else:
-            inwards, rise = np.linspace(0.0, 1.0, self.rows + 1), np.zeros(self.rows + 1)
+        sizes = norms(_edge(core, 1) - inner)
+        m, half = self.short, (len(loop) - 1) // 2
+        corners = np.array([m, half - m, half + m, len(loop) - 1 - m])  # no line runs on from these
+        sizes[corners] = 0.5 * (sizes[corners - 1] + sizes[corners + 1])
+        part = np.linspace(0.0, 1.0, _FINE)
+        fine = norms(np.diff(self._lines(loop, inner, np.broadcast_to(part, (len(loop), _FINE))), axis=1))
+        away = np.concatenate([np.zeros((len(loop), 1)), np.cumsum(fine, axis=1)], axis=1)
+        length = away[:, -1]
+        ends = np.clip(length / self.rows, sizes / _EVEN, sizes * _EVEN)
+        shares = [1.0 / sum(math.pow(ratio, k) for k in range(self.rows)) for ratio in (_RATIO, 1.0 / _RATIO)]
+        ends = np.clip(ends, shares[0] * length, shares[1] * length)
+        places = np.cumsum(ring_steps(length, ends, self.rows, None), axis=1)
+        parts = [np.interp(places[k, :-1], away[k], part) for k in range(len(loop))]
         ring = np.empty((len(loop), self.rows + 1, 3))
-        ring[..., :2] = plane[:, None] + inwards[:, None] * (inner[:, None, :2] - plane[:, None])
-        ring[..., 2] = loop[:, None, 2] + rise * (inner[:, None, 2] - loop[:, None, 2])
+        ring[:, 1:-1] = self._lines(loop, inner, np.stack(parts))
         ring[:, 0], ring[:, -1] = loop, inner
-        return ring, core
+        ring[-1] = ring[0]
+        return ring
+
+    def _lines(self, loop: Floats, inner: Floats, part: Floats) -> Floats:
+        """Return the places (n, k, 3) that are `part` (n, k) of the way, in angle, from edge to core."""
+        inwards, rise = part, np.zeros(part.shape)
+        if self.bulge:
+            phi = part * math.acos(CORE)
+            inwards, rise = (1.0 - cos(phi)) / (1.0 - CORE), sin(phi) / math.sin(math.acos(CORE))
+        away = (inner - loop)[:, None]
+        along = np.stack([inwards, inwards, rise], axis=-1)
+        return np.asarray(loop[:, None] + along * away)
 
     def _inner(self, plane: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the long sides (k, 2) of the core from the trailing edge on, and half the thickness (k,)."""
@@ -121,9 +144,11 @@ def _sides(plane: Floats) -> tuple[Floats, Floats]:
     return 0.5 * (upper + lower), 0.5 * (upper - lower)
 
 
-def _edge(core: Floats) -> Floats:
-    """Return the nodes around a core (k, l, 3) in the order of its ring, from the middle of its west side."""
-    m = core.shape[1] // 2
-    return np.concatenate(
-        [core[0, m::-1], core[1:, 0], core[-1, 1:], core[-2::-1, -1], core[0, -2 : m - 1 : -1]]
-    )
+def _edge(core: Floats, k: int = 0) -> Floats:
+    """Return the nodes around a core (., ., 3) in the order of its ring, from the middle of its west side.
+
+    With `k` those so many steps inside of them.
+    """
+    m, last = core.shape[1] // 2, -1 - k
+    west, east = core[k], core[last]
+    return np.concatenate([west[m::-1], core[1:, k], east[1:], core[-2::-1, last], west[-2 : m - 1 : -1]])

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.elementary import power
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.spacing.along_curve import on_corners
@@ -20,6 +21,13 @@ from meshonet.solvers.stacking.tip import Cap
 
 DEFAULT_AROUND, DEFAULT_SPAN = 129, 49  # nodes
 LEAST_SPAN, MOST_SPAN = 5, 10_001  # nodes
+EDGE, MOST_EDGE = 2.2, 2.5
+"""Ratio of neighbouring cells across the edge of a tip that is looked for, and the largest."""
+_SWEEPS = 20  # of smoothing around the section
+FADE = 8
+"""Cells from the tip on that have different lengths around the section."""
+REACH = 0.05
+"""Distance from the tip, in its chords, within which such cells end at the most."""
 _ROOT_CELL = 1.4
 """Cell at the root, in mean cells along the span."""
 
@@ -54,29 +62,75 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
     Raises InputError: counts that do not suffice, sections whose nodes cross.
     """
     settings = settings or WingSurface()
-    plan = around(stack.sections, settings.around, gap=settings.base)
+    plan = around(settings.around, gap=settings.base, edge=stack.te_spacing, nose=stack.le_spacing)
     units, notes = zip(*(unit_nodes(section, plan) for section in stack.sections), strict=True)
     unit = np.stack(units)
     cap = None if stack.tip == "open" else Cap(BASE_CELLS // 2, bulge=1.0 if stack.tip == "round" else 0.0)
     last = stack.lofted(unit, stack.z[-1:])[0]
-    z = span_heights(stack.z, settings.span, cap.first_row(last[:, :2]) if cap else None)
-    main = stack.lofted(unit, z).transpose(1, 0, 2)
-    main[-1] = main[0]
-    n = len(main)
+    tip = cap.patches(last) if cap else None
+    main = _lofted(stack, unit, tip[0] if tip else None, settings.span)
+    n, levels = main.shape[:2]
     blocks, patches = [Block(main)], [Patch("symmetry", "south", 0, n - 1)]
-    whole = ((0, len(z) - 1),)
+    whole = ((0, levels - 1),)
     connections = [Connection(0, "west", whole, 0, "east", whole, (1,))]
-    if cap is None:
+    if cap is None or tip is None:
         patches.append(Patch("symmetry", "north", 0, n - 1))
     else:
-        ring, core = cap.patches(main[:, -1])
-        blocks += [Block(ring), Block(core)]
+        blocks += [Block(tip[0]), Block(tip[1])]
         edge = ((0, n - 1),)
         connections.append(Connection(0, "north", edge, 1, "south", edge, (1,)))
         connections += cap.connections(n, 1, 2)
     zones = {"zones": ("wing", "tip", "tip")[: len(blocks)]}
     grid = Grid(tuple(blocks), tuple(patches), tuple(connections), stack.name, zones)
     return grid, tuple(dict.fromkeys(note for note in notes if note))
+
+
+def _tip_cells(ring: Floats) -> Floats:
+    """Return the last cells along the span (n,) that go with the ring (n, ., 3) of a cap.
+
+    They differ from the cells of the ring by `EDGE` at the most, so that they are as thin as at the trailing
+    edge only where they must be.
+    """
+    first = norms(ring[:-1, 1] - ring[:-1, 0])
+    cells = np.maximum(EDGE * first.min(), first / EDGE)
+    for _ in range(_SWEEPS):  # where cells of the ring change from one line to the next
+        cells = 0.5 * cells + 0.25 * (np.roll(cells, 1) + np.roll(cells, -1))
+    cells = np.clip(cells, first / MOST_EDGE, first * MOST_EDGE)
+    return np.append(cells, cells[:1])
+
+
+def _lofted(stack: Stack, unit: Floats, ring: Floats | None, nodes: int) -> Floats:
+    """Return the nodes (n, nodes, 3) around the sections of a wing, whose tip has a ring (n, ., 3)."""
+    if ring is None or stack.tip_spacing is not None:
+        tip = None if stack.tip_spacing is None else stack.tip_spacing * stack.sections[-1].chord
+        main = stack.lofted(unit, span_heights(stack.z, nodes, tip)).transpose(1, 0, 2)
+    else:
+        last = _tip_cells(ring)
+        z = span_heights(stack.z, nodes, float(last.min()))
+        panel = int(np.searchsorted(z, stack.z[-2]))
+        heights = np.tile(z, (len(last), 1))
+        heights[:, panel:] = _with_last(z[panel:], last, REACH * stack.sections[-1].chord)
+        columns = [stack.lofted(unit[:, k : k + 1], heights[k])[:, 0] for k in range(len(last))]
+        main = np.stack(columns)
+        main[:, -1] = ring[:, 0]
+    main[-1] = main[0]
+    return main
+
+
+def _with_last(z: Floats, last: Floats, reach: float) -> Floats:
+    """Return heights (n, m) between the ends of `z` (m,) whose last cells are `last` (n,).
+
+    They differ from `z` by a factor that fades away from the tip on, which the cells beyond make up for.
+    """
+    steps = np.diff(z)
+    cells = len(steps)
+    faded = np.maximum(np.arange(cells)[::-1] / min(FADE, 0.5 * cells), (z[-1] - z[1:]) / reach)
+    share = np.clip(1.0 - faded, 0.0, None)
+    made = steps * power(last[:, None] / steps[-1], share)
+    made += (steps.sum() - made.sum(axis=1))[:, None] * (weight := (1.0 - share) * steps) / weight.sum()
+    heights = z[0] + np.concatenate([np.zeros((len(last), 1)), np.cumsum(made, axis=1)], axis=1)
+    heights[:, -1] = z[-1]
+    return np.asarray(heights)
 
 
 def span_heights(sections: Floats, nodes: int, last: float | None) -> Floats:

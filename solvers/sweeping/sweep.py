@@ -80,7 +80,7 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     place; as `frames_along`.
     """
     settings = settings or Sweep()
-    section = _walled(section)
+    section = walled(section)
     _check_closed(path, settings)
     s = np.linspace(0.0, path.length, settings.planes or _planes(section, path))
     looked = np.linspace(0.0, path.length, max(_LOOKED_AT, len(s)))
@@ -163,7 +163,7 @@ def _check_bends(
     )
 
 
-def _walled(section: Grid) -> Grid:
+def walled(section: Grid) -> Grid:
     """Return a section whose whole outer boundary has patches, each of a kind."""
     if any(connection.transform for connection in section.connections):
         raise InputError("the section is periodic", "leave its periodic connections out")

@@ -17,8 +17,6 @@ class PlanesDescent(HexProblem):
     Edges of all directions are measured by the same length where cells are to be like `cubes`.
     """
 
-    size = 0.0  # the volume is given
-
     def __init__(self, planes: Floats, cubes: bool = False) -> None:
         counts = planes.shape[1:]
         self.planes, self.iterations, self.slides = planes, 0, Slides.none()
@@ -30,13 +28,13 @@ class PlanesDescent(HexProblem):
         self.mesh = HexMesh(self.nodes, (lattice,), ())
         lengths = np.broadcast_to(1.0 / np.array(over)[:, None, None, None], (3, *(n - 1 for n in counts)))
         edges = [np.broadcast_to(0.0, [n + (k == d) for k, n in enumerate(counts)]) for d in range(3)]
-        tables = tables_of(self.mesh, self.moves, [(edges[0], edges[1], edges[2])], [lengths])
+        tables = tables_of(self.mesh, self.moves, [(edges[0], edges[1], edges[2])], [lengths], turned=False)
         sizes = np.full(len(tables.free), max(over))
         slides = np.empty(0, dtype=np.intp), np.empty((0, 9))
         self.descent = descent_of(self.nodes, tables, sizes, self.mesh.cells, slides, over)
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Take `most` iterations, fewer where little is gained; return the smallest Jacobian and the value."""
+        """Take `most` iterations, fewer without gain; return the smallest Jacobian and the value."""
         found = super().run(weights, most, epsilon)
         self.planes[...] = self.nodes.T.reshape(self.planes.shape)
         return found

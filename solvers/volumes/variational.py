@@ -8,6 +8,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.energy.hex_functional import ENERGIES, OPTIMAL, Energy, HexWeights
 from meshonet.solvers.energy.hexes import NEARLY
 from meshonet.solvers.iteration import check_tolerances
 from meshonet.solvers.solution import Outcome, Solution
@@ -15,7 +16,6 @@ from meshonet.solvers.stages import reached
 from meshonet.solvers.volumes.descent import PlanesDescent
 from meshonet.solvers.volumes.edge_corners import check_corners
 from meshonet.solvers.volumes.first_cells import keep_first_cells
-from meshonet.solvers.energy.hex_functional import ENERGIES, OPTIMAL, Energy, HexWeights
 from meshonet.solvers.volumes.interpolate import interpolate
 from meshonet.solvers.volumes.laws import Laws, arc_laws, mean_laws, uniform_laws
 from meshonet.solvers.volumes.refine import refine_volume
@@ -118,24 +118,18 @@ def _solved(planes: Floats, faces: SixFaces, most: int, weights: HexWeights) -> 
     Where these stay folded, as splines leave them that overshoot at kinks of faces, the interpolation is the
     start if it is less so.
     """
-    count = _settle(planes, most, weights)
-    smallest = _smallest(planes)
+    count, smallest = _settle(planes, most, weights)
     if smallest <= 0.0:
         plain = _interpolated(faces)
-        if _smallest(plain) > smallest:
-            return plain, count + _settle(plain, most, weights)
+        if PlanesDescent(plain).smallest() > smallest:
+            return plain, count + _settle(plain, most, weights)[0]
     return planes, count
 
 
-def _smallest(planes: Floats) -> float:
-    """Return the smallest corner Jacobian, or infinity where there is no inner node."""
-    return PlanesDescent(planes).smallest() if min(planes.shape[1:]) > 2 else np.inf
-
-
-def _settle(planes: Floats, most: int, weights: HexWeights) -> int:
-    """Minimise over planes in place, unfolded first; return the iterations."""
+def _settle(planes: Floats, most: int, weights: HexWeights) -> tuple[int, float]:
+    """Minimise over planes in place, unfolded first; return the iterations and the smallest Jacobian."""
     if min(planes.shape[1:]) < 3:
-        return 0
+        return 0, np.inf
     descent = PlanesDescent(planes, weights.of_cubes)
     smallest = descent.smallest()
     folded = smallest <= 0.0
@@ -149,8 +143,8 @@ def _settle(planes: Floats, most: int, weights: HexWeights) -> int:
         open_flat_cells(planes)
         descent = PlanesDescent(planes, weights.of_cubes)
     if smallest > 0.0:
-        descent.run(weights, most)
-    return descent.iterations
+        smallest = descent.run(weights, most)[0]
+    return descent.iterations, smallest
 
 
 def _halved(counts: tuple[int, int, int]) -> tuple[int, int, int]:

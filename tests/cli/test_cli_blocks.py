@@ -36,6 +36,11 @@ def test_quality_counts_blocks_and_names_cells_by_their_block(meshonet: Meshonet
     assert "bend across sides (deg)" in text
 
 
+def test_a_grid_of_several_blocks_is_called_so(meshonet: Meshonet, disc: Path) -> None:
+    done = meshonet("solve-pde", disc, "--method", "variational", "-o", "g.vtm")
+    assert done.err.splitlines()[0].endswith("irregular vertices, multi-block grid")
+
+
 def test_gates_look_at_blocks(meshonet: Meshonet, disc: Path) -> None:
     run = meshonet("quality", disc, "--fail-on", "irregular>3", "--fail-on", "growth_across>9")
     assert (run.code, "irregular is 4" in run.err, "growth_across is" in run.err) == (1, True, False)

@@ -193,7 +193,10 @@ def test_a_pipe_needs_no_file(meshonet: Meshonet, process: Process, grid_vts: Pa
         (("grid.vts", "grid.abc"), "its ending '.abc' is not known; choose the format with --to"),
         (("grid.vts", "grid.p3d", "--extrude", "0"), "--extrude: height 0 is not positive"),
         (("grid.vts", "grid.p3d", "--extrude", "inf"), "--extrude: height inf is not positive"),
-        (("grid.vts", "grid.p3d", "--planes", "3"), "--planes: there is no height; give --extrude as well"),
+        (
+            ("grid.vts", "grid.p3d", "--planes", "3"),
+            "--planes: there is no height; give --extrude or --revolve as well",
+        ),
         (("grid.vts", "grid.p3d", "--extrude", "1", "--planes", "1"), "'--planes': 1 is not in the range"),
         (("grid.vts", "grid.geo", "--extrude", "1"), "geo holds flat grids only; write one of"),
         (("missing.vts", "grid.p3d"), "missing.vts: no such file"),

@@ -9,7 +9,7 @@ from command_line import Meshonet
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 
-SECTION = ("naca:0012", "--res", "81x33", "--topology", "c", "--first-cell", "1e-4", "-q")
+SECTION = ("naca:0012", "--res", "81x33", "--topology", "c", "--te", "wedge", "--first-cell", "1e-4", "-q")
 
 
 @pytest.fixture(autouse=True)
@@ -95,7 +95,7 @@ def test_a_batch_names_its_failures(meshonet: Meshonet) -> None:
         (("--shift", "wall=1,2,3", "--rotate", "wall=5@0,0"), "is turned in the plane"),
         (("--shift", "tail=1,2"), "has no 'tail'"),
         (("--wall", "missing.dat"), "missing.dat"),
-        (("--wall", "two.csv"), "two.csv: holds several shapes; give a file with one"),
+        (("--wall", "two.csv"), "two.csv: holds several, where the new shape of a wall is asked for; give a"),
     ],
 )
 def test_bad_words_get_a_line(meshonet: Meshonet, words: tuple[str, ...], says: str) -> None:

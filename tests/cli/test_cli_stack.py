@@ -51,6 +51,22 @@ def test_changed_trailing_edges_are_told_and_y_plus_says_its_height(meshonet: Me
     assert "y+ 90 at Re 100000 on a chord of 2 is" in done.err
 
 
+def test_z_of_a_duct_can_be_an_angle_and_that_of_a_wing_cannot(meshonet: Meshonet, wing: Path) -> None:
+    section = '[[sections]]\noutline = "circle:0.5"\nchord = {}\ny = 2\nz = {}\n'
+    Path("duct.toml").write_text('kind = "duct"\n' + section.format(1, 0) + section.format(1.6, 2))
+    done = meshonet(
+        "stack", "duct.toml", "--revolve", "120", "--around", "33", "--span", "9", "-o", "d.h5", "-q"
+    )
+    assert done.code == 0, done.err
+    (grid,) = read_grids("d.h5")
+    ends = [patch for patch in grid.patches if patch.name in ("inlet", "outlet")]
+    assert {patch.side for patch in ends} == {"bottom", "top"}
+    last = grid.blocks[0].nodes[:, :, -1]
+    assert np.degrees(np.arctan2(last[..., 2], last[..., 1])) == pytest.approx(np.full(last.shape[:2], 120.0))
+    refused = meshonet("stack", str(wing), *SMALL, "--revolve", "90", "-o", "w.h5")
+    assert (refused.code, "--revolve: a wing is not turned about an axis" in refused.err) == (2, True)
+
+
 def test_the_surface_alone_is_what_solve_pde_marches_from(meshonet: Meshonet, wing: Path) -> None:
     assert meshonet("stack", str(wing), *SMALL[:4], "--surface", "-o", "surface.h5", "-q").code == 0
     (surface,) = read_grids("surface.h5")

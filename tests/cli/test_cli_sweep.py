@@ -100,9 +100,24 @@ def test_the_function_makes_what_the_command_writes(meshonet: Meshonet) -> None:
         assert np.array_equal(one.nodes, two.nodes)
 
 
+def test_a_section_can_be_turned_about_an_axis_instead(meshonet: Meshonet) -> None:
+    words = "--revolve", "90", "--axis", "0,-2,1,0"
+    grid = swept(meshonet, "circle:0.5", "--around", "32", *words)
+    assert {(patch.name, patch.kind) for patch in grid.patches} == {
+        ("wall", "wall"), ("inlet", "inlet"), ("outlet", "outlet"),
+    }  # fmt: skip
+    assert np.hypot(grid.blocks[0].nodes[..., 1] + 2.0, grid.blocks[0].nodes[..., 2]).min() > 1.5
+    whole = swept(meshonet, "circle:0.5", "--around", "32", "--revolve", "360", *words[2:])
+    assert {patch.name for patch in whole.patches} == {"wall"}
+
+
 @pytest.mark.parametrize(
     ("words", "problem"),
     [
+        (("circle:0.5", "--revolve", "90"), "--axis: the axis runs through the grid, from 0.5 to one side"),
+        (("circle:0.5", "bend.toml", "--axis", "y"), "--axis: nothing is turned; give --revolve as well"),
+        (("circle:0.5", "--revolve", "90", "--twist", "9"), "--up, --twist and --scale belong to a path"),
+        (("circle:0.5", "--revolve", "90", "--axis", "z"), "--axis: 'z' is not an axis"),
         (("circle:3", "bend.toml"), "the path bends with a radius of 2 at (1"),
         (("bend.toml",), "there is no path"),
         (("circle:x", "bend.toml"), "'x' is no radius"),

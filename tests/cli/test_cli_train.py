@@ -47,7 +47,9 @@ def test_without_torch_it_says_what_to_install(meshonet: Meshonet, monkeypatch: 
     monkeypatch.setitem(sys.modules, "torch", None)
     done = meshonet("train", "strips.h5", "-o", "m.safetensors")
     assert done.code == 2
-    assert done.err == "error: training needs torch; install it: pip install 'meshonet[train]'\n"
+    assert done.err.startswith("error: training needs torch; install it: pip install 'meshonet[train]'")
+    assert "pip install torch --index-url https://download.pytorch.org/whl/cpu" in done.err
+    assert done.err.count("\n") == 1
 
 
 @pytest.mark.skipif(not TORCH, reason="needs torch")

@@ -65,3 +65,24 @@ def test_refine_goes_with_a_first_grid_and_not_with_marching(meshonet: Meshonet,
     done = meshonet(*words, "--wall-spacing", "1e-3")
     assert done.code == 2
     assert "--refine is of no use to a grid marched from the wall; drop --refine" in done.err
+
+
+def test_corners_of_a_base_are_those_of_all_grids_of_a_family(meshonet: Meshonet) -> None:
+    words = ("infer", "naca:0012", "--topology", "o", "--res", "65x33", "--refine", "2", "-o", "fine.vts")
+    assert meshonet(*words).code == 0
+    assert meshonet("convert", "fine.vts", "coarse.vts", "--coarsen", "4").code == 0
+    for name in ("fine.vts", "coarse.vts"):
+        (grid,) = read_grids(name)
+        x = grid.nodes[:, 0, 0]
+        base = grid.nodes[x > x.max() - 1e-9, 0]
+        assert np.ptp(base[:, 1]) == pytest.approx(0.00252, abs=1e-12)
+
+
+def test_a_corner_that_would_be_cut_is_named(meshonet: Meshonet) -> None:
+    meshonet("infer", "naca:0012", "--res", "65x33", "--base-nodes", "5", "-o", "fine.vts")
+    done = meshonet("convert", "fine.vts", "coarse.vts", "--coarsen", "4")
+    assert done.code == 2
+    assert (
+        "node 2, would be cut: every 4-th drops it; 1 more; the largest number that keeps all corners is 2"
+        in done.err
+    )

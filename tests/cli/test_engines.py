@@ -18,8 +18,8 @@ from engine_tasks import deadly, deadly_once, double
 
 from meshonet.formats.output import PART_SUFFIX
 from meshonet.formats.registry import read_grids
-from meshonet_cli.batch.executors.engine import Engine
 from meshonet_cli.batch.executors.workers import WorkerDiedError
+from meshonet_cli.batch.settings import Engine
 
 DASK = importlib.util.find_spec("distributed") is not None
 BESIDE = Path(sys.executable).parent
@@ -81,7 +81,7 @@ def test_a_result_that_died_with_its_worker_is_made_again(tmp_path: Path) -> Non
         "from concurrent.futures import Future\n"
         "from distributed.cfexecutor import _cascade_future\n"
         "from engine_tasks import double\n"
-        "from meshonet_cli.batch.executors.engine import Engine\n"
+        "from meshonet_cli.batch.settings import Engine\n"
         "class Lost:\n"
         "    status = 'pending'\n"  # it was 'finished' when its result was asked for
         "    async def _result(self, raiseit): return 4\n"
@@ -106,7 +106,7 @@ def test_a_cluster_of_its_own_survives_its_workers(tmp_path: Path) -> None:
     """In a process of its own: what Dask loads and logs is kept from other tests."""
     code = (
         "from engine_tasks import *\n"
-        "from meshonet_cli.batch.executors.engine import Engine\n"
+        "from meshonet_cli.batch.settings import Engine\n"
         "if __name__ == '__main__':\n"
         "    with Engine('dask', 2).workers(print) as workers:\n"
         "        tasks = [(k, 'mark') for k in range(6)]\n"

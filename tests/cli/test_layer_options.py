@@ -55,7 +55,7 @@ def test_growth_takes_the_rows_it_needs(meshonet: Meshonet, command: str) -> Non
     words = (SECTION, "--wall-spacing", "1e-4", "--growth", "1.2", "-o", "g.vts")
     told = meshonet(command, *words, "--json").only
     assert 50 < told["nj"] <= 60
-    done = meshonet(command, *words, "--res", "100x40")
+    done = meshonet(command, *words, "--res", "200x40")
     assert done.code == 2
     assert (
         f"40 rows of nodes cannot reach the far field growing by 1.2 each; use {told['nj']} rows" in done.err

@@ -15,7 +15,7 @@ from meshonet.geometry.shapes.airfoil.naca import naca_points
 WEDGE = "the outline is changed: its base, 0.00252 chords wide, is closed by a wedge"
 LEFT_OUT = "line 3, '0.50  .....', is no pair of numbers and is left out"
 FAR = "the far field is 15 chords away, the default: for lift and drag give --far-field 100 or more"
-C_GRIDS = ("--topology", "c", "--first-cell", "1e-4", "--res", "120x40")
+C_GRIDS = ("--topology", "c", "--te", "wedge", "--first-cell", "1e-4", "--res", "120x40")
 
 
 @pytest.fixture

@@ -14,11 +14,12 @@ import pytest
 from command_line import ROOT, terminal
 
 from meshonet.solvers.stages import reached
+from meshonet_cli import app
 from meshonet_cli.app import run
 from meshonet_cli.terminal import session as session_module
 from meshonet_cli.terminal import stage_line
 from meshonet_cli.terminal.session import Session
-from meshonet_cli.terminal.stage_line import StageLine, stopping_lines
+from meshonet_cli.terminal.stage_line import StageLine
 
 WIPED = "\r\x1b[2K"
 
@@ -34,8 +35,9 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def line() -> Iterator[StageLine]:
     """A line that is not drawn."""
-    with stopping_lines():
-        yield StageLine(lambda: None, lambda: None)
+    line = StageLine(lambda: None, lambda: None)
+    yield line
+    line.stop()
 
 
 def threads() -> list[str]:
@@ -111,15 +113,16 @@ def test_batches_have_no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_an_interrupt_wipes_the_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    def work() -> None:
-        Session().watch()
-        time.sleep(0.1)
-        raise KeyboardInterrupt
+    class Program:
+        def main(self, *_: object, **__: object) -> None:
+            Session().watch()
+            time.sleep(0.1)
+            raise KeyboardInterrupt
 
+    monkeypatch.setattr(app, "application", lambda *_, **__: Program())
     with terminal(monkeypatch) as screen:
-        with pytest.raises(KeyboardInterrupt), stopping_lines():
-            work()
-        assert screen().endswith(f"0 s, read{WIPED}")
+        assert run(["infer"]) == 130
+        assert screen().endswith(f"0 s, read{WIPED}interrupted\r\n")
         assert not threads()
 
 

@@ -14,7 +14,8 @@ USELESS = {
         "",
         [
             "--topology o", "--spacing tanh", "--le-spacing .01", "--te-spacing .01", "--far-field 9",
-            "--corners 0,1,2,3", "--te round", "--wake 5", "--wake-nodes 9", "--base-nodes 9", "--normalise",
+            "--corners 0,1,2,3", "--te round", "--wake 5", "--wake-nodes 9", "--base-nodes 9",
+            "--smooth 1e-4", "--normalise",
         ],
     ),
     "an O grid": ("naca:2412", "--res 41x15 --topology o", ["--wake 5", "--wake-nodes 9"]),

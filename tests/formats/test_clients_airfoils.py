@@ -15,7 +15,7 @@ GRIDS = {
     "o": "infer naca:2412 --topology o --res 161x65",
     "o-viscous": "infer naca:0012 --topology o --wall-spacing 1e-4 --res 161x65",
     "c": "solve-pde naca:0012 --topology c --res 161x49",
-    "c-viscous": "infer naca:0012 --topology c --wall-spacing 1e-4 --res 241x65",
+    "c-viscous": "infer naca:0012 --topology c --te wedge --wall-spacing 1e-4 --res 241x65",
 }
 SOFT = ("skewness", "non-orthogonal", "aspect ratio")
 """Of the quality of a grid, not of the file: what else checkMesh marks with stars is a fault."""

@@ -7,7 +7,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from meshonet.geometry.blocks.grid import Grid
 
 ROOT = Path(__file__).parents[2]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "WM_PROJECT_DIR": "/usr/share/openfoam"}
@@ -37,12 +40,21 @@ GRIDS = {
     "blade": "stack blade.toml --around 65 --span 13",
     "pipe": "sweep circle:0.5 bend.toml --around 40 --first-cell 0.01",
     "ring": "sweep circle:0.5 ring.csv --around 32",
+    "wedge": "convert plane.h5 --revolve 5",
+    "sector": "convert plane.h5 --revolve 60",
+    "turn": "convert plane.h5 --revolve 360",
+    "elbow": "sweep circle:0.5 --revolve 90 --axis 0,-2,1,0",
 }
 PATCHES = {
     "wing": {"wing": "wall", "tip": "wall", "symmetry": "symmetryPlane", "farfield": "patch"},
     "blade": {"blade": "wall", "hub": "wall", "shroud": "wall", "farfield": "patch"},
     "pipe": {"wall": "wall", "inlet": "patch", "outlet": "patch"},
     "ring": {"wall": "wall"},
+    "wedge": {"east": "patch", "north": "patch", "west": "patch", "wedge1": "wedge", "wedge2": "wedge"},
+    "sector": dict.fromkeys(("east", "north", "west"), "patch")
+    | dict.fromkeys(("periodic1", "periodic2"), "cyclic"),
+    "turn": dict.fromkeys(("east", "north", "west"), "patch"),
+    "elbow": {"wall": "wall", "inlet": "patch", "outlet": "patch"},
 }
 
 
@@ -58,6 +70,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (made / "wing.toml").write_text(WING)
     (made / "blade.toml").write_text(f'kind = "blade"\n{WING}')
     (made / "bend.toml").write_text(BEND)
+    plane = np.stack(np.meshgrid(np.linspace(0.0, 2.0, 9), np.linspace(0.0, 1.0, 6), indexing="ij"), axis=-1)
+    Grid.from_nodes(plane).write(made / "plane.h5")
     (made / "ring.csv").write_text("2,0,0\n0,2,0\n-2,0,0\n0,-2,0\n2,0,0\n")
     return made
 

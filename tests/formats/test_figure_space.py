@@ -120,7 +120,6 @@ def test_a_flat_layer_is_drawn_as_grids_in_the_plane_are() -> None:
             "zoom: a picture in space is zoomed by a box in space; use x0,x1,y0,y1,z0,z1",
         ),
         ({"zoom": (9, 10, 0, 1, 0, 1)}, "shows none of the grid; it spans x 0 to 4, y 0 to 3, z 0 to 2"),
-        ({"slice": "k=0", "zoom": (0, 1, 0, 1, 0, 1)}, "zoom: this picture is flat; use x0,x1,y0,y1"),
         ({"seen_from": (np.nan, 0)}, "is no direction; use azimuth and elevation in degrees"),
         ({"metric": "area_ratio"}, "metric 'area_ratio' is none of volumes"),
     ],
@@ -131,6 +130,21 @@ def test_what_cannot_be_shown_is_refused(tmp_path: Path, settings: dict, message
         plot(grid, tmp_path / "made.png", **settings)
     assert message in str(error.value)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("at", "across", "box"), [("k=0", 2, (0, 1, 0, 2)), ("x=2", 0, (0, 2, 0, 1)), ("j=1", 1, (0, 1, 0, 1))]
+)
+def test_a_slice_is_zoomed_by_a_box_in_space_or_in_its_plane(
+    tmp_path: Path, at: str, across: int, box: tuple[float, ...]
+) -> None:
+    grid = Grid.from_nodes(lattice((0, 4, 5), (0, 3, 4), (0, 2, 3)))
+    in_space = (*box[: 2 * across], 0, 9, *box[2 * across :])
+    plot(grid, tmp_path / "plane.svg", slice=at, zoom=box)
+    plot(grid, tmp_path / "space.svg", slice=at, zoom=in_space)
+    plot(grid, tmp_path / "whole.svg", slice=at)
+    plane, space, whole = ((tmp_path / f"{name}.svg").read_bytes() for name in ("plane", "space", "whole"))
+    assert plane == space != whole
 
 
 def test_slices_are_of_volumes(tmp_path: Path) -> None:

@@ -5,7 +5,10 @@ import re
 import numpy as np
 import pytest
 
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.laws import Spacing
 from meshonet.geometry.spacing.sampling import Sampling
 
 
@@ -32,3 +35,49 @@ def test_like_cells_and_bases_that_are_none_are_not_noted() -> None:
     assert "on the base" not in notes("0012", None)
     assert "on the base" not in notes("0012", 1e-3, te="round")
     assert "on the base" not in notes("0012-sharp", 1e-3)
+
+
+@pytest.mark.parametrize("spacing", ["auto", "curvature", "tanh", "cosine"])
+@pytest.mark.parametrize("nodes", [5, 9, 31])
+def test_a_base_has_the_nodes_asked_for(spacing: Spacing, nodes: int) -> None:
+    body = naca("2412")
+    wall = body.boundary(Sampling(200, 60, "o", spacing, base_nodes=nodes)).south
+    ends = [int(np.argmin(np.hypot(*(wall - corner).T))) for corner in body.curve.points[[1, -1]]]
+    assert (ends[0], len(wall) - 1 - ends[1]) == (nodes // 2, nodes // 2)
+    np.testing.assert_allclose(wall[ends], body.curve.points[[1, -1]], atol=1e-12)
+
+
+def test_a_wide_base_has_enough_cells_of_the_size_of_its_neighbours() -> None:
+    wide = np.array([[1.0, 0.0], [1.0, 0.04]])  # half of a base of 8 % of the chord
+    x = 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 81)))
+    half = 0.3 * (np.sqrt(x) - x) + wide[1, 1] * x**2
+    body = Airfoil(
+        np.concatenate([np.stack([x, half], axis=1)[::-1], np.stack([x, -half], axis=1)[1:]]), "wide"
+    )
+    counts = []
+    for ni in (201, 401, 801):
+        wall = body.boundary(Sampling(ni, 60, "o", "curvature")).south
+        k = int(np.argmin(np.hypot(*(wall[: ni // 2] - body.curve.points[1]).T)))
+        on, beside = (float(np.hypot(*(wall[i + 1] - wall[i]))) for i in (k - 1, k))
+        assert beside / on == pytest.approx(1.0, abs=0.1)
+        counts.append(2 * k)
+    assert 40 <= counts[1] <= 60
+    assert counts[0] < counts[1] < counts[2]
+
+
+@pytest.mark.parametrize(
+    ("name", "sampling", "told"),
+    [
+        ("0012-sharp", Sampling(base_nodes=9), "base_nodes: the trailing edge has no base; leave"),
+        ("0012", Sampling(te="round", base_nodes=9), "base_nodes: the trailing edge has no base; leave"),
+        (
+            "0012",
+            Sampling(base_nodes=8),
+            "base_nodes: a base of 8 nodes has none in its middle, .* use 7 or 9",
+        ),
+        ("0012", Sampling(41, base_nodes=43), "43 of 41 nodes on the base .*; use at most 37"),
+    ],
+)
+def test_bases_that_cannot_be_had_are_refused(name: str, sampling: Sampling, told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        naca(name).boundary(sampling)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.transform import coarser_boundary, coarser_grid
@@ -115,3 +116,12 @@ def test_corners_asked_for_at_multiples_stand_there() -> None:
         coarse = coarser_boundary(boundary, sampling.refined)
         for corner in star:
             assert np.hypot(*(coarse.outline() - corner).T).min() < 1e-9
+
+
+def test_edges_of_walls_in_space_are_kept_too() -> None:
+    boundary = flatback().boundary(Sampling(65, 9, "o", base_nodes=13))
+    plane = Grid.from_nodes(np.linspace(boundary.south, boundary.north, 9, axis=1), "o")
+    grid = extruded(plane, np.linspace(0.0, 1.0, 9).tolist())
+    with pytest.raises(InputError, match=r"a corner of south at \(1, -0.02, 0\), node 6, would be cut"):
+        coarser_grid(grid, 4)
+    assert coarser_grid(grid, 2).blocks[0].counts == (33, 5, 5)

@@ -71,7 +71,7 @@ def test_straight_lines_for_a_spline_that_would_cross_itself_are_named() -> None
 def test_another_spacing_than_the_usual_one_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     from meshonet.geometry.errors import InputError
 
-    def refused(*_: object) -> None:
+    def refused(*_: object, **__: object) -> None:
         raise InputError("the lifted wall is not star-shaped")
 
     monkeypatch.setattr("meshonet.geometry.shapes.airfoil.wall_nodes.conformal_knots", refused)

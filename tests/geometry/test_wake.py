@@ -162,7 +162,8 @@ def test_parts_nobody_named_are_told_by_the_nodes() -> None:
     [
         (
             {"te": "exact"},
-            "a C grid needs a sharp trailing edge; close it with te wedge, or use topology o",
+            "a C grid needs a sharp trailing edge; give first_cell or y_plus, close it with te wedge, or use "
+            "topology o",
         ),
         ({"te": "round"}, "a C grid needs a sharp trailing edge"),
         (

@@ -9,7 +9,7 @@ from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.hyperbolic.default_spacing import GROWTH, MOST, PART, first_cell, march_by_default
-from meshonet.solvers.pipeline.choose_method import elliptic, fewer_on_quads
+from meshonet.solvers.pipeline.automatic import elliptic, fewer_on_quads
 from meshonet.solvers.pipeline.methods import method_named
 
 

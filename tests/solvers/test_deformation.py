@@ -20,7 +20,7 @@ from meshonet.solvers.solution import Outcome
 
 @pytest.fixture(scope="module")
 def c_grid() -> Grid:
-    return meshonet.grid("naca:0012", res=(121, 49), topology="c", y_plus=1, reynolds=6e6)
+    return meshonet.grid("naca:0012", te="wedge", res=(121, 49), topology="c", y_plus=1, reynolds=6e6)
 
 
 def change_of_first_cells(before: Grid, after: Grid, name: str = "wall") -> float:
@@ -90,7 +90,7 @@ def test_a_rigid_motion_of_the_wall_turns_its_layers(c_grid: Grid) -> None:
 
 
 def test_nodes_of_another_grid_are_taken_bit_by_bit(c_grid: Grid) -> None:
-    other = meshonet.grid("naca:2412", res=(121, 49), topology="c", y_plus=1, reynolds=6e6)
+    other = meshonet.grid("naca:2412", te="wedge", res=(121, 49), topology="c", y_plus=1, reynolds=6e6)
     made = meshonet.deform(c_grid, {"wall": other})
     wall = slice(c_grid.wake, c_grid.ni - c_grid.wake)
     assert np.array_equal(made.nodes[wall, 0], other.nodes[wall, 0])
@@ -217,6 +217,15 @@ def test_an_outline_that_crosses_itself_is_refused() -> None:
     loop[20:40] = loop[39:19:-1]
     with pytest.raises(InputError, match="crosses itself"):
         meshonet.deform(channel(), {"south": loop})
+
+
+def test_a_base_with_a_block_behind_it_stays_a_base() -> None:
+    start = meshonet.grid("naca:0012", res=(121, 31), topology="c", first_cell=1e-4)
+    made = meshonet.deform(start, "naca:2412")
+    base = made.blocks[1].nodes[0]
+    (x, y), width = (base - base[0]).T, base[-1] - base[0]
+    assert np.abs(x * width[1] - y * width[0]).max() < 1e-9  # straight
+    assert np.hypot(*width) == pytest.approx(0.00252, rel=1e-3)
 
 
 def test_a_sharp_outline_for_a_blunt_wall_is_refused(c_grid: Grid) -> None:

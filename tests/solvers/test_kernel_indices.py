@@ -28,7 +28,6 @@ USED = {
     "meshonet.solvers.blocking.sizes.chords": ("joined_classes",),
     "meshonet.solvers.blocking.decomposition.field.frames": ("surface_comb", "surface_prune"),
     "meshonet.solvers.blocking.decomposition.quads.motorcycle": ("probe_rays", "trace_rays"),
-    "meshonet.solvers.blocking.decomposition.quads.quad_mesh": ("walk_map",),
     "meshonet.solvers.blocking.decomposition.surface.surface": ("surface_fans",),
     "meshonet.solvers.energy.hexes": ("HexDescent",),
     "meshonet.solvers.energy.quad_problem": ("QuadDescent", "line_neighbours"),
@@ -41,7 +40,6 @@ OTHERS = {
     "put_rows": {(0,)},
     "probe_rays": {(0, 3)},
     "trace_rays": {(0, 3)},
-    "walk_map": {(0, 3)},
     "surface_march": {(2, "order")},
 }
 """Whole numbers that are no indices: quarter-turns, what only Python reads."""

@@ -42,7 +42,7 @@ def two_blocks() -> Grid:
 
 
 def c_case() -> tuple[Grid, dict[str, Floats]]:
-    start = meshonet.grid("naca:0012", res=(81, 33), topology="c", first_cell=1e-4)
+    start = meshonet.grid("naca:0012", res=(81, 33), topology="c", te="wedge", first_cell=1e-4)
     wall = slice(start.wake, start.ni - start.wake)
     return start, {"wall": meshonet.deform(start, "naca:2412").nodes[wall, 0]}
 

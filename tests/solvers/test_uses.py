@@ -30,8 +30,7 @@ from meshonet.solvers.pipeline.uses import (
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.sweeping.sweep import Sweep
 from meshonet_cli.app import application
-from meshonet_cli.batch.executors.engine import Engine
-from meshonet_cli.batch.files import Files
+from meshonet_cli.batch.settings import Engine, Files
 
 ROOT = Path(__file__).parents[2]
 ONLY_CHECKED = ("check_request.py", "uses.py")

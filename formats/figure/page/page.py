@@ -65,6 +65,7 @@ def page_text(name: str, scene: Scene, start: dict[str, Any]) -> str:
     facts = scene.facts | {"name": name, "start": start, "colours": colours}
     body = _BODY.format(
         body=own_file("body.html"),
+        # no name of a patch may end the element, nor begin a comment or a script inside it
         facts=json.dumps(facts, separators=(",", ":")).replace("<", "\\u003c"),
         numbers="\n".join(_data(key, value) for key, value in scene.numbers.items()),
         program="\n".join(own_file(part) for part in _PROGRAM),
@@ -84,15 +85,20 @@ def _start(grid: Grid, metric: str | None, view: View) -> dict[str, Any]:
         metric_of(grid, metric)
     return {
         "metric": metric,
-        "zoom": None if view.zoom is None else _zoom(grid, view.zoom),
+        "zoom": None if view.zoom is None else _zoom(grid, view.zoom, view.part),
         "every": view.every,
         "slice": None if view.part is None else _slice(grid, view.part),
         "seen_from": list(view.seen_from or SEEN_FROM),
     }
 
 
-def _zoom(grid: Grid, zoom: tuple[float, ...]) -> list[float]:
-    """Return a box; raise InputError for one of another kind, or that has nothing of the grid."""
+def _zoom(grid: Grid, zoom: tuple[float, ...], at: Slice | None) -> list[float]:
+    """Return a box, of a flat one beside a cut by a plane that in space.
+
+    Raises InputError: one of another kind, or that has nothing of the grid.
+    """
+    if len(zoom) == 4 and at is not None and at.index is None:
+        zoom = (*zoom[: 2 * at.direction], at.coordinate, at.coordinate, *zoom[2 * at.direction :])
     (low, high), box_low, box_high = grid.box, np.array(zoom[::2]), np.array(zoom[1::2])
     if len(box_low) != len(low):
         remedy = "use x0,x1,y0,y1" if grid.form == "plane" else "use x0,x1,y0,y1,z0,z1"

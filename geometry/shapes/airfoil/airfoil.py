@@ -17,16 +17,17 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.self_intersection import find_crossing
-from meshonet.geometry.shapes.airfoil.base_cells import base_note
+from meshonet.geometry.shapes.airfoil.base_cells import base_note, edge_notes
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, clean_section
 from meshonet.geometry.shapes.airfoil.section_curve import (
     farthest_arc,
     moved_note,
     section_curve,
     shape_notes,
+    sign_changes,
 )
 from meshonet.geometry.shapes.far_field import o_boundary
-from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling, TrailingEdge
+from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
 if TYPE_CHECKING:
     from meshonet.geometry.shapes.airfoil.wall_nodes import Stations
@@ -145,6 +146,17 @@ class Airfoil:
         points = np.stack(along_and_across(off, axis), axis=1)
         return Airfoil(points, self.name, notes=self.notes)
 
+    def smoothed(self, tolerance: float) -> Airfoil:
+        """Return the same airfoil on splines within `tolerance` (chords) of its points, corners kept."""
+        from meshonet.geometry.shapes.airfoil.smooth import smooth_ring
+
+        ring, most = smooth_ring(self.curve, self.blunt, tolerance * self.chord)
+        body = Airfoil(ring, self.name, notes=self.notes)
+        before, after = (sign_changes(each.curve, each.chord) for each in (self, body))
+        moved = f"the outline is changed: smoothed by up to {most / self.chord:.2g} chords"
+        body.notes += (Change(f"{moved}, sign changes of its curvature from {before} to {after}"),)
+        return body
+
     def rounded(self) -> Airfoil:
         """Return the airfoil with the corners of its blunt base rounded."""
         if not self.blunt:
@@ -204,7 +216,8 @@ class Airfoil:
             raise InputError("topology quad is not made from an airfoil", "use o or c")
         if sampling.corners is not None:
             raise InputError("an airfoil has no corners to choose", "leave {corners} out")
-        body = self.normalised() if sampling.normalise else self
+        body = self.smoothed(sampling.smooth) if sampling.smooth else self
+        body = body.normalised() if sampling.normalise else body
         try:
             return body._around(sampling)
         except CrossingError:
@@ -227,14 +240,17 @@ class Airfoil:
         if te == "auto":
             te = "wedge" if topology == "c" else "exact"
         body = self.rounded() if te == "round" else self.wedged() if te == "wedge" else self
+        if sampling.base_nodes and not body.blunt:
+            remedy = "leave {base_nodes} out"
+            raise InputError("the trailing edge has no base", remedy, parameter="base_nodes")
         if topology == "auto":
             sharp = not (body.blunt or body._round) and body.wedge <= _WIDEST_WEDGE
             topology = "c" if sampling.viscous and sharp else "o"
         if topology == "o" and (sampling.wake or sampling.wake_nodes):
             remedy = "leave {wake} out, or use {topology} c"
             raise InputError("an O grid has no wake", remedy, source=self.name)
-        notes = body.notes + self.outline_notes[len(self.notes) :]
-        notes += self._edge_notes(body, te, sampling)
+        notes = body.notes + shape_notes(self._section, self.curve, self.chord)
+        notes += edge_notes(self, body, te, sampling.te)
         if topology == "c":
             if sampling.topology == "auto":
                 notes += ("c grid, as the trailing edge is sharp; {topology} o makes an O grid",)
@@ -251,18 +267,6 @@ class Airfoil:
             return ()
         corner = self.curve.at(np.array([self._arcs[0]]))[0]
         return base_note(wall, corner, 2.0 * self._arcs[0], self.chord)
-
-    def _edge_notes(self, body: Airfoil, te: TrailingEdge, sampling: Sampling) -> tuple[str, ...]:
-        """Return how `body` got its base changed, or a note that there is no base to change."""
-        base = f"the outline is changed: its base, {self.gap / self.chord:.3g} chords wide,"
-        if self.blunt and te == "wedge":
-            length = float(np.hypot(*(body.trailing_edge - self.trailing_edge))) / self.chord
-            return (Change(f"{base} is closed by a wedge {length:.3g} chords long"),)
-        if self.blunt and te == "round":
-            return (Change(f"{base} is rounded at its corners"),)
-        if not self.blunt and sampling.te in ("round", "wedge"):
-            return (f"{{te}} {te} changes nothing, as the trailing edge is not blunt",)
-        return ()
 
     def _c_boundary(self, sampling: Sampling, original: Airfoil, notes: tuple[str, ...]) -> Boundary:
         """Return the C boundary around this body, in the units of the `original` airfoil."""

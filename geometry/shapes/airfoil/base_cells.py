@@ -1,8 +1,17 @@
-"""Wall cells on both sides of a base corner: if their sizes differ much, cells off the corner grow fast."""
+"""Notes on blunt bases: how they were changed, and where cell sizes jump at their corners."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.notes import Change
+
+if TYPE_CHECKING:
+    from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+    from meshonet.geometry.spacing.sampling import TrailingEdge
 
 UNLIKE = 1.5
 """Ratio of the two wall cells at a corner of the base beyond which it is noted."""
@@ -25,3 +34,16 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[
         f"cells on the base are {times:.2g} times {word} than those beside it: use {{te_spacing}} near "
         f"{base / (2 * k) / chord:.2g}, the base over its {2 * k} cells, or {{te}} round",
     )
+
+
+def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, asked: TrailingEdge) -> tuple[str, ...]:
+    """Return what became of a base by `te`, or that there is none where one was `asked` to be changed."""
+    base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
+    if before.blunt and te == "wedge":
+        length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord
+        return (Change(f"{base} is closed by a wedge {length:.3g} chords long"),)
+    if before.blunt and te == "round":
+        return (Change(f"{base} is rounded at its corners"),)
+    if not before.blunt and asked in ("round", "wedge"):
+        return (f"{{te}} {te} changes nothing, as the trailing edge is not blunt",)
+    return ()

@@ -27,7 +27,7 @@ from meshonet.geometry.elementary import expm1
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.wall_nodes import arcs_to_corners
-from meshonet.geometry.shapes.wake import STEEPEST, c_far_field, growing, wake_axis
+from meshonet.geometry.shapes.wake import c_far_field, growing, wake_axis
 from meshonet.geometry.spacing.along_curve import first_within
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, MULTIPLES, Sampling
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 GROWTH = 1.2  # growth ratio along wake and base unless given
 _WITHIN = 0.92  # fraction of the growth beyond 1 used along wake and base: the lines bend, which adds growth
+_STEEPEST = math.radians(60.0)  # largest angle at which a wake line leaves its corner
 _LOST = 0.35  # largest change of the distance between both lines, over the width of the base
 _COARSEST = 1.0 / 12.0  # largest cell on a base, over its width
 LEAST_BASE = 4  # fewest cells on a base
@@ -199,15 +200,19 @@ def _lines(
     slopes = []
     for way in ways:
         along, across = (float(x) for x in along_and_across(way, axis))
-        slopes.append(math.tan(min(max(math.atan2(across, along), -STEEPEST), STEEPEST)))
+        slopes.append(math.tan(min(max(math.atan2(across, along), -_STEEPEST), _STEEPEST)))
     mean, closing = 0.5 * (slopes[0] + slopes[1]), slopes[0] - slopes[1]
     gap = float(np.hypot(*(wall[-1] - wall[0])))
     near = min(chord, _LOST * gap / max(abs(closing), 1e-9))
     outlet = max(float(along_and_across(corner, axis)[0]) for corner in corners) + length
+    # one law for both, or the lines across from node to node would be slanted far behind
+    places = growing(first / math.hypot(1.0, 0.5 * closing), length, cells)
     lines = []
     for corner, slope in zip(corners, slopes, strict=True):
         own = outlet - float(along_and_across(corner, axis)[0])
-        x = growing(first / math.hypot(1.0, slope), own, cells)
+        x = places * (own / places[-1])
+        more = 1.0 - first / math.hypot(1.0, slope) / x[1]  # of its first cell, which is to be as long
+        x += more * near * expm1(-x / near)
         x *= own / x[-1]
         y = -mean * chord * expm1(-x / chord) - (slope - mean) * near * expm1(-x / near)
         line = corner + x[:, None] * axis + y[:, None] * normal

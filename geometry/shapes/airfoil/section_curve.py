@@ -5,11 +5,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
+from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing, find_crossings
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, CleanSection
 
@@ -17,6 +18,9 @@ _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31
 """Where an interval of the curve is cut into straight pieces to be searched for crossings."""
 DEPARTURE, FAR_OFF = 1e-3, 5e-3
 """Distance in chords beyond which the curve counts as another wall than the lines between its points."""
+RIPPLES = 10
+"""Least number of sign changes of the curvature of a section that ripples; designed ones have at most six."""
+_FLAT = 0.1  # curvature times chord below which its sign is ignored
 OBLIQUE = 30.0  # least angle in degrees between a base and the normal of the chord to be called oblique
 MOST_BASE = 0.25  # chords; a longer last segment of a surface is no base
 _PARTS = 128  # parts of a stretch in the search for the point farthest from the trailing edge
@@ -71,9 +75,22 @@ def moved_note(before: CleanSection, section: CleanSection) -> str:
     )
 
 
+def sign_changes(curve: Curve, chord: float) -> int:
+    """Return how often the curvature of the curve of a section changes sign, corners left out."""
+    points = curve.points
+    steps = norms(np.concatenate([points[1:], points[:1]]) - points)
+    bend = turning(points, closed=True) * (2.0 * chord) / (steps + np.concatenate([steps[-1:], steps[:-1]]))
+    bend[curve.corner_index] = 0.0
+    signs = bend[np.abs(bend) > _FLAT] > 0.0
+    return int((signs[1:] != signs[:-1]).sum())
+
+
 def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str, ...]:
-    """Return notes on an oblique base, and on a curve that deviates from the polygon through its points."""
+    """Return notes on an oblique base, ripples, and a curve that deviates from its points' polygon."""
     notes = _oblique_base(section, chord)
+    count = sign_changes(curve, chord)
+    if count >= RIPPLES:
+        notes += (f"the outline ripples: its curvature changes sign {count} times; see {{smooth}}",)
     off = departure(curve) / chord
     if off > DEPARTURE:
         note = (

@@ -31,6 +31,8 @@ _EDGE_PART = 0.24
 _BASE_GROWTH = 1.06
 """Ratio of neighbouring cells on a base up to which it needs no more of them: a base of 8 % of the chord has
 46 cells of 400 then, which its wake is resolved by."""
+_MANY = 192
+"""Cells from which on half a base has at least four: a grid coarsened by four then has the base's corners."""
 _BASE_JUMP = 4.0
 """Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
 _ROUND_CELLS = 14  # fewest cells on half a rounded base, if there are 16 times as many in total
@@ -88,7 +90,7 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     if sampling.spacing == "conformal":
         blunt = stations.half_base and not stations.rounded
         corners = np.array([stations.half_base, stations.upper]) if blunt else np.zeros(0)
-        half = _asked_half(stations, ni - 1, sampling)
+        half = _asked_half(ni - 1, sampling.base_nodes, sampling) if sampling.base_nodes else 0
         at = np.array([half, ni - 1 - half]) if half else None
         steps = sampling.corner_steps(ni - 1)
         return _on_inner_corners(conformal_knots(stations.curve, corners, ni, at, steps), stations, steps)
@@ -151,16 +153,12 @@ def _on_inner_corners(arcs: Floats, stations: Stations, steps: tuple[int, ...]) 
     return on_corners(arcs, inside, (int(ends[0]), int(ends[1])), steps[0])
 
 
-def _asked_half(stations: Stations, cells: int, sampling: Sampling) -> int:
-    """Return the number of cells asked for on half the base, 0 if none was.
+def _asked_half(cells: int, nodes: int, sampling: Sampling) -> int:
+    """Return the number of cells on half of a base with `nodes` nodes.
 
-    Raises InputError: there is no base, no node in its middle, or its cells leave too few for the sides.
+    Raises InputError: there is no node in its middle, or its cells leave too few for the sides.
     """
-    if sampling.base_nodes is None:
-        return 0
-    if not stations.half_base or stations.rounded:
-        raise InputError("the trailing edge has no base", "leave {base_nodes} out", parameter="base_nodes")
-    base = sampling.base_nodes - 1
+    base = nodes - 1
     if base % (2 * sampling.refined):
         every = 2 * sampling.refined
         less = base // every * every + 1
@@ -169,7 +167,9 @@ def _asked_half(stations: Stations, cells: int, sampling: Sampling) -> int:
         raise InputError(problem, f"use {near}", parameter="base_nodes")
     if base + 4 > cells:
         problem = f"{base + 1} of {cells + 1} nodes on the base leave too few for the sides"
-        raise InputError(problem, f"use at most {cells - 3} or a finer {{res}}", parameter="base_nodes")
+        raise InputError(
+            problem, f"use at most {(cells - 4) // 2 * 2 + 1} or a finer {{res}}", parameter="base_nodes"
+        )
     return base // 2
 
 
@@ -182,7 +182,8 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> WallCells:
         fixed = bool(wanted_te) or not LAWS[sampling.spacing].sets_ends
         half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, fixed=fixed)
         if not stations.rounded:
-            asked = _asked_half(stations, cells, sampling)
+            nodes = sampling.base_nodes
+            asked = _asked_half(cells, nodes, sampling) if nodes else 0
             half, step = _whole_base(stations.half_base, step, asked, half, sampling.corner_steps(cells))
         if stations.rounded and not wanted_te and half < min(_ROUND_CELLS, cells // 16):
             half = min(_ROUND_CELLS, cells // 16)
@@ -234,7 +235,8 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
     sizes.
     """
     enough = cells >= 48
-    least = max(2, round(2 * math.cbrt(half_base / 1.2e-4))) if enough else 1
+    fewest = 4 if cells >= _MANY else 2
+    least = max(fewest, round(2 * math.cbrt(half_base / 1.2e-4))) if enough else 1
     least = min(least, max(cells // 24, 1), 12)
     if fixed:
         least = min(least, math.ceil(_BASE_JUMP * half_base / step))

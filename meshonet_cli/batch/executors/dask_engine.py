@@ -30,7 +30,7 @@ from meshonet_cli.batch.provenance import abridged
 if TYPE_CHECKING:
     from distributed import Client
 
-    from meshonet_cli.batch.executors.engine import Engine
+    from meshonet_cli.batch.settings import Engine
 
 _SECONDS = 10  # to wait for the scheduler's answer
 T = TypeVar("T")

@@ -18,7 +18,7 @@ from meshonet_cli.batch.executors.workers import Warn, Workers
 if TYPE_CHECKING:
     from mpi4py.futures import MPIPoolExecutor
 
-    from meshonet_cli.batch.executors.engine import Engine
+    from meshonet_cli.batch.settings import Engine
 
 _ranks: MPIPoolExecutor | None = None
 """The ranks that work for this one, while it runs inside `on_ranks`."""

@@ -13,9 +13,10 @@ from multiprocessing.process import BaseProcess
 from typing import TYPE_CHECKING, TypeVar
 
 from meshonet_cli.batch.executors.workers import Warn, Workers
+from meshonet_cli.terminal.stopping import hide_warnings
 
 if TYPE_CHECKING:
-    from meshonet_cli.batch.executors.engine import Engine
+    from meshonet_cli.batch.settings import Engine
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -68,7 +69,8 @@ class _Processes(Workers):
 
 
 def _begin() -> None:
-    """Leave Ctrl-C to the main process, and end when it does."""
+    """Leave Ctrl-C to the main process, end when it does, and warn of nothing that it would not."""
+    hide_warnings()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _leave)
     threading.Thread(target=_watch, daemon=True).start()

@@ -32,8 +32,7 @@ from meshonet.solvers.blocking.cascade.passage import (
 from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
 from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
-from meshonet.solvers.blocking.layers.finished import evened
-from meshonet.solvers.blocking.layers.folds import smallest_corner
+from meshonet.solvers.blocking.layers.finished import evened, smallest_corner
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
@@ -76,10 +75,10 @@ def cascade_layout(
                 raise
     with timings.stage("refine"):
         fine = multiplied(coarse, times)
-        flat = laid_out(fine, passage, cut_of(fine))
+        flat, cut = laid_out(fine, passage, cut_of(fine))
     with timings.stage("layers"):
-        rows = _rows(cascade, flat.layout, metric)
-        whole = extended(flat, passage, cascade.blade, rows)
+        rows = _rows(cascade, flat, metric)
+        whole = extended(flat, cut, passage, cascade.blade, rows)
         whole = evened(whole, cascade.layers)
     if smallest_corner(whole.mesh) <= 0.0:
         raise NoValidGridError("cells of the passage are folded")

@@ -18,7 +18,6 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain, Periodic
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import product
-from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -96,28 +95,14 @@ def _polygon(points: Floats) -> Curve:
     return Curve(points, closed=True, corners=(), straight=np.ones(len(points), dtype=bool))
 
 
-@dataclass(frozen=True, eq=False)
-class Flat:
-    """A passage laid out beside its blade.
-
-    Parameters
-    ----------
-    layout : its loops are those of the map's plane: the front, and lines of nodes at inlet and outlet.
-    lower, upper : (k,) nodes of the sides of its cut, the second a pitch from the first.
-    """
-
-    layout: Layout
-    lower: Indices
-    upper: Indices
-
-
-def laid_out(layout: Layout, passage: Passage, cut: Indices) -> Flat:
+def laid_out(layout: Layout, passage: Passage, cut: Indices) -> tuple[Layout, Indices]:
     """Return the layout beside the blade, cut along its nodes `cut` (k,).
 
-    Nodes of front, inlet and outlet lie on them.
+    Its loops are those of the map's plane: the front, and lines of nodes at inlet and outlet, on which nodes
+    lie. With it come the nodes (k,) of the lower side of the cut; each has its image one number on.
     """
-    flat = unwrap(layout, passage.map, cut)
-    nodes, places, pitch = flat.nodes, flat.places, passage.pitch
+    flat, lower = unwrap(layout, passage.map, cut)
+    nodes, places, pitch = flat.mesh.nodes, flat.mesh.places, passage.pitch
     on = np.flatnonzero(places.loop == BLADE)
     arcs = passage.front_arcs(places.arc[on])
     exact = passage.front.at(arcs)
@@ -130,23 +115,25 @@ def laid_out(layout: Layout, passage: Passage, cut: Indices) -> Flat:
         side = passage.map.along(nodes[on])
         # the passage is on the left of each loop: down at the inlet, up at the outlet
         places.arc[on] = side.max() - side if loop == INLET else side - side.min()
-    nodes[flat.upper] = nodes[flat.lower] + pitch
-    mesh = QuadMesh(passage.domain, nodes, lattice_quads(flat.blocks), places)
-    return Flat(Layout(mesh, flat.blocks), flat.lower, flat.upper)
+    nodes[lower + 1] = nodes[lower] + pitch
+    return flat, lower
 
 
-def extended(flat: Flat, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
-    """Return the layout with `rows` attached, around a `wall`, as a domain of its own with periodic sides."""
-    mesh = flat.layout.mesh
+def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
+    """Return the layout with `rows` attached, around a `wall`, as a domain of its own with periodic sides.
+
+    `cut` (k,) are the nodes of the lower side of its cut.
+    """
+    mesh = layout.mesh
     count = len(mesh.nodes)
     domain = replace(passage.domain, loops=(wall, *passage.domain.loops[1:]))
-    whole = attach(flat.layout, domain, rows)
-    low, high = [flat.lower], [flat.upper]
+    whole = attach(layout, domain, rows)
+    low, high = [cut], [cut + 1]
     for each in rows:
         order, away = loop_nodes(mesh, each.loop), each.nodes.shape[1] - 1
         if each.loop != BLADE:
             ends = [count + np.arange(away) + away * k for k in (0, len(order) - 1)]
-            if order[0] in flat.upper:
+            if order[0] in cut + 1:
                 ends.reverse()
             whole.mesh.places.partner[ends[1]] = ends[0]
             for line, new in zip((low, high), ends, strict=True):

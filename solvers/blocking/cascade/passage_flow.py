@@ -25,6 +25,7 @@ from meshonet.geometry.polygon.corners import Indices
 
 _GAUSS = (-(3.0**-0.5), 3.0**-0.5)  # places in a side from -1 to 1, of weight 1
 _TINY = 1e-12
+_LONGEST = 0.25  # step of the potential, of period π, between the points of Cauchy's integral
 _LEAST = 1e-9  # of the slit: by how much the potential rises from point to point
 
 
@@ -35,7 +36,8 @@ class PassageFlow:
     Parameters
     ----------
     half : half the length of the slit, h.
-    around : (n,) angles ν of the blade's points, whose places on the slit are h cos ν: they grow by 2π.
+    around : (n,) angles ν of the blade's points, and of others at equal steps between them in long channels,
+        whose places on the slit are h cos ν: they grow by 2π.
     strip : (n,) places σ of the points; those at the slit's ends are infinite.
     away : (n,) ζ - G at the points.
     """
@@ -50,6 +52,9 @@ class PassageFlow:
         """Return the flow around a clockwise polygon (n,) in the plane of ζ, which repeats every iπ."""
         sheet = _sheet(points)
         gain = 2.0 * np.pi * sheet * modulus(np.roll(points, -1) - points)
+        parts = int(np.ceil(np.abs(gain).max() / _LONGEST))
+        steps = (np.roll(points, -1) - points)[:, None] * (np.arange(parts) / parts)
+        points, gain = (points[:, None] + steps).ravel(), np.repeat(gain / parts, parts)
         potential = np.concatenate([[0.0], np.cumsum(gain)[:-1]])
         first, last = int(np.argmin(potential)), int(np.argmax(potential))
         half = 0.5 * float(potential[last] - potential[first])

@@ -73,11 +73,6 @@ class PassageMap:
         points = self.centre + distance * self.axis + (way * steps) * self.pitch
         return self.forward(pairs_of(points))
 
-    def shifts(self, points: Floats, beside: Floats) -> Floats:
-        """Return how many pitches (n,) are to be added to points (n, 2) to have them nearest to others."""
-        away = (complex_of(beside) - complex_of(points)) / self.pitch
-        return np.asarray(np.round(away.real))
-
 
 def of_zeta(zeta: Complexes) -> Floats:
     """Return the places w (n, 2) of places ζ (n,)."""

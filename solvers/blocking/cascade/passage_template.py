@@ -143,6 +143,8 @@ def _arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
     """Return the arc lengths (k,) of angles (k,) around the slit, on the loop whose points `flow` has."""
     turn = 2.0 * np.pi
     around, knots = flow.around, np.append(front.curve.knots, front.length)
+    parts = len(around) // (len(knots) - 1)
+    knots = np.interp(np.arange(len(around) + 1) / parts, np.arange(len(knots)), knots)
     closed = np.append(around, around[0] + np.copysign(turn, around[-1] - around[0]))
     if closed[-1] < closed[0]:
         closed, knots = closed[::-1], knots[::-1]

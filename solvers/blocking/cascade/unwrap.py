@@ -9,38 +9,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.layout.quad_mesh import Places
+from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cascade.passage_map import PassageMap
 
 
-@dataclass(frozen=True, eq=False)
-class Unwrapped:
-    """A passage in its own plane.
+def unwrap(layout: Layout, passage: PassageMap, cut: Indices) -> tuple[Layout, Indices]:
+    """Return the layout of a passage in its own plane, cut along nodes (k,) on sides of blocks.
 
-    Parameters
-    ----------
-    nodes : (n, 2).
-    blocks : lattices of node numbers.
-    places : loops and arc lengths as in the plane of the map; nodes of the upper cut have partners.
-    lower, upper : (k,) nodes of both sides of the cut, from inlet to outlet.
+    Loops and arc lengths are those in the plane of the map. With it come the nodes (k,) of the lower side of
+    the cut, from the inlet; the next number each has the node above, of which it is the partner.
     """
-
-    nodes: Floats
-    blocks: tuple[Indices, ...]
-    places: Places
-    lower: Indices
-    upper: Indices
-
-
-def unwrap(layout: Layout, passage: PassageMap, cut: Indices) -> Unwrapped:
-    """Return the layout of a passage in its own plane, cut along nodes (k,) on sides of blocks."""
     mesh = layout.mesh
     principal = passage.back(mesh.nodes)
     turns = _turns(layout, passage, principal, cut)
@@ -57,7 +41,7 @@ def unwrap(layout: Layout, passage: PassageMap, cut: Indices) -> Unwrapped:
     nodes[first + 1] = nodes[first] + pitch
     parts = np.split(number.astype(np.intp), np.cumsum([block.size for block in layout.blocks])[:-1])
     blocks = tuple(part.reshape(block.shape) for part, block in zip(parts, layout.blocks, strict=True))
-    return Unwrapped(nodes, blocks, places, first, first + 1)
+    return Layout(QuadMesh(mesh.domain, nodes, lattice_quads(blocks), places), blocks), first
 
 
 def _turns(layout: Layout, passage: PassageMap, z: Floats, cut: Indices) -> list[Indices]:

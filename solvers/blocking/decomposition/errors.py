@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from meshonet.geometry.arrays import complex_of
 from meshonet.geometry.errors import SolverError
+from meshonet.geometry.layout.lattice import corner_jacobians
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 
 
@@ -16,7 +16,6 @@ def most_folded(mesh: QuadMesh) -> str:
 
     A corner whose Jacobian is not a number counts as the most folded one.
     """
-    z = complex_of(mesh.nodes[mesh.quads])
-    jacobian = (np.conj(np.roll(z, -1, axis=1) - z) * (np.roll(z, 1, axis=1) - z)).imag
-    at = z.ravel()[int(np.argmin(np.nan_to_num(jacobian, nan=-np.inf)))]
-    return f"at ({at.real:.6g}, {at.imag:.6g})"
+    jacobian = np.nan_to_num(corner_jacobians(mesh.nodes[mesh.quads]), nan=-np.inf)
+    x, y = mesh.nodes[mesh.quads.ravel()[int(np.argmin(jacobian))]]
+    return f"at ({x:.6g}, {y:.6g})"

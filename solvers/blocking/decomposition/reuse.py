@@ -21,10 +21,10 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.linear import least_squares
+from meshonet.solvers.sparse import SparsePattern
 
 OFFSETS = 128
 """Places around a loop without corners at which it is compared with another."""
-TOLERANCE, MOST_STEPS = 1e-8, 2000
 
 
 def carried_over(layout: Layout, domain: Domain) -> Layout:
@@ -148,32 +148,16 @@ def _moved_along(mesh: QuadMesh, nodes: Floats, fixed: NDArray[np.bool_]) -> Flo
 
 
 def _harmonic(mesh: QuadMesh, values: Floats, fixed: NDArray[np.bool_]) -> Floats:
-    """Return `values` (n, 2), where not `fixed` the mean of those at the other ends of its edges.
-
-    By conjugate gradients, each direction divided by the count of edges.
-    """
-    first, second = mesh.edges.T
-    count = np.bincount(mesh.edges.ravel(), minlength=len(values)).astype(np.float64)
-    free = (~fixed)[:, None]
-
-    def laplacian(x: Floats) -> Floats:
-        ends = ((first, second), (second, first))
-        sums = [sum(np.bincount(a, x[b, k], len(x)) for a, b in ends) for k in (0, 1)]
-        return np.asarray(np.where(free, count[:, None] * x - np.stack(sums, axis=1), 0.0))
-
-    x = values.copy()
-    residual = -laplacian(x)
-    scaled = residual / count[:, None]
-    way, power = scaled.copy(), (residual * scaled).sum(axis=0)
-    least = TOLERANCE**2 * power
-    for _ in range(MOST_STEPS):
-        if (power <= least).all():
-            break
-        ahead = laplacian(way)
-        step = power / np.maximum((way * ahead).sum(axis=0), 1e-300)
-        x += step * way
-        residual -= step * ahead
-        scaled = residual / count[:, None]
-        power, before = (residual * scaled).sum(axis=0), power
-        way = scaled + power / np.maximum(before, 1e-300) * way
-    return x
+    """Return `values` (n, 2), where not `fixed` the mean of those at the other ends of its edges."""
+    number, free = np.cumsum(~fixed) - 1, np.flatnonzero(~fixed)
+    inner = ~fixed[mesh.edges]
+    first, second = number[mesh.edges[inner.all(axis=1)]].T
+    each = np.arange(len(free))
+    count = np.bincount(mesh.edges.ravel(), minlength=len(fixed))[free]
+    pattern = SparsePattern(len(free), np.concatenate([first, each]), np.concatenate([second, each]))
+    right = np.zeros_like(values)
+    for here, there in (mesh.edges.T, mesh.edges[:, ::-1].T):
+        np.add.at(right, here, values[there] * fixed[there, None])
+    values = values.copy()
+    values[free] = pattern.factor(np.append(np.full(len(first), -1.0), count)).solve(right[free])
+    return values

@@ -10,7 +10,8 @@ t0 are the places at first, s the steps there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -18,7 +19,9 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import log
+from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.layers.attach import loop_nodes
 from meshonet.solvers.blocking.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
 from meshonet.solvers.least_squares import NormalEquations
 
@@ -94,6 +97,42 @@ def evened_steps(steps: Floats, limit: float) -> Floats:
     fixed = np.arange(len(steps)) == 0
     places[:-1] = evened_places(places[:-1], fixed, Measures(ends, ends[None]), limit, closed=True)
     return np.diff(places)
+
+
+def evened_loops(layout: Layout, measures: Mapping[int, Measures], limit: float) -> Layout:
+    """Return the layout with nodes moved along some loops, and less and less in the blocks beside them.
+
+    Neighbouring steps of the measures of each loop differ by no more than the exponential of `limit`; corners
+    stay.
+    """
+    mesh = layout.mesh
+    nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()
+    for number, measure in measures.items():
+        order = loop_nodes(mesh, number)
+        fixed = mesh.places.cells[order] > 0
+        if not fixed.any():
+            fixed[0] = True  # else all may go round
+        new = np.mod(evened_places(arcs[order], fixed, measure, limit, closed=True), measure.arcs[-1])
+        arcs[order] = new
+        shift = np.zeros_like(nodes)
+        shift[order] = mesh.domain.loops[number].at(new) - mesh.nodes[order]
+        nodes += _spread(layout, number, shift)
+        nodes[order] = mesh.nodes[order] + shift[order]
+    fixed = mesh.places.cells > 0
+    nodes[fixed] = mesh.nodes[fixed]
+    return replace(layout, mesh=mesh.with_nodes(nodes, arcs))
+
+
+def _spread(layout: Layout, loop: int, shift: Floats) -> Floats:
+    """Return what nodes (n, 2) move by, when those on a loop do by `shift` (n, 2)."""
+    moved = np.zeros_like(shift)
+    on = layout.mesh.places.loop == loop
+    for block in layout.blocks:
+        for lines in (block, block[:, ::-1], block.T, block.T[:, ::-1]):
+            if on[lines[:, 0]].all():
+                left = np.linspace(1.0, 0.0, lines.shape[1]) ** 2
+                moved[lines] = left[None, :, None] * shift[lines[:, 0]][:, None]
+    return moved
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""The last steps of grids with layers: cells made to grow evenly, folds looked for."""
+"""The last steps of grids with layers: cells made to grow evenly, folded ones unfolded."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import NoValidGridError, SolverError
+from meshonet.geometry.layout.lattice import corner_jacobians
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.collapse.score import deviations
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
-from meshonet.solvers.blocking.layers.folds import smallest_corners, unfolded
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+from meshonet.solvers.energy.quads import optimise
 
 MARGIN = 1.21
 """By how much cells may differ in the end, in logarithms, over the growth of layers."""
@@ -22,6 +25,10 @@ MOST_GROWTH = 1.25
 
 DEARER, DEARER_DEG = 1.25, 0.25
 """By how much even growth may raise the mean deviation of angles from 90 degrees: a factor, and degrees."""
+
+FEW_ITERATIONS = 10
+NEAR_FOLDS = 5
+"""Cells around folded ones that are optimised with them."""
 
 Bools = NDArray[np.bool_]
 
@@ -59,3 +66,27 @@ def evened(layout: Layout, settings: LayerSettings, held: Bools | None = None) -
         return layout
     before, after = (float(deviations(each).mean()) for each in (layout.mesh, mesh))
     return replace(layout, mesh=mesh) if after <= DEARER * before + DEARER_DEG else layout
+
+
+def unfolded(layout: Layout, held: Bools) -> Layout:
+    """Return the layout with nodes near folded cells, but for `held` (n,) ones, moved to unfold them."""
+    mesh = layout.mesh
+    bad = smallest_corners(mesh) <= 0.0
+    if not bad.any():
+        return layout
+    free = np.zeros(len(mesh.nodes), dtype=bool)
+    free[mesh.quads[bad]] = True
+    for _ in range(NEAR_FOLDS):
+        free[mesh.quads[free[mesh.quads].any(axis=1)]] = True
+    optimum = optimise(mesh, iterations=FEW_ITERATIONS, held=held | ~free)
+    return replace(layout, mesh=optimum.mesh) if optimum.valid else layout
+
+
+def smallest_corner(mesh: QuadMesh) -> float:
+    """Return the smallest Jacobian, of parallelograms at corners, of the quads of a mesh."""
+    return float(smallest_corners(mesh).min())
+
+
+def smallest_corners(mesh: QuadMesh) -> Floats:
+    """Return the smallest corner Jacobian (m,) of each quad of a mesh."""
+    return np.asarray(corner_jacobians(mesh.nodes[mesh.quads]).min(axis=1))

@@ -27,10 +27,9 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.layers.attach import attach
-from meshonet.solvers.blocking.layers.even_loops import evened_loops
+from meshonet.solvers.blocking.layers.even_line import evened_loops
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
-from meshonet.solvers.blocking.layers.finished import finished
-from meshonet.solvers.blocking.layers.folds import smallest_corner, unfolded
+from meshonet.solvers.blocking.layers.finished import finished, smallest_corner, unfolded
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, heights_inside, ring_rows
 from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
 from meshonet.solvers.blocking.layers.placed_rows import held_nodes, layers_of, with_layers
@@ -44,6 +43,8 @@ from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quads import optimise
 
 ITERATIONS, STRIDING = 120, 60
+SWEEPS = 10
+"""Sweeps that make wanted lengths change gradually: with twice as many, cells in slots grow too fast."""
 COUNTINGS = 3
 """How often cells are counted, nodes optimised after each, before nodes on fronts are evened and held."""
 EVEN = math.log(1.24)
@@ -148,7 +149,7 @@ def _optimised(
 ) -> Layout:  # fmt: skip
     """Return a layout with its nodes optimised for some sizes; `held` (n,) stay."""
     mesh = layout.mesh
-    targets = counts.metric.edges(mesh)
+    targets = counts.metric.gradual(mesh, SWEEPS)
     if rows.loops:
         step = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
         targets *= exp(middle(log(np.hypot(*step.T) / targets)))  # cells are larger than they will be

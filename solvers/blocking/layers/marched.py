@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.grading import graded
-from meshonet.geometry.elementary import power, times
+from meshonet.geometry.elementary import power
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.lattice import corner_jacobians, ring_of
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
 from meshonet.kernels._native import hyperbolic_march
 from meshonet.solvers.hyperbolic.march import AREA_SMOOTHING
@@ -113,12 +114,5 @@ def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: Ma
 
 def folded_columns(levels: Floats) -> Bools:
     """Return which columns of cells (n,) of levels (n, m, 2) around a wall have one with a folded corner."""
-    z = levels[..., 0] + 1j * levels[..., 1]
-    z = np.concatenate([z, z[:1]])
-    along, across = np.diff(z, axis=0), np.diff(z, axis=1)
-    least = [
-        times(np.conj(edge), side).imag.min(axis=1)
-        for edge in (along[:, :-1], along[:, 1:])
-        for side in (across[:-1], across[1:])
-    ]
-    return np.asarray(np.min(least, axis=0) <= 0.0)
+    cells = ring_of(np.concatenate([levels, levels[:1]])).transpose(1, 2, 0, 3)
+    return np.asarray((corner_jacobians(cells.reshape(-1, 4, 2)) <= 0.0).reshape(len(levels), -1).any(axis=1))

@@ -13,9 +13,6 @@ from meshonet.solvers.blocking.decomposition.decompose import Timings, decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
 from meshonet.solvers.blocking.sizes.feature_sizes import feature_sizes
 
-PRICE = 0.08
-"""Degrees of mean deviation that a block costs: from .03 to .08 a tube bank has 70 blocks, at 0 it has 91."""
-
 
 def found_outside(rest: Domain, fronts: Collection[int], timings: Timings | None = None) -> Layout:
     """Return the blocks of a domain of which some loops are fronts of layers.
@@ -23,7 +20,7 @@ def found_outside(rest: Domain, fronts: Collection[int], timings: Timings | None
     Raises BlockingError: no blocks are found.
     """
     plain = replace(rest, loops=tuple(_smooth(loop) for loop in rest.loops))
-    layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
+    layout = decompose(plain, timings=timings, sizes=feature_sizes(plain))
     mesh = replace(layout.mesh, domain=rest)
     return replace(layout, mesh=mesh, fronts=tuple(sorted(fronts)))
 

@@ -15,9 +15,9 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.algebraic.tfi import interpolate, parameters
 from meshonet.solvers.blocking.layers.attach import spaced
-from meshonet.solvers.blocking.layers.column_weights import line_lengths
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs
 from meshonet.solvers.blocking.layers.layer_rows import JOIN, LayerSettings, exact
+from meshonet.solvers.blocking.layers.rings import line_lengths
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.blocking.sizes.on_loops import on_loops
 

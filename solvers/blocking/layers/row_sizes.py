@@ -17,7 +17,7 @@ from meshonet.solvers.blocking.layers.marched import GAP_PART, SLOPE, check_room
 from meshonet.solvers.blocking.layers.rings import place
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.sizes.size_metric import GRADING, SizeMetric
-from meshonet.solvers.blocking.sizes.wall_bend import wall_bend
+from meshonet.solvers.blocking.sizes.wall_turning import wall_bend
 
 COLUMNS = 140.0
 """Cells along a loop, if all were as long as the longest."""

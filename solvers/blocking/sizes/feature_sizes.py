@@ -9,7 +9,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.grading import graded
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
-from meshonet.solvers.blocking.sizes.wall_bend import wall_bend
+from meshonet.solvers.blocking.sizes.wall_turning import wall_bend
 
 TURN = np.radians(20.0)
 """How much of a wall's turning one cell takes."""

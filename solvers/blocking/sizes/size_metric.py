@@ -115,23 +115,23 @@ class SizeMetric:
         first, second = mesh.nodes[mesh.edges].transpose(1, 0, 2)
         return self.length(0.5 * (first + second), second - first)
 
-    def gradual(self, mesh: QuadMesh) -> Floats:
+    def gradual(self, mesh: QuadMesh, sweeps: int = SWEEPS) -> Floats:
         """Return the lengths (e,) of the edges of a mesh, made to change gradually from edge to edge.
 
         They jump where the nearest point does, on the middle lines between walls, and lines that follow them
         have wrinkles there.
         """
-        return _evened(self.edges(mesh), mesh)
+        return _evened(self.edges(mesh), mesh, sweeps)
 
 
-def _evened(lengths: Floats, mesh: QuadMesh) -> Floats:
+def _evened(lengths: Floats, mesh: QuadMesh, sweeps: int) -> Floats:
     """Return the lengths (e,) with each that is not at a wall the geometric mean of it and those beside."""
     logs, count = log(lengths), len(mesh.edges)
     rungs = np.concatenate([mesh.edge_of[:, [0, 2]], mesh.edge_of[:, [1, 3]]])
     rungs = np.concatenate([rungs, rungs[:, ::-1]])
     beside = np.bincount(rungs[:, 0], minlength=count)
     free = (beside == 2) & ~mesh.wall_nodes[mesh.edges].any(axis=1)
-    for _ in range(SWEEPS):
+    for _ in range(sweeps):
         mean = np.bincount(rungs[:, 0], logs[rungs[:, 1]], minlength=count) / np.maximum(beside, 1)
         logs[free] = 0.5 * (logs + mean)[free]
     return exp(logs)

@@ -12,6 +12,7 @@ The equations stand in ``kernels/surfaces/step.c``, what is tried while cells ar
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -19,16 +20,22 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import BadCell, NoValidGridError
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, worst_solids
+from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, measure_volumes, worst_solids
 from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 from meshonet.geometry.threads import MANY_VISITS, threads_for
 from meshonet.kernels._native import respace_lines, surface_march
 from meshonet.solvers.hyperbolic.volume.blocks import blocks_of, volume_grid
 from meshonet.solvers.hyperbolic.volume.graph import MarchGraph, march_graph
+from meshonet.solvers.hyperbolic.volume.limited_growth import (
+    growth_of_levels,
+    limit_growth,
+    slower_steps,
+)
 from meshonet.solvers.hyperbolic.volume.settings import ATTEMPTS, Smoothing, VolumeMarch
 from meshonet.solvers.hyperbolic.volume.symmetry import (
     free_edges_note,
@@ -43,6 +50,7 @@ __all__ = ["VolumeMarch", "march_surface"]
 
 FADE = 12.0  # cells over which what first cells needed fades away along a line
 SWEEPS = 10  # of the smoothing of steps along lines
+_SLOWER = 2  # marches by smaller steps where cells grow too much
 WORST = 10  # folded cells that a refusal names
 
 
@@ -70,7 +78,7 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
     planes, inside = symmetry_planes(surface, settings.symmetry)
     nodes = in_planes(surface, planes, inside)
     steps = settings.steps(surface.size)
-    volume, tries = _best(surface, planes, inside, nodes, steps)
+    volume, tries = _best(surface, planes, inside, nodes, steps, settings.limit)
     if volume.made < len(steps) or volume.folded:
         raise _refusal(volume, len(steps))
     grid = volume_grid(surface, volume.blocks, np.any(inside, axis=0))
@@ -86,23 +94,68 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
 
 
 def _best(
-    surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, steps: Floats
-) -> tuple[_Volume, int]:
-    """Return the first volume without folded cells, or that which comes closest, and how many were tried."""
+    surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, steps: Floats,
+    growth: float,
+) -> tuple[_Volume, int]:  # fmt: skip
+    """Return the first volume without folded cells, or that which comes closest, and how many were tried.
+
+    The first is marched again by smaller steps where its cells grow by more than `growth`.
+    """
     best: _Volume | None = None
     for tries, smoothing in enumerate(ATTEMPTS, start=1):
         graph = march_graph(surface, planes, inside, smoothing.splay, smoothing.boost)
-        lines = _respaced(march_levels(surface, graph, nodes, steps, smoothing), graph, steps)
-        _keep_planes(lines, surface, planes, inside)
-        made = lines.shape[2] - 1
-        blocks = blocks_of(surface, lines) if made else ()
-        folded = sum(count_folded_solids(block.nodes, BEZIER) for block in blocks)
-        volume = _Volume(blocks, made, folded)
-        if made == len(steps) and not folded:
-            return volume, tries
-        if best is None or (made, -folded) > (best.made, -best.folded):
+
+        def marched(steps: Floats, graph: MarchGraph = graph, smoothing: Smoothing = smoothing) -> Floats:
+            lines = _respaced(march_levels(surface, graph, nodes, steps, smoothing), graph, steps)
+            _keep_planes(lines, surface, planes, inside)
+            return lines
+
+        lines = marched(steps)
+        volume = _volume(surface, lines)
+        if volume.made == len(steps) and not volume.folded:
+            return _with_growth(surface, lines, marched, steps, growth) or volume, tries
+        if best is None or (volume.made, -volume.folded) > (best.made, -best.folded):
             best = volume
     return best or volume, len(ATTEMPTS)
+
+
+def _volume(surface: Surface, lines: Floats) -> _Volume:
+    made = lines.shape[2] - 1
+    blocks = blocks_of(surface, lines) if made else ()
+    return _Volume(blocks, made, sum(count_folded_solids(block.nodes, BEZIER) for block in blocks))
+
+
+def _with_growth(
+    surface: Surface, lines: Floats, marched: Callable[[Floats], Floats], steps: Floats, growth: float
+) -> _Volume | None:
+    """Return a valid volume whose cells grow by no more than `growth` along its lines, None where none is.
+
+    Of marches by smaller and smaller steps, whose nodes are moved along the lines by what these leave, it is
+    that with the best cells.
+    """
+    tried = [(lines, steps)]
+    for _ in range(_SLOWER):
+        levels = growth_of_levels(tried[-1][0])
+        if levels.max() <= growth:
+            break
+        slower = slower_steps(tried[-1][1], levels, growth)
+        tried.append((marched(slower), slower))
+        if tried[-1][0].shape[2] <= len(slower):
+            break
+    best, most = None, (False, 0.0)
+    for made, wanted in tried:
+        if made.shape[2] > len(wanted):
+            limit_growth(made, growth)
+            volume = _volume(surface, made)
+            even = bool(growth_of_levels(made).max() <= growth)
+            found = even, 0.0 if volume.folded else _least_jacobian(volume.blocks)
+            if found[1] > 0.0 and found > most:
+                best, most = volume, found
+    return best
+
+
+def _least_jacobian(blocks: tuple[Block, ...]) -> float:
+    return measure_volumes(Grid(blocks, ()))["scaled_jacobian"].min
 
 
 def march_levels(

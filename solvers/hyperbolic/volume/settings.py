@@ -16,6 +16,7 @@ GROWTH = 1.2
 """Of cells along a line, where neither layers nor growth are given."""
 FAR_FIELD = 15.0
 """Distance of the far field in lengths of the surface, where none is given."""
+_LONGER = 1.1  # lines than the far field is away, as a rule
 FEWEST = 3  # layers of nodes: two cells
 
 
@@ -51,6 +52,11 @@ class VolumeMarch:
         if self.symmetry not in (None, "x", "y", "z", "none"):
             raise InputError(f"{self.symmetry!r} is no axis", "use x, y, z or none", parameter="symmetry")
 
+    @property
+    def limit(self) -> float:
+        """Largest ratio of neighbouring cells; infinite where `layers` decide it."""
+        return math.inf if self.layers is not None and self.growth is None else self.growth or GROWTH
+
     def steps(self, size: float) -> Floats:
         """Return the steps (layers - 1,) of a march from a surface of that size.
 
@@ -60,7 +66,7 @@ class VolumeMarch:
         if far < 2.0 * self.first_cell:
             problem = f"the far field at {far:.4g} is nearer than two first cells of {self.first_cell:.4g}"
             raise InputError(problem, "give a larger {far_field} or a smaller {first_cell}")
-        needed = 1 + max(cells_for_growth(self.first_cell, far, self.growth or GROWTH), FEWEST - 1)
+        needed = 1 + max(cells_for_growth(self.first_cell, _LONGER * far, self.growth or GROWTH), FEWEST - 1)
         if self.layers is not None and self.growth is not None and self.layers < needed:
             away = f"{self.layers} layers from {self.first_cell:.4g} to {far:.4g}"
             problem = f"{away} grow by more than {self.growth:g}"

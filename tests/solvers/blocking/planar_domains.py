@@ -2,7 +2,12 @@
 
 import numpy as np
 
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.to_grid import to_grid
+from meshonet.solvers.blocking.block_grid import fine_layout
+from meshonet.solvers.blocking.decomposition.decompose import decompose
 
 
 def circle(x: float, y: float, radius: float, count: int = 120, squash: float = 1.0) -> np.ndarray:
@@ -65,3 +70,9 @@ SHAPES = {
 
 def domain(name: str) -> Domain:
     return Domain.of_polygons(SHAPES[name], name)
+
+
+def block_grid(domain: Domain, cells: int) -> tuple[Grid, Layout]:
+    """Return the grid of the blocks of a domain, and the layout that it is made of."""
+    layout = fine_layout(decompose(domain), cells=cells)
+    return to_grid(layout), layout

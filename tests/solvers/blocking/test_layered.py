@@ -9,7 +9,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.blocks import block_figures
-from meshonet.solvers.blocking.layers.folds import smallest_corner
+from meshonet.solvers.blocking.layers.finished import smallest_corner
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layers.layered import layered
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from planar_domains import blob, circle, domain
+from planar_domains import blob, block_grid, circle, domain
 
 from meshonet.geometry.domain.domain import Domain
-from meshonet.solvers.blocking.block_grid import block_grid
 from meshonet.solvers.blocking.decomposition import decompose as decomposition
+from meshonet.solvers.blocking.decomposition.collapse.collapse import irregular_inside
 from meshonet.solvers.blocking.decomposition.decompose import decompose
 from meshonet.solvers.blocking.decomposition.field.cross_field import CrossField, cross_field
 from meshonet.solvers.blocking.decomposition.surface.surface import TriangleSurface
@@ -75,6 +75,6 @@ def test_fields_without_pairs_stay_bitwise(name):
 
 
 def test_a_grid_around_holes_has_fewer_irregular_nodes(monkeypatch):
-    few = block_grid(holes(), cells=1500)[2].irregular
+    few = irregular_inside(block_grid(holes(), cells=1500)[1].mesh)
     monkeypatch.setattr(decomposition, "FEWER", 0)
-    assert few < block_grid(holes(), cells=1500)[2].irregular
+    assert few < irregular_inside(block_grid(holes(), cells=1500)[1].mesh)

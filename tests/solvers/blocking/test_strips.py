@@ -8,7 +8,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.to_grid import to_grid
-from meshonet.solvers.blocking.layers.folds import smallest_corner
+from meshonet.solvers.blocking.layers.finished import smallest_corner
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layers.layered import layered
 from meshonet.solvers.blocking.layers.stretches import layered_walls

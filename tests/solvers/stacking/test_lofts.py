@@ -53,7 +53,7 @@ def test_a_blade_has_its_sections_walls_and_a_far_field_that_is_a_cylinder(twist
     grid, _ = blade_volume(stack, request)
     assert measure(grid).folded == 0
     (block,) = grid.blocks
-    plan = around(stack.sections, 65)
+    plan = around(65)
     root = unit_nodes(stack.sections[0], plan)[0][::-1]
     assert block.nodes[:, 0, 0, :2] == pytest.approx(root)
     far = block.nodes[:, -1, :, :2]

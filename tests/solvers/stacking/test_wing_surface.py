@@ -46,7 +46,7 @@ def volume_of(patches) -> float:
 def test_nodes_of_the_first_and_of_the_last_row_are_the_sections_own():
     wing = stack()
     main = wing_surface(wing, SETTINGS)[0].blocks[0].nodes
-    plan = around(wing.sections, 81)
+    plan = around(81)
     root = unit_nodes(wing.sections[0], plan)[0]
     assert main[:, 0, :2] == pytest.approx(root)
     assert (main[:, 0, 2] == 0.0).all()

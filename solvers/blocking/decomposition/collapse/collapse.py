@@ -10,7 +10,7 @@ Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Collection
 
 import numpy as np
 
@@ -27,6 +27,8 @@ from meshonet.solvers.energy.quads import optimise
 FAILURES = 8
 """Trials without gain, one after another, after which the mesh stays as it is."""
 
+PER_CHORD = 14, 18
+"""Chords for each one collapsed beside the first, without and with wanted sizes: few are judged alone."""
 ITERATIONS = (6, 12, 22)
 """Iterations of the functional before a trial is judged, and further ones before it is judged again."""
 
@@ -36,65 +38,57 @@ PER_TRIAL, PER_OPTIMUM = 3, 20
 """What a trial costs before it is optimised, and an optimum beside its iterations, in iterations."""
 
 
-@dataclass
-class _Work:
-    """Quads times iterations that are left to spend."""
-
-    left: float = MOST_WORK
-
-    def spend(self, mesh: QuadMesh, iterations: int) -> None:
-        """Take off what so many iterations of a mesh cost."""
-        self.left -= len(mesh.quads) * iterations
-
-
-def simplify(
-    mesh: QuadMesh,
-    *,
-    price: float = PRICE,
-    iterations: tuple[int, ...] = ITERATIONS,
-    sizes: SizeMetric | None = None,
-) -> BaseComplex:
+def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None = None) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
-    `price` is what a block costs, in degrees of mean deviation from 90; `sizes`, if any, are wanted of edges.
+    Several of many are collapsed before the next optimum. `price` is what a block costs, in degrees of mean
+    deviation from 90; `sizes`, if any, are wanted of edges.
     """
-    current = base_complex(mesh)
-    best, work = score(current, price, sizes.edges(mesh) if sizes else None), _Work()
-    while True:
-        better = _first_gain(current, best, price, iterations, sizes, work)
-        if better is None:
-            return current
-        current, best = better
 
+    def wanted(mesh: QuadMesh) -> Floats | None:
+        return sizes.edges(mesh) if sizes else None
 
-def _first_gain(
-    current: BaseComplex, best: float, price: float, iterations: tuple[int, ...], sizes: SizeMetric | None,
-    work: _Work,
-) -> tuple[BaseComplex, float] | None:  # fmt: skip
-    """Return the first collapse, and its score, that lowers `best`; None after `FAILURES` or `work`."""
-    failures = 0
-    for chord in ascending(widths(current)).tolist():
-        if work.left < 0.0:
-            return None
-        work.spend(current.mesh, PER_TRIAL)
-        trial = _collapsed(current, chord)
+    current, left, count = base_complex(mesh), float(MOST_WORK), 1
+    best, failed = score(current, price, wanted(mesh)), set[int]()
+    while len(failed) < FAILURES and left > 0.0:
+        trial, first, tried = _without(current, failed, count)
+        left -= PER_TRIAL * tried * len(current.mesh.quads)
         if trial is None:
-            continue
-        mesh = trial.mesh
-        for more in iterations:
-            work.spend(mesh, PER_OPTIMUM + more)
-            optimum = optimise(mesh, iterations=more, targets=sizes.edges(mesh) if sizes else None)
-            if not optimum.valid:
+            break
+        for iterations in ITERATIONS:
+            left -= (PER_OPTIMUM + iterations) * len(trial.mesh.quads)
+            optimum = optimise(trial.mesh, iterations=iterations, targets=wanted(trial.mesh))
+            trial = trial.moved(optimum.mesh)
+            value = score(trial, price, wanted(trial.mesh)) if optimum.valid else np.inf
+            if not optimum.valid or less(value, best):
                 break
-            mesh = optimum.mesh
-            judged = trial.moved(mesh)
-            value = score(judged, price, sizes.edges(mesh) if sizes else None)
-            if less(value, best):
-                return judged, value
-        failures += 1
-        if failures >= FAILURES:
-            return None
-    return None
+        if less(value, best):
+            current, best, failed = trial, value, set()
+            count = min(2 * count, 1 + trial.chords // PER_CHORD[sizes is not None])
+        else:
+            failed |= {first} if count == 1 else set()
+            count = 1
+    return current
+
+
+def _without(current: BaseComplex, kept: Collection[int], count: int) -> tuple[BaseComplex | None, int, int]:
+    """Return the blocks without `count` chords, the narrowest but for those `kept`, one after another.
+
+    Fewer where no more can go, None where none can; the number of the first, and how many were tried.
+    """
+    trial, first, tried = None, -1, 0
+    for _ in range(count):
+        for chord in ascending(widths(trial or current)).tolist():
+            if trial is None and chord in kept:
+                continue
+            tried += 1
+            collapsed = _collapsed(trial or current, chord)
+            if collapsed is not None:
+                trial, first = collapsed, chord if trial is None else first
+                break
+        else:
+            break
+    return trial, first, tried
 
 
 def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:

@@ -13,6 +13,7 @@ from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import joined_classes
 from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
+from meshonet.solvers.blocking.decomposition.quads.quad_mesh import conforms
 
 VALENCES = (3, 5)
 """Fewest and most quads around a node inside."""
@@ -74,18 +75,7 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
 
 
 def is_conforming(mesh: QuadMesh) -> bool:
-    """Return whether the quads are a mesh of the domain: manifold, holes kept, wall nodes on walls.
-
-    Nodes inside have as many quads as `VALENCES` allow.
-    """
-    quads, wall = mesh.quads, mesh.wall_nodes
-    euler = len(wall) - len(mesh.edges) + len(quads)
-    if not mesh.manifold or euler != 2 - len(mesh.domain.loops):
-        return False
-    repeated = [(quads == np.roll(quads, k, axis=1)).any() for k in (1, 2)]
-    if any(repeated) or not np.array_equal(wall, mesh.places.loop >= 0):
-        return False
-    around = np.bincount(mesh.edges[mesh.on_wall].ravel(), minlength=len(wall))
-    inside = mesh.valence[~wall]
-    fits = not inside.size or (inside.min() >= VALENCES[0] and inside.max() <= VALENCES[1])
-    return bool((around[wall] == 2).all() and fits)
+    """Return whether quads are a mesh of the domain, as many around nodes inside as `VALENCES` allow."""
+    inside = mesh.valence[~mesh.wall_nodes]
+    few, many = VALENCES
+    return conforms(mesh) and bool(((inside >= few) & (inside <= many)).all())

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of
-from meshonet.geometry.elementary import modulus, times
+from meshonet.geometry.elementary import modulus
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.kernels._native import walk_map
+from meshonet.solvers.algebraic.tfi import interpolate, parameters
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
 from meshonet.solvers.blocking.decomposition.quads.arc_counts import arc_counts
 from meshonet.solvers.blocking.decomposition.quads.motorcycle import motorcycle_graph
 from meshonet.solvers.blocking.decomposition.quads.t_mesh import Face, Side, TMesh, t_mesh
-from meshonet.solvers.blocking.decomposition.quads.trails import map_tables
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 
 SHORTEST = 0.05
@@ -29,8 +28,8 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None 
 
     With `sizes` its edges are about as long as these say, whatever `cells`.
 
-    Nodes lie where the inverse of the map puts them, so cells are nowhere folded but where they are too large
-    to follow it.
+    Nodes on the arcs of the T-mesh lie where the map has them, those between are interpolated: cells may be
+    folded.
 
     Raises BlockingError: the map's lines make no T-mesh of rectangles, or so few cells cannot conform.
     """
@@ -39,7 +38,10 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None 
     if sizes is None:
         wanted = wanted / np.sqrt(seamless.triangulation.domain.area / cells)
     counts = arc_counts(mesh, np.maximum(wanted, SHORTEST))
-    return _checked(_fine(mesh, counts))
+    quads = _fine(mesh, counts)
+    if not conforms(quads):
+        raise BlockingError("the quads do not conform: too few cells for the narrow parts of the domain")
+    return quads
 
 
 def _plane_lengths(mesh: TMesh, sizes: SizeMetric | None = None) -> Floats:
@@ -78,8 +80,6 @@ class _Nodes:
     arc: Floats
     on: tuple[list[int], ...]
     """By arc its nodes, both ends included."""
-    lengths: tuple[Floats, ...]
-    """By arc the lengths of its trail at these."""
 
 
 def _on_arcs(mesh: TMesh, counts: Indices) -> _Nodes:
@@ -109,133 +109,55 @@ def _on_arcs(mesh: TMesh, counts: Indices) -> _Nodes:
         here = np.flatnonzero(loop == k)
         arc[here] = np.mod(arc[here], curve.length)
         points[here] = complex_of(curve.at(arc[here]))
-    return _Nodes(points, loop, arc, tuple(on), tuple(lengths))
+    return _Nodes(points, loop, arc, tuple(on))
 
 
 def _fine(mesh: TMesh, counts: Indices) -> QuadMesh:
-    """Return the mesh of all faces."""
-    nodes = _on_arcs(mesh, counts)
-    seamless = mesh.graph.map
-    walks = _Walks(mesh, nodes, len(nodes.points))
-    quads = [walks.lattice(face) for face in mesh.faces]
-    points = np.concatenate([nodes.points, walks.run(seamless)])
-    inner = Places.inside(walks.next - len(nodes.points))
-    fixed = np.zeros(len(nodes.points), dtype=np.intp)
-    corners = np.zeros(len(seamless.surface.on_wall), dtype=np.intp)
-    corners[: len(seamless.corner_cells)] = seamless.corner_cells
-    vertex = mesh.graph.vertex
-    fixed[: len(vertex)] = np.where(vertex >= 0, corners[vertex], 0)
-    places = Places(
-        np.append(nodes.loop, inner.loop),
-        np.append(nodes.arc, inner.arc),
-        np.append(fixed, inner.cells),
-        np.append(np.full(len(fixed), -1, dtype=np.intp), inner.partner),
+    """Return the mesh of all faces, their inner nodes between the sides."""
+    nodes, vertex, seamless = _on_arcs(mesh, counts), mesh.graph.vertex, mesh.graph.map
+    lattices, points, count = [], [pairs_of(nodes.points)], len(nodes.points)
+    for face in mesh.faces:
+        lattice, inner = _lattice(nodes, face, count)
+        lattices.append(lattice)
+        points.append(inner)
+        count += len(inner)
+    places = Places.inside(count)
+    places.loop[: len(nodes.loop)], places.arc[: len(nodes.arc)] = nodes.loop, nodes.arc
+    corner = np.flatnonzero((vertex >= 0) & (vertex < len(seamless.corner_cells)))
+    places.cells[corner] = seamless.corner_cells[vertex[corner]]
+    return QuadMesh(seamless.triangulation.domain, np.concatenate(points), lattice_quads(lattices), places)
+
+
+def _lattice(nodes: _Nodes, face: Face, first: int) -> tuple[Indices, Floats]:
+    """Return the lattice (ni, nj) of a face, and its inner nodes (k, 2), numbered from `first` on."""
+    south, east, north, west = (np.array(_along(nodes, side), dtype=np.intp) for side in face)
+    grid = np.empty((len(south), len(west)), dtype=np.intp)
+    grid[:, 0], grid[:, -1], grid[0], grid[-1] = south, north[::-1], west[::-1], east
+    inner = grid[1:-1, 1:-1]
+    inner[...] = first + np.arange(inner.size).reshape(inner.shape)
+    if not inner.size:
+        return grid, np.empty((0, 2))
+    low, high, left, right = (
+        pairs_of(nodes.points[line]) for line in (grid[:, 0], grid[:, -1], grid[0], grid[-1])
     )
-    return QuadMesh(seamless.triangulation.domain, pairs_of(points), np.concatenate(quads), places)
+    sides = low, high, left, right
+    filled = np.empty((2, *grid.shape))
+    interpolate(filled[0], filled[1], sides, parameters(sides, "arclength"))
+    return grid, filled[:, 1:-1, 1:-1].reshape(2, -1).T
 
 
-class _Walks:
-    """Lattices of faces, and the walks through the map that find their inner nodes."""
-
-    def __init__(self, mesh: TMesh, nodes: _Nodes, first: int) -> None:
-        self.mesh, self.nodes, self.next = mesh, nodes, first
-        self._trail: list[Indices] = []
-        self._length: list[Floats] = []
-        self._turn: list[Indices] = []
-        self._targets: list[Complexes] = []
-
-    def lattice(self, face: Face) -> Indices:
-        """Return the quads (m, 4) of a face; its inner nodes are numbered, and walks to them are kept."""
-        south, u_south = self._side(face[0])
-        east, v_east = self._side(face[1])
-        north, u_north = self._side(face[2])
-        west, v_west = self._side(face[3])
-        ni, nj = len(south), len(west)
-        grid = np.empty((ni, nj), dtype=np.intp)
-        grid[:, 0], grid[:, -1] = south, north[::-1]
-        grid[0], grid[-1] = west[::-1], east
-        width, height = (u_south[-1] + u_north[-1]) / 2, (v_east[-1] + v_west[-1]) / 2
-        s, n = u_south / u_south[-1], 1.0 - u_north[::-1] / u_north[-1]
-        w, e = 1.0 - v_west[::-1] / v_west[-1], v_east / v_east[-1]
-        if ni > 2 and nj > 2:
-            inner = (ni - 2) * (nj - 2)
-            grid[1:-1, 1:-1] = np.arange(self.next, self.next + inner).reshape(nj - 2, ni - 2).T
-            self.next += inner
-            # lines between opposite nodes cross once in a rectangle
-            a, b = s[None, 1:-1], (n - s)[None, 1:-1]
-            c, d = w[1:-1, None], (e - w)[1:-1, None]
-            u = (a + b * c) / (1.0 - b * d)
-            v = c + d * u
-            self._targets.append(u * width + 1j * (v - c) * height)
-            self._start(face[3], nj)
-        return np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=-1).reshape(-1, 4)
-
-    def _runs(self, side: Side) -> Iterator[tuple[int, list[int], Floats, int]]:
-        """Yield half-edge, nodes and their lengths on its trail along a side, and how many came before."""
-        for number, half in enumerate(side):
-            way = -1 if half % 2 else 1
-            yield half, self.nodes.on[half // 2][::way], self.nodes.lengths[half // 2][::way], min(number, 1)
-
-    def _side(self, side: Side) -> tuple[list[int], Floats]:
-        """Return the nodes along a side, and how far along it they are in the map."""
-        nodes: list[int] = []
-        along: list[Floats] = []
-        before = 0.0
-        for _, on, length, skip in self._runs(side):
-            step = np.abs(length - length[0])
-            nodes += on[skip:]
-            along.append(before + step[skip:])
-            before += float(step[-1])
-        return nodes, np.concatenate(along)
-
-    def _start(self, west: Side, count: int) -> None:
-        """Start a walk at each inner node of the west side, from the south on."""
-        runs, inner = list(self._runs(west)), slice(count - 2, 0, -1)
-        many = [len(length) - skip for _, _, length, skip in runs]
-        half = np.repeat([half for half, *_ in runs], many)[inner]
-        self._trail.append(self.mesh.trail[half // 2])
-        self._length.append(np.concatenate([length[skip:] for _, _, length, skip in runs])[inner])
-        self._turn.append(1 + 2 * (half % 2))
-
-    def run(self, seamless: SeamlessMap) -> Complexes:
-        """Return the inner nodes in the plane."""
-        if not self._targets:
-            return np.zeros(0, dtype=complex)
-        trails = self.mesh.graph.trails
-        trail = np.concatenate(self._trail)
-        _, rest = _within(self.mesh, trail, np.concatenate(self._length))
-        piece, part = trails.locate(trail, rest)
-        corners = seamless.corner_coords[trails.face[piece]]
-        step = trails.length[piece + trail + 1] - trails.length[piece + trail]
-        direction = np.array([1, 1j, -1, -1j])
-        origin = trails.origin[piece] + part * step * direction[trails.axis[piece]]
-        east = direction[(trails.axis[piece] + np.concatenate(self._turn)) % 4]
-        sizes = np.repeat(
-            [block.shape[1] for block in self._targets], [len(block) for block in self._targets]
-        )
-        flat = np.concatenate([block.ravel() for block in self._targets])
-        targets = np.repeat(origin, sizes) + times(flat, np.repeat(east, sizes))
-        reached = walk_map(
-            map_tables(seamless),
-            np.ascontiguousarray(seamless.triangulation.triangles, dtype=np.intp),
-            np.ascontiguousarray(seamless.triangulation.points),
-            np.ascontiguousarray(trails.face[piece]),
-            np.ascontiguousarray(origin).view(np.float64).reshape(-1, 2),
-            np.append(0, np.cumsum(sizes)).astype(np.intp),
-            targets.view(np.float64).reshape(-1, 2),
-            10 * len(corners) + len(seamless.surface.vertices),
-        )
-        return complex_of(reached)
+def _along(nodes: _Nodes, side: Side) -> list[int]:
+    """Return the nodes along a side of a face, both ends included."""
+    runs = [nodes.on[half // 2][:: -1 if half % 2 else 1] for half in side]
+    return [runs[0][0], *(node for run in runs for node in run[1:])]
 
 
-def _checked(mesh: QuadMesh) -> QuadMesh:
-    """Return the mesh if it conforms and has the domain's topology, with walls where places say so."""
-    shared = np.bincount(mesh.edge_of.ravel(), minlength=len(mesh.edges))
-    ordered = np.sort(mesh.quads, axis=1)
-    whole = not np.any(ordered[:, 1:] == ordered[:, :-1]) and int(shared.max()) <= 2
-    euler = len(mesh.nodes) - len(mesh.edges) + len(mesh.quads)
-    wall = np.array_equal(mesh.wall_nodes, mesh.places.loop >= 0)
-    twice = np.bincount(mesh.edges[mesh.on_wall].ravel(), minlength=len(mesh.nodes)) <= 2
-    if not (whole and wall and bool(twice.all()) and euler == 2 - len(mesh.domain.loops)):
-        raise BlockingError("the quads do not conform: too few cells for the narrow parts of the domain")
-    return mesh
+def conforms(mesh: QuadMesh) -> bool:
+    """Return whether quads are a mesh of the domain: manifold, holes kept, wall nodes on walls."""
+    quads, wall = mesh.quads, mesh.wall_nodes
+    euler = len(wall) - len(mesh.edges) + len(quads)
+    repeated = any((quads == np.roll(quads, k, axis=1)).any() for k in (1, 2))
+    if repeated or not mesh.manifold or euler != 2 - len(mesh.domain.loops):
+        return False
+    around = np.bincount(mesh.edges[mesh.on_wall].ravel(), minlength=len(wall))
+    return np.array_equal(wall, mesh.places.loop >= 0) and bool((around[wall] == 2).all())

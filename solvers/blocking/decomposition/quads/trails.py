@@ -35,10 +35,6 @@ class Trails:
     """(p,) triangle that the piece is in."""
     edge: Indices
     """(p,) edge of it that the piece is, at walls; -1 elsewhere."""
-    axis: Indices
-    """(p,) direction in the coordinates of that triangle: i^axis."""
-    origin: Complexes
-    """(p,) coordinates of the start."""
     length: Floats
     """(p + k,) length of the trail in the map at the start of each piece, and at its end."""
     begin: Complexes
@@ -121,8 +117,6 @@ def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int)
         first=first,
         face=face,
         edge=np.full(len(face), -1, dtype=np.intp),
-        axis=pieces[:, 2],
-        origin=origin,
         length=length,
         begin=to_plane(seamless, face, origin),
         end=to_plane(seamless, face, stop),
@@ -153,8 +147,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
     face, edge = (np.array(column, dtype=np.intp) for column in zip(*order, strict=True))
     here = triangulation.triangles[face, edge]
     there = triangulation.triangles[face, (edge + 1) % 3]
-    origin = seamless.corner_coords[face, edge]
-    step = modulus(seamless.corner_coords[face, (edge + 1) % 3] - origin)
+    step = modulus(seamless.corner_coords[face, (edge + 1) % 3] - seamless.corner_coords[face, edge])
     runs = [np.append(0.0, np.cumsum(step[a:b])) for a, b in pairwise(first)]
     loops = triangulation.loop[here[first[:-1]]]
     whole = np.array([loop.length for loop in triangulation.domain.loops])[triangulation.loop[here]]
@@ -164,8 +157,6 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
         first=np.array(first, dtype=np.intp),
         face=face,
         edge=edge,
-        axis=seamless.wall_axis[face, edge],
-        origin=origin,
         length=np.concatenate(runs),
         begin=plane[here],
         end=plane[there],

@@ -50,7 +50,11 @@ def symmetric_blocks(
     irregular = wrong_count(mesh).any() or (mesh.irregular & ~mesh.wall_nodes).any()
     for group in [mirrors, mirrors[:1], mirrors[1:]][: (0, 1, 3)[len(mirrors)]]:
         ways: list[Callable[[], QuadMesh]]
-        ways = [lambda: mesh, partial(_of_part, mesh.domain, group, find), partial(_recounted, blocks, group)]
+        ways = [
+            lambda: mesh,
+            partial(_of_part, mesh.domain, group, find),
+            partial(_recounted, blocks, group, optimised),
+        ]
         best, least = None, score(blocks) + WORTH
         for number, way in enumerate(ways):
             if best is not None and (number == 2 or not irregular):
@@ -108,11 +112,11 @@ def _cut_on_mirrors(blocks: BaseComplex, images: Images) -> BaseComplex:
     return base_complex(mesh, lines) if lines.any() else blocks
 
 
-def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror]) -> QuadMesh:
+def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimised) -> QuadMesh:
     """Return the mesh of the same blocks with counts of cells that images have in common."""
     chords = Chords.of(blocks.layout)
     even = refine(blocks.layout, np.full(chords.count, max(EVEN, int(chords.least.max()))), chords)
-    chords = Chords.of(replace(even, mesh=_symmetric(even.mesh, mirrors)[0]))
+    chords = Chords.of(replace(even, mesh=_symmetric(optimised(even.mesh), mirrors)[0]))
     return refine(chords.layout, chords.counts_for_cells(len(blocks.mesh.quads)), chords).mesh
 
 

@@ -1,0 +1,35 @@
+"""Members of a family as inputs of a batch."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from meshonet.geometry.families.draw import Draw
+
+
+@dataclass(frozen=True)
+class DrawnInputs:
+    """Members of a family as inputs: all, or those of shard k of n."""
+
+    draws: Sequence[Draw]
+    shard: tuple[int, int] = (1, 1)
+
+    def own(self) -> Iterator[Draw]:
+        """Yield the members of the shard."""
+        k, n = self.shard
+        return map(self.draws.__getitem__, range(k - 1, len(self.draws), n))
+
+    def count(self) -> int:
+        """Return how many members the shard has."""
+        return len(self.draws) // self.shard[1]
+
+    def parts(self, size: int) -> Iterator[tuple[int, tuple[Draw, ...]]]:
+        """Yield number and members of the parts of the shard, `size` each."""
+        k, n = self.shard
+        for number in range(k - 1, -(-len(self.draws) // size), n):
+            yield number, tuple(self.draws[number * size : (number + 1) * size])
+
+    def more_than(self, count: int) -> bool:
+        """Return whether there are more than so many."""
+        return len(self.draws) > count

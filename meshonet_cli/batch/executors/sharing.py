@@ -1,0 +1,69 @@
+"""Members of a batch shared out among workers, several a task where they are done in no time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+from meshonet.geometry.errors import MeshonetError
+from meshonet_cli.batch.executors.workers import Warn, Workers
+from meshonet_cli.batch.item import Item, Pair
+
+if TYPE_CHECKING:
+    from meshonet_cli.batch.settings import Engine
+
+_TASK_SECONDS, _MOST_AT_ONCE = 0.1, 64  # how long tasks of several members are, and how large
+Group = list[Item[Any]]
+
+
+@dataclass(frozen=True)
+class _Timed:
+    """Does the work on a group of members at once, and takes the time."""
+
+    work: Callable[[Iterable[Item[Any]]], Iterator[Pair]]
+
+    def __call__(self, todo: Group) -> tuple[list[Pair], float]:
+        begun = time.perf_counter()
+        return list(self.work(todo)), time.perf_counter() - begun
+
+
+def shared(
+    work: Callable[[Iterable[Item[Any]]], Iterator[Pair]], todo: Iterator[Item[Any]], size: int,
+    engine: Engine, warn: Warn,
+) -> Iterator[Pair]:  # fmt: skip
+    """Yield members in order and what comes of each, by the workers of `engine`.
+
+    A task has `size` members, or, if that is 1, as many as are done in no time.
+    """
+    timed, grows, most = _Timed(work), size == 1, size
+
+    def groups() -> Iterator[Group]:
+        while group := list(islice(todo, most)):
+            yield group
+
+    with engine.workers(warn) as workers:
+        # where many are made together, their grids are what takes memory
+        for group, outcome in workers.in_order(timed, groups(), workers.count if grows else 1):
+            if isinstance(outcome, Exception):
+                yield from _apart(timed, group, outcome, workers)
+                continue
+            done, seconds = outcome
+            if grows:
+                each = max(seconds / len(group), 1e-6)
+                most = max(1, min(_MOST_AT_ONCE, int(_TASK_SECONDS / each)))
+            yield from done
+
+
+def _apart(timed: _Timed, group: Group, error: Exception, workers: Workers) -> Iterator[Pair]:
+    """Yield what workers make of a group, one by one, of which one ended its worker twice."""
+    for item in group:
+        pairs: list[Pair] = [(item.without_content(), error)]
+        if len(group) > 1:
+            try:
+                pairs, _ = workers.alone(timed, [item])
+            except MeshonetError as own:
+                pairs = [(item.without_content(), own)]
+        yield from pairs

@@ -1,0 +1,113 @@
+"""Nodes moved along the lines of a volume so that neighbouring cells differ by at most a ratio."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.elementary import exp, log
+from meshonet.geometry.polygon.corners import Indices
+
+_MARGIN = 1e-3
+"""Part of the logarithm of the ratio that is kept for chords, which are shorter than lines."""
+_HALVINGS = 40  # of the range that the tilt of a line lies in
+_LEAST = 0.2  # of the growth, in logarithms: what that of steps is taken for where it is less
+_MOST = 0.5  # part by which growth is cut down at the most: what is beyond it is at few lines
+_NEAR = 2  # levels to each side of one whose growth is taken along
+_TOGETHER = 1 << 11  # lines at a time: little memory beside their own
+_PASSES = 12  # chords change a little when nodes move
+
+
+def growth_of_levels(lines: Floats) -> Floats:
+    """Return the largest ratio of neighbouring cells (m - 1,) at inner levels of `lines` (3, n, m + 1)."""
+    largest = np.ones(lines.shape[2] - 2)
+    for k in range(0, lines.shape[1], _TOGETHER):
+        steps = norms(np.moveaxis(np.diff(lines[:, k : k + _TOGETHER], axis=2), 0, -1))
+        ratio = steps[:, 1:] / steps[:, :-1]
+        np.maximum(largest, np.maximum(ratio, 1.0 / ratio).max(axis=0), out=largest)
+    return largest
+
+
+def slower_steps(steps: Floats, found: Floats, growth: float) -> Floats:
+    """Return steps of a march that grow less where those before, `steps` (m,), made cells grow too much.
+
+    There, cells were `found` (m - 1,) to grow by more than the steps, since fronts spread and turn. At the
+    same distance from the wall they are taken to do so by the same part of the growth, in logarithms.
+    """
+    length, most = float(steps.sum()), math.log(growth)
+    ratio = np.maximum(log(steps[1:] / steps[:-1]), _LEAST * most)
+    more = np.clip(log(found) / ratio - 1.0, 0.0, _MOST)
+    spread = np.max(
+        [np.pad(more, _NEAR, mode="edge")[k : k + len(more)] for k in range(2 * _NEAR + 1)], axis=0
+    )
+    places = np.cumsum(steps)[:-1]
+
+    def made(part: float, cells: int) -> Floats:
+        sizes, away = [float(steps[0])], float(steps[0])
+        while len(sizes) < cells:
+            slower = 1.0 + float(np.interp(away, places, spread))
+            sizes.append(sizes[-1] * math.exp(part * most / slower))
+            away += sizes[-1]
+        return np.array(sizes)
+
+    fastest = np.cumsum(made(1.0, 2 * len(steps)))
+    cells = max(int(np.searchsorted(fastest, length)) + 1, len(steps))
+    low, high = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        part = 0.5 * (low + high)
+        low, high = (part, high) if made(part, cells).sum() < length else (low, part)
+    return made(high, cells)
+
+
+def limit_growth(lines: Floats, growth: float) -> None:
+    """Move nodes of `lines` (3, n, levels) along them, in place; first cells and last nodes stay.
+
+    Lines whose cells differ by no more than `growth` stay as they are. Those that are too long for it grow by
+    one ratio, the least there is.
+    """
+    if math.isinf(growth):
+        return
+    most = math.log(growth)
+    for k in range(0, lines.shape[1], _TOGETHER):
+        part = lines[:, k : k + _TOGETHER]
+        for _ in range(_PASSES):
+            steps = norms(np.moveaxis(np.diff(part, axis=2), 0, -1))
+            change = np.diff(log(steps), axis=1)
+            uneven = np.flatnonzero(np.abs(change).max(axis=1) > most)
+            if not len(uneven):
+                break
+            limited = _limited(steps[uneven], change[uneven], (1.0 - _MARGIN) * most)
+            _move(part, uneven, steps[uneven], limited)
+
+
+def _limited(steps: Floats, change: Floats, most: float) -> Floats:
+    """Return steps (k, m) with the same firsts and sums whose logarithms change by at most `most`.
+
+    Every change is clipped, tilted by what makes up for the length.
+    """
+    length = steps.sum(axis=1)
+    longest = steps[:, 0] * math.expm1(most * steps.shape[1]) / math.expm1(most)
+    bound = np.where(longest < length, math.inf, most)[:, None]  # too long: all changes are the tilt
+    change = np.where(longest < length, 0.0, 1.0)[:, None] * change
+
+    def made(tilt: Floats) -> Floats:
+        log_ratio = np.cumsum(np.clip(change + tilt[:, None], -bound, bound), axis=1)
+        return np.concatenate([steps[:, :1], steps[:, :1] * exp(log_ratio)], axis=1)
+
+    low, high = np.full(len(steps), -2.0 * most), np.full(len(steps), 2.0 * most)
+    for _ in range(_HALVINGS):
+        tilt = 0.5 * (low + high)
+        short = made(tilt).sum(axis=1) < length
+        low, high = np.where(short, tilt, low), np.where(short, high, tilt)
+    return made(0.5 * (low + high))
+
+
+def _move(lines: Floats, which: Indices, old: Floats, new: Floats) -> None:
+    """Move inner nodes of some lines (3, n, levels) from places of `old` steps (k, m) to those of `new`."""
+    before, after = (np.cumsum(steps, axis=1) for steps in (old, new))
+    for row, n in enumerate(which):
+        for axis in range(3):
+            line = lines[axis, n]
+            line[2:-1] = np.interp(after[row, 1:-1], before[row], line[1:])

@@ -1,0 +1,30 @@
+"""Methods that solve by another one: on fewer nodes, in several steps, with layers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.solvers.pipeline.methods import OneByOne, solved
+from meshonet.solvers.solution import Solution
+
+if TYPE_CHECKING:
+    from meshonet.solvers.pipeline.methods import Method
+
+
+@dataclass(frozen=True)
+class Wrapper(OneByOne):
+    """Solves by calling another method, whose name it has."""
+
+    method: Method
+
+    @property
+    def name(self) -> str:
+        """That of the method."""
+        return self.method.name
+
+    def inner(self, boundary: Boundary, initial: Grid | None = None) -> Solution:
+        """Return the other method's solution of one boundary."""
+        return solved(self.method, boundary, initial)

@@ -1,0 +1,63 @@
+"""Sections whose coordinates ripple are named, and smoothed within a tolerance, their corners kept."""
+
+import numpy as np
+import pytest
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import changes_in
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.shapes.airfoil.section_curve import sign_changes
+from meshonet.geometry.spacing.sampling import Sampling
+
+O_GRID = Sampling(161, 41, "o")
+
+
+def rounded(digits: int, designation: str = "0012") -> Airfoil:
+    """A section from coordinates of so many digits."""
+    body = naca(designation)
+    points = body.curve.points[1:] if body.blunt else body.curve.points
+    every = points[:: max(len(points) // 160, 1)]
+    return Airfoil(np.concatenate([every.round(digits), points[-1:].round(digits)]), "rounded")
+
+
+@pytest.mark.parametrize("designation", ["0012", "2412", "23012", "4415-sharp"])
+def test_what_does_not_ripple_is_not_said_to(designation: str) -> None:
+    assert not any("ripples" in note for note in naca(designation).boundary(O_GRID).notes)
+
+
+def test_rounded_coordinates_are_said_to_ripple() -> None:
+    body = rounded(4)
+    count = sign_changes(body.curve, body.chord)
+    assert count > 10
+    note = f"the outline ripples: its curvature changes sign {count} times; see {{smooth}}"
+    assert note in body.boundary(O_GRID).notes
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 5e-4])
+@pytest.mark.parametrize("designation", ["0012", "2412", "23012"])
+def test_a_smoothed_section_is_near_and_keeps_its_corners(designation: str, tolerance: float) -> None:
+    body = rounded(4, designation)
+    after = body.smoothed(tolerance)
+    moved = np.hypot(*(after.curve.points - body.curve.points).T)
+    assert 0.0 < moved.max() <= tolerance * body.chord
+    corners = body.curve.corner_index
+    np.testing.assert_array_equal(after.curve.corner_index, corners)
+    np.testing.assert_array_equal(after.curve.points[corners], body.curve.points[corners])
+    assert sign_changes(after.curve, after.chord) < 0.5 * sign_changes(body.curve, body.chord)
+    true = naca(designation)
+    assert after.nose_radius == pytest.approx(true.nose_radius, rel=0.05)
+    (change,) = changes_in(after.notes)
+    assert "smoothed by up to" in change
+
+
+def test_grids_are_made_of_the_smoothed_section() -> None:
+    plain, smooth = (rounded(4).boundary(Sampling(161, 41, "o", smooth=s)) for s in (None, 1e-4))
+    assert 0.0 < np.abs(plain.south - smooth.south).max() < 1e-2  # nodes move along the wall too
+    assert any("smoothed by up to" in note for note in smooth.notes)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, 1e-9, 0.1, float("nan")])
+def test_other_tolerances_are_refused(tolerance: float) -> None:
+    with pytest.raises(InputError, match=r"smooth: .* chords; use 1e-07 to 0.01|use 1e-7 to 0.01"):
+        Sampling(smooth=tolerance)

@@ -1,0 +1,91 @@
+"""Cells of wings: growth along lines from the wall and across the sides of blocks, and spacings."""
+
+import numpy as np
+import pytest
+
+from meshonet.geometry.blocks.across import across
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.growth import ratios
+from meshonet.geometry.quality.report import quality_report
+from meshonet.geometry.sections.section import Section
+from meshonet.geometry.sections.stack import Stack
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.shapes.circle import Circle
+from meshonet.solvers.pipeline.stacks import make_stack
+from meshonet.solvers.stacking.request import StackRequest
+from meshonet.solvers.stacking.wing_surface import WingSurface, wing_surface
+
+
+def wing(**values) -> Stack:
+    tip = Section(naca("0012"), 0.5, 2.5, x=0.8, y=0.1, twist=-3.0)
+    return Stack((Section(naca("2412"), 1.0, 0.0), tip), **values)
+
+
+@pytest.fixture(scope="module")
+def made():
+    return make_stack(wing(), StackRequest(around=97, span=33))
+
+
+def test_growth_is_a_limit_along_lines_from_the_wall(made):
+    for block in made.grid.blocks:
+        assert ratios(np.moveaxis(block.nodes, 2, 0)).max() <= 1.2
+
+
+def test_cells_across_the_sides_of_blocks_are_alike_and_at_the_edge_of_the_tip_not_far_from_it(made):
+    for each in made.grid.connections:
+        own, donor = across(made.grid, each, 2)
+        growth = ratios(np.stack([own[1], own[0], donor[1]]))[0][1:-1].max()
+        assert growth <= (3.0 if {each.block, each.donor} == {0, 1} else 1.2)
+
+
+def test_the_report_says_first_cells_and_growth_at_wing_and_tip(made):
+    notes = [note for note in made.notes if "first cells" in note]
+    assert notes[0].startswith("wing: first cells 0.001, growth up to 1.")
+    assert notes[1].startswith("tip: first cells 0.001, growth up to 1.")
+    (beyond,) = (note for note in made.notes if note.startswith("neighbouring cells differ by up to 2."))
+    assert beyond.endswith("more than the growth of 1.2")
+
+
+def test_the_far_field_is_measured_in_chords(made):
+    figure = quality_report(made.grid, "viscous").figures("far_field")
+    assert figure is not None
+    assert figure.value == pytest.approx(15.0, rel=0.05)
+
+
+def test_first_cells_are_exact(made):
+    for block in made.grid.blocks:
+        first = np.linalg.norm(block.nodes[:, :, 1] - block.nodes[:, :, 0], axis=-1)
+        assert first == pytest.approx(np.full(first.shape, 1e-3), rel=1e-9)
+
+
+def test_spacings_at_tip_and_edges_are_those_asked_for():
+    stack = wing(tip_spacing=0.004, le_spacing=0.003, te_spacing=0.002)
+    grid, _ = wing_surface(stack, WingSurface(around=129, span=33))
+    main = grid.blocks[0].nodes
+    assert np.diff(main[0, :, 2])[-1] == pytest.approx(0.002, rel=1e-5)
+    steps = np.linalg.norm(np.diff(main[:, 0], axis=0), axis=-1)
+    assert steps[[4, -5]] == pytest.approx([0.002, 0.002], rel=0.01)
+    assert steps[[63, 64]] == pytest.approx([0.003, 0.003], rel=0.01)
+    steps = np.linalg.norm(np.diff(main[:, -1], axis=0), axis=-1)
+    assert steps[[4, -5]] == pytest.approx([0.001, 0.001], rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("make", "problem"),
+    [
+        (lambda: wing(tip_spacing=0.0), "0 chords; use more than 0"),
+        (lambda: wing(le_spacing=float("nan")), "nan chords"),
+        (lambda: wing(kind="blade", tip_spacing=0.1), "a blade has no such edge"),
+        (lambda: wing(kind="duct", te_spacing=0.1), "a duct has no such edge"),
+        (
+            lambda: wing_surface(
+                Stack((Section(Circle(0.5), 1.0, 0.0), Section(Circle(0.5), 1.0, 2.0)), le_spacing=0.01)
+            ),
+            "has neither leading nor trailing edge",
+        ),
+    ],
+)
+def test_spacings_that_are_of_no_use_are_refused(make, problem):
+    with pytest.raises(InputError) as refusal:
+        make()
+    assert problem in str(refusal.value)
