@@ -7,19 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats: TypeAlias = NDArray[np.float64]
-"""float64 array; the docstring of its user says its shape."""
+"""float64 array; docstrings of functions state the shape."""
 
 Complexes: TypeAlias = NDArray[np.complex128]
-"""complex128 array, a point x + iy each."""
+"""complex128 array of points x + iy."""
 
 Topology: TypeAlias = Literal["quad", "o", "c", "blocks"]
-"""Name of what the connections of a grid make of it; ``blocks`` is whatever the others are not."""
+"""Kind of a grid by its connections; ``blocks`` stands for all that are not of the other three."""
 Side: TypeAlias = Literal["south", "east", "north", "west", "bottom", "top"]
 
 TOPOLOGIES: tuple[Topology, ...] = ("quad", "o", "c")
 """The topologies of a single block."""
 SIDES: tuple[Side, ...] = ("south", "east", "north", "west")
-"""The sides of a block of two directions, counter-clockwise."""
+"""The sides of a two-dimensional block, counter-clockwise."""
 
 
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])

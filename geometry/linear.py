@@ -19,9 +19,9 @@ from meshonet.geometry.elementary import product
 _SWEEPS = 60
 """Most sweeps of Jacobi rotations; they converge quadratically, in 4 to 10."""
 _SMALL = 2**-58
-"""What is left of the sizes of matrices where sweeps end: it changes no digit."""
+"""Relative size of off-diagonal entries at which sweeps end: they no longer change any digit."""
 _RIGHT_ANGLE = 2**-50
-"""Cosine of columns that count as orthogonal: what rounding leaves."""
+"""Cosine up to which columns count as orthogonal: that of rounding errors."""
 
 
 def solve(matrix: Any, right: Any) -> Floats:

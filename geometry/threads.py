@@ -14,7 +14,7 @@ MOST = 64
 """Threads that a kernel starts at the most (``TEAM_MOST`` of ``team.h``)."""
 
 NODES_EACH = 1 << 17
-"""Nodes that are worth a thread: starting it costs what the quickest kernel takes for 5,000."""
+"""Nodes per thread: starting one takes as long as the fastest kernel takes for 5,000 nodes."""
 MANY_VISITS = 16
 """How often kernels that iterate, as descents and marches do, visit a node at the least."""
 

@@ -17,7 +17,7 @@ from meshonet.geometry.polygon.corners import Indices
 EQUAL = 1e-9
 """Difference, over the larger of two values, up to which they are equal."""
 _NOISE = 1e-7
-"""Part by which costs are made unlike: above rounding, far below what differs in earnest."""
+"""Relative perturbation of costs: above rounding errors, far below real differences."""
 
 Item = TypeVar("Item")
 

@@ -28,7 +28,7 @@ Range: TypeAlias = tuple[tuple[int, int], ...]
 PLACES: dict[Side, tuple[int, int]] = {
     "west": (0, 0), "east": (0, -1), "south": (1, 0), "north": (1, -1), "bottom": (2, 0), "top": (2, -1),
 }  # fmt: skip
-"""Direction that a side is an end of (0 is xi, 1 eta, 2 zeta), and which end: 0 the first, -1 the last."""
+"""The index direction normal to a side (0 is xi, 1 eta, 2 zeta), and its end: 0 the first, -1 the last."""
 
 Form: TypeAlias = Literal["plane", "surface", "volume"]
 

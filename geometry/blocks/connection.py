@@ -23,7 +23,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.linear import solve
 
 Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
-"""Gives the nodes of a side of a block."""
+"""Returns the nodes of a side of a block, given its number."""
 
 
 @dataclass(frozen=True)
@@ -92,9 +92,9 @@ class Connection:
     donor_side: Side
     donor_range: Range
     orientation: tuple[int, ...]
-    """The donor's direction along each of the side's, counted from 1, negative where they are opposed."""
+    """The donor's direction, from 1, along each direction of the side; negative if they are opposite."""
     transform: Motion | None = None
-    """What carries the nodes of the side to the donor's, when they are periodic."""
+    """Motion from the nodes of the side to those of the donor, if they are periodic."""
 
     @property
     def ends(self) -> tuple[tuple[int, Side, Range], tuple[int, Side, Range]]:

@@ -24,7 +24,7 @@ from meshonet.geometry.blocks.meeting_sides import meeting_sides
 from meshonet.geometry.errors import InputError
 
 TOLERANCE = 1e-6
-"""Nodes are the same when they are no farther apart than this, in lengths of the shorter of two edges."""
+"""Nodes are the same up to this distance, over the length of the shorter of two edges."""
 Stretch: TypeAlias = tuple[int, Side, int, int]
 """Block, side, first and last node of a part of its boundary."""
 Part: TypeAlias = tuple[int, Side, Range]

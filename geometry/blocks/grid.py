@@ -51,7 +51,7 @@ class Origin:
 
 
 UNKNOWN = Origin()
-"""Of a sample that no dataset holds."""
+"""Origin of a grid that is not a sample of a dataset."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

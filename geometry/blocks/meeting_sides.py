@@ -33,16 +33,16 @@ from meshonet.geometry.polygon.corners import Indices
 AROUND: Mapping[Side, int] = {"west": -1, "east": 1, "south": 1, "north": -1}
 """Whether the nodes of a side of a planar block run counter-clockwise around it."""
 _DIRECTION = np.array([0.5403023, 0.6710117, 0.5076571])
-"""Cells are sorted along this direction, along which few grids have many of equal place."""
+"""Cells are sorted along this direction, in which few grids have many cells at the same position."""
 _MOST = 0.25
-"""Nodes farther apart than this part of an edge are different, however coarsely they were rounded."""
+"""Nodes farther apart than this fraction of an edge are different, whatever their rounding."""
 _FLAT = 1e-12
-"""Area of a cell, over the square of its longest edge, up to which it is a line."""
+"""Area of a cell, over the square of its longest edge, up to which it counts as a line."""
 
 _DECIMALS = range(3, 13)  # decimal places that numbers may have been written with
 _DIGITS = range(5, 14)  # significant digits that numbers may have been written with
 _COUNTED = 400
-"""Values of which digits are counted, one after the other."""
+"""Number of values of which the digits are counted."""
 
 
 def meeting_sides(

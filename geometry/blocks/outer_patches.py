@@ -20,7 +20,7 @@ from meshonet.geometry.blocks.block import PLACES, Range, face_counts
 from meshonet.geometry.blocks.patches import Patch
 
 JOINED, UNNAMED = -2, -1
-"""Owners of cells that are joined to others, and of those that no patch has."""
+"""Owner of cells that are connected to others, and of cells without a patch."""
 
 
 def listed_sides(counts: tuple[int, ...]) -> tuple[Side, ...]:

@@ -22,7 +22,7 @@ _SIGNS: tuple[tuple[Kind, str], ...] = (
     ("periodic", "periodic"),
     ("interface", "interface"), ("interface", "wake"),
 )  # fmt: skip
-"""Kinds of boundary, and what names of them have in them; the first that fits counts."""
+"""Kinds of boundary, and words in the names of their patches; the first that matches counts."""
 
 
 def kind_of(name: str) -> Kind:

@@ -13,7 +13,7 @@ from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import solve
 
 _NEARLY_HALF = 3.1
-"""Angles beyond which the part that is not symmetric is too small to have a direction."""
+"""Angle beyond which the antisymmetric part of a rotation is too small to give the axis."""
 
 
 class Screw(NamedTuple):

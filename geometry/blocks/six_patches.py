@@ -19,7 +19,7 @@ from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.corners import Indices
 
 TOLERANCE = 1e-6
-"""How far apart nodes of a shared edge may be, in the diagonal of the box around all."""
+"""Largest distance between nodes of a shared edge, over the diagonal of the bounding box."""
 _NEAR = 0.2  # largest distance between matching corners, over the shortest side of a patch
 
 

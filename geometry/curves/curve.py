@@ -40,13 +40,13 @@ class Curve:
     points: Floats
     """(n, 2) the given points; a closed curve's first is not repeated."""
     length: float
-    """Arc length of all of the curve."""
+    """Arc length of the whole curve."""
     knots: Floats
     """(n,) arc length at each given point."""
     corners: Floats
     """Arc lengths at the corners."""
     corner_index: Indices
-    """Which points the corners are."""
+    """Indices of the points that are corners."""
     straight: NDArray[np.bool_] | None
     """(intervals,) where the curve follows the chord; None is nowhere."""
 

@@ -17,7 +17,7 @@ from meshonet.geometry.elementary import cos, product, sin
 from meshonet.geometry.errors import InputError
 
 STEPS = 4
-"""Steps from one place that a frame is wanted at to the next, unless these are close together."""
+"""Default number of integration steps between neighbouring arc lengths."""
 
 
 def frames_along(

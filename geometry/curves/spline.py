@@ -18,7 +18,7 @@ from meshonet.geometry.polygon.corners import Indices, angle_between, turning
 from meshonet.kernels._native import solve_tridiagonal
 
 SLACK = 0.25
-"""How far a tangent may leave the angle between its two chords, as a part of the turns around it."""
+"""How far a tangent may leave the angle between its two chords, as a fraction of nearby turns."""
 LEAST_SLACK = np.radians(0.5)  # where chords hardly turn
 LONGEST = 2.0
 """Largest size of a slope: a longer one makes a loop or a cusp."""

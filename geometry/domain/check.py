@@ -16,9 +16,9 @@ from meshonet.kernels._native import crossing_segments
 _BUDGET = 2_000_000_000  # comparisons, some seconds; one body needs about as many as it has points
 _ROOM = 64  # pairs in addition to those that meet because they are consecutive
 _NO_AREA = 1e-14
-"""Width by the extent of a loop below which it is a line."""
+"""Width over the extent of a loop below which it has no area."""
 _SAME = 1e-13
-"""Distance by the extent of the domain below which two points are the same."""
+"""Distance over the extent of the domain below which two points are the same."""
 
 
 def check_domain(domain: Domain) -> None:

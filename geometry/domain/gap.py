@@ -13,9 +13,9 @@ from meshonet.geometry.domain.loop import Loop
 IN_FRONT = 0.6
 """Cosine of the angle to the normal up to which a wall counts as being in front: 53 degrees."""
 _BEYOND = 1.0 + 1e-9
-"""Times a limit: what is on it but for rounding is not beyond it."""
+"""Factor on a limit, so that a value equal to it except for rounding does not exceed it."""
 _SAME = 1e-9
-"""Distance over the extent of the walls up to which a point of a wall is the place itself, and no gap."""
+"""Distance over the extent of the walls up to which a wall point is the point itself, and no gap."""
 _SAMPLES = 2000  # points on all walls together
 _ROWS = 256  # points compared with all walls at a time, which bounds the memory
 

@@ -16,7 +16,7 @@ from meshonet.geometry.families.split import split
 from meshonet.geometry.spacing.sampling import Sampling
 
 NODES = 101
-"""Nodes along xi and eta when nobody says, as in the paper."""
+"""Default number of nodes along xi and eta, as in the paper."""
 
 RANDOM = {"procedural": "procedural", "four-sided": "four_sided", "bodies": "bodies"}
 """Modules in `meshonet.geometry.families` of shapes that have no parameter, by the family's name."""

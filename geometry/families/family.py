@@ -25,7 +25,7 @@ class Family:
 
     name: str
     parameter: str
-    """What the number is, with its unit."""
+    """What the parameter is, with its unit."""
     low: float
     high: float
     least: float

@@ -19,7 +19,7 @@ from meshonet.geometry.errors import InputError
 Way = Literal["interpolation", "extrapolation", "random"]
 WAYS: tuple[str, ...] = get_args(Way)
 SHARE = 1 / 6
-"""Of the members that are tested: 6 of 36 in the authors' settings."""
+"""Fraction of test members: 6 of 36 in the settings of the paper's authors."""
 
 
 def split(

@@ -20,10 +20,10 @@ ALWAYS = np.radians(75.0)
 HAIRPIN = np.radians(100.0)
 """A turn that may be the round end of a thin body with few points (`SHARP` beside small turns)."""
 WIDENS = 0.75
-"""A body widens behind an oblique base at this part or more of its first rate, behind a nose at half."""
+"""Behind an oblique base a body widens at this fraction or more of its first rate, behind a nose at half."""
 ALONE = np.radians(50.0)  # turning beside a corner below which a sharp one may be a coarsely given round end
 FEW = 12
-"""A closed polygon of at most so many points is meant as one."""
+"""A closed polygon of at most this many points is taken as a polygon, not as samples of a curve."""
 
 
 def angle_between(a: Floats, b: Floats) -> Floats:

@@ -13,7 +13,7 @@ from meshonet.kernels._native import crossing_segments
 
 _BUDGET = 50_000_000  # comparisons, a quarter of a second, before an index tree replaces the sweep
 _SWEEP = np.array([0.846, 0.533])
-"""Direction of the sweep. Along an axis, every segment of a straight side across it would meet all others."""
+"""Direction of the sweep. Along an axis, all segments of a straight side normal to it would overlap."""
 _ROUNDING = 1e-15  # relative, of products with it
 _CHUNK = 256  # segments queried at a time, so that the crossings of a tangle do not fill the memory
 

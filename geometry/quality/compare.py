@@ -10,7 +10,7 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 NEAR = 0.1
-"""Part of the rows that counts as near the wall."""
+"""Fraction of the rows that counts as near the wall."""
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ FIGURES: Mapping[str, str] = MappingProxyType({
     "growth_across": "growth across sides of blocks",
     "bend_across": "bend across sides of blocks, degrees",
 })  # fmt: skip
-"""Figures beside metrics and counts: a name, and what it takes."""
+"""Names of the figures other than metrics and counts, with a description of each."""
 
 
 @dataclass(frozen=True)

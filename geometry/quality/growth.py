@@ -21,7 +21,7 @@ ROWS = 128
 DIRECTIONS = ("xi", "eta", "zeta")
 
 LARGE = 1e30
-"""Growth beside a step of no length."""
+"""Growth at an edge of zero length."""
 
 
 @dataclass(frozen=True)

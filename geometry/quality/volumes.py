@@ -25,9 +25,9 @@ from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
 
 CORNERS, BEZIER = 0, 1
-"""Tests that cells have to pass."""
+"""Tests for folded cells, by corner Jacobians or Bezier coefficients."""
 _MOST = 1 << 16
-"""Folded cells that are looked at for the worst."""
+"""Largest number of folded cells among which the worst are sought."""
 
 
 def count_folded_solids(nodes: Floats, test: int = CORNERS) -> int:

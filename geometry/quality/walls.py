@@ -14,7 +14,7 @@ from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.quality.growth import Extreme
 
 DEPTH = 33
-"""Nodes along a line that are looked at."""
+"""Number of nodes along a line that are examined."""
 
 NO_GROWTH: Mapping[str, Extreme] = MappingProxyType({})
 
@@ -39,7 +39,7 @@ class WallRow:
 
     name: str
     side: str | None
-    """None where a name is on several sides."""
+    """The side of the block; None if the name is on several sides."""
     height: Spread
     """Distance from each wall node to the next node of the line that leaves it, in the grid's unit."""
     off_square: Spread
@@ -51,7 +51,7 @@ class WallRow:
     equal_cells: int
     """Cells from the wall on as high as the first, within 1 %, where they are fewest; 32 at the most."""
     growth: Extreme | None = None
-    """Growth along the lines that leave it, through all blocks that they run through, of many blocks."""
+    """In multi-block grids, growth along the lines that start at the wall, through all blocks."""
 
 
 def wall_row(grid: Grid, patch: Patch) -> WallRow:

@@ -39,7 +39,7 @@ class Outline:
     """
 
     far_field_unit = "extents of the body"
-    """What the distance of a far field is measured in."""
+    """Unit of the far-field distance."""
     notes: tuple[str, ...] = ()
     """What a reader passed over in its file, for those who sample it."""
 

@@ -9,7 +9,7 @@ from meshonet.geometry.elementary import exp, power, product
 from meshonet.geometry.errors import InputError
 
 LARGEST = 10.0
-"""A ratio beyond this between neighbouring cells is refused."""
+"""Largest growth ratio that is accepted."""
 
 
 def check_growth(growth: float | None, most: float = LARGEST) -> None:

@@ -18,7 +18,7 @@ _SCARCE = 5.0  # coarsening of curvature and nose beyond which growth is increas
 _RAMP = 3.0  # cells over which growth sets in behind a trailing edge with a prescribed size
 _EDGE = 0.025  # fraction of the wall at either end where curvature asks for no cell below the edge's size
 TURN = math.radians(3.0)
-"""How much of the curve's turning one cell may take."""
+"""Largest turning angle of the curve along one cell."""
 _WINDOW = 2e-3  # chords over which curvature is averaged, against noise in the last digit of the points
 _SAMPLES = 1600  # approximate number of points on the curve at which sizes are computed
 _SCARCEST = math.log(64.0)  # logarithm of the largest coarsening of curvature and leading edge

@@ -10,7 +10,7 @@ from meshonet.geometry.elementary import product
 from meshonet.geometry.polygon.corners import Indices
 
 TOLERANCE = 1e-8
-"""Part of the size of a surface within which edge nodes are one node."""
+"""Distance, over the size of a surface, within which edge nodes are one node."""
 
 _SLANT = np.array([0.5257311, 0.6513887, 0.5470973])  # along no axis, diagonal or face of a regular solid
 

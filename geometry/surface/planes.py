@@ -10,7 +10,7 @@ from meshonet.geometry.polygon.corners import Indices
 FLAT = 1e-6
 """Part of the size of a surface by which nodes may be off a plane of symmetry."""
 FEWEST = 3
-"""Open edges in a plane, at least, that show it."""
+"""Least number of open edges in a plane of symmetry."""
 
 
 @dataclass(frozen=True)

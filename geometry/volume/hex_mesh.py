@@ -38,7 +38,7 @@ FaceValues: TypeAlias = Callable[[int, Side], NDArray[Any]]
 _MOST = 0.8
 """Part of the cells of a left-handed block that are negative at least: others are folded."""
 POLE = 1e-12
-"""Part of the size of the grid within which nodes of a line of a side are in one place."""
+"""Distance, over the size of the grid, within which the nodes of a line coincide."""
 
 
 @dataclass(frozen=True, eq=False)

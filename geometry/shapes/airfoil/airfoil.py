@@ -73,7 +73,7 @@ class Airfoil:
     """The trailing edge is a straight base; a gap below `SHARP_GAP` chords has been closed at its middle."""
 
     far_field_unit = "chords"
-    """What the distance of a far field is measured in."""
+    """Unit of the far-field distance."""
 
     notes: tuple[str, ...]
     """What was changed of the given points: one sentence each."""
@@ -147,7 +147,7 @@ class Airfoil:
         return Airfoil(points, self.name, notes=self.notes)
 
     def smoothed(self, tolerance: float) -> Airfoil:
-        """Return the same airfoil on splines within `tolerance` (chords) of its points, corners kept."""
+        """Return the airfoil with its points on smoothing splines within `tolerance` chords; corners stay."""
         from meshonet.geometry.shapes.airfoil.smooth import smooth_ring
 
         ring, most = smooth_ring(self.curve, self.blunt, tolerance * self.chord)

@@ -37,7 +37,7 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[
 
 
 def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, asked: TrailingEdge) -> tuple[str, ...]:
-    """Return what became of a base by `te`, or that there is none where one was `asked` to be changed."""
+    """Return a note on how `te` changed a base, or that there is none although a change was `asked` for."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
     if before.blunt and te == "wedge":
         length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord

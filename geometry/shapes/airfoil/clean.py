@@ -20,7 +20,7 @@ SHARP_GAP = 2e-4
 SAME_POINT = 1e-5
 """Points closer than this, in extents, are one: their direction is noise of the last digit."""
 ON_BASE = 5e-5
-"""How far, in chords, a point may lie off the straight base and still be dropped as a point of it."""
+"""Distance, in chords, from the straight base up to which a point is dropped as lying on it."""
 MOST_CORNERS = 12
 """More corners than this, the trailing edge's among them, are noise of the points and count as none."""
 _CORNER = np.radians(35.0)  # least turn of a corner of the trailing edge
@@ -38,7 +38,7 @@ class CleanSection:
 
     points: Floats
     index: Indices
-    """(n,) which given point each is."""
+    """(n,) index of each point among the given ones."""
     blunt: bool
     gap: float
     """Distance between the two ends of the surfaces, before a sharp edge was closed."""

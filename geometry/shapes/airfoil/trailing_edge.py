@@ -35,7 +35,7 @@ _NEAR = 0.1  # chords from the corner within which the surface gets new points, 
 REACH = 4.0
 """Largest length of the wedge in widths of the base: 14 degrees at the tip between parallel surfaces."""
 LEAST = 1.0
-"""The same at least: surfaces that would meet before are bent outwards, with a corner each."""
+"""Least length in the same unit: surfaces that would meet before are bent outwards, with a corner each."""
 _WEDGE_POINTS = 9  # on each side of a wedge
 
 
