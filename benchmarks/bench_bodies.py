@@ -92,7 +92,7 @@ def tables(edges: list[Boundary], model: str, twin: str) -> list[str]:
 def batches(model: str) -> str:
     """Return the table of batches at 65 x 33 nodes, in memory."""
     edges = [random_body(np.random.default_rng([SEED, k]), 65, 33) for k in range(32)]
-    lines = ["\n## 32 bodies in one batch, 65 x 33\n", "| method | CPU ms a grid |", "| --- | --- |"]
+    lines = ["\n## 32 bodies in one batch, 65 x 33\n", "| method | CPU ms per grid |", "| --- | --- |"]
     for dtype in ("float32", "float64"):
         spent = clocked(partial(load(model).solve, edges, 0, dtype=dtype), 5)[0] / len(edges)
         lines.append(f"| **network in {dtype}** | {1e3 * spent:.2f} |")
@@ -176,35 +176,38 @@ HEAD = """# The neural operator for bodies: accuracy and time
 
 <!-- made by python benchmarks/bench_bodies.py --page docs/benchmarks/body-operator.md -->
 
-Read this page to decide whether `infer --model hole-o` is good enough for O grids around your bodies. How the
-operator works is in [operators](../theory/operators.md).
+Read this page to decide whether the accuracy of `infer --model hole-o` suffices for O grids around
+bodies. For the method see [neural operators](../theory/operators.md).
 
 - `hole-o` predicts the variational O grid, `hole-winslow` Winslow's grid. *n steps* and *n cycles* are
   `--polish n`: iterations of the variational method, or multigrid cycles for Winslow's grid.
 - The network was trained on 5,710 random bodies for six epochs, about nine minutes on one core. This is
   little training.
 - *valid*: share of grids without a folded cell, before repair.
-- *no worse than Winslow*: share of grids that are valid and whose largest and mean angle do not exceed those
-  of Winslow's grid.
-- *angle*: largest included angle of each cell, in degrees; maximum and mean, averaged over the bodies.
-- *gain*: how much smaller than Winslow's the angle is, divided by how much smaller that of the full
-  variational grid is. For the mean angle, the sum over all bodies and the median are given.
-- Bodies on which Winslow's equations have no discrete solution, a few in a hundred, are left out.
-- *CPU ms*: processor time of one thread, while other programs used the machine.
+- *no worse than Winslow*: share of grids that are valid and whose maximum and mean angle do not exceed
+  those of Winslow's grid.
+- *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
+  the cells, averaged over the bodies.
+- *gain*: reduction of the angle relative to Winslow's grid, divided by the reduction that the full
+  variational grid achieves. For the mean angle, the value summed over all bodies and the median are
+  given.
+- Bodies for which Winslow's iteration does not converge, a few in a hundred, are left out.
+- *CPU ms*: CPU time of one thread, while other programs used the machine.
 """
 TAIL = """
-## What follows
+## Conclusions
 
-- `infer` without `--model` uses `hole-o` for compact bodies that the airfoil operator cannot treat. If its
-  grid on 65 x 33 nodes has folded cells, the elliptic solver makes the grid instead.
-- With five steps the operator is valid on all bodies, where a quarter of Winslow's grids are folded before
-  repair. It takes up to four times the time of Winslow's grid and is closer to right angles.
+- `infer` without `--model` uses `hole-o` for compact bodies for which the conformal map fails. If the
+  network's grid on 65 x 33 nodes has folded cells, the elliptic solver generates the grid instead.
+- With five iterations after the network the grids of all bodies are valid, whereas a quarter of Winslow's
+  grids have folded cells before repair. The network with five iterations takes up to four times the time
+  of Winslow's grid, and its angles are closer to 90 degrees.
 - `solve-pde --method variational` has the best angles and takes about four times as long again.
-- Both variational grids crowd grid lines where a body is close to its far field.
-- Smooth bodies in a round far field and thin bodies stay with `airfoil-o`.
-- The network was not trained on bodies whose centroid lies outside them, such as clips, crescents and angle
-  sections. Its grids of these are often folded; the five steps or the repair unfold them. Of 25 plates,
-  crescents and angle sections, all were valid after the steps.
+- Both variational grids cluster grid lines where a body is close to its far field.
+- Smooth bodies in a round far field and thin bodies are meshed by the conformal map without a network.
+- The network was not trained on bodies whose centroid lies outside them, such as clips, crescents and
+  angle sections. Its grids for these often have folded cells, which the five iterations or the repair
+  remove. Of 25 plates, crescents and angle sections, all were valid after the iterations.
 """
 
 if __name__ == "__main__":

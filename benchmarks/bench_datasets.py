@@ -45,38 +45,40 @@ HEAD = """# Datasets of a million grids
 
 <!-- made by python benchmarks/bench_datasets.py --page docs/benchmarks/datasets.md -->
 
-Read this page before you make a dataset that does not fit into one file: what a batch costs beside its grids,
-and how long samples take to read. [Large datasets](../guide/datasets.md) says how to make one. The grids here
-are tiny, so that a million of them can be made in minutes; memory and the times of the index do not depend on
-their size. Times are wall-clock seconds of one process.
+Read this page before you generate a dataset in several files. It gives the memory and time of such a
+batch, and the time to read a sample. A large dataset is divided into files called *parts*; the index file
+`out.h5` presents them as one HDF5 file ([large datasets](../guide/datasets.md)). The grids here are tiny,
+so that a million of them take only minutes; memory and the times for the index do not depend on their
+size. Times are wall-clock times of one process.
 """
 READING = """
 ## Reading
 
-A fresh process opens `out.h5` with h5py, then the column of nodes and reads one sample of it, then the name
-of that sample. Milliseconds, the median of {repeats} processes; the slowest in brackets.
+A new process opens `out.h5` with h5py, opens the HDF5 dataset `nodes` and reads one sample from it, then
+reads the name of that sample. Times are medians over {repeats} processes, with the maximum in brackets.
 """
 PARTS = """
-## How many parts
+## Number of parts
 
-The index of parts of ten grids each: seconds to build it, its size, and milliseconds to open it and to read
-the last sample in a fresh process.
+The index file of parts with ten grids each: time to write it, its size, and time to open it and to read
+the last sample in a new process.
 """
 ZARR = """
-## Beside Zarr
+## Comparison with Zarr
 
-Nodes of 200,000 grids in 200 files: of parts, HDF5 files and their index; of Zarr, shards. Microseconds to
-write a grid, and milliseconds of a fresh process to import the package, to open the column and to read the
-last grid, the median of five. `pip install zarr`, without which this table is left out.
+Nodes of 200,000 grids in 200 files: HDF5 parts with their index file, and shards of Zarr. Times are
+medians of five new processes that import the package, open the dataset and read the last grid. The script
+omits this table if Zarr is not installed (`pip install zarr`).
 """
 TAIL = """
-HDF5 reads the list of all parts of a column when the column is opened, and looks through it at each read,
-which takes a few milliseconds for a thousand parts and grows with their number. So parts are not small: up to
-1,000 inputs or 256 MiB. Of grids of 200 x 100 nodes these are 500, and a million of them 2,000 parts.
+HDF5 reads the list of all parts when a virtual dataset is opened, and searches it at each read. This
+takes a few milliseconds for a thousand parts and grows with their number. Parts are therefore large: up
+to 1,000 inputs or 256 MiB. A part holds at most 500 grids of 200 x 100 nodes, so a million of them are
+2,000 parts.
 
-A virtual dataset was preferred to Zarr, since the two are about as fast once Zarr is loaded: one file still
-shows one dataset, read by the same ten lines of h5py, MATLAB or Julia as before, a part is a dataset by
-itself, and no dependency is added.
+The two formats are about equally fast once Zarr is imported. meshonet uses HDF5 virtual datasets because
+the same ten lines of h5py, MATLAB or Julia read an index file, a part and a dataset in one file, and
+because they add no dependency.
 """
 READER = """
 import json, sys, time, h5py
@@ -223,7 +225,8 @@ def beside_zarr(parts: int = 200, size: int = 1000) -> Iterator[str]:
     if find_spec("zarr") is None:
         return
     yield ZARR
-    yield from ("| | write | import | open | read |", "| --- | --- | --- | --- | --- |")
+    yield "| library | write, µs per grid | import, ms | open, ms | read, ms |"
+    yield "| --- | --- | --- | --- | --- |"
     with TemporaryDirectory() as name:
         for title, package, write in (("HDF5", "h5py", write_hdf5), ("Zarr", "zarr", write_zarr)):
             path = Path(name) / f"out.{package}"
@@ -249,17 +252,17 @@ def page(members: int, size: int, repeats: int, parts: Iterable[int]) -> str:
         numbers = (0, members // 2, members - 1)
         lines = [
             "", "| | |", "| --- | --- |",
-            f"| grids, parts of {size:,} | {members:,}, {figures['parts']:,} |",
-            f"| seconds to make it, a grid | {figures['seconds']:.0f}, "
+            f"| grids, parts ({size:,} grids each) | {members:,}, {figures['parts']:,} |",
+            f"| time in total in s, per grid | {figures['seconds']:.0f}, "
             f"{1e6 * figures['seconds'] / members:.0f} µs |",
-            f"| memory after a tenth and at the end | {watched[0]:.0f} MB, {watched[-1]:.0f} MB |",
-            f"| largest part, all parts | {figures['largest']:.2f} MB, {figures['all']:.0f} MB |",
-            f"| index: seconds to build it, size | {figures['index_seconds']:.1f}, "
+            f"| memory after a tenth of the grids, at the end | {watched[0]:.0f} MB, {watched[-1]:.0f} MB |",
+            f"| size of largest part, all parts | {figures['largest']:.2f} MB, {figures['all']:.0f} MB |",
+            f"| index file: time to write it in s, size | {figures['index_seconds']:.1f}, "
             f"{figures['index']:.2f} MB |",
             READING.format(repeats=repeats),
-            "| sample | open file | nodes | name |", "| --- | --- | --- | --- |",
+            "| sample | open file, ms | read nodes, ms | read name, ms |", "| --- | --- | --- | --- |",
             *reading_rows(index, numbers, repeats), PARTS,
-            "| parts | build | size | open | read |", "| --- | --- | --- | --- | --- |",
+            "| parts | write the index, s | size | open, ms | read, ms |", "| --- | --- | --- | --- | --- |",
             *(parts_row(Path(name), count) for count in parts), *beside_zarr(),
         ]  # fmt: skip
     return HEAD + "\n".join(lines) + "\n" + TAIL

@@ -32,36 +32,39 @@ from meshonet.solvers.deformation.outer import NodeTable, elements_of, first_hei
 from meshonet.solvers.deformation.sources import areas_of
 from meshonet.solvers.deformation.targets import NewWall, targets_of
 
-HEAD = """# Deformed grids: folds, layers, time
+HEAD = """# Deformed grids: folded cells, first-cell heights, time
 
 <!-- made by python benchmarks/bench_deform.py --page docs/benchmarks/deform.md -->
 
-Read this page to see what `meshonet deform` keeps of a grid, and how quick it is, beside inverse-distance
-weighting (IDW). How to use it is in [deform](../guide/deform.md).
+Use this page to compare `meshonet deform` with inverse-distance weighting (IDW): folded cells, first-cell
+heights, angles and CPU time. For its use see [deforming grids](../guide/deform.md).
 
-Moves are drawn at random (seed {seed}). *airfoils*: thickness times 0.9 to 1.1, camber changed by up to 2 %
-of the chord, of sections in viscous C grids of 250 x 100 nodes, y+ 1 at Reynolds number 6e6. *flap*: turned
-by up to 10 degrees either way, about a place near its nose, beside a slat and a main element: some 25,000
-cells in blocks, first cells of 1e-5.
+The deformations are random (seed {seed}). *airfoils*: the thickness is multiplied by 0.9 to 1.1 and the
+camber changed by up to 2 % of the chord, in viscous C grids of 250 x 100 nodes with y+ 1 at Reynolds
+number 6e6. *flap*: the flap of a section with slat and main element is rotated by up to 10 degrees in
+either direction about a point near its leading edge, in a multi-block grid of about 25,000 cells with
+first-cell heights of 1e-5.
 
-- *moves*: those whose new outline is valid; others ({refused}) are left out. *folded*: grids with folded
-  cells, and how many cells in the worst one.
-- *first cell*: largest relative change of the height of a first cell, over all wall nodes and moves.
-- *angle*: largest change of the grid's largest angle, in degrees.
-- *CPU ms*: processor time from grid and outline in memory to grid in memory, median / 90th percentile, one
-  thread of {machine}, while other programs used the machine.
-- *IDW*: displacements alone, weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996). *IDW, rotations*: with
-  rotations and the weights of Luke, Collins and Blades (J. Comput. Phys. 231 (2012) 586-601). Both by
-  the same kernel, all boundary nodes, without anything done about folds.
+- *deformations*: their number in brackets, of those with a valid new outline; {refused} others are left
+  out.
+- *folded*: number of grids with folded cells, and the largest number of folded cells in one grid.
+- *first cell*: largest relative change of a first-cell height, over all wall nodes and deformations.
+- *angle*: largest increase of the largest cell corner angle of a grid, in degrees.
+- *CPU ms*: CPU time from the grid and the new outline in memory to the new grid in memory, median / 90th
+  percentile, one thread of {machine}, while other programs used the machine.
+- *IDW*: interpolation of displacements with weights 1/r^3 (Witteveen, Bijl, AIAA 2009-3996). *IDW,
+  rotations*: interpolation of displacements and rotations with the weights of Luke, Collins and Blades
+  (J. Comput. Phys. 231 (2012) 586-601). Both use the same compiled kernel and all boundary nodes, without
+  treatment of folded cells.
 
 """
 TAIL = """
-`meshonet deform` weighs in the same way, with exponents for the plane, every wall node and far nodes in
-groups, in a compiled kernel. It tests what comes out, and where cells fold it goes the way in steps
-({steps} of these moves needed that).
+`meshonet deform` also uses weights of the inverse distance, in a compiled kernel. Its exponents are those
+for two dimensions; it uses every wall node and combines distant nodes in groups. If the result has folded
+cells, it repeats the deformation in several steps ({steps} of these deformations needed that).
 """
 SEED = 20261122
-COLUMNS = "moves", "method", "folded", "first cell", "angle", "CPU ms"
+COLUMNS = "deformations", "method", "folded", "first cell", "angle", "CPU ms"
 
 
 @dataclass(frozen=True, eq=False)

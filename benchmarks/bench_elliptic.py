@@ -37,21 +37,24 @@ HEAD = """# Elliptic solvers: time, convergence, memory
 
 <!-- made by python benchmarks/bench_elliptic.py --largest 3200 --page docs/benchmarks/elliptic.md -->
 
-Read this page for the cost of `solve-pde` with the methods `winslow`, `thomas-middlecoff` and
-`steger-sorenson`. The methods are described in [elliptic grids](../theory/elliptic.md).
+Use this page to find CPU time, convergence and memory of `solve-pde` with the methods `winslow`,
+`thomas-middlecoff` and `steger-sorenson`. For the methods see [elliptic grids](../theory/elliptic.md).
 
-Processor seconds of one thread on {processor}, float64, while other programs used the machine.
-*default*: stops when the error of the iteration is below that of the discretisation. *rate*: the factor by
-which one multigrid cycle reduces the residual, averaged down to 1e-8. *doubles a node*: the peak memory of
-the solver, grid included, in float64 numbers for each node. *folded*: inverted cells as the solver leaves
-them. *repair*: the stages of repair, their seconds, and the folded cells left.
+Times are CPU times of one thread on {processor}, in float64, while other programs used the machine.
+
+- *default*: the iteration stops when its error is below the discretisation error.
+- *rate*: factor by which one multigrid cycle reduces the residual, averaged down to a residual of 1e-8.
+- *doubles per node*: peak memory of the solver, including the grid, in float64 numbers per node.
+- *folded*: number of folded cells in the solution, before repair.
+- *repair*: stages of the repair, their time, and the number of folded cells that remain.
 """
 
 OTHERS = """
 ## Compared with other programs
 
-Seconds for an elliptic grid or its nearest equivalent. The figures of the paper (arXiv 2501.11937, table of
-mesh refinement; its network ran on an RTX 4090) and of Construct2D (user time) were taken on other machines.
+Times in seconds for an elliptic grid or its nearest equivalent. The times of the paper (arXiv 2501.11937,
+table of mesh refinement; its network ran on an RTX 4090) and of Construct2D (user time) were measured on
+other machines.
 
 | program | 100x100 | 200x200 | 250x100 | 400x400 | 800x800 | 1600x1600 | 3200x3200 |
 | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -101,7 +104,7 @@ def speed(sizes: list[int], largest: int) -> Iterator[str]:
     """Yield the table of shapes; of the largest size some only."""
     yield "\n## Winslow's equations\n"
     heads = ("shape", "nodes a side", "default, s", "cycles", "to 1e-8, s", "cycles", "rate")
-    yield "| " + " | ".join((*heads, "doubles a node", "folded", "repair")) + " |"
+    yield "| " + " | ".join((*heads, "doubles per node", "folded", "repair")) + " |"
     yield "| --- |" + " --- |" * 9
     for n in sizes:
         for name, edges in shapes(n):
@@ -236,7 +239,7 @@ def clustered(edges: Boundary, first: float) -> Boundary:
 def controls(sizes: list[int]) -> Iterator[str]:
     """Yield the table of Thomas and Middlecoff's control functions."""
     yield "\n## Control functions of Thomas and Middlecoff, first cell H at the ends of the south side\n"
-    yield "| shape | nodes a side | H | to 1e-8, s | cycles | rate | folded | median first cell |"
+    yield "| shape | nodes per side | H | to 1e-8, s | cycles | rate | folded | median first cell |"
     yield "| --- |" + " --- |" * 7
     for n in sizes:
         for name in ("arch", "hexagon"):

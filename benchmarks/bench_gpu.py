@@ -32,7 +32,7 @@ HEAD = """# GPU
 
 <!-- made by python benchmarks/bench_gpu.py --page docs/benchmarks/gpu.md -->
 
-Read this page to see what a GPU wins in training and in making many grids at once. How to use one is in
+Use this page to find the speed of training and of batched neural operators on a GPU. For its use see
 [threads and GPUs](../guide/threads-and-gpu.md). `python benchmarks/bench_gpu.py --page
 docs/benchmarks/gpu.md` fills it in, in less than eight minutes:
 

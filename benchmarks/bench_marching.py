@@ -39,19 +39,24 @@ HEAD = """# Volumes marched from surfaces: quality and time
 
 <!-- made by python benchmarks/bench_marching.py --page docs/benchmarks/marching-surfaces.md -->
 
-Read this page to see how good marched volumes are. How the method works is in
-[marching from surfaces](../guide/marching-surfaces.md).
+Use this page to find the quality and the CPU time of volume grids that are marched from surfaces. For the
+method see [marching from surfaces](../guide/marching-surfaces.md).
 
-- *tries*: marches that were made, with more smoothing each time.
-- *folded*: cells with a corner Jacobian, or a Bezier coefficient of it, that is not positive.
-- *first cell*: largest relative error over all wall nodes.
-- *quality*: least over largest determinant of a cell's eight corners, pyHyp's measure; *SJ*: least corner
-  Jacobian over the product of its edges.
-- *off the normal*: degrees between grid lines and the normals of levels, mean / 99 % / largest.
-- *growth*: the law's, then the largest change in size along a line, as marched / after nodes are moved along
-  lines.
-- *CPU*: seconds from patches in memory to tested blocks, best of 3; microseconds a node; for files the whole
-  process, to the written volume. One thread of {machine}, while other programs used the machine.
+- *levels*: number of node layers from the surface to the far field. *first cell, distance*: prescribed
+  first-cell height, and distance of the far field.
+- *tries*: number of marches until the grid was valid, each with more smoothing than the one before.
+- *folded*: number of cells in which a corner Jacobian, or a Bezier coefficient of the Jacobian, is not
+  positive.
+- *first cell*: largest relative error of the first-cell height over all wall nodes.
+- *quality*: smallest ratio of the minimum to the maximum Jacobian at the eight corners of a cell, as
+  printed by pyHyp. *SJ*: minimum scaled Jacobian at the corners.
+- *off the normal*: angle in degrees between grid lines and the normals of the node layers, mean / 99th
+  percentile / maximum.
+- *growth*: prescribed relative growth of the layer height from layer to layer; then the largest relative
+  change of edge length along a grid line, as marched / after nodes are redistributed along the lines.
+- *CPU*: CPU time in seconds from patches in memory to tested blocks, best of 3; then in microseconds per
+  node; *process*: CPU time of the whole command for surfaces from files, including the written volume.
+  One thread of {machine}, while other programs used the machine.
 
 """
 COLUMNS = (

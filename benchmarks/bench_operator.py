@@ -241,66 +241,69 @@ HEAD = """# All methods compared: airfoils and four-sided domains
 
 <!-- made by python benchmarks/bench_operator.py --page docs/benchmarks/o-grids.md (make bench) -->
 
-Read this page to see what each method costs and how close its grid comes to a converged solution. Advice in
-short form is in [choosing a method](../start/choosing-a-method.md).
+Use this page to find, for each method, the CPU time and the distance of its grid to a converged solution. For
+short advice see [choosing a method](../start/choosing-a-method.md).
 
-**Timing.** All methods of a table ran on the same boundaries, in one run, on {machine}, while other programs
-used the machine. *ms* is the processor time of making the grid: set-up is included; reading, writing and
-repair are not. Each value is the median over the shapes, each run once. The last digits are noise. Bold rows
-are the conformal and neural operators of this package.
+**Timing.** All methods of a table ran on the same boundaries, in one run, on {machine}, while other
+programs used the machine. *ms* is the CPU time to generate the grid, including set-up, without reading,
+writing and repair. Each value is the median over the shapes, with one run each. The last digits are not
+significant. Bold rows are the conformal and neural operators of meshonet.
 
-**Distance** is a relative L2 norm. It is the root mean square distance of the nodes from the reference nodes,
-divided by that of the reference nodes from the middle of the shape. *Near the wall* means within 1.5 chords
-of the middle of an airfoil, or in the tenth of the rows next to each side of a four-sided domain.
+**Distance** is a relative L2 norm: the root mean square distance of the nodes to the reference nodes,
+divided by the root mean square distance of the reference nodes to the centre of the shape. *Near the
+wall* means within 1.5 chords of the centre of an airfoil, or in the tenth of the rows next to each side
+of a four-sided domain.
 
-**Reference.** Winslow's equations are solved to a residual of 1e-8 with two and with four times the cells in
-each direction (at 800x800: with the same and twice the cells), and the two solutions are extrapolated.
-Variational grids are compared with the full variational solve on the same nodes.
+**Reference.** Winslow's equations are solved to a residual of 1e-8 with two and with four times the cells
+in each direction (at 800x800: with the same number and with twice the cells); the two solutions are
+extrapolated. Variational grids are compared with the full variational solution on the same nodes.
 
-**Angles** are divided by those of the multigrid solution at residual 1e-8 on the same nodes. A value below 1
-is better than the PDE solution. *Valid* is the share of grids without a folded cell before any repair.
+**Angles** are given relative to those of Winslow's grid, solved by multigrid to a residual of 1e-8 on the
+same nodes. A value below 1 is better than Winslow's grid. *Valid* is the share of grids without a folded
+cell before any repair.
 
-Five remarks:
+Remarks:
 
-- TFI distributes nodes differently across the field, so its distance says little about its quality.
-- Multigrid Winslow stops when the error of the iteration is below that of the discretisation, its default.
-- Some bodies have wall cells that the airfoil operator cannot resolve. `infer` hands these to multigrid or to
-  `hole-o`, and they decide its worst distances.
-- In the tables of distances, boundaries are every fourth node of a finer boundary (at 800x800 every second).
-  This can leave out corners of a blunt trailing edge and changes the largest angles there by a few percent.
-  The table of folded cells samples its boundaries directly.
-- On uniformly spaced walls the reference is accurate to about 1e-4 only, because its order falls to 1.4 at
-  trailing edges. The operator also differs from the reference on purpose: the grid lines that leave the
-  trailing edge bisect its angle.
+- TFI distributes nodes differently in the interior, so its distance says little about its quality.
+- Multigrid Winslow stops by default when the error of the iteration is below the discretisation error.
+- The airfoil operator cannot resolve the wall cells of some bodies. `infer` uses multigrid or `hole-o`
+  for these, and they determine its largest distances.
+- In the tables of distances each boundary consists of every fourth node of a finer boundary (at 800x800
+  every second). This can omit corners of a blunt trailing edge and changes the largest angles there by a
+  few percent. The table of folded cells uses boundaries that are sampled directly.
+- For walls with uniform spacing the reference is accurate only to about 1e-4, because its order of
+  convergence is 1.4 at trailing edges. The operator also differs from the reference by design: the grid
+  lines that leave the trailing edge bisect its angle.
 """
 DOMAINS_NOTE = """Winslow's methods and `quad-winslow` are compared with Winslow's solution, variational
 methods and `quad-general` with the full variational solve."""
 FAMILIES_NOTE = """
 ## The six families of the MeshONet paper, 101x101, test members
 
-Median relative L2 distance over all nodes to Winslow's converged solution; in brackets, how many of the six
-grids have folded cells. Winslow's own grids of the wrench are folded. The operator is `quad-winslow` for the
-first four families, the airfoil operator for the airfoil and `hole-winslow` for the plate with a hole. None
-of them was trained on these shapes. The paper's models were trained on 30 members of each family; their
-figures come from [the reproduction of the paper](paper/index.md), where they are compared with the grid
-of the PDE solver.
+Median relative L2 distance of all nodes to Winslow's converged solution; in brackets, how many of the six
+grids have folded cells. Winslow's own grids of the wrench have folded cells. The operator is
+`quad-winslow` for the first four families, the airfoil operator for the airfoil and `hole-winslow` for
+the plate with a hole. None of them was trained on these shapes. The paper's models were trained on 30
+members of each family; their values are from [the reproduction of the paper](paper/index.md), where they
+are compared with the grid of the PDE solver.
 """
 TIMES_HEAD = """
-## Time to make the grid, milliseconds, float64, best of 3
+## CPU time to generate the grid in milliseconds, float64, best of 3
 """
 WHICH = """
-## What follows for the defaults of `infer`
+## Consequences for the defaults of `infer`
 
-- **O grids around airfoils** use the conformal map and Picard iteration without the network. The result is as
-  close to the solution and as well shaped, in less time. The network is used with `--polish off` or
-  `--model airfoil-o`.
-- **Four-sided domains** get the variational grid, solved on fewer nodes where that gives an equal grid. For a
-  single grid no network is better. For batches, `--model quad-general` is many times faster than any solver
-  ([figures](quad-operator.md)).
-- **C grids** are marched from wall and wake, or minimised where marching does not suit. The network for
-  four-sided domains makes worse C grids than TFI ([figures](body-operator.md#c-grids-no-model)).
-- **Batches of airfoils** gain little from the network. It evaluates 64 airfoils in one pass, but the map, the
-  iteration and the evaluation of nodes are separate for each body.
+- **O grids around airfoils**: conformal map and Picard iteration without the network. The grid is as
+  close to the solution, with equally good angles, in less time. The network is used with `--polish off`
+  or `--model airfoil-o`.
+- **Four-sided domains**: the variational grid, solved on fewer nodes if the result is equivalent. For a
+  single grid no network is better. For batches, `--model quad-general` is many times faster than any
+  solver ([figures](quad-operator.md)).
+- **C grids**: hyperbolic marching from the wall and the wake, or the variational method if marching
+  fails. The network for four-sided domains generates worse C grids than TFI
+  ([figures](body-operator.md#c-grids-no-model)).
+- **Batches of airfoils** gain little from the network. It evaluates 64 airfoils together, but map,
+  iteration and evaluation of nodes are separate for each body.
 """
 
 if __name__ == "__main__":

@@ -25,29 +25,30 @@ from meshonet import Grid
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "formats"))
 from browser import Browser
 
-HEAD = """# Pages to look around in
+HEAD = """# Interactive pages: size and time
 
 <!-- made by python benchmarks/bench_pages.py --page docs/benchmarks/pages.md -->
 
-Read this page to know what `meshonet plot -o grid.html` costs: how large the page is, how long it takes to
-write, and when the browser shows the first picture. Chromium draws without a graphics card here, on a shared
-machine of two cores; with a card the picture is there sooner. Times are medians of three. How pages are used
-is in [pictures](../guide/pictures.md).
+Use this page to find, for `meshonet plot -o grid.html`, the size of the HTML page, the time to write it, and
+the time until the browser has drawn the grid for the first time. The browser is Chromium without a
+graphics card, on a shared machine with two cores; with a graphics card it draws sooner. Times are medians
+of three runs. For the use of the pages see [pictures](../guide/pictures.md).
 
-## By size
+## Size and time by number of cells
 
-All metrics of the cells are in the page.
+The page contains all quality metrics of the cells.
 
-| grid | cells | MB | bytes a cell | s to write | s to the first picture |
+| nodes | cells | size, MB | bytes per cell | time to write, s | time to first drawing, s |
 | --- | --- | --- | --- | --- | --- |
 """
 OTHERS = """
-## Beside other libraries
+## Comparison with other libraries
 
-The same O grid of 100,000 cells, its cells coloured by one metric and its lines drawn, as each library does
-it when it is called in the usual way. None of them lists and visits cells, or switches blocks, by itself.
+Each library writes the same O grid of 100,000 cells, coloured by one metric, with grid lines, by its
+usual calls. None of the other libraries provides lists of cells to visit, or switches for blocks, without
+further programming.
 
-| page by | MB | s to write | s to the first picture | metrics in it |
+| library | size, MB | time to write, s | time to first drawing, s | metrics in the page |
 | --- | --- | --- | --- | --- |
 """
 PLANES = ((101, 101), (401, 251), (1251, 801))

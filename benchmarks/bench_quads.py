@@ -154,7 +154,7 @@ def batches(model: str, clock: bool) -> str:
     boundaries = domains(65, 80)[:64]
     lines = [
         "\n## 64 domains in one batch, 65 x 65\n",
-        "| method | CPU ms a grid | grids a second on one core | speed-up over single solves |",
+        "| method | CPU ms per grid | grids per second on one core | speed-up over single solves |",
         "| --- | --- | --- | --- |",
     ]
     ways: dict[str, Callable[[], object]] = {
@@ -242,32 +242,34 @@ HEAD = """# The neural operator for four-sided domains: accuracy and time
 
 <!-- made by python benchmarks/bench_quads.py --page docs/benchmarks/quad-operator.md -->
 
-Read this page to decide whether `infer --model quad-general` is good enough for a batch of four-sided
-domains. How the operator works is in [operators](../theory/operators.md).
+Read this page to decide whether the accuracy of `infer --model quad-general` suffices for batches of
+four-sided domains. For the method see [neural operators](../theory/operators.md).
 
 - `quad-general` predicts the variational grid, `quad-winslow` Winslow's grid. *n steps* and *n cycles* are
   `--polish n`: iterations of the variational method, or multigrid cycles for Winslow's grid.
-- *4 Picard steps, 33* is the grid from which the network starts, without the network.
+- *4 Picard steps, 33* is the initial grid that the network corrects, on 33 x 33 nodes.
 - *valid*: share of grids without a folded cell, before repair.
-- *no worse than Winslow*: share of grids that are valid and whose largest and mean angle do not exceed those
-  of Winslow's grid.
-- *angle*: largest included angle of each cell, in degrees; maximum and mean, averaged over the domains.
-- *gain*: how much smaller than Winslow's the angle is, divided by how much smaller that of the full
-  variational grid is. For the mean angle, the sum over all domains and the median are given.
-- *CPU ms*: processor time of one thread, while other programs used the machine.
+- *no worse than Winslow*: share of grids that are valid and whose maximum and mean angle do not exceed
+  those of Winslow's grid.
+- *angle*: largest included angle of each cell, in degrees. The tables give the maximum and the mean over
+  the cells, averaged over the domains.
+- *gain*: reduction of the angle relative to Winslow's grid, divided by the reduction that the full
+  variational grid achieves. For the mean angle, the value summed over all domains and the median are
+  given.
+- *CPU ms*: CPU time of one thread, while other programs used the machine.
 """
 TAIL = """
-## What follows
+## Conclusions
 
-- **One domain**: the variational solve on fewer nodes gives the last percent of the mean angle. It is the
-  default of `infer`.
-- **Batches**: name `--model quad-general`. All members go through the network together, in a fraction of the
-  time of any solver. `--polish 2` to `5` removes folded and kinked cells.
-- **Winslow's grid**: the network gains nothing. The Picard steps alone come as close, and one multigrid cycle
-  gains more than either.
-- **Python**: the fastest call is `load("quad-general").solve(boundaries, "off", dtype="float32", threads=2)`.
-  The network runs in single precision, on one core for each thread. The grids do not depend on the number of
-  threads.
+- **One domain**: the variational method on fewer nodes reaches the last percent of the gain in mean
+  angle. It is the default of `infer`.
+- **Batches**: use `--model quad-general`. The network evaluates all domains together, in a fraction of
+  the time of any solver. `--polish 2` to `5` removes folded and kinked cells.
+- **Winslow's grid**: the network has no advantage. The Picard steps alone are as close to the solution,
+  and one multigrid cycle improves the grid more than either.
+- **Python**: the fastest call is `load("quad-general").solve(boundaries, "off", dtype="float32",
+  threads=2)`. The network runs in single precision, with one core per thread. The grids do not depend on
+  the number of threads.
 """
 
 if __name__ == "__main__":

@@ -51,20 +51,21 @@ HEAD = """# Threads
 
 <!-- made by python benchmarks/bench_threads.py --page docs/benchmarks/threads.md -->
 
-Read this page to see what a second thread wins on one large grid. How to ask for threads is in [threads
-and GPUs](../guide/threads-and-gpu.md). Times are wall-clock seconds, with each count of threads in turn
-and the least of several rounds; the ratio is of these. Processor seconds are those of all threads
-together, waiting among them. The bits of every result are the same for any count.
+Use this page to find the speed-up of a second thread on one large grid. [Threads and
+GPUs](../guide/threads-and-gpu.md) explains how to set the number of threads. Times are wall-clock
+seconds, the minimum over several repetitions in which the numbers of threads alternate; the speed-up is
+the ratio of the minima. CPU times (one thread / two threads) are summed over all threads and include
+busy-waiting. The last column says whether the two results are bitwise identical.
 
-A ratio says something where as many cores were free as there were threads. Where other programs had the
-cores, read the processor seconds: with none lost to waiting, free cores make as many times the speed as
-there are threads.
+The speed-up is meaningful only if at least as many cores were idle as there were threads. On a loaded
+machine compare the CPU times: if they do not rise with the number of threads, no time is lost to
+synchronisation, and n idle cores would give a speed-up of about n.
 """
 
 WHY = """
-What stays behind twice the speed is what one thread does alone: reading and writing files, the fronts of
-a march where both eliminations meet, percentiles. Kernels that only move memory win less where cores
-share its speed.
+Speed-ups below 2 come from parts that one thread executes alone: the computation of percentiles, and in
+hyperbolic marching the middle of each row of nodes, where the eliminations from both ends of the row
+meet. Memory-bound kernels gain less because the cores share the memory bandwidth.
 """
 
 Work = Callable[[], Callable[[], object]]
@@ -159,20 +160,22 @@ def planar_cases(n: int) -> Iterator[Case]:
         request = GridRequest(Sampling(n, n), **options)  # type: ignore[arg-type]
         return lambda: lambda: make_grid(what, request).grid  # type: ignore[arg-type]
 
-    yield Case("interpolation", nodes, interpolated, 7)
+    yield Case("transfinite interpolation", nodes, interpolated, 7)
     yield Case("Winslow, one cycle", nodes, cycles(False))
-    yield Case("with control functions, one cycle", nodes, cycles(True))
+    yield Case("Winslow with control functions, one cycle", nodes, cycles(True))
     yield Case("variational, four iterations", nodes, descent)
-    yield Case("march off an airfoil", nodes, marched)
-    yield Case("evaluation of 65 x 65 nodes", nodes, evaluated, 5)
-    yield Case("test for folds", nodes, tested, 7)
-    yield Case("measures", nodes, measured, 5)
-    yield Case("`tfi`, all but files", nodes, whole(sides, method="tfi"))
-    yield Case("`infer` of a duct, all but files", nodes, whole(sides))
-    yield Case("`infer` of an airfoil, all but files", nodes, whole(shape))
-    yield Case("`infer --first-cell`, all but files", nodes, whole(shape, first_cell=1e-5))
+    yield Case("hyperbolic marching from an airfoil", nodes, marched)
+    yield Case("spline evaluation of a 65 x 65 grid", nodes, evaluated, 5)
+    yield Case("test for folded cells", nodes, tested, 7)
+    yield Case("quality metrics", nodes, measured, 5)
+    yield Case("`tfi`, without file access", nodes, whole(sides, method="tfi"))
+    yield Case("`infer` of a duct, without file access", nodes, whole(sides))
+    yield Case("`infer` of an airfoil, without file access", nodes, whole(shape))
+    yield Case("`infer --first-cell`, without file access", nodes, whole(shape, first_cell=1e-5))
     yield Case(
-        "Winslow with first cells, all but files", nodes, whole(sides, method="winslow", first_cell=1e-5)
+        "Winslow with first-cell height, without file access",
+        nodes,
+        whole(sides, method="winslow", first_cell=1e-5),
     )
 
 
@@ -199,11 +202,11 @@ def solid_cases(side: int) -> Iterator[Case]:
         surface = surface_of(surface_shapes.grid_of(surface_shapes.sphere(side - 1)))
         return lambda: march_surface(surface, march).grid
 
-    yield Case("interpolation", more, interpolated, 5)
-    yield Case("test for folds", more, tested, 5)
+    yield Case("transfinite interpolation", more, interpolated, 5)
+    yield Case("test for folded cells", more, tested, 5)
     yield Case("Winslow", nodes, solved(winslow), 1)
     yield Case("variational", nodes, solved(variational), 1)
-    yield Case("march off a sphere", f"6 x {side} x {side} x 41", marched, 1)
+    yield Case("hyperbolic marching from a sphere", f"6 x {side} x {side} x 41", marched, 1)
 
 
 def row(case: Case, threads: int) -> str:
@@ -224,7 +227,7 @@ def row(case: Case, threads: int) -> str:
             least[count] = min(spent, least.get(count, np.inf))
             processor[count] = min(used, processor.get(count, np.inf))
             bits[count].append(digest(result))
-    same = "the same" if bits[1] == bits[threads] else "NOT THE SAME"
+    same = "yes" if bits[1] == bits[threads] else "NO"
     line = f"| {case.name} | {case.nodes} | {least[1]:.3f} | {least[threads]:.3f} "
     line += f"| {least[1] / least[threads]:.2f} | {processor[1]:.3f} / {processor[threads]:.3f} "
     return f"{line}| {same} |"
@@ -232,7 +235,9 @@ def row(case: Case, threads: int) -> str:
 
 def table(cases: Iterator[Case], threads: int) -> str:
     """Return the table of some cases, each printed as soon as it is there."""
-    lines = [f"| what | nodes | 1 thread, s | {threads} threads, s | ratio | processor seconds | bits |"]
+    lines = [
+        f"| computation | nodes | 1 thread, s | {threads} threads, s | speed-up | CPU time, s | identical |"
+    ]
     lines.append("| --- | --- | --- | --- | --- | --- | --- |")
     for case in cases:
         lines.append(row(case, threads))
@@ -250,8 +255,8 @@ def main() -> None:
     load = os.getloadavg()[0]
     plane = table(planar_cases(chosen.size), chosen.threads)
     space = table(solid_cases(chosen.side), chosen.threads)
-    busy = f"\n{os.cpu_count()} cores; {load:.1f} programs were at work when it began.\n"
-    text = f"{HEAD}{busy}\n## In the plane\n\n{plane}\n\n## In space\n\n{space}\n{WHY}"
+    busy = f"\nMeasured on {os.cpu_count()} cores, with a load average of {load:.1f} at the start.\n"
+    text = f"{HEAD}{busy}\n## Two-dimensional grids\n\n{plane}\n\n## Volumes\n\n{space}\n{WHY}"
     publish(text, chosen.page, shown=True)
 
 

@@ -2,7 +2,7 @@
 
     python benchmarks/bench_training.py [--seeds 3] [--page docs/benchmarks/training-speed.md]
 
-The published scheme takes one geometry a step, 15,000 times the thirty of the training set. Three loops
+The published scheme takes one geometry per step, 15,000 times the thirty of the training set. Three loops
 train the same network on the same 30 arches of 101 x 101 nodes, one thread, from the same first weights:
 
 * one by one, all 10,201 places of the grid a step, modules and optimiser as anybody writes them in torch;
@@ -59,7 +59,7 @@ def main() -> None:
     options = parser.parse_args()
     torch.set_num_threads(1)
     samples = arches()
-    rows = [Row("one geometry a step, all points", 1), Row("one geometry a step, 1,200 points", 1)]
+    rows = [Row("one geometry per step, all points", 1), Row("one geometry per step, 1,200 points", 1)]
     rows += [Row(f"`meshonet train --batch {n} --points {sum(points)}`", n) for n, points in BATCHES]
     pace(rows, samples, options.rate, options.batched_rate)
     for seed in range(options.seeds):
@@ -203,7 +203,7 @@ class Row:
 def page(rows: list[Row]) -> str:
     """Return the table."""
     every, drawn = rows[:2]
-    head = ["loop", "geometries a second", "speed-up over all points", "speed-up over 1,200 points"]
+    head = ["loop", "geometries per second", "speed-up over all points", "speed-up over 1,200 points"]
     head += [f"loss after {n:,}" for n in SEEN]
     lines = [head, ["---"] * len(head)]
     for row in rows:
@@ -217,10 +217,10 @@ def page(rows: list[Row]) -> str:
 NOTE = """Read this page before choosing `--batch` and `--points` of `meshonet train --model meshonet`. The
 settings are explained in [paper models](../theory/paper-models.md).
 
-The `meshonet` model on 30 arches of 101 x 101 nodes, one thread, processor seconds. The published scheme
-takes one geometry a step. Whether it uses all grid points or points drawn at random is not known, so both are
-timed. Losses are over all points of all grids: median (least to largest) of the seeds, after the stated
-number of geometries."""
+The model `meshonet` is trained on 30 arches of 101 x 101 nodes; times are CPU times of one thread. The
+published scheme processes one geometry per step. Whether it uses all grid points or a random sample of
+them is not known, so both were measured. Losses are over all points of all grids, after the stated number
+of geometries: median (minimum to maximum) over the seeds."""
 
 
 if __name__ == "__main__":

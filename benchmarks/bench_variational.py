@@ -222,25 +222,28 @@ Read this page to choose between `tfi`, `solve-pde --method winslow` and `solve-
 to see what `--coarse N` saves and costs. The methods are described in [elliptic](../theory/elliptic.md) and
 [variational grids](../theory/variational.md). The neural operator has [its own page](quad-operator.md).
 
-- *angle*: largest included angle of each cell, in degrees. A corner of the boundary itself (arch 147.5,
-  hexagon 135) is a lower bound of the maximum.
-- *deviation at walls*: mean difference from 90 degrees of the lines that leave the four sides.
-- *distance to full solve*: relative L2 distance to the same method without `--coarse`.
-- *folded*: inverted cells as they leave the solver, before repair.
-- *CPU ms*: processor time of one thread, best of several runs, while other programs used the machine.
+- *angle*: largest included angle of each cell, in degrees. The maximum cannot be below the angle of a
+  corner of the boundary (arch 147.5, hexagon 135).
+- *deviation at walls*: mean deviation from 90 degrees of the angle between the four sides and the grid
+  lines that leave them.
+- *distance to full solve*: relative L2 distance to the solution of the same method without `--coarse`.
+- *folded*: number of folded cells in the solution, before repair.
+- *CPU ms*: CPU time of one thread, best of several runs, while other programs used the machine.
 
-Around a notch the full variational solve takes many iterations on fine grids; `--coarse auto` solves on fewer
-nodes there. The distance of a solve on 33 nodes from the full solve is its discretisation error, of second
-order. Converging both solves to 1e-6 does not change it.
+Around a notch the full variational solve takes many iterations on fine grids; there `--coarse auto`
+solves on fewer nodes. The distance between a solution on 33 nodes and the full solution is the
+discretisation error of the coarse solution, which is of second order. The distance does not change if
+both solutions are converged to 1e-6.
 
 ![Grids by five methods, coloured by the largest included angle](../img/quad-grids.png)
 """
 PAPER = """
 ## What the MeshONet paper reports
 
-Xiao et al., arXiv 2501.11937, compare methods by colour maps of the largest included angle, without numbers.
-They report MeshONet as better than TFI and PDE on arches and hexagons, as equal to TFI on wrenches, and as
-not always better on moved semicircles. Their seconds, with Python on another machine and MeshONet on a GPU:
+Xiao et al., arXiv 2501.11937, compare methods by colour maps of the largest included angle, without
+numbers. They report that MeshONet is better than their PDE solver and TFI on arches and hexagons, equal
+to TFI on wrenches, and not always better on moved semicircles. Their times in seconds, with Python on
+another machine and MeshONet on a GPU:
 
 | nodes | PDE | TFI | MeshONet |
 | --- | --- | --- | --- |

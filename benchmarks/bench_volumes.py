@@ -34,10 +34,11 @@ HEAD = """# Volumes inside six faces
 
 <!-- made by python benchmarks/bench_volumes.py --page docs/benchmarks/volumes.md -->
 
-Read this page to see what volumes inside six faces cost and how good they are. How they are made is in
-[volumes](../guide/volumes.md). Times are processor seconds of one thread, the least of several runs; a copy
-is one into memory that is in use. Angles are deviations from 90 degrees, the worst of the three at a corner;
-SJ is the scaled corner Jacobian.
+Use this page to find the CPU time and the quality of volume grids inside six faces. For their use see
+[volumes](../guide/volumes.md). Times are CPU times of one thread, the minimum of several runs. The table
+compares them with the time of copying the nodes into memory that is already allocated. Each cell corner
+counts the largest deviation from 90 degrees of its three angles. SJ is the scaled Jacobian at the
+corners.
 """
 
 
@@ -91,7 +92,7 @@ def quality(nodes: Floats) -> tuple[int, float, float, float]:
 
 def times(sizes: list[int]) -> str:
     """Return the table of times at the largest counts."""
-    lines = ["| nodes | what | ms | copies |", "| --- | --- | --- | --- |"]
+    lines = ["| nodes | computation | CPU time, ms | relative to copy |", "| --- | --- | --- | --- |"]
     for n in sizes:
         faces = random_faces(1, n, 0.03)
         out, other = np.zeros((3, n, n, n)), np.ones((3, n, n, n))
@@ -104,13 +105,13 @@ def times(sizes: list[int]) -> str:
             "copy of the nodes": partial(np.copyto, out, other),
             "interpolation, linear": partial(interpolate, faces, uniform_laws(faces.counts), out=out),
             "interpolation, arc length": partial(interpolate, faces, arc_laws(faces), out=out),
-            "evaluation of 33³ nodes": partial(interpolate, faces, laws, spline, out),
-            "the same into fresh memory, with coefficients": partial(refine_volume, planes, few, faces, laws),
-            "test of all corners": partial(count_folded, np.moveaxis(out, 0, -1)),
-            "variational, all of it": partial(variational, faces),
+            "spline evaluation of a 33³ grid": partial(interpolate, faces, laws, spline, out),
+            "the same with coefficients, new memory": partial(refine_volume, planes, few, faces, laws),
+            "test of all corner Jacobians": partial(count_folded, np.moveaxis(out, 0, -1)),
+            "variational method, in total": partial(variational, faces),
         }
         if n <= 129:
-            rows["Winslow, all of it"] = partial(winslow, faces)
+            rows["Winslow's equations, in total"] = partial(winslow, faces)
         for name, act in rows.items():
             spent = copy if "copy" in name else clocked(act, 7 if n < 200 else 3)[0]
             lines.append(f"| {n}³ | {name} | {1e3 * spent:.1f} | {spent / copy:.2f} |")
@@ -141,7 +142,9 @@ def domains(number: int, n: int) -> str:
             break
     table = {name: np.array(rows) for name, rows in found.items()}
     lines = [f"{number} random domains of {n}³ nodes ({refused} more are refused: their faces fold cells).\n"]
-    lines += ["| method | without folds | least SJ, median | mean / 99 % angle, medians | s, median / 90 % |"]
+    lines += [
+        "| method | valid | minimum SJ, median | deviation: mean / 99 %, medians | CPU s: median / 90 % |"
+    ]
     lines += ["| --- | --- | --- | --- | --- |"]
     for name, rows in table.items():
         spent, folded, sj, mean, high = rows.T
@@ -151,7 +154,7 @@ def domains(number: int, n: int) -> str:
     own, other = table["variational"], table["Winslow"]
     worse = int(((own[:, 2] < other[:, 2] - 1e-9) | (own[:, 3] > other[:, 3])).sum())
     lines.append(
-        f"\nThe variational grid is worse than Winslow's in mean angle or least SJ in {worse} of {number}."
+        f"\nMean deviation or minimum SJ are worse than those of Winslow's grid in {worse} of {number}."
     )
     return "\n".join(lines)
 

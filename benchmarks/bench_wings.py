@@ -48,21 +48,21 @@ HEAD = """# Volumes from sections: wings, blades, pipes
 
 <!-- made by python benchmarks/bench_wings.py --airfoils FOLDER --page docs/benchmarks/wings.md -->
 
-Read this page to see how many random wings get a valid grid, and how good and how fast these are. How to make
-them is in [wings](../guide/wings.md) and [pipes](../guide/pipes.md).
+Use this page to find the number of random wings for which a valid volume grid is generated, the quality of
+these grids and the CPU time. For their use see [wings](../guide/wings.md) and [pipes](../guide/pipes.md).
 
-Wings are {count} random pairs of {files} airfoil files, sharp and blunt, with a taper of 0.25 to 1, a
-twist of -8 to 4 degrees, a sweep of -0.2 to 0.8 and a dihedral of -0.1 to 0.25 of the span. The far field
-is 15 chords away, or 12 in the first row.
+Each of the {count} wings has a random pair of {files} airfoil files as sections, sharp and blunt, with a
+taper of 0.25 to 1, a twist of -8 to 4 degrees, a sweep of -0.2 to 0.8 and a dihedral of -0.1 to 0.25 of
+the span. The far field is at 15 chords, or at 12 in the first row.
 
-- *valid*: grids without a folded cell, by the eight corners of every cell and by the Bezier coefficients of
-  its Jacobian. The others end in an error, with the place.
-- *first cell error*: largest relative error at any wall node of any grid.
-- *least scaled Jacobian*, *largest angle* (of cell faces, in degrees): median / worst of the grids.
-- *CPU s*: processor time from sections to a judged grid, median / largest, one thread of {machine}, while
-  other programs used the machine.
+- *valid*: grids without a folded cell, tested by the Jacobians at the eight corners of every cell and by
+  the Bezier coefficients of the Jacobian. The other grids end in an error that names the place.
+- *first cell error*: largest relative error of the first-cell height over all wall nodes.
+- *minimum scaled Jacobian* (*SJ*), *largest angle* (of cell faces, degrees): median / worst over the grids.
+- *CPU s*: CPU time from the sections to the grid and its quality report, median / maximum, one thread of
+  {machine}, while other programs used the machine.
 
-| grids | valid | nodes | first cell error | least scaled Jacobian | largest angle | CPU s | µs a node |
+| grids | valid | nodes | first cell error | minimum scaled Jacobian | largest angle | CPU s | µs per node |
 | --- | --- | --- | --- | --- | --- | --- | --- |
 """
 
@@ -139,7 +139,7 @@ def pipes() -> str:
         ),
         "knot, closed": (knot, 0.4),
     }
-    lines = ["", "## Pipes", "", "| path | folded | nodes | least scaled Jacobian | largest angle | CPU ms |",
+    lines = ["", "## Pipes", "", "| path | folded | nodes | minimum SJ | largest angle | CPU ms |",
              "| --- | --- | --- | --- | --- | --- |"]  # fmt: skip
     for name, (points, radius) in paths.items():
         begun = time.process_time()

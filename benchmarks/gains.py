@@ -29,7 +29,7 @@ ANGLES = (
     7 * "| --- " + "|",
 )
 DISTANCES = (
-    "\n| method | relative L2 to Winslow's solution, median / 90 % | CPU ms, median |",
+    "\n| method | relative L2 to Winslow's solution, median / 90th percentile | CPU ms, median |",
     3 * "| --- " + "|",
 )
 

@@ -13,6 +13,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from meshonet.api.models import models
 from meshonet.formats.catalogue import markdown
 from meshonet.geometry.families.family import FAMILIES, family
 from meshonet.solvers.neural.registry import HEADS, described, shipped
@@ -20,55 +21,75 @@ from meshonet_cli.help.reference import reference
 
 DOCS = Path(__file__).parent
 REFERENCE = DOCS / "reference"
-GRIDS = {"o": "O grids", "quad": "Grids of four-sided domains"}
 
 MODELS_HEAD = """# Shipped models
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for the training recipe of a model. When to use which model is said in
-[operators](../theory/operators.md), how good they are in [held-out errors](../benchmarks/models.md).
-`meshonet models` prints the same data.
+Look here for the training parameters of the shipped models. For the choice of a model see
+[neural operators](../theory/operators.md), for the accuracy of each see
+[held-out errors](../benchmarks/models.md). `meshonet models` prints the same data.
 
-Each model is a safetensors file in `solvers/neural/pretrained/` that carries its recipe and its figures.
-`make train` trains them again.
+Each model is a safetensors file in `solvers/neural/pretrained/`; its metadata hold the training parameters
+and the held-out errors. `make train` repeats the training.
+
+| training parameter | meaning |
+| --- | --- |
+| `datasets` | training grids; the target grids come from a solver |
+| `strips`, `domains` | samples in the datasets, those held out included |
+| `held_out` | samples that are not used in training, only to measure errors |
+| `epochs`, `batch`, `seed` | passes over the training samples, samples per step, seed of the random numbers |
+| `rate`, `warm_up` | largest learning rate, reached after `warm_up` steps and reduced to zero by a cosine |
+| `weight_decay`, `clip` | weight decay of AdamW, and the largest norm of the gradient |
+| `initial` | model with the initial weights; `quad-first` is an earlier run and not shipped |
+| `weights` | coefficients of the terms of the loss ([training](../theory/operators.md#training)) |
+| `widths` | U-Net: channels on each level, in units of eight, the finest level first |
+| `blocks` | U-Net: residual blocks on each level, on the way down and again on the way up |
+| `layers`, `width`, `modes` | Fourier neural operator: layers, channels, Fourier modes in a layer |
+| `basis` | Fourier neural operator: basis functions of its output, from wall to far field |
 """
 ERRORS_HEAD = """# Held-out errors of the shipped models
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for how far the answers of a shipped model are from the solver's, on shapes that it was not trained
-on. The [recipes](../reference/models.md) are elsewhere; `meshonet models` prints both. The losses of every
-epoch are in `docs/benchmarks/curves`; `quad-first` is the first of two runs for `quad-general`.
+Look here for the distance between the grids that a shipped model predicts and those of the solver, on shapes
+that were not used in training. The training parameters are in [shipped models](../reference/models.md);
+`meshonet models` prints both. The loss after every epoch is in `docs/benchmarks/curves`; `quad-first` is the
+first of the two training runs of `quad-general`.
 """
 C_GRIDS = """## C grids: no model
 
-No model for C grids is shipped, because none is as good as marching. The network for four-sided domains is
-worse there than transfinite interpolation; after five iterations it is still behind the variational grid
-([figures](../benchmarks/body-operator.md#c-grids-no-model)). The strip of `airfoil-o` is periodic, which a
-wake does not allow. `infer` therefore [marches](../theory/marching.md) C grids from wall and wake and uses
-the variational method where marching does not suit. The report says which. `--model`, `--polish` and
-`--device` are refused.
+No model for C grids is shipped, because none is as good as hyperbolic marching. For C grids the predictions
+of `quad-general` are worse than transfinite interpolation; after five further iterations of the variational
+method their mean angle is still worse than that of the variational grid
+([figures](../benchmarks/body-operator.md#c-grids-no-model)). `airfoil-o` assumes that the grid is periodic in
+ξ; a C grid is not, because of its wake. `infer` therefore generates C grids by
+[marching](../theory/marching.md) from the wall and the wake, or by the variational method if marching fails.
+The report names the method used. For C grids the options `--model`, `--polish` and `--device` are rejected.
 """
 
 FORMATS_HEAD = """# Formats
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for the files that meshonet reads and writes. `meshonet convert IN OUT` chooses by the endings;
-`--from` and `--to` name a format where the ending is ambiguous. `meshonet convert --list-formats` prints this
-table.
+Look here for the file formats that meshonet reads and writes. `meshonet convert IN OUT` selects the formats
+by the file extensions; `--from` and `--to` name a format if the extension is ambiguous. `meshonet convert
+--list-formats` prints this table.
 
-*names*: names of patches are kept. *3D*: which grids in space it holds; where these are volumes, `--extrude
-H` (`--planes K`) makes them of plane grids. *blocks*: a grid of several blocks is written with its blocks
-kept, or merged to one mesh; other formats refuse it. *many*: one file can hold several grids or boundaries.
-*options* are written behind a colon, one of each group, for example `--to gmsh:4.1,ascii`. The first of a
-group is the default unless the ending says otherwise.
+- *names*: the format stores names of boundary patches.
+- *3D*: the three-dimensional grids that the format stores. With *volumes*, `--extrude H` (`--planes K`)
+  writes a two-dimensional grid as a volume.
+- *blocks*: a multi-block grid is written with its blocks *kept*, or *merged* into one unstructured mesh. A
+  format without an entry cannot store a multi-block grid.
+- *many*: one file can hold several grids or boundaries.
+- *options*: variants of the format, written after a colon, at most one from each group, for example `--to
+  gmsh:4.1,ascii`. The first of a group is the default unless the extension implies another one.
 
 """
 FORMATS_REST = """
-Several blocks, boundaries and variants of Plot3D are in [conventions of formats](format-details.md), volumes
-and surfaces in [three dimensions](format-volumes.md), the layout of datasets in [HDF5](hdf5.md).
+For multi-block grids, boundaries and the variants of Plot3D see
+[conventions of formats](format-details.md), for volumes and surfaces
+[files in three dimensions](format-volumes.md), for the layout of datasets [HDF5](hdf5.md).
 
 ## Not read
 
@@ -76,7 +97,7 @@ and surfaces in [three dimensions](format-volumes.md), the layout of datasets in
 - `.vts` compressed with LZ4: write it with zlib or LZMA.
 - Gmsh meshes other than 2.2 and 4.1, and binary DXF.
 
-Worked cases of flow solvers: `examples/naca0012-openfoam`, `examples/cylinder-openfoam`,
+Worked examples with flow solvers: `examples/naca0012-openfoam`, `examples/cylinder-openfoam`,
 `examples/pipe-bend-openfoam`, `examples/naca0012-su2`.
 """
 
@@ -84,17 +105,17 @@ BLOCKING_HEAD = """# Files of blocking
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-Look here for the file that you are after in `solvers/blocking`; in which order they work is said in
-[stages](stages.md). Each line is the first one of the file.
+Look here for a file in `solvers/blocking`. Each row quotes the first paragraph of the file's docstring. The
+order in which the files work is described in [stages](stages.md).
 """
 
 FAMILIES_HEAD = """# The six test families
 
 <!-- made by python docs/make_pages.py -->
 
-Use these families to train and compare operators. They are the test cases of the MeshONet paper; each shape
-depends on one number. `sample-boundary --family NAME --count N` draws N members over the range, `--range A:B`
-chooses another range, and `solve-pde` makes their grids.
+Use these families to train and compare neural operators. They are the test cases of the MeshONet paper;
+each shape depends on one parameter. `sample-boundary --family NAME --count N` samples N members over the
+range of the parameter, `--range A:B` selects another range, and `solve-pde` generates the grids.
 """
 
 
@@ -137,14 +158,17 @@ def models_page() -> str:
     """Return reference/models.md."""
     lines = [MODELS_HEAD]
     for name in shipped():
+        use = models(name)[0]["use"]
+        use = f"{use[0].upper()}{use[1:]}."
         if name in HEADS:
-            lines += [f"## {name}\n", f"Winslow's grid, predicted by the network of `{HEADS[name][0]}`.\n"]
+            lines += [f"## {name}\n", f"{use} A second output of the network `{HEADS[name][0]}`.\n"]
             continue
         facts = described(name)
+        kind = "A Fourier neural operator" if "strips" in facts["recipe"] else "A U-Net"
         lines += [
             f"## {name}\n",
-            f"{GRIDS[facts['topology']]}, {facts['parameters']:,} parameters.\n",
-            "Recipe:\n",
+            f"{use} {kind} with {facts['parameters']:,} parameters.\n",
+            "Training parameters:\n",
             "```json",
             json.dumps(facts["recipe"], indent=1),
             "```\n",
@@ -172,15 +196,18 @@ def curve(name: str) -> list[str]:
         rows = list(csv.DictReader(file))
     some = [rows[k] for k in sorted({0, len(rows) // 4, len(rows) // 2, len(rows) - 1})]
     losses = ", ".join(f"{float(row['held_out_loss']):.3g} after {row['epoch']}" for row in some)
-    return [f"\nHeld-out loss by epoch: {losses} ([every epoch](curves/{name}.csv))."]
+    return [f"\nLoss on the held-out samples: {losses} epochs ([every epoch](curves/{name}.csv))."]
 
 
 def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
     """Return the held-out errors of the airfoil operator."""
     lines = [
-        f"Held out: {figures['strips']} procedural airfoils, not used in training. Weights are in float16.",
-        f"Error: {figures['error']}.\n",
-        "| method | median | 90 % | worst |",
+        f"Held-out samples: {figures['strips']} procedural airfoils, not used in training. Weights are in",
+        "float16. The error is the root mean square distance, in radians, to Winslow's solution in the",
+        "[strip](../reference/glossary.md) to which the conformal map takes the domain. *base* is the",
+        "initial grid, the harmonic extension of the boundary, which the network corrects; *n Picard* adds n",
+        "Picard steps towards Winslow's solution.\n",
+        "| method | median | 90th percentile | maximum |",
         "| --- | --- | --- | --- |",
     ]
     for way, q in figures.items():
@@ -193,10 +220,11 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     """Return the held-out errors of a network for four-sided domains or bodies."""
     counts = "33 x 33" if topology == "quad" else "65 x 33"
     lines = [
-        f"Held out: {figures['domains']} random domains, not used in training. One network predicts both",
-        f"grids. Errors are relative L2 distances to the solver's grid on {counts} nodes, without polish.",
-        "*start* is the grid that the network corrects, *valid* the share of grids without folded cells.\n",
-        "| predicted grid | median | 90 % | start | valid |",
+        f"Held-out samples: {figures['domains']} random domains, not used in training. One network predicts",
+        f"both grids. Errors are relative L2 distances to the solver's grid on {counts} nodes, without",
+        "polish (solver iterations after the network). *initial* is the median error of the grid that the",
+        "network corrects, *valid* the share of grids without folded cells.\n",
+        "| predicted grid | median error | 90th percentile | initial | valid |",
         "| --- | --- | --- | --- | --- |",
     ]
     for answer, q in figures.items():
@@ -209,8 +237,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "The network has this share of the improvement of the variational grid over Winslow's:\n"
-        f"{100 * gain['mean_gain']:.0f} % in the mean angle, {100 * gain['max_gain']:.0f} % in the largest.",
+        "Variational grids have smaller cell corner angles than Winslow's grids. The network achieves\n"
+        f"{100 * gain['mean_gain']:.0f} % of this reduction in the mean over cells of each cell's largest\n"
+        f"angle, and {100 * gain['max_gain']:.0f} % in the largest angle of the grid.",
     ]
     return lines
 

@@ -1,7 +1,8 @@
 """Zip archives, whose members are read one by one without unpacking them.
 
 Nothing is written under the names in an archive, a member is refused by the size that it claims before it is
-unpacked, and no more is unpacked than that. Errors do not name the archive; callers do. https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT
+unpacked, and no more is unpacked than that. Errors do not name the archive; callers do.
+https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ if TYPE_CHECKING:
     from zipfile import ZipFile
 
 LARGEST_MEMBER = 1 << 28
-"""Bytes of a member, unpacked."""
+"""Largest uncompressed size of a member, in bytes."""
 _IN_ARCHIVE = re.compile(r"\.zip/", re.IGNORECASE)
 """Where the name of an archive ends and that of a member begins."""
 
 
 def is_archive(path: str) -> bool:
-    """Return whether a file is an archive, by its ending."""
+    """Return whether a path is a zip archive, by its extension."""
     return path.lower().endswith(".zip") and Path(path).is_file()
 
 
@@ -37,7 +38,7 @@ def member_names(path: str) -> Iterator[str]:
 
 
 def split_member(text: str) -> tuple[str, str] | None:
-    """Return archive and member of ``a.zip/b/c.dat``, None where that names none."""
+    """Return archive and member of ``a.zip/b/c.dat``; None for any other text."""
     for match in _IN_ARCHIVE.finditer(text):
         if Path(text[: match.end() - 1]).is_file():
             return text[: match.end() - 1], text[match.end() :]
@@ -45,10 +46,10 @@ def split_member(text: str) -> tuple[str, str] | None:
 
 
 def read_member(path: str, name: str) -> bytes:
-    """Return what a member of an archive holds.
+    """Return the uncompressed bytes of a member of an archive.
 
-    Raises InputError: there is none of that name; it is encrypted, damaged, too large or packed in a way that
-    is not known.
+    Raises InputError: there is no such member; it is encrypted, damaged, too large or compressed by an
+    unknown method.
     """
     archive = _archive(path)
     info = archive.NameToInfo.get(name)

@@ -1,4 +1,4 @@
-"""What every format can do, as a table: for terminals and for ``docs/reference/formats.md``."""
+"""The capabilities of all formats as a table: for terminals and for ``docs/reference/formats.md``."""
 
 from meshonet.formats.format import Format
 from meshonet.formats.registry import formats

@@ -1,4 +1,4 @@
-"""From one format to another: what happens to a grid on its way, and what is written."""
+"""Conversion between formats: changes of grids, and the choice of what is written."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -18,16 +18,16 @@ from meshonet.geometry.spacing.sampling import Sampling
 
 @dataclass(frozen=True)
 class Conversion:
-    """What happens to a grid or boundary on its way.
+    """Changes that a conversion makes to grids and boundaries.
 
     Parameters
     ----------
-    extrude : height in z that a 3D grid gets; None leaves grids flat.
+    extrude : height in z to which planar grids are extruded; None leaves them planar.
     planes : planes of nodes in z, or about the axis; None stands for two, or those that `Revolution` says.
-    swap : have xi run along the sides that eta ran along.
+    swap : exchange xi and eta.
     normalise : scale to unit chord or unit length.
-    coarsen : keep every so many-th node.
-    revolve : degrees that a 3D grid turns by about `axis`; None leaves grids flat.
+    coarsen : keep every `coarsen`-th node.
+    revolve : angle in degrees by which planar grids are revolved about `axis`; None leaves them planar.
     axis : line in the plane; None is the x axis.
     """
 
@@ -47,7 +47,7 @@ class Conversion:
         return turn
 
     def heights(self) -> tuple[float, ...]:
-        """Return z of each plane, none for a flat grid; InputError for a height that is not positive."""
+        """Return z of each plane, () for a planar grid. Raises InputError: a height that is not positive."""
         if self.extrude is None:
             if self.planes is not None and self.revolve is None:
                 remedy = "give {extrude} or {revolve} as well"
@@ -59,7 +59,7 @@ class Conversion:
         return tuple(self.extrude * k / (planes - 1) for k in range(planes))
 
     def __call__(self, grid: Grid | Boundary) -> Grid | Boundary:
-        """Return a grid coarsened, swapped and normalised; a boundary as it is, normalised by `read`."""
+        """Return a grid coarsened, swapped and normalised; a boundary, which `read` normalises, unchanged."""
         if isinstance(grid, Boundary):
             return grid
         grid = coarser_grid(grid, self.coarsen) if self.coarsen > 1 else grid
@@ -67,14 +67,14 @@ class Conversion:
         return normalised(grid) if self.normalise else grid
 
     def read(self, source: str, fmt: str | None, *, boundaries: bool) -> Iterator[Grid | Boundary]:
-        """Yield what `source` holds: its boundaries, or its grids."""
+        """Yield the boundaries of `source`, or else its grids."""
         if not boundaries:
             return read_grids(source, fmt)
         sampling = Sampling(normalise=self.normalise)
         return (shape.boundary(sampling) for shape in read_shapes(source, fmt))
 
     def of_boundaries(self, source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
-        """Say whether boundaries are written: nothing changes grids, and one of the files holds no grids."""
+        """Return whether boundaries are written: grids are not changed, and one of the formats has none."""
         if self.heights() or self.turn() or self.swap or self.coarsen > 1:
             return False
         try:
@@ -86,7 +86,7 @@ class Conversion:
         return source != "-" and format_of(open_source(source), from_format).read_grids is None
 
     def extruder(self, output: str, to_format: str | None) -> Callable[[Path, Iterable[Grid]], None] | None:
-        """Return what writes grids made 3D to `output`, None for flat ones; InputError for a flat format."""
+        """Return the function that writes grids made 3D, or None. Raises InputError: a planar format."""
         heights, turn = self.heights(), self.turn()
         if not heights and turn is None:
             return None
@@ -102,9 +102,9 @@ class Conversion:
 def plot3d_variant(
     words: str | None, output: str, from_format: str | None, to_format: str | None
 ) -> tuple[str | None, str | None]:
-    """Return the formats to read and write, the Plot3D file among them in the variant of `words`.
+    """Return the formats to read and to write, where the options `words` are added to that of Plot3D.
 
-    Raises InputError: words that are not known, or no file in Plot3D.
+    Raises InputError: unknown options, or neither format is Plot3D.
     """
     if words is None:
         return from_format, to_format
@@ -115,7 +115,7 @@ def plot3d_variant(
 
 
 def unused_iblank(grid: Grid | Boundary) -> str | None:
-    """Return a note on nodes that an iblank array takes out of use or gives a meaning, which is not kept."""
+    """Return a note on nodes marked by an iblank array, whose marks are lost; None where there are none."""
     counts = grid.provenance.get("iblank") if isinstance(grid, Grid) else None
     marked = [f"{count} with {value}" for value, count in (counts or {}).items() if value != "1"]
     if not marked:

@@ -19,34 +19,34 @@ if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
 
 Space: TypeAlias = Literal["volumes", "surfaces"]
-"""What grids whose nodes have three coordinates are made of: blocks of volume, or patches of a surface."""
+"""Kinds of three-dimensional grids: blocks of volumes, or patches of surfaces."""
 Options: TypeAlias = frozenset[str]
 """Words behind a format's name, ``plot3d:big,float32``."""
 
 
 @dataclass(frozen=True)
 class Format:
-    """What a format is called, how it is recognised and what it can hold.
+    """Name, recognition and capabilities of a file format.
 
     Parameters
     ----------
-    name, suffixes, description : for users; file endings in lower case with the dot.
-    read_shapes : yields what can be sampled into a boundary; None when the format holds grids (whose
-        outer edges then serve) or cannot be read.
-    read_grids, write_grids, write_boundaries, write_layouts : None when the format cannot.
-    sniff : says from the first `HEAD_BYTES` bytes whether a file looks like this.
-    names_patches : whether names of patches and the topology survive in it.
-    blocks : how a grid of several planar blocks is written: the blocks ``kept``, or ``merged`` to one mesh;
-        not at all if empty.
-    space : which grids in space `write_grids` takes, and `read_grids` gives where the format can be read.
-    many : whether one file holds several grids or boundaries.
-    one_size : whether all that one file holds must have the same counts of nodes and the same topology.
-    beside : whether other files are written beside the file, so that it cannot be written to a stream.
-    fills_folder : whether the file marks a folder that is written with it, so that a folder holds one grid,
+    name, suffixes, description : for users; extensions in lower case with the dot. read_shapes : function
+    that yields shapes, which can be sampled into boundaries; None when the format holds
+        grids (whose outer edges are then used) or cannot be read.
+    read_grids, write_grids, write_boundaries, write_layouts : functions; None when the format cannot. sniff :
+    function that recognises a file by its first `HEAD_BYTES` bytes. names_patches : whether it stores names
+    of patches and the topology. blocks : how a planar multi-block grid is written: blocks ``kept``, or
+    ``merged`` to one unstructured mesh;
+        empty if it cannot be.
+    space : kinds of three-dimensional grids that `write_grids` takes and `read_grids` returns. many : whether
+    one file can hold several grids or boundaries. one_size : whether all samples of a file must have the same
+    node counts and topology. beside : whether other files are written next to the file, so that it cannot be
+    written to a stream. fills_folder : whether the file stands for a folder that is written with it, so that
+    a folder holds one grid,
         and it cannot be written to a stream.
-    choices : rows of options; behind the name there may be one word of each row.
+    choices : groups of options; after the name there may be one word of each group.
     reads_options : whether `read_grids` takes ``options`` as `write_grids` does.
-    suffix_options : the options that an ending stands for when a file is written.
+    suffix_options : the options that an extension implies when a file is written.
     """
 
     name: str
@@ -70,7 +70,7 @@ class Format:
     suffix_options: Mapping[str, str] = field(default_factory=dict)
 
     def file_at(self, path: str) -> str:
-        """Return the file to write where a user named `path`: of a format that fills a folder, that in it.
+        """Return the file to write for a user's `path`: that inside a folder if the format fills one.
 
         >>> case = Format("openfoam", (".foam",), "", fills_folder=True)
         >>> case.file_at("runs/first"), case.file_at("runs/first/case.foam")
@@ -82,9 +82,9 @@ class Format:
         return str(place / f"{place.resolve().name}{self.suffixes[0]}")
 
     def with_options(self, text: str) -> Format:
-        """Return the format with options: words divided by commas; those behind a colon replace earlier ones.
+        """Return the format with the options in `text`, words separated by commas, in place of earlier ones.
 
-        Raises InputError for a word that is not known, or two that exclude each other.
+        Raises InputError: an unknown word, or two that exclude each other.
         """
         if not text.strip(":"):
             return self
@@ -118,7 +118,7 @@ class Format:
 
 
 def later(function: str, **settings: Any) -> Callable[..., Any]:
-    """Return what loads the module of `function`, ``package.module:name``, and calls it with `settings`."""
+    """Return a function that imports `function`, ``package.module:name``, and calls it with `settings`."""
     return partial(_call, function, **settings)  # which another process can have
 
 
@@ -128,7 +128,7 @@ def _call(function: str, /, *args: Any, **settings: Any) -> Any:
 
 
 def only_one(grids: Iterable[Grid], what: str) -> Grid:
-    """Return the single grid of `grids`, of a file that holds one; InputError for none or several."""
+    """Return the only grid of `grids`. Raises InputError: none or several, named `what` in the message."""
     several = iter(grids)
     first = at_least_one(several)
     if next(several, None) is not None:
@@ -148,7 +148,7 @@ def at_least_one(grids: Iterator[Grid]) -> Grid:
 
 
 def kinds_in_space(grid: Grid) -> tuple[Space, ...]:
-    """Return what a grid in space is made of, nothing for one in the plane."""
+    """Return the kinds of blocks of a three-dimensional grid, () for a planar one."""
     if grid.form == "plane":
         return ()
     directions = {len(block.counts) for block in grid.blocks if block.nodes.shape[-1] == 3}
@@ -157,7 +157,7 @@ def kinds_in_space(grid: Grid) -> tuple[Space, ...]:
 
 
 def size_of(sample: Boundary | Grid) -> str:
-    """Return the counts of nodes and the topology of a grid or boundary, as words."""
+    """Return the node counts and the topology of a grid or boundary as text."""
     if isinstance(sample, Grid) and sample.topology == "blocks":
         return "blocks of " + ", ".join("x".join(map(str, block.nodes.shape)) for block in sample.blocks)
     return f"{sample.ni}x{sample.nj} {sample.topology}"

@@ -1,16 +1,16 @@
-"""Inputs expanded to files: those of folders, members of zip archives, lines of lists; one after the other.
+"""Lazy expansion of inputs to files: those in folders, members of zip archives, lines of lists.
 
 =============  =====================================================================================
 input          stands for
 =============  =====================================================================================
 ``@FILE``      the inputs in its lines, each as on the command line; ``@-`` reads standard input
-a folder       the files in it and in its folders whose endings can be read, by name
-``FILE.zip``   its files whose endings can be read, by name: ``FILE.zip/wing/naca0012.dat``
+a folder       all files with a recognised extension in it and its subfolders, sorted by name
+``FILE.zip``   its files with a recognised extension, sorted by name: ``FILE.zip/wing/naca0012.dat``
 anything else  itself
 =============  =====================================================================================
 
-In lists empty lines and those that start with ``#`` are left out. In folders and archives names that start
-with a dot or ``__`` are, and folders that belong to a file beside them, as ``out/`` to ``out.h5``.
+Skipped are empty lines of lists and those that start with ``#``; in folders and archives, names that start
+with a dot or ``__``, and folders that belong to a file next to them, as ``out/`` to ``out.h5``.
 """
 
 from __future__ import annotations
@@ -35,18 +35,18 @@ if TYPE_CHECKING:
     from meshonet.formats.hdf5.read import DatasetSamples
 
 MOST_NESTED = 8
-"""Lists that may name each other."""
+"""Largest depth of lists that name lists."""
 LONGEST_LINE = 8192
 """Bytes; a path has at most 4096."""
 _BEGINNING = 10_001
-"""Inputs that are looked at before work begins."""
+"""Inputs that are counted before work begins."""
 _IS_DATASET = re.compile(r"\.(?:h5|hdf5)(?:#[a-z0-9,:]+)?$", re.IGNORECASE)
 _WITH_FOLDER = (".h5", ".hdf5", ".vtm")
-"""Endings of files to which a folder of their name belongs."""
+"""Extensions of files to which a folder of the same name belongs."""
 
 
 def readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
-    """Return the endings of files that are taken from folders and archives, but those of pictures."""
+    """Return the extensions of files that are taken from folders and archives; pictures are not."""
     suffixes: set[str] = set()
     for record in formats():
         shapes = record.read_shapes is not None and not grids_only and record.name != "svg"
@@ -56,9 +56,9 @@ def readable_suffixes(*, grids_only: bool = False) -> frozenset[str]:
 
 
 class Numbered(NamedTuple):
-    """An input, the number of its first member among those of all inputs, and how far apart its others are.
+    """An input, the number of its first member among those of all inputs, and the step between its members.
 
-    Without a number the members are counted; a step of 0 says that there is one.
+    Without a number the members are counted; a step of 0 stands for a single member.
     """
 
     text: str | InputError
@@ -77,10 +77,10 @@ class Inputs:
     pick : patterns (``naca*``), one of which a file's name, with or without its ending, must match to be
         taken from a folder, an archive or a list; with a ``/`` its path there. Case does not matter.
 
-    shard : k of n: that only every n-th input is taken by `own` and `parts`, from the k-th (from 1) on.
+    shard : (k, n): `own` and `parts` take only every n-th input, from the k-th (from 1) on.
 
-    Raises InputError: standard input is named twice, or is a terminal; a shard that is none; patterns, and
-    nothing to pick from.
+    Raises InputError: standard input is named twice, or is a terminal; an invalid shard; patterns without a
+    folder, archive or list to pick from.
     """
 
     words: tuple[str, ...]
@@ -160,7 +160,7 @@ class Inputs:
         return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
-        """Return how many members the shard has, files that hold several counted once; None from a pipe."""
+        """Return the number of members of the shard; files count once, datasets by samples; None: a pipe."""
         if any(word in ("-", "@-") for word in self.words):
             return None
         return -(-sum(count for _, _, count in self._counted()) // self.shard[1])
@@ -195,7 +195,7 @@ class Inputs:
 
 
 class _Walk:
-    """One walk through inputs: how many were seen in folders, archives and lists, and how many taken."""
+    """One walk through inputs, with the counts of files found in folders, archives and lists, and picked."""
 
     def __init__(self, inputs: Inputs) -> None:
         self._inputs = inputs

@@ -1,7 +1,8 @@
 """Boundary conditions and one-to-one interfaces of CGNS zones that other programs wrote.
 
-Ranges may run either way and count nodes or, where the location says so, faces; a condition may list its
-points instead, and then is what rectangles these points fill. Signs of a transform follow from the ranges.
+Ranges may ascend or descend, and count nodes or, depending on the location, faces. A condition may list
+points instead; it then covers the rectangles that these points fill. Signs of a transform follow from the
+ranges.
 """
 
 from collections.abc import Iterator
@@ -26,13 +27,13 @@ _KINDS: tuple[tuple[str, Kind], ...] = (
 )  # fmt: skip
 """Kinds of boundary by the start of CGNS's name of the condition (SIDS, BCType_t)."""
 _NOTHING = ("Null", "BCTypeNull")
-"""Conditions that say nothing of a face."""
+"""Conditions without meaning, which are ignored."""
 _FACES = ("FaceCenter", "IFaceCenter", "JFaceCenter", "KFaceCenter", "EdgeCenter", "CellCenter")
 """Locations at which a range counts faces, not nodes (SIDS, GridLocation_t)."""
 
 
 def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[Face]:
-    """Yield the boundary conditions on faces of block number `block`, called by their family.
+    """Yield the faces of block number `block` that have a boundary condition, named by its family.
 
     `counts` are the zone's nodes along its three indices, 1 along the third of a plane zone.
     """
@@ -56,7 +57,7 @@ def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[F
 def interfaces(
     base: Node, zone: Node, counts: Triple, block: int
 ) -> Iterator[tuple[str, FaceWindow, str, Points, Triple]]:
-    """Yield of each one-to-one interface name, own window, the donor's path, its range (2, 3), partners."""
+    """Yield name, own window, donor's path, donor's range (2, 3) and index mapping of each interface."""
     for _, group in children(zone, "ZoneGridConnectivity_t"):
         for name, joint in children(group, "GridConnectivity1to1_t"):
             ranges = dict(children(joint, "IndexRange_t"))
@@ -72,7 +73,7 @@ def interfaces(
 
 
 def window_of(block: int, points: Points, counts: Triple) -> FaceWindow | None:
-    """Return the window from the first of two points to the last, None outside a block of `counts` nodes."""
+    """Return the window between two `points` (2, 3) of a block of `counts` nodes; None if outside of it."""
     return _window(block, points) if _inside(points, counts) else None
 
 
@@ -86,7 +87,7 @@ def _inside(points: Points, counts: Triple) -> bool:
 
 
 def _points(indices: NDArray[Any]) -> Points | None:
-    """Return indices (n, 2 or 3) counted from 0, three each; None where that is not what they are."""
+    """Return the indices (n, 2 or 3) as (n, 3), counted from 0; None if they have another shape."""
     if indices.ndim != 2 or indices.shape[1] not in (2, 3) or not len(indices):
         return None
     points = np.zeros((len(indices), 3), np.int64)
@@ -95,7 +96,7 @@ def _points(indices: NDArray[Any]) -> Points | None:
 
 
 def _partners(joint: Node, name: str) -> Triple:
-    """Return the donor's index along each of the zone's; the standard's default is the same one."""
+    """Return the donor's index direction along each of the zone's; by default the same one."""
     values = next((array(node, 1) for _, node in children(joint, '"int[IndexDimension]"')), None)
     if values is None:
         return 0, 1, 2
@@ -108,7 +109,7 @@ def _partners(joint: Node, name: str) -> Triple:
 
 
 def _covered(condition: Node, counts: Triple) -> Iterator[tuple[Triple, Triple]]:
-    """Yield the first and last nodes of the parts of faces that a condition is on."""
+    """Yield the first and last nodes of the parts of faces that a condition covers."""
     location = next((text(node) for _, node in children(condition, "GridLocation_t")), "")
     faces = location in _FACES
     nodes = [*children(condition, "IndexRange_t"), *children(condition, "IndexArray_t")]
@@ -130,7 +131,7 @@ def _covered(condition: Node, counts: Triple) -> Iterator[tuple[Triple, Triple]]
 
 
 def _across(low: Points, high: Points, counts: Triple, location: str) -> int | None:
-    """Return the index that a range is constant in, at an end of the block; None if it is on no face."""
+    """Return the index direction in which a range is constant, at an end of the block; None if on no face."""
     hinted = {"I": 0, "J": 1, "K": 2}.get(location[:1]) if location in _FACES else None
     last = [count - 2 if location == "CellCenter" else count - 1 for count in counts]
     able = [k for k in range(3) if counts[k] > 1 and low[k] == high[k] and low[k] in (0, last[k])]

@@ -1,8 +1,8 @@
 """One-to-one interfaces of CGNS zones as they are written: ranges, transforms, periodic properties.
 
-Ranges count nodes from 1 and give the first and the last of every index. The transform says which index of
-the donor each index of the zone runs along. Along the interface that is
-what the connection says; across it, a step out of the zone is one into the donor.
+Ranges count nodes from 1 and give the first and the last of every index. The transform gives for each index
+direction of the zone that of the donor. Along the interface it follows from the connection; across the
+interface, a step out of the zone is a step into the donor.
 https://cgns.github.io/standard/SIDS/multizone_interface.html
 """
 
@@ -32,7 +32,7 @@ def range_of(side: Side, span: Range, counts: tuple[int, ...]) -> Integers:
 
 
 def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid) -> None:
-    """Join the two sides of each connection of `grid`, once from each, in the `zones` of its blocks."""
+    """Write each connection of `grid` as an interface in both of its `zones`, which have the given names."""
     groups: dict[int, Node] = {}
     taken: dict[int, set[str]] = {}
     counts = [block.counts for block in grid.blocks]
@@ -56,7 +56,7 @@ def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid) -
 
 
 def _transform(each: Connection) -> Integers:
-    """Return the donor's index along each index of the zone, counted from 1, negative where opposed."""
+    """Return the donor's index direction for each of the zone's, from 1, negative if it is opposed."""
     (axis, end), (other, donor_end) = PLACES[each.side], PLACES[each.donor_side]
     dimension = len(each.orientation) + 1
     donor_axes = [index for index in range(dimension) if index != other]
@@ -69,9 +69,9 @@ def _transform(each: Connection) -> Integers:
 
 
 def _write_motion(joint: Node, motion: Motion, dimension: int) -> None:
-    """Add the rotation in radians and the shift that carry the nodes of an interface to the donor's.
+    """Add the rotation (radians) and the translation from the nodes of an interface to those of the donor.
 
-    Of two dimensions there is no axis to turn about; the angle is written as the last number all the same.
+    In two dimensions, which have no axis of rotation, the angle is written as the last number.
     """
     screw = screw_of(motion)
     outer = child(joint, "GridConnectivityProperty", "GridConnectivityProperty_t")

@@ -25,12 +25,12 @@ Node: TypeAlias = h5py.Group
 NAME_LENGTH = 32
 """Most characters of a node's name."""
 VERSIONS = "earliest", "v108"
-"""Least and greatest versions of HDF5 that the objects of a file are for."""
+"""Oldest and newest HDF5 version with which the objects of a file must be compatible."""
 
 _TYPES = {"int8": "C1", "int32": "I4", "int64": "I8", "float32": "R4", "float64": "R8"}
 """CGNS's names of number types by those of NumPy."""
 _DATA = " data"
-"""Name of the dataset of a node's data, with the blank that the standard wants."""
+"""Name of the dataset of a node's data, with the leading blank that the standard requires."""
 
 
 def root(file: h5py.File) -> Node:
@@ -44,9 +44,9 @@ def root(file: h5py.File) -> Node:
 
 
 def child(parent: Node, name: str, label: str, value: str | NDArray[Any] | None = None) -> Node:
-    """Add a node; an array is given as HDF5 stores it, a text becomes an array of characters.
+    """Add a node to `parent` and return it; an array is given as HDF5 stores it, a text becomes characters.
 
-    It is the copy of one without name and data, which takes half of the time of making it anew.
+    The node is copied from a template, which takes half of the time of creating it.
     """
     data = _codes(value, len(value.encode())) if isinstance(value, str) else value
     blank = _blank(label, "MT" if data is None else _TYPES[data.dtype.name])
@@ -64,7 +64,7 @@ def child(parent: Node, name: str, label: str, value: str | NDArray[Any] | None 
 
 
 def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
-    """Yield the names and nodes of `label` below `node`, links to elsewhere left out."""
+    """Yield the names and nodes with `label` below `node`, without links to other places."""
     for name in node:
         below = own(node, name)
         if isinstance(below, h5py.Group) and _attribute(below, "label") == label:
@@ -72,7 +72,7 @@ def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
 
 
 def array(node: Node, ndim: int) -> NDArray[Any]:
-    """Return a node's numbers; InputError where there are none or their type, rank or size is wrong."""
+    """Return a node's numbers, of rank `ndim`. Raises InputError: none, or of wrong type, rank or size."""
     place = printable(str(node.name))
     data = own(node, _DATA)
     if not isinstance(data, h5py.Dataset) or data.is_virtual or data.external:
@@ -85,7 +85,7 @@ def array(node: Node, ndim: int) -> NDArray[Any]:
 
 
 def text(node: Node) -> str:
-    """Return a node's characters; raises as `array`."""
+    """Return a node's text. Raises InputError as `array`."""
     codes = array(node, 1)
     if codes.dtype.itemsize != 1:
         raise InputError("node holds no text", "write the file again", place=printable(str(node.name)))

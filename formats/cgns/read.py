@@ -1,7 +1,7 @@
-"""Reading CGNS: the structured zones of a file, blocks in the plane, of volume, or patches of a surface.
+"""Reading CGNS: structured zones as planar blocks, blocks of volumes, or patches of surfaces.
 
-Zones that this package wrote say which grid they belong to. Of others, those that touch are one grid, be they
-joined one to one in the file or found to coincide, whatever bases they are in.
+Zones that this package wrote name the grid that they belong to. Other zones form one grid if they are
+connected, by one-to-one interfaces in the file or by coincident nodes, whatever bases they are in.
 """
 
 from collections.abc import Iterator, Sequence
@@ -28,14 +28,14 @@ _MOST_NODES = 1 << 40
 
 
 class _Zone(NamedTuple):
-    """A structured zone: the node of its base, its own, its name."""
+    """A structured zone: the CGNS node of its base, its own node, and its name."""
 
     base: Node
     node: Node
     title: str
 
     def block(self, name: str) -> FileBlock:
-        """Return coordinates and facts of the zone as a block called `name`."""
+        """Return the coordinates and metadata of the zone as a block called `name`."""
         place = f"zone {self.title!r}"
         with in_place(place):
             return FileBlock(_coordinates(self.node), name, place, facts=_facts(self.node))
@@ -44,9 +44,9 @@ class _Zone(NamedTuple):
 def read_grids(source: Source) -> Iterator[Grid]:
     """Yield the grids of the structured zones, each named by its zone when the file has several.
 
-    Parts are those that this package wrote, or else the boundary conditions, called by their families.
+    Patches are those that this package wrote, or else the boundary conditions, named by their families.
 
-    Raises InputError: a container of the old kind, no HDF5, no structured zone, a zone that is not right.
+    Raises InputError: an ADF file, no HDF5, no structured zone, an invalid zone.
     """
     if b"ADF Database Version" in source.head(32):
         raise InputError("is CGNS in an ADF container", "turn it into HDF5: adf2hdf OLD.cgns NEW.cgns")
@@ -77,7 +77,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
 
 def _foreign(zones: Sequence[_Zone], stem: str) -> Iterator[Grid]:
-    """Yield the grids of zones that others wrote."""
+    """Yield the grids of zones that other programs wrote."""
     faces, pairs = list[Face](), list[Pair]()
     blocks = [zone.block(zone.title) for zone in zones]
     counts: list[Any] = [block.coordinates[0].shape for block in blocks]
@@ -103,7 +103,7 @@ def _facts(zone: Node) -> Facts:
 
 
 def _coordinates(zone: Node) -> list[Floats]:
-    """Return x, y[, z] as (ni, nj, nk) views of what is stored, which is checked against the zone's size."""
+    """Return x, y[, z] as arrays (ni, nj, nk), checked against the size of the zone."""
     size = array(zone, 2).astype(np.int64)
     if size.shape[0] != 3 or size.shape[1] not in (2, 3) or not (size[0] > 0).all():
         raise InputError(f"its size has shape {size.shape}", "write vertex, cell and boundary sizes")

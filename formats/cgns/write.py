@@ -1,9 +1,8 @@
-"""CGNS structured zones in HDF5, ``.cgns``: boundary conditions, families, connected sides joined one to one.
+"""CGNS structured zones in HDF5, ``.cgns``, with boundary conditions, families and one-to-one interfaces.
 
-Written so that libraries from 3.4 on read it: a zone for every block, of two or three directions. Grids in
-the plane, on surfaces and of volumes stand in bases of their own. Topology, name, parts and provenance
-are Descriptor_t nodes of the zone, which others pass over.
-https://cgns.org/standard/SIDS/SIDS.html
+CGNS libraries from 3.4 on read these files, with a two- or three-dimensional zone for every block. Planar
+grids, surfaces and volumes are in bases of their own. Topology, name, patches and provenance are Descriptor_t
+nodes of the zone, which other programs ignore. https://cgns.org/standard/SIDS/SIDS.html
 """
 
 from collections.abc import Iterable
@@ -27,9 +26,9 @@ _CONDITIONS: dict[Kind, str] = {
     "wall": "BCWall", "farfield": "BCFarfield", "inlet": "BCInflow", "outlet": "BCOutflow",
     "symmetry": "BCSymmetryPlane", "wedge": "BCAxisymmetricWedge",
 }  # fmt: skip
-"""CGNS's names of boundary conditions; kinds that are not here are general ones."""
+"""CGNS's names of boundary conditions; other kinds become BCGeneral."""
 _IN_MEMORY = 1 << 24
-"""Numbers up to which a grid of many blocks, thousands of small objects, is put together in memory."""
+"""Most coordinates of a multi-block grid, thousands of small HDF5 objects, whose file is built in memory."""
 _METRE = np.array([0, 1, 0, 0, 0], np.float64)
 """Exponents of mass, length, time, temperature and angle in a coordinate."""
 
@@ -66,7 +65,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def _zone_names(grid: Grid, taken: set[str]) -> list[str]:
-    """Return a name for the zone of each block: those it had in its file, else the grid's, with numbers."""
+    """Return a name for the zone of each block: that in its original file, else the grid's with a number."""
     own = grid.provenance.get("zones")
     count = len(grid.blocks)
     if not isinstance(own, list) or len(own) != count or not all(isinstance(name, str) for name in own):
@@ -79,7 +78,7 @@ def _zone_names(grid: Grid, taken: set[str]) -> list[str]:
 
 
 def _write_zone(base: Node, name: str, grid: Grid, block: int, facts: Facts) -> Node:
-    """Add the zone of a block of a grid, of which the file says `facts`, and return it."""
+    """Add the zone of a block of a grid, with metadata `facts`, and return it."""
     nodes = grid.blocks[block].nodes
     dims = nodes.shape[:-1]
     size = np.array([dims, [n - 1 for n in dims], [0] * len(dims)], np.int32)

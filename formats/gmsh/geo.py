@@ -1,7 +1,7 @@
-"""Gmsh's ``.geo``: the outer edges as transfinite curves, for those who mesh or change it in Gmsh.
+"""Gmsh's ``.geo``: the outer edges of a grid as transfinite curves, for meshing or changes in Gmsh.
 
-The nodes of the boundary are kept; those inside are Gmsh's own interpolation. Each block is a surface; O and
-C grids become two, split at the middle of i, since no transfinite surface may meet itself.
+The boundary nodes are kept; Gmsh interpolates the others. Each block is a transfinite surface; O and C grids
+become two, split at the middle of i, since such a surface cannot be connected to itself.
 https://gmsh.info/doc/texinfo/gmsh.html#Structured-grids
 """
 
@@ -18,7 +18,7 @@ from meshonet.geometry.blocks.grid import Grid
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the outer edges of the only grid of `grids`, a line for each cell at them."""
+    """Write the outer edges of the only grid of `grids`, with a line for each cell edge."""
     grid = only_one(grids, "a .geo file")
     mesh = unstructured(grid)
     loops = [loop for k, number in enumerate(node_numbers(grid)) for loop in _loops(grid, k, number + 1)]
@@ -46,7 +46,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def _loops(grid: Grid, block: int, number: Indices) -> list[tuple[Indices, Indices]]:
-    """Return nodes and corners of the surfaces that a block becomes: two where it meets itself."""
+    """Return boundary nodes and corners of the surfaces of a block: two if it is connected to itself."""
     last = len(number) - 1
     itself = any(each.block == each.donor == block for each in grid.connections if not each.transform)
     ends = (0, last // 2, last) if itself else (0, last)
@@ -62,7 +62,7 @@ def _loop(number: Indices, first: int, last: int) -> tuple[Indices, Indices]:
 
 
 def _named(mesh: Unstructured, lines: Indices) -> dict[str, Indices]:
-    """Return the numbers of the lines of each part."""
+    """Return the line numbers of each patch, by name."""
     width = len(mesh.points) + 1
     keys = lines[:, 0] * width + lines[:, 1]
     ends = {name: np.sort(edges + 1, axis=1) for name, edges in mesh.faces.items()}

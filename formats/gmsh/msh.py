@@ -1,7 +1,7 @@
 """Writing Gmsh's ``.msh`` 2.2 and 4.1: quadrilaterals with merged seams, patches as physical groups.
 
-2.2 goes through meshio; of 4.1 every patch is an entity, which meshio would not write. Text is what
-converters such as OpenFOAM's insist on. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
+2.2 is written by meshio; in 4.1 every patch is an entity, which meshio does not support. Converters such as
+OpenFOAM's require text. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
 """
 
 import struct
@@ -27,7 +27,7 @@ _KINDS = {2: 1, 4: 3, 8: 5}
 
 
 class Link(NamedTuple):
-    """A periodic patch: its tag, its master's, the matrix from there, its nodes and the master's (n, 2)."""
+    """A periodic patch: its tag, its master's tag, the affine map from the master, and node pairs (n, 2)."""
 
     tag: int
     master: int
@@ -40,9 +40,9 @@ CellGroup: TypeAlias = "tuple[str, Indices]"
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids`: quads, and lines in groups named as its patches.
+    """Write the only grid of `grids`: quads and boundary lines, or hexahedra and boundary quads of a volume.
 
-    Of a volume, hexahedra and quads.
+    Boundary elements are in physical groups named as the patches.
     """
     grid = only_one(grids, "a .msh file")
     refuse_collapsed(grid, "a .msh file")
@@ -59,7 +59,7 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
 
 
 def _affine(motion: Motion) -> list[float]:
-    """Return a motion as a matrix (4, 4) row by row."""
+    """Return a motion as the 16 entries of an affine matrix (4, 4), row by row."""
     matrix = np.eye(4)
     if motion.turn:
         d = len(motion.turn)
@@ -137,7 +137,7 @@ class _File(NamedTuple):
     text: bool
 
     def line(self, *groups: tuple[Any, ...]) -> None:
-        """Write a few numbers, in groups of a kind: ``i``, ``q`` (of 8 bytes) or ``d``."""
+        """Write a few numbers, in groups that begin with their type: ``i``, ``q`` (8 bytes) or ``d``."""
         if self.text:
             words = [f"{v:.17g}" if kind == "d" else str(v) for kind, *values in groups for v in values]
             self.stream.write(" ".join(words).encode() + b"\n")
@@ -146,7 +146,7 @@ class _File(NamedTuple):
             self.stream.write(b"".join(packed))
 
     def rows(self, rows: Floats | Indices) -> None:
-        """Write rows of numbers, those of whole ones in 8 bytes."""
+        """Write rows of numbers, integers in 8 bytes."""
         floats = rows.dtype.kind == "f"
         if self.text:
             write_rows(self.stream, " ".join(["%e" if floats else "%d"] * rows.shape[1]), rows)
@@ -166,7 +166,7 @@ def _write_periodic(file: _File, dimension: int, links: list[Link]) -> None:
 
 
 def _write_entities(file: _File, points: Floats, entities: list[tuple[int, int, Indices]]) -> None:
-    """Write the box and the physical group of each entity, without what bounds it."""
+    """Write bounding box and physical group of each entity, without its bounding entities."""
     dimensions = [dimension for dimension, _, _ in entities]
     file.line(("q", *map(dimensions.count, range(4))))
     for group, (_, tag, nodes) in enumerate(entities, start=1):

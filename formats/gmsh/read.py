@@ -1,7 +1,7 @@
 """Reading the boundary of Gmsh meshes, ``.msh`` 2.2 and 4.1, text or binary.
 
-Lines make the boundary under the names of their physical groups; without lines, the rim of the cells does.
-https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
+The lines of a mesh are its boundary, with the names of their physical groups; without lines, the boundary
+edges of its cells are. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
 """
 
 import re
@@ -66,7 +66,7 @@ def _format(data: bytes) -> tuple[str, bool, str]:
 
 
 def _section(data: bytes, name: bytes, *, needed: bool = True) -> bytes:
-    """Return what stands between ``$name`` and ``$Endname``."""
+    """Return the text between ``$name`` and ``$Endname``."""
     start = re.search(rb"(?:^|\n)\$" + name + rb"[ \t]*\r?\n", data)
     end = data.rfind(b"$End" + name) if start else -1
     if start and end >= start.end():

@@ -1,6 +1,6 @@
 """The sections of Gmsh meshes as arrays: nodes, elements, and the physical groups of entities.
 
-Every count is compared with what is left of the file before memory is taken.
+Every count is compared with the size of the rest of the file before memory is allocated.
 """
 
 from collections.abc import Iterator
@@ -31,7 +31,7 @@ class NumberedNodes(NamedTuple):
 
 
 class _Stream:
-    """Numbers of a section, one after the other, whether it is text or binary."""
+    """A sequential reader of the numbers of a section, text or binary."""
 
     def __init__(self, section: bytes, binary: bool, order: str) -> None:
         self._binary, self._order, self._at = binary, order, 0
@@ -73,7 +73,7 @@ class _Stream:
         return len(self._data) - self._at
 
     def bounded(self, count: int) -> int:
-        """Return a count of blocks that can be in what is left."""
+        """Return `count`, a number of blocks. Raises InputError: more than the section can hold."""
         if not 0 <= count <= self.left:
             raise InputError(f"should have {count} blocks and is too short", _CUT)
         return count

@@ -1,10 +1,9 @@
-"""An HDF5 dataset opened and checked: layout, shapes, types and sizes, before any memory is taken.
+"""Checks of an HDF5 dataset: layout, shapes, types and sizes, before memory is allocated.
 
-Of texts of variable length, which h5py makes by default, the library (1.14 and before) trusts two numbers of
-a damaged file: the sizes in a heap of texts, where a free object of size 0 keeps it for ever, out of reach of
-any signal, and a text's length, of which it takes up to 4 GiB before it looks for the text. Both are looked
-at first. HDF5 File Format Specification, III.E:
-https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
+For texts of variable length, h5py's default, the HDF5 library (1.14 and before) trusts two numbers of a
+damaged file: sizes in a global heap, where a free object of size 0 makes an endless loop that no signal
+interrupts, and the length of a text, for which it allocates up to 4 GiB. Both are checked first. HDF5 File
+Format Specification, III.E: https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
 """
 
 from __future__ import annotations
@@ -29,16 +28,16 @@ if TYPE_CHECKING:
     import h5py
 
 TOGETHER = 1 << 17
-"""Bytes of small samples that are read in one go."""
+"""Bytes of small samples that are read together."""
 
 LARGE = 1 << 22
-"""Bytes of a sample up to which it is read as it stands."""
+"""Largest sample, in bytes, that is not read in parts."""
 _DEFLATE_LIMIT = 1032
-"""Most that deflate, the densest of HDF5's own filters, can shrink; a claim beyond it is a lie."""
+"""Largest compression ratio of deflate, the best of HDF5's filters; a larger one means damage."""
 _MOST_SEARCHED = 1 << 28
-"""Bytes of files that are searched for heaps: that must stay a small part of reading."""
+"""Largest file, in bytes, that is searched for heaps, so that this takes a small part of the time."""
 _DAMAGE = (OSError, RuntimeError, LookupError, TypeError, ValueError, ArithmeticError)
-"""What h5py makes of damaged data: almost anything, but no errors that only a program's mistakes are."""
+"""Exceptions that h5py raises for damaged data."""
 _TEXT = np.dtype([("length", "<u4"), ("heap", "<u8"), ("index", "<u4")])
 """How HDF5 stores a text of variable length: its length, and its place in a heap."""
 
@@ -101,7 +100,7 @@ class Checked:
         return name in self._file
 
     def kept(self, split: str) -> Sequence[int]:
-        """Return the samples of a split, or all of them."""
+        """Return the indices of the samples of a split, or of all samples."""
         if not split:
             return range(self.count)
         return [k for k in range(self.count) if self.text("split", k) == split]
@@ -192,14 +191,14 @@ class Checked:
 
 
 def own(group: h5py.Group, name: str) -> Any:
-    """Return the member of `group` of that name, or None where it lies elsewhere or is not there."""
+    """Return the member `name` of `group`; None if it is missing or a link to another place."""
     import h5py
 
     return group.get(name) if isinstance(group.get(name, getlink=True), h5py.HardLink) else None
 
 
 def check_stored(data: h5py.Dataset, what: str, place: str = "") -> None:
-    """Raise InputError where `data`, called `what`, claims more than can be in the bytes that it holds."""
+    """Raise InputError if the shape of `data`, called `what`, is impossible for the bytes that are stored."""
     if data.size * data.dtype.itemsize > _DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
         problem = f"{what} claims shape {data.shape} but holds next to nothing"
         raise InputError(problem, "write the file again", place=place)
@@ -207,17 +206,16 @@ def check_stored(data: h5py.Dataset, what: str, place: str = "") -> None:
 
 @contextlib.contextmanager
 def checked(source: Source) -> Iterator[Checked]:
-    """Open `source` as a dataset; what HDF5's library complains of becomes an InputError."""
+    """Open `source` as a dataset; errors of the HDF5 library become InputError."""
     with opened(source) as file:
         yield Checked(file, source)
 
 
 @contextlib.contextmanager
 def opened(source: Source, *, texts: bool = True) -> Iterator[h5py.File]:
-    """Open `source` for reading; whatever goes wrong inside becomes an InputError.
+    """Open `source` for reading; errors of the HDF5 library inside the context become InputError.
 
-    Without `texts` none of variable length may be read, and none are searched for, which takes the time of
-    reading the file.
+    Without `texts` no text of variable length may be read, and the file is not searched for damaged ones.
     """
     import h5py
 

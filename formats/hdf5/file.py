@@ -1,8 +1,8 @@
-"""HDF5 files being made on discs that may run full.
+"""Creation of HDF5 files on disks that may run full.
 
 The HDF5 library cannot close a file that it failed to write to: it tries again when the program ends, and
-crashes there. So a failure is kept from it, what it still writes is dropped, and the error is raised when it
-is done.
+crashes. So errors are hidden from it, further writes are ignored, and the first error is raised after it has
+closed the file.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class _Disc(io.FileIO):
     error: OSError | None = None
 
     def readinto(self, buffer: Any) -> int:
-        """Read; what was never written is zero."""
+        """Read into `buffer`; bytes that were never written are zero."""
         count = super().readinto(buffer) or 0
         buffer[count:] = bytes(len(buffer) - count)
         return len(buffer)
@@ -50,9 +50,9 @@ class _Disc(io.FileIO):
 
 @contextlib.contextmanager
 def created(path: Path, *, in_memory: bool = False, **options: Any) -> Iterator[h5py.File]:
-    """Give a new HDF5 file, `options` being h5py's; raises OSError where it cannot be written.
+    """Return a context with a new HDF5 file, `options` being h5py's; raises OSError if it cannot be written.
 
-    One put together in memory is written when it is done: faster where it has many objects.
+    With `in_memory` the file is written at the end, which is faster for many objects.
     """
     import h5py
 

@@ -1,4 +1,4 @@
-"""The file that shows the parts of a dataset as one, made and resolved."""
+"""The index of a dataset in parts: an HDF5 file of virtual datasets over all parts, written and read."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 OF_PARTS = ("request", "part_size", "size")
 """Attributes that parts have and the index does not."""
 _AGAIN = "repeat the command that made it, with {skip_existing}"
-"""Remedy for parts that do not fit their index."""
+"""Remedy for parts that do not match their index."""
 
 
 class Failed(NamedTuple):
@@ -34,7 +34,7 @@ class Failed(NamedTuple):
 
 @dataclass
 class PartFacts:
-    """What a part says of itself.
+    """Description of a part, read from its file.
 
     `size` must be the same in all parts; `columns` are its datasets: length, shape of a row, and type.
     """
@@ -51,7 +51,7 @@ class PartFacts:
 
 
 def part_facts(path: Path) -> PartFacts:
-    """Return what the part at `path` says of itself; InputError where it cannot be read."""
+    """Return the description of the part at `path`. Raises InputError: it cannot be read."""
     facts = PartFacts(path)
     source = Source(printable(str(path)), path=path)
     with opened(source, texts=False) as file:
@@ -89,7 +89,7 @@ def _datasets(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a dataset that an index shows: samples `start` to `stop` of all."""
+    """A part of a dataset: samples `start` to `stop` of all that the index shows."""
 
     source: Source
     start: int
@@ -103,10 +103,9 @@ class Part:
 
 
 def shown_parts(file: h5py.File, source: Source) -> list[Part] | None:
-    """Return the parts that the open index `source` shows, in order, and None where it is no index.
+    """Return the parts of the open index `source`, in order; None if it is not an index.
 
-    Raises InputError: a part is missing, or not in a folder beside the index; rows are not one after the
-    other.
+    Raises InputError: a part is missing, or not in a folder next to the index; its rows are not consecutive.
     """
     import h5py
 
@@ -146,9 +145,9 @@ def _parts(mappings: Any, index: Path, split: str) -> Iterator[Part]:
 
 
 def write_index(file: Path, index: Path, parts: Sequence[PartFacts]) -> None:
-    """Write to `file` what will be `index`, over `parts` that hold samples.
+    """Write the index of `parts`, which hold samples, to `file`, which is later renamed to `index`.
 
-    Raises InputError: they differ in size or settings.
+    Raises InputError: the parts differ in size or settings.
     """
     first = parts[0]
     for facts in parts[1:]:
@@ -178,7 +177,7 @@ def _check_same(facts: PartFacts, first: PartFacts) -> None:
 def _add_column(
     made: h5py.File, name: str, row: tuple[int, ...], kind: Any, parts: Sequence[PartFacts], folder: Path
 ) -> None:
-    """Add the virtual dataset `name` of rows of all `parts`; what a part lacks is empty, or not a number."""
+    """Add the virtual dataset `name` over all `parts`; rows of parts without it are empty or NaN."""
     import h5py
 
     ends = [facts.columns.get(name, (0,))[0] if name == "failed" else facts.count for facts in parts]

@@ -1,17 +1,17 @@
-"""Datasets in parts: files ``out/part-00000.h5``, each a dataset, that ``out.h5`` shows as one.
+"""Datasets in parts: files ``out/part-00000.h5``, each a dataset, and the index ``out.h5`` over all of them.
 
-A part is written whole or not at all, and says of what it was made:
+A part is written atomically, and describes how it was made:
 
 ========== ========================================================================================
 request    attribute: digest of the settings of all parts
-part_size  attribute: how many inputs all parts but the last are made of
+part_size  attribute: number of inputs of each part but the last
 size       attribute: counts of nodes and topology, in words
 inputs     dataset of texts: digests of the inputs
 failed     dataset of texts: JSON lists ``[input, member, error, again]`` of members it lacks
 ========== ========================================================================================
 
-``out.h5`` has the attributes of the first part and a virtual dataset for each of the parts' datasets: rows of
-the parts one after the other, by paths relative to it. Whoever writes a part can make it again at any time.
+``out.h5`` has the attributes of the first part and an HDF5 virtual dataset for each of the parts' datasets,
+which concatenates their rows, by relative paths. It can be written again from the parts at any time.
 https://docs.hdfgroup.org/archive/support/HDF5/docNewFeatures/NewFeaturesVirtualDatasetDocs.html
 """
 
@@ -42,14 +42,14 @@ State = Literal["missing", "complete", "extended"]
 
 
 class Input(NamedTuple):
-    """An input as it was named, and a digest of what it holds."""
+    """An input as it was named, and a digest of its content."""
 
     text: str
     digest: str
 
 
 class OtherPartsError(InputError):
-    """The parts that are there are not parts of what is being made."""
+    """The existing parts are not parts of the dataset that is being made."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,9 @@ class PartFiles:
 
     Parameters
     ----------
-    index : the file that shows the parts as one.
-    request : digest of the settings that all parts are made with (`digest_of`).
-    part_size : how many inputs all parts but the last are made of.
+    index : path of the index.
+    request : digest of the settings of all parts (`digest_of`).
+    part_size : number of inputs of each part but the last.
     """
 
     index: Path
@@ -69,7 +69,7 @@ class PartFiles:
 
     @property
     def folder(self) -> Path:
-        """The folder of the parts, beside the index and of its name."""
+        """The folder of the parts, next to the index and with its name."""
         return self.index.with_suffix("")
 
     def path(self, number: int) -> Path:
@@ -77,41 +77,41 @@ class PartFiles:
         return self.folder / f"part-{number:05d}.h5"
 
     def numbers(self) -> list[int]:
-        """Return the numbers of the parts that are there, in order."""
+        """Return the numbers of the existing parts, in order."""
         if not self.folder.is_dir():
             return []
         names = (_NAME.fullmatch(entry.name) for entry in self.folder.iterdir())
         return sorted(int(match[1]) for match in names if match)
 
     def check(self, *, skip_existing: bool) -> None:
-        """Raise OtherPartsError where the parts that are there were made with other settings."""
+        """Raise OtherPartsError if the existing parts were made with other settings."""
         for number in self.numbers()[:1] if skip_existing else ():
             self.facts(number)
 
     def refuse(self, number: int) -> NoReturn:
-        """Raise OtherPartsError for a part that is there."""
+        """Raise OtherPartsError for an existing part."""
         remedy = f"continue with {{skip_existing}}, or remove the parts: rm -r {printable(str(self.folder))}"
         raise OtherPartsError("is there already", remedy, source=printable(str(self.path(number))))
 
     def facts(self, number: int) -> PartFacts:
-        """Return what a part says of itself; raises as `state`."""
+        """Return the description of a part. Raises as `state`."""
         facts = part_facts(self.path(number))
         if facts.request != self.request:
             self._refuse(facts.path, "was made with other options or another size of parts")
         return facts
 
     def size_there(self) -> int:
-        """Return how many inputs each of the existing parts is made of, 0 if there are no parts."""
+        """Return the `part_size` of the existing parts, 0 if there are none."""
         for number in self.numbers()[:1]:
             return part_facts(self.path(number)).part_size
         return 0
 
     def state(self, number: int, inputs: Sequence[Input]) -> State:
-        """Return whether a part is there: ``complete``, to be ``extended`` or made for the first time.
+        """Return the state of a part: ``complete``, to be ``extended``, or ``missing``.
 
-        A part of the first of `inputs` is to be extended; so is one of which an input failed that has changed
-        since, or that failed for want of memory, say, which may be there now. Raises OtherPartsError: the
-        part was made of other inputs or with other settings; InputError: it cannot be read.
+        A part made from only the first of `inputs` is to be extended; so is one with a failed input that has
+        changed since, or that may succeed now (after lack of memory, say). Raises OtherPartsError: the part
+        was made from other inputs or with other settings; InputError: it cannot be read.
         """
         if not self.path(number).exists():
             return "missing"
@@ -132,10 +132,10 @@ class PartFiles:
         self, number: int, kind: str, samples: Iterable[Boundary | Grid], inputs: Sequence[Input],
         failed: list[Failed],
     ) -> int:  # fmt: skip
-        """Write a part, whole or not at all, and return how many samples it holds.
+        """Write a part atomically and return its number of samples.
 
-        `failed` gets its entries while `samples` are taken. Raises InputError: samples of different sizes; a
-        place that cannot be written.
+        `failed` is filled while `samples` are iterated. Raises InputError: samples of different sizes; a path
+        that cannot be written.
         """
         count = 0
         name: Kind = "meshonet-grid" if kind == "grids" else "meshonet-boundary"
@@ -152,9 +152,9 @@ class PartFiles:
         return count
 
     def build(self) -> int:
-        """Write the index over the parts that are there and return how many samples it shows, 0 without one.
+        """Write the index of the existing parts and return its number of samples, 0 if there is none.
 
-        Several processes may do so at once: the one that is last sees the parts of all. Raises InputError:
+        Several processes may do so concurrently: the last one finds the parts of all. Raises InputError:
         parts of different settings or sizes.
         """
         numbers, count = None, 0

@@ -1,4 +1,4 @@
-"""Reading HDF5 datasets: boundaries, grids, the numbers that made them, and samples named as inputs."""
+"""Reading HDF5 datasets: boundaries, grids, their parameters, and samples selected in an input's name."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ T = TypeVar("T")
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Return an iterator over the boundaries, for grids their outer edges as they were stored.
+    """Return an iterator over the boundaries; of grids, over their outer edges as stored.
 
-    Of grids of many blocks it returns their domains. It continues after a sample that is not right and raised
-    InputError.
+    Of multi-block grids it returns the domains. An invalid sample raises InputError, after which the iterator
+    continues.
     """
     return map(call, samples_read(source, _boundary))
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Return an iterator over the grids; it too continues after a sample that is not right."""
+    """Return an iterator over the grids; it continues after an invalid sample, which raises InputError."""
     return map(call, samples_read(source, _grid))
 
 
 def samples_read(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
-    """Yield functions that read one sample each: what they raise does not end the generator."""
+    """Yield functions that read one sample each, so that an error in one does not end the generator."""
     with opened(source) as file:
         parts = shown_parts(file, source)
         if parts is None:
@@ -76,7 +76,7 @@ def _raise(error: Exception) -> NoReturn:
 
 
 def kept_of(parts: Sequence[Part], split: str) -> Sequence[int]:
-    """Return the numbers of the samples of a split, or of all of them, counted through all parts."""
+    """Return the indices of the samples of a split, or of all samples, counted through all parts."""
     if not split:
         return range(parts[-1].stop)
     kept: list[int] = []
@@ -150,7 +150,7 @@ def _patch(name: str, side: Side, start: int, stop: int, block: int = 0, *more: 
 
 @dataclass(frozen=True)
 class DatasetSamples:
-    """Samples of a dataset, of one split or of all: those of the numbers `rows`."""
+    """Selected samples of a dataset: those with indices `rows` in a split, or in all samples."""
 
     name: str
     split: str
@@ -160,7 +160,7 @@ class DatasetSamples:
         return len(self.rows)
 
     def digests(self) -> Iterator[str]:
-        """Yield a digest of what is stored of each of these samples."""
+        """Yield a digest of the stored data of each of these samples."""
         for digest in samples_read(open_source(self.named(0, len(self.rows))), _digest):
             try:
                 yield digest()
@@ -186,7 +186,7 @@ def _digest(data: Checked, k: int) -> str:
 
 
 def samples_of(text: str) -> DatasetSamples:
-    """Return the samples that an input names; InputError where it is no dataset, or has none of them."""
+    """Return the samples that an input selects. Raises InputError: no dataset, or no such samples."""
     source = open_source(text)
     with in_source(source.name), opened(source) as file:
         parts = shown_parts(file, source)

@@ -1,16 +1,16 @@
-"""Transfinite interpolation: the grid that four edges span algebraically.
+"""Transfinite interpolation of a planar grid from its four edges.
 
-Node (i, j) sits where the straight lines that join equal parameters on opposite edges cross, in the unit
-square of parameters::
+The parameters (u, v) of node (i, j) are where the straight lines between the parameters of opposite edges
+intersect in the unit square::
 
     u = s_i + (n_i - s_i) v      s, n: parameter along south and north at i
     v = w_j + (e_j - w_j) u      w, e: parameter along west and east at j
 
-and its position is the Boolean sum of the two edge interpolations there (a, b, c, d the corners)::
+and its position is the Boolean sum of the interpolations between opposite edges, with corners a, b, c, d::
 
     x = (1-v) S_i + v N_i + (1-u) W_j + u E_j - (1-u)(1-v) a - u (1-v) b - u v c - (1-u) v d
 
-Gordon and Hall, Int. J. Numer. Meth. Engng 7 (1973) 461-477; the crossing: Soni, AIAA 85-1526 (1985).
+Gordon and Hall, Int. J. Numer. Meth. Engng 7 (1973) 461-477; the intersection: Soni, AIAA 85-1526 (1985).
 """
 
 from typing import Literal, get_args
@@ -30,11 +30,11 @@ Four = tuple[Floats, Floats, Floats, Floats]
 
 
 def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
-    """Return the transfinite interpolation of `boundary`.
+    """Return the grid inside `boundary` by transfinite interpolation; it may have folded cells.
 
-    `blending` is what the parameters along an edge are: ``linear`` i/(ni-1), or ``arclength`` the fraction of
-    its length, which carries the spacing of the edges inside. The edges of the grid equal those of `boundary`
-    bitwise; it may be folded. Raises InputError for an unknown blending.
+    `blending` chooses the parameter along an edge: ``linear`` i/(ni-1), or ``arclength`` the fraction of its
+    length, which propagates the spacing of the edges into the interior. The edges of the grid equal those of
+    `boundary` bitwise. Raises InputError for an unknown blending.
     """
     nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
@@ -51,7 +51,7 @@ def solve(boundary: Boundary, *, blending: Blending = "arclength") -> Solution:
 
 
 def parameters(edges: Four, blending: Blending) -> Four:
-    """Return the parameters 0..1 along `edges` (south, north, west, east), each (n, 2) -> (n,)."""
+    """Return the parameters (n,), 0 to 1, of each of the `edges` (n, 2): south, north, west, east."""
     if blending not in get_args(Blending):
         remedy = "use " + "/".join(get_args(Blending))
         raise InputError(f"blending {blending!r} is not known", remedy, parameter="blending")
@@ -63,14 +63,14 @@ def parameters(edges: Four, blending: Blending) -> Four:
 
 
 def interpolate(x: Floats, y: Floats, edges: Four, along: Four) -> None:
-    """Fill `x` and `y` (ni, nj) from `edges` (south, north, west, east) with parameters `along` them."""
+    """Fill `x` and `y` (ni, nj) from `edges` (south, north, west, east), whose parameters are `along`."""
     south, north, west, east = (np.ascontiguousarray(edge.T) for edge in edges)
     xs, ys = ((south[k], north[k], west[k], east[k]) for k in (0, 1))
     fill(x, y, xs, ys, along, threads_for(x.size))
 
 
 def arc_length_fraction(points: Floats) -> Floats:
-    """Return the length along polylines (..., n, 2) up to each point, over the whole: (..., n), 0 to 1.
+    """Return the fraction (..., n), 0 to 1, of the arc length of polylines (..., n, 2) up to each point.
 
     >>> arc_length_fraction(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 9.0]]))
     array([0. , 0.5, 1. ])

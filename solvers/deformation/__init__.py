@@ -1,1 +1,1 @@
-"""Given grids that follow a changed boundary."""
+"""Deformation of a given grid to a changed boundary."""

@@ -13,13 +13,13 @@ from meshonet.geometry.polygon.self_intersection import find_crossings
 from meshonet.solvers.deformation.outer import NodeTable, Piece, lines_of
 from meshonet.solvers.deformation.targets import NodeTargets
 
-_MOST = 4096  # crossings looked at: those where lines are joined come among them and do not count
+_MOST = 4096  # crossings looked for; those at the joints of concatenated polylines are skipped
 
 
 def check_apart(table: NodeTable, targets: NodeTargets) -> None:
-    """Raise InputError, with the place, when planar walls in their new places cross other boundaries.
+    """Raise InputError, with the place, when planar walls in their new position cross other boundaries.
 
-    Sides that slide are left out: where they end is not known before.
+    Sliding sides are not checked: their ends are known only after the deformation.
     """
     moved = targets.moved
     walls = [piece for piece in table.pieces if moved[piece.numbers].all()]

@@ -1,8 +1,8 @@
-"""Grids that follow a changed boundary, layers as they were.
+"""Deformation of a grid to a changed boundary that preserves its boundary layers.
 
-The displacement of the boundary is carried inside by `meshonet.solvers.deformation.follow`. Where cells fold
-the way is gone in steps, each a smooth map of the last one's grid; where that does not suffice, folded cells
-are repaired, and then all nodes but those of layers optimised.
+`meshonet.solvers.deformation.follow` interpolates the displacement of the boundary into the interior. If
+cells fold, the deformation is divided into steps, each of which deforms the grid of the one before. If cells
+still fold, they are repaired; at last all nodes outside the boundary layers are smoothed.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from meshonet.solvers.solution import Outcome, Solution, timed
 
 METHOD = "deformation"
 STEPS = 2, 4, 8
-"""In how many steps the way is gone, tried in turn while cells are folded."""
+"""Numbers of steps of the deformation, tried in turn while cells are folded."""
 
 
 @timed
 def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
-    """Return `grid` with `walls` in their new places, and notes of what was done.
+    """Return `grid` deformed to the new shapes of `walls`, and notes of what was done.
 
-    Raises InputError: a surface, a starting grid with folded cells, a wall that the grid does not have, what
-    cannot be its new shape, walls that cross.
+    Raises InputError: a surface, a starting grid with folded cells, a wall that the grid does not have, an
+    unsuitable new shape, walls that cross.
     """
     table = NodeTable.of(grid)
     folded = count_folded_in(grid)
@@ -49,7 +49,7 @@ def deform(grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> Solution:
 
 
 def _made(follow: Follow, targets: NodeTargets) -> tuple[Grid, tuple[str, ...]]:
-    """Return the first grid without folded cells, or that with the fewest, and the stages it took."""
+    """Return the first grid without folded cells, or else the one with the fewest, and the stages it took."""
     tried: list[tuple[int, Grid, tuple[str, ...]]] = []
     for made, path in _ways(follow, targets):
         tried.append((count_folded_in(made), made, path))
@@ -70,7 +70,7 @@ def _ways(follow: Follow, targets: NodeTargets) -> Iterator[tuple[Grid, tuple[st
 
 
 def _in_steps(follow: Follow, targets: NodeTargets, steps: int) -> Grid:
-    """Return the grid after so many equal steps."""
+    """Return the grid after a deformation of `steps` equal steps."""
     table = now = follow.table
     for number in range(1, steps + 1):
         part = number / steps
@@ -82,7 +82,7 @@ def _in_steps(follow: Follow, targets: NodeTargets, steps: int) -> Grid:
 
 
 def _mended(grid: Grid) -> Iterator[tuple[Grid, tuple[str, ...]]]:
-    """Yield `grid`, which has folded cells, repaired around them, and with all but layers optimised."""
+    """Yield `grid`, which has folded cells, repaired around them; then smoothed outside boundary layers."""
     if grid.form == "plane" and len(grid.blocks) == 1:
         from meshonet.solvers.energy.repair import repair
 
@@ -101,7 +101,7 @@ def _mended(grid: Grid) -> Iterator[tuple[Grid, tuple[str, ...]]]:
 
 
 def _layers(table: NodeTable, after: Grid, targets: NodeTargets) -> tuple[str, ...]:
-    """Return a note of the largest change of a first cell's height at the moved walls."""
+    """Return a note of the largest change of the first-cell height at the moved walls."""
     pieces = [piece for piece in table.pieces if piece.patch.name in targets.names]
     walls = [piece for piece in pieces if piece.patch.kind == "wall"] or pieces
     old, new = (first_heights(grid, walls) for grid in (table.grid, after))

@@ -1,8 +1,8 @@
-"""How nodes follow their boundary: one smooth map of the plane or of space, and its derivative.
+"""Displacement of all nodes from that of the boundary, by inverse-distance weighting, and its derivative.
 
-Nodes of moved walls are sources of a field of displacements, with what they move and turn by; those of the
-rest of the outer boundary are sources that stay. Straight sides, and flat ones of volumes, that touch a moved
-wall slide along themselves first, and are sources then.
+Boundary nodes are the sources of a displacement field: those of moved walls with their displacement and
+rotation, the others with none. On straight sides (flat ones of volumes) that touch a moved wall, nodes first
+slide along the side; then they too are sources, with the displacement they found.
 """
 
 from __future__ import annotations
@@ -22,54 +22,55 @@ from meshonet.solvers.deformation.outer import NodeTable, Piece
 from meshonet.solvers.deformation.sources import Bools, Sources, sources_of
 
 NEAR = 0.3
-"""Distance inside which the nearest wall nodes prevail, in extents of what is moved, at the most."""
+"""Upper bound of the distance inside which the nearest wall nodes dominate, in extents of the moved walls."""
 ROOM = 0.1
-"""The same, in distances between what is moved and what stays: gaps need a softer field."""
+"""Another bound, in distances between moved and fixed nodes: gaps need a softer field."""
 _SOME = 100
-"""Moved nodes whose distances are looked at."""
+"""Moved nodes, about, whose distances to fixed ones are computed."""
 FLAT = 1e-9
-"""Part of its extent by which a side is off a straight line or plane at the most, to slide in it."""
+"""Largest deviation from a line or plane, as a fraction of its extent, of a side whose nodes slide."""
 
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """Displacements anywhere from the motions of the boundary: nearer places weigh more, and rotations count.
+    """The displacement field of the motions of boundary nodes, by inverse-distance weighting with rotations.
 
-    The displacement at x is the mean of d_k(x) = w_k' + R_k (x - w_k) - x over all boundary nodes k, with
-    weights A_k (r^-2 + near² r^-4) in the plane and A_k (r^-3 + near² r^-5) in space: A is the length or area
-    that a node stands for, r its distance. Next to a wall its own node prevails, so that layers move and turn
-    with it. All of it depends on x alone, so that nodes that blocks share stay shared.
+    The displacement at x is the weighted mean of d_k(x) = w_k' + R_k (x - w_k) - x over all sources k, nodes
+    that move from w_k to w_k' and rotate by R_k. The weights are A_k (r^-2 + near² r^-4) in the plane and A_k
+    (r^-3 + near² r^-5) in three dimensions: A is the length or area assigned to a node, r its distance. Close
+    to a wall its nearest node dominates, so that boundary layers move and rotate with the wall. The field
+    depends on x alone, so that nodes shared by blocks remain shared.
 
-    Luke, Collins, Blades, J. Comput. Phys. 231 (2012) 586-601, whose exponents are those in space; a line of
-    places in the plane takes one less.
+    Luke, Collins, Blades, J. Comput. Phys. 231 (2012) 586-601, whose exponents are those in three dimensions;
+    in the plane, where sources lie on lines, they are lower by one.
     """
 
     sources: Indices
-    """(k,) numbers of nodes."""
+    """(k,) node indices of the sources."""
     places: Floats
-    """(d, k)"""
+    """(d, k) their coordinates."""
     areas: Floats
-    """(k,)"""
+    """(k,) their lengths or areas."""
     near: float
-    """Distance inside which the nearest places prevail."""
+    """Distance inside which the nearest sources dominate."""
     points: Floats
-    """(d, m)"""
+    """(d, m) coordinates of the nodes that the field displaces."""
 
     @classmethod
     def of(cls, nodes: Floats, sources: Indices, areas: Floats, near: float, points: Indices) -> Field:
-        """Return that of `nodes` (n, d), by the numbers of sources and points; `areas` are of all nodes."""
+        """Return the field on `nodes` (n, d) with `areas` (n,), by the indices of sources and points."""
         places = np.ascontiguousarray(nodes[sources].T)
         where = np.ascontiguousarray(nodes[points].T)
         return cls(sources, places, np.ascontiguousarray(areas[sources]), near, where)
 
     def blended(self, motions: Floats) -> Floats:
-        """Return the displacements (m, d) of the points by the motions (d + d², k) of the sources."""
+        """Return the displacements (m, d) of the points by the `motions` (d + d², k) of the sources."""
         moved = np.empty_like(self.points)
         blend_motions(self.places, self.areas, motions, self.near, self.points, thread_count(), moved)
         return moved.T
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the derivative (6, k) by motions in the plane of Σ pull · displacement, `pull` (m, 2)."""
+        """Return the derivative (6, k) of Σ pull · displacement by planar motions; `pull` is (m, 2)."""
         gathered = np.empty((6, len(self.areas)))
         force = np.ascontiguousarray(pull.T)
         blend_transposed(self.places, self.areas, self.near, self.points, force, gathered)
@@ -78,20 +79,22 @@ class Field:
 
 @dataclass(frozen=True, eq=False)
 class Follow:
-    """The map of a table's nodes that nodes of its boundary make when they move."""
+    """The map from new positions of moved boundary nodes to new positions of all nodes of a grid."""
 
     table: NodeTable
     sources: Sources
     turning: Turning | None
-    """In the plane."""
+    """Rotations of the wall's edges; None in three dimensions."""
     slide: Field | None
-    """At the nodes that slide, where there are any."""
+    """The field at sliding nodes; None where there are none."""
     field: Field
+    """The field at inner nodes."""
     inner: Indices
+    """Node indices of inner nodes."""
 
     @classmethod
     def of(cls, table: NodeTable, moved: Bools) -> Follow:
-        """Return that of `table` whose nodes `moved` (n,) go to places of their own."""
+        """Return the map for the nodes of `table`, of which `moved` (n,) have prescribed positions."""
         nodes, sources = table.nodes, sources_of(table, moved)
         near = _near(nodes[moved], nodes[sources.fixed])
         held = np.union1d(np.flatnonzero(moved), sources.fixed)
@@ -104,13 +107,13 @@ class Follow:
         return cls(table, sources, turning, slide, field, inner)
 
     def nodes_to(self, to: Floats) -> Floats:
-        """Return all nodes (n, d) when the moved ones go where they are in `to` (n, d)."""
+        """Return the new positions (n, d) of all nodes when the moved ones have those in `to` (n, d)."""
         there = self.boundary_to(to)
         there[self.inner] += self.field.blended(self._motions(self.field, there))
         return there
 
     def boundary_to(self, to: Floats) -> Floats:
-        """Return all nodes (n, d) where they were, but for those that are moved and those that slide."""
+        """Return all nodes (n, d), with new positions of the moved and the sliding ones only."""
         nodes = self.table.nodes
         there = np.where(self.sources.moved[:, None], to, nodes)
         if self.slide is not None:
@@ -129,7 +132,7 @@ class Follow:
         return affine(old[at], there[at], turns)
 
     def along_sides(self, move: Floats, there: Floats) -> Floats:
-        """Return displacements (n, d) of sliding nodes without what leads out of their straight sides."""
+        """Return `move` (n, d) without the components normal to straight or flat sliding sides, in place."""
         for piece in self.sources.sliding:
             normal = normal_of(self.table, piece, there)
             if normal is not None:
@@ -139,7 +142,7 @@ class Follow:
 
 
 def _near(moved: Floats, fixed: Floats) -> float:
-    """Return the distance inside which the nearest of the sources (n, d) prevail."""
+    """Return the distance inside which the nearest sources dominate, by `moved` and `fixed` nodes (n, d)."""
     extent = NEAR * extent_of(moved)
     if not len(fixed):
         return extent
@@ -149,7 +152,7 @@ def _near(moved: Floats, fixed: Floats) -> float:
 
 
 def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
-    """Return the unit normal (d,) of a straight or flat side, None where it is bent, or its ends leave it."""
+    """Return the unit normal (d,) of a straight or flat side; None where it is curved before or after."""
     nodes, after = (each[piece.numbers.ravel()] for each in (table.nodes, there))
     centre = nodes.mean(axis=0)
     _, size, ways = singular_values(nodes - centre)
@@ -159,7 +162,7 @@ def normal_of(table: NodeTable, piece: Piece, there: Floats) -> Floats | None:
 
 
 def sliding_notes(follow: Follow, to: Floats) -> tuple[str, ...]:
-    """Return what is to be said of sides that touch moved walls, whose nodes go to `to` (n, d), and stay."""
+    """Return notes about the fixed sides that touch moved walls, whose nodes go to `to` (n, d)."""
     notes, table = [], follow.table
     for piece in follow.sources.sliding:
         if (to[piece.numbers] == table.nodes[piece.numbers]).all():

@@ -1,10 +1,10 @@
-"""How each node of a moved wall moves and turns: x -> w' + R (x - w), with R the turn of the wall there.
+"""The motion x -> w' + R (x - w) of each node w of a moved wall, with R the local rotation of the wall.
 
 ::
 
-         |  n'          In the plane R is the angle between old and new wall, from both edges at a node, the
-      ___|___ w'        nearer one counting more. In space it is the rotation of the wall's quadrilaterals
-      n | R             there, the polar factor of the map from the old to the new ones.
+         |  n'          In the plane R is the rotation by the mean angle of the two edges at a node, weighted
+      ___|___ w'        by their inverse lengths. In three dimensions it is the mean rotation of the wall's
+      n | R             quadrilaterals at the node, each the polar factor of the map from old to new edges.
     ____|____ w
 """
 
@@ -22,22 +22,22 @@ from meshonet.geometry.polygon.corners import Indices, angle_between
 
 @dataclass(frozen=True, eq=False)
 class Turning:
-    """The edges of a planar wall, and what they turn by."""
+    """Rotation angles of the nodes of a planar wall, as weighted means over its edges."""
 
     edges: Indices
-    """(m, 2) numbers of nodes."""
+    """(m, 2) node indices."""
     share: Floats
-    """(m, 2) that an edge has in the turn of either end; those at a node add up to 1."""
+    """(m, 2) weights of an edge in the angles of its two ends; those at a node add up to 1."""
 
     @classmethod
     def of(cls, nodes: Floats, edges: Indices) -> Turning:
-        """Return that of `edges` of `nodes` (n, 2)."""
+        """Return that of `edges` (m, 2) between `nodes` (n, 2)."""
         nearness = 1.0 / np.maximum(norms(nodes[edges[:, 1]] - nodes[edges[:, 0]]), 1e-300)
         total = np.bincount(edges.ravel(), np.repeat(nearness, 2), len(nodes))
         return cls(edges, nearness[:, None] / total[edges])
 
     def angles(self, old: Floats, new: Floats) -> Floats:
-        """Return the angles (n,) in radians by which the wall turns at nodes, from `old` to `new` (n, 2)."""
+        """Return the wall's rotation angles (n,) at its nodes, in radians, from `old` to `new` (n, 2)."""
         before, after = (nodes[self.edges[:, 1]] - nodes[self.edges[:, 0]] for nodes in (old, new))
         return self._at_nodes(angle_between(before, after), len(old))
 
@@ -51,7 +51,7 @@ class Turning:
         return self._at_nodes((slope * way).sum(axis=1), len(new))
 
     def angles_transposed(self, new: Floats, pull: Floats) -> Floats:
-        """Return the derivative (n, 2) by the nodes `new` of Σ pull · angles, `pull` (n,)."""
+        """Return the derivative (n, 2) of Σ pull · angles with respect to the nodes `new`; `pull` is (n,)."""
         onto = self._slopes(new) * (self.share * pull[self.edges]).sum(axis=1)[:, None]
         gathered = np.zeros_like(new)
         np.add.at(gathered, self.edges[:, 1], onto)
@@ -65,13 +65,13 @@ class Turning:
 
 
 def turns_in_plane(angles: Floats) -> Floats:
-    """Return R - 1 (n, 2, 2) of angles (n,), exact for small ones."""
+    """Return R - 1 (n, 2, 2) for rotations by `angles` (n,), without cancellation at small ones."""
     sine, less = sin(angles), -2.0 * sin(0.5 * angles) ** 2
     return np.stack([np.stack([less, -sine], axis=-1), np.stack([sine, less], axis=-1)], axis=-2)
 
 
 def turns_in_space(quads: Indices, old: Floats, new: Floats) -> Floats:
-    """Return R - 1 (n, 3, 3) at nodes: of the `quads` (m, 4) of a wall from `old` to `new` (n, 3)."""
+    """Return R - 1 (n, 3, 3) at all nodes for a wall of `quads` (m, 4) moved from `old` to `new` (n, 3)."""
     before, after = _frames(old[quads]), _frames(new[quads])
     whole = product(after, inverse(before))
     total = np.zeros((len(old), 3, 3))
@@ -83,7 +83,7 @@ def turns_in_space(quads: Indices, old: Floats, new: Floats) -> Floats:
 
 
 def _frames(corners: Floats) -> Floats:
-    """Return mean edges and normal of unit size (m, 3, 3), columns, of quads (m, 4, 3)."""
+    """Return unit mean edges and unit normal, as columns (m, 3, 3), of quads with `corners` (m, 4, 3)."""
     u = corners[:, 1] - corners[:, 0] + corners[:, 2] - corners[:, 3]
     v = corners[:, 3] - corners[:, 0] + corners[:, 2] - corners[:, 1]
     normal = np.cross(u, v)
@@ -92,6 +92,6 @@ def _frames(corners: Floats) -> Floats:
 
 
 def affine(places: Floats, moved: Floats, turns: Floats) -> Floats:
-    """Return a and B (d + d², n) of d(x) = a + B x, the motions of places (n, d), as kernels take them."""
+    """Return a and B, stacked (d + d², n), of the displacement a + B x for each of `places` (n, d)."""
     shift = moved - places - product(turns, places[:, :, None])[:, :, 0]
     return np.ascontiguousarray(np.concatenate([shift.T, turns.reshape(len(places), -1).T]))

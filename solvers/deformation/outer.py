@@ -1,9 +1,7 @@
-"""The nodes of a grid in one table, and the pieces of its outer boundary in numbers of these.
+"""All nodes of a grid in one table, and its outer boundary as pieces: arrays of indices into this table.
 
-::
-
-      the domain is on the left of a piece in the plane,        of a volume, pieces are rectangles
-      so that those around a body run clockwise                 of nodes (m, n)
+In the plane the domain is on the left of a piece, so that pieces around a body run clockwise. In a volume,
+pieces are rectangles (m, n) of nodes.
 """
 
 from __future__ import annotations
@@ -26,12 +24,12 @@ from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.polygon.corners import Indices
 
 _BACKWARDS = ("north", "west")
-"""Sides whose nodes ascend with the domain on the right."""
+"""Sides along which the domain is on the right in the direction of ascending indices."""
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A stretch of the outer boundary: the patch it belongs to, and its nodes (n,) or (n, m)."""
+    """A part of the outer boundary: its patch, and the indices (n,) or (m, n) of its nodes."""
 
     patch: Patch
     numbers: Indices
@@ -39,13 +37,13 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class NodeTable:
-    """All nodes of a grid, those that blocks share once."""
+    """All nodes of a grid; nodes shared by blocks occur once."""
 
     grid: Grid
     nodes: Floats
     """(n, d)"""
     numbers: tuple[Indices, ...]
-    """Of the nodes of each block."""
+    """For each block, the indices (ni, nj) or (ni, nj, nk) of its nodes in `nodes`."""
 
     @classmethod
     def of(cls, grid: Grid) -> NodeTable:
@@ -58,7 +56,7 @@ class NodeTable:
         return cls(grid, *node_table(grid.blocks, grid.connections))
 
     def with_nodes(self, nodes: Floats) -> tuple[Block, ...]:
-        """Return the blocks with other nodes (n, d)."""
+        """Return the blocks of the grid with the coordinates `nodes` (n, d)."""
         planes = np.moveaxis(nodes, -1, 0)
         blocks = []
         for number in self.numbers:
@@ -68,7 +66,7 @@ class NodeTable:
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """Of the whole outer boundary, nameless periodic sides included."""
+        """The pieces of the whole outer boundary, periodic sides (without a name) included."""
         periodic = [
             Patch("", side, *span[0], across=span[1] if span[1:] else None, block=block)
             for each in self.grid.connections
@@ -78,7 +76,7 @@ class NodeTable:
         return tuple(self.piece(patch) for patch in (*self.grid.outer_patches(), *periodic))
 
     def piece(self, patch: Patch) -> Piece:
-        """Return the nodes of a patch."""
+        """Return the piece of the boundary that `patch` covers."""
         face = face_of(self.numbers[patch.block], patch.side)
         span = patch.range(face.shape)
         numbers = part_of(face, span)
@@ -88,7 +86,7 @@ class NodeTable:
 
     @cached_property
     def outer(self) -> NDArray[np.bool_]:
-        """Which nodes (n,) are on the outer boundary."""
+        """Mask (n,) of the nodes on the outer boundary."""
         on = np.zeros(len(self.nodes), dtype=bool)
         for piece in self.pieces:
             on[piece.numbers.ravel()] = True
@@ -96,7 +94,7 @@ class NodeTable:
 
 
 def lines_of(pieces: Sequence[Piece]) -> list[Indices]:
-    """Return the numbers (n,) of connected lines of planar pieces, in order; closed ones repeat the first."""
+    """Join planar pieces to polylines, as ordered node indices (n,); a closed one repeats its first."""
     left = [piece.numbers for piece in pieces]
     lines = []
     while left:
@@ -115,7 +113,7 @@ def lines_of(pieces: Sequence[Piece]) -> list[Indices]:
 
 
 def elements_of(pieces: Sequence[Piece], dimension: int) -> Indices:
-    """Return the edges (m, 2) of pieces in the plane, or the quadrilaterals (m, 4) of those in space."""
+    """Return the edges (m, 2) of planar pieces, or the quadrilaterals (m, 4) of those of volumes."""
     if dimension == 2:
         parts = [np.stack([p.numbers[:-1], p.numbers[1:]], axis=1) for p in pieces]
     else:
@@ -124,7 +122,7 @@ def elements_of(pieces: Sequence[Piece], dimension: int) -> Indices:
 
 
 def first_heights(grid: Grid, pieces: Sequence[Piece]) -> Floats:
-    """Return the distances (n,) of the first nodes off pieces of the boundary from the piece's own."""
+    """Return the first-cell heights (n,) at all nodes of `pieces`: distances to the next nodes inside."""
     heights = []
     for piece in pieces:
         own, beside = rows_at(grid, piece.patch, 2)

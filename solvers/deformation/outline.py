@@ -1,10 +1,8 @@
-"""Where the nodes of a wall go on a new outline: to the same arc length between the same features.
+"""Positions of wall nodes on a new outline: each keeps its fraction of arc length between matching features.
 
-::
-
-    airfoil         trailing edge - lower side - leading edge - upper side - trailing edge, and the base of a
-                    blunt one: in each stretch a node keeps its share of the arc length
-    another outline from corner to corner, where old and new have as many; else from the nearest place
+Features of an airfoil are the trailing edge (both ends of a blunt one's base) and the leading edge; those of
+another outline are its corners, if the old and the new outline have equally many. Otherwise arc length is
+counted from the first wall node and from the point of the new outline nearest to it.
 """
 
 from __future__ import annotations
@@ -23,14 +21,14 @@ from meshonet.geometry.shapes.outline import Outline
 
 Notes = tuple[str, ...]
 _SHARP = np.radians(60.0)
-"""By which a wall turns at the edges of airfoils, and less where they are rounded."""
-_WIDEST_BASE = 0.2  # of the length of a section's outline; flatbacks have up to .13
+"""Angle by which a wall turns at least at a trailing edge that is not rounded."""
+_WIDEST_BASE = 0.2  # widest base, in perimeters of the section; flatbacks have up to .13
 
 
 def on_outline(wall: Floats, outline: Airfoil | Outline) -> tuple[Floats, Notes]:
     """Return the nodes of a closed `wall` (n, 2), the first repeated, on a new outline, and notes.
 
-    Raises InputError: a blunt trailing edge whose outline becomes sharp.
+    Raises InputError: the wall has a blunt trailing edge and the outline a sharp one.
     """
     if isinstance(outline, Airfoil):
         try:
@@ -74,7 +72,7 @@ def _on_airfoil(wall: Floats, old: Airfoil, new: Airfoil) -> tuple[Floats, Notes
 
 
 def _with_edge(new: Airfoil, gap: float, *, blunt: bool, rounded: bool) -> tuple[Airfoil, Notes]:
-    """Return the new outline with a trailing edge as the wall has it: a base, round, or sharp; and notes."""
+    """Return the new outline with a trailing edge like the wall's (base, rounded or sharp), and notes."""
     if blunt and not new.blunt:
         problem = f"the wall has a blunt trailing edge, {gap:.3g} wide, and its new outline a sharp one"
         raise InputError(problem, "give an outline with a base, or make the grid anew", parameter="wall")
@@ -90,13 +88,13 @@ def _nearest(points: Floats, place: Floats) -> int:
 
 
 def _closed(ring: Floats, first: int) -> Floats:
-    """Return a ring (n, 2) whose node `first` of the wall comes first, in the wall's order and closed."""
+    """Return `ring` (n, 2), which begins at wall node `first`, in the wall's order and closed."""
     ring = np.roll(ring, first, axis=0)
     return np.concatenate([ring, ring[:1]])
 
 
 def _on_curve(wall: Floats, new: Curve) -> tuple[Floats, Notes]:
-    """Return nodes on a closed curve: corner to corner, or from the place nearest to the first node."""
+    """Return the nodes of a closed wall on a new closed curve, matched by corners or by the nearest point."""
     ring = wall[:-1]
     corners = find_corners(ring, closed=True)
     way = 1.0 if (polygon_area(ring) > 0) == (polygon_area(new.points) > 0) else -1.0
@@ -120,7 +118,7 @@ def _on_curve(wall: Floats, new: Curve) -> tuple[Floats, Notes]:
 
 
 def _best_shift(old: Floats, new: Floats) -> int:
-    """Return by how many places the corners `new` (n, 2) are rolled to lie nearest to `old`."""
+    """Return the cyclic shift of the corners `new` (n, 2) that brings them nearest to `old`."""
     away = [float(((np.roll(new, -k, axis=0) - old) ** 2).sum()) for k in range(len(old))]
     return int(np.argmin(away))
 
@@ -131,7 +129,7 @@ def _nearest_arc(curve: Curve, place: Floats) -> float:
 
 
 def on_line(wall: Floats, points: Floats) -> tuple[Floats, Notes]:
-    """Return the nodes of an open `wall` (n, 2) on the curve through `points` (m, 2), either way round."""
+    """Return the nodes of an open `wall` (n, 2) on the curve through `points` (m, 2), and notes."""
     ends = points[[0, -1]]
     if norms(wall[[0, -1]] - ends).sum() > norms(wall[[0, -1]] - ends[::-1]).sum():
         points = points[::-1]

@@ -1,4 +1,4 @@
-"""What is asked of a deformed grid besides its walls."""
+"""Settings of a deformation."""
 
 from dataclasses import dataclass
 
@@ -8,8 +8,8 @@ class DeformRequest:
     """Settings of `meshonet.deform`."""
 
     allow_invalid: bool = False
-    """Return a grid with folded cells too."""
+    """Return the grid even if cells are folded."""
     percentiles: bool = False
-    """Measure these as well."""
+    """Compute percentiles of the quality measures too."""
     threads: int | None = None
-    """Of kernels; None is one a core."""
+    """Number of threads of the kernels; None stands for one per core."""

@@ -1,7 +1,7 @@
-"""What of the outer boundary moves, slides and stays, and which of its nodes count as sources.
+"""Which parts of the outer boundary move, slide or are fixed, and which of its nodes are sources.
 
-Of boundaries far from everything that moves, whose cells are large, not every node is needed: they are taken
-in groups, small beside their distance and beside the cells there.
+On boundaries far from all that moves, nodes are grouped and one of each group is a source. Groups are small
+compared with their distance from the moved nodes and with the cells at the boundary.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.deformation.outer import NodeTable, Piece, elements_of, first_heights
 
 REACH = 0.1
-"""Length of a group, in distances from what moves."""
+"""Largest length of a group, in distances from the moved nodes."""
 CELLS = 2.0
 """The same, in heights of the thinnest cell at the piece."""
 
@@ -25,27 +25,27 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class Sources:
-    """The outer boundary of a table, with respect to nodes that are moved."""
+    """The moved, sliding and fixed nodes of the outer boundary of a grid."""
 
     moved: Bools
-    """(n,)"""
+    """(n,) mask of nodes with prescribed new positions."""
     areas: Floats
-    """(n,) lengths or areas that outer nodes stand for, 0 of nodes that do not count."""
+    """(n,) lengths or areas assigned to boundary nodes; 0 for nodes that are not sources."""
     elements: Indices
     """Edges (m, 2) or quadrilaterals (m, 4) of which all nodes are moved."""
     sliding: tuple[Piece, ...]
-    """Pieces that stay but touch nodes that are moved."""
+    """Pieces that are not moved but touch moved nodes."""
     slides: Bools
-    """(n,) their nodes that no other piece holds."""
+    """(n,) mask of their nodes that belong to no moved or fixed piece."""
 
     @property
     def fixed(self) -> Indices:
-        """Numbers of the sources that neither move nor slide."""
+        """Node indices of the sources that neither move nor slide."""
         return np.flatnonzero((self.areas > 0.0) & ~self.moved & ~self.slides)
 
 
 def sources_of(table: NodeTable, moved: Bools) -> Sources:
-    """Return what the nodes `moved` (n,) make of the outer boundary of `table`."""
+    """Return the sources on the outer boundary of `table` when the nodes `moved` (n,) move."""
     elements = elements_of(table.pieces, table.nodes.shape[1])
     areas = areas_of(table.nodes, elements)
     stays = [piece for piece in table.pieces if not moved[piece.numbers].all()]
@@ -62,7 +62,7 @@ def sources_of(table: NodeTable, moved: Bools) -> Sources:
 
 
 def areas_of(nodes: Floats, elements: Indices) -> Floats:
-    """Return the share (n,) of edges or quadrilaterals that their nodes have, in equal parts."""
+    """Return the length or area (n,) of each node: that of elements, divided equally among their nodes."""
     corners = nodes[elements]
     if elements.shape[1] == 2:
         size = norms(corners[:, 1] - corners[:, 0])
@@ -73,7 +73,7 @@ def areas_of(nodes: Floats, elements: Indices) -> Floats:
 
 
 def _group(table: NodeTable, piece: Piece, moved: Bools, areas: Floats) -> None:
-    """Give the areas of a group of nodes of a piece to the first of them, the others none, in place."""
+    """Assign the area of each group of nodes of a piece to its first node, 0 to the others, in place."""
     if piece.patch.kind == "wall":
         return
     nodes = table.nodes[piece.numbers]

@@ -1,4 +1,4 @@
-"""Where the nodes of walls go: what a user says of them, as a place for each node."""
+"""New positions of wall nodes from what a user gives: outlines, grids, rigid motions or nodes."""
 
 from __future__ import annotations
 
@@ -25,30 +25,34 @@ from meshonet.solvers.deformation.outer import NodeTable, Piece, lines_of
 from meshonet.solvers.deformation.outline import on_line, on_outline
 
 NewWall: TypeAlias = Shape | Grid | Motion | Floats | Sequence[Floats]
-"""An outline, another grid whose boundary is taken node by node, a rigid motion, or nodes.
+"""An outline, another grid whose boundary nodes are taken one by one, a rigid motion, or nodes.
 
-Nodes are one array (n, 2) for each line of the wall in the plane, from the grid's first node on or to it,
-or (m, n, d) for each of its patches in space; fewer or more points (n, 2) are an outline.
+Nodes are given in the plane as one array (n, 2) for each polyline of the wall, in either direction, or in
+three dimensions as one array (m, n, 3) for each patch. An array (n, 2) of another length is an outline.
 """
 
 SAME = 1e-9
-"""Part of the wall's extent by which two pieces may disagree on a node that they share."""
+"""Largest difference, in extents of the wall, between the positions that two pieces give a shared node."""
 
 
 @dataclass(frozen=True, eq=False)
 class NodeTargets:
-    """Which nodes (n,) of a table are moved, where all nodes (n, d) go that are, and notes."""
+    """New positions of the wall nodes of a grid."""
 
     moved: NDArray[np.bool_]
+    """(n,) mask of the nodes of moved walls."""
     nodes: Floats
+    """(n, d) all nodes, those of moved walls in their new positions."""
     names: tuple[str, ...]
+    """Names of the moved walls."""
     notes: tuple[str, ...] = ()
 
 
 def targets_of(table: NodeTable, walls: Mapping[str, NewWall] | NewWall) -> NodeTargets:
-    """Return where the nodes of walls go; without a name it is those of the only wall, or of all patches.
+    """Return the new positions of the nodes of `walls`, new shapes by wall name.
 
-    Raises InputError: a wall that the grid does not have, or what cannot be its new shape.
+    A shape without a name is that of the only wall; a grid or boundary gives all its patches of the same
+    names. Raises InputError: a wall that the grid does not have, or an unsuitable new shape.
     """
     moved, nodes = np.zeros(len(table.nodes), dtype=bool), table.nodes.copy()
     notes: list[str] = []
@@ -107,7 +111,7 @@ def _pieces(table: NodeTable, name: str) -> list[Piece]:
 def _placed(
     table: NodeTable, pieces: Sequence[Piece], name: str, new: NewWall, notes: list[str]
 ) -> Iterator[tuple[NDArray[np.intp], Floats]]:
-    """Yield numbers (...) and new places (..., d) of the nodes of the pieces of a wall."""
+    """Yield indices (...) and new positions (..., d) of the nodes of the pieces of a wall."""
     if isinstance(new, Motion):
         dimension = table.nodes.shape[1]
         if len(new.shift) not in (0, dimension) or len(new.turn) not in (0, dimension):
@@ -160,7 +164,7 @@ def _of_grid(new: Grid, name: str) -> list[Floats]:
 
 
 def _on(wall: Floats, shape: Any, name: str) -> tuple[Floats, tuple[str, ...]]:
-    """Return the nodes of one line of a wall (n, 2) on its new shape, and notes."""
+    """Return the nodes of one polyline of a wall (n, 2) on its new shape, and notes."""
     closed = bool((wall[0] == wall[-1]).all())
     if isinstance(shape, np.ndarray):
         if shape.ndim != 2 or shape.shape[1] != 2 or len(shape) < 2:
@@ -183,7 +187,7 @@ def _on(wall: Floats, shape: Any, name: str) -> tuple[Floats, tuple[str, ...]]:
 
 
 def _in_order(wall: Floats, nodes: Floats, *, closed: bool) -> Floats:
-    """Return new `nodes` (n, 2) of either direction in the wall's; a closed one repeats its first."""
+    """Return `nodes` (n, 2) in the direction of the wall; a closed polyline repeats its first node."""
     if closed:
         nodes = np.concatenate([nodes[:-1], nodes[:1]])
         backwards = (polygon_area(wall[:-1]) > 0) != (polygon_area(nodes[:-1]) > 0)
@@ -203,7 +207,7 @@ def _on_loops(wall: Floats, shape: DomainShape, name: str, *, closed: bool) -> t
 
 
 def _on_boundary(wall: Floats, new: Boundary, name: str, *, closed: bool) -> tuple[Floats, tuple[str, ...]]:
-    """Return the nodes of a wall on the edge of a boundary that has its name, or on the body of one."""
+    """Return the nodes of a wall on the edge of `new` that has the wall's name, or on its body."""
     parts = [patch for patch in new.patches if patch.name == name]
     if new.around_body:
         line = new.south[new.wake : len(new.south) - new.wake]
@@ -217,7 +221,7 @@ def _on_boundary(wall: Floats, new: Boundary, name: str, *, closed: bool) -> tup
 
 
 def _check(name: str, old: Floats, before: Floats, after: Floats, known: NDArray[np.bool_]) -> None:
-    """Raise InputError where nodes that another piece has moved already go elsewhere."""
+    """Raise InputError where two pieces give a shared node different positions."""
     extent = extent_of(old)
     apart = np.abs(before - after).max(axis=1)
     if known.any() and apart[known].max() > SAME * extent:

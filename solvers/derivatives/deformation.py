@@ -1,8 +1,9 @@
-"""The derivative of a deformed grid by the nodes of its moved walls.
+"""The derivative of the nodes of a deformed grid with respect to the nodes of its moved walls.
 
-In one step (`meshonet.solvers.deformation.follow`) the weights depend on the old grid alone: the new nodes
-are linear in the motions of the wall's nodes, and these smooth in their places, so that the derivative is
-exact, at the cost of about one more deformation. Sides that slide follow, and so does what is inside them.
+In a deformation of one step (`meshonet.solvers.deformation.follow`) the weights depend on the old grid alone:
+the new nodes are linear in the displacements and rotations of the wall nodes, which are smooth functions of
+the new wall nodes. So the derivative is exact; it costs about one more deformation. Sliding sides are
+included.
 """
 
 from __future__ import annotations
@@ -23,19 +24,19 @@ from meshonet.solvers.deformation.outer import NodeTable, lines_of
 from meshonet.solvers.deformation.targets import NewWall, targets_of
 
 Lines = dict[str, Floats]
-"""Values (n, 2) at the nodes of each moved wall, in order; several lines of a name one after the other."""
+"""Values (n, 2) at the nodes of each moved wall, in order; several polylines of a name are concatenated."""
 
 
 class DeformationDerivative:
-    """A planar grid whose walls are moved in one step, and the derivative of its nodes by theirs.
+    """A planar grid deformed in one step, and the derivative of its nodes with respect to those of its walls.
 
-    Raises InputError: as `meshonet.deform`; volumes; NoValidGridError: cells fold in one step.
+    Raises InputError: as `meshonet.deform`; a volume; NoValidGridError: cells fold in one step.
     """
 
     grid: Grid
     """The deformed grid."""
     walls: Mapping[str, Indices]
-    """Numbers of the nodes of each moved wall, in order; a closed one repeats its first."""
+    """Node indices of each moved wall, in order; a closed wall repeats its first."""
 
     def __init__(self, grid: Grid, walls: Mapping[str, NewWall] | NewWall) -> None:
         if grid.form != "plane":
@@ -54,7 +55,7 @@ class DeformationDerivative:
         self._there = self._follow.boundary_to(targets.nodes)
 
     def along(self, moves: Mapping[str, Floats]) -> list[Floats]:
-        """Return moves (ni, nj, 2) of the nodes of each block by `moves` (n, 2) of the walls' nodes."""
+        """Return the derivative (ni, nj, 2) of each block's nodes along `moves` (n, 2) of the wall nodes."""
         move = np.zeros_like(self._to)
         for name, values in moves.items():
             move[self.walls[name]] = self._checked(name, values)
@@ -67,10 +68,11 @@ class DeformationDerivative:
         return [np.ascontiguousarray(move[number]) for number in self._table.numbers]
 
     def transposed(self, pulls: Floats | Sequence[Floats]) -> Lines:
-        """Return the derivative (n, 2) of a functional by the nodes of each moved wall.
+        """Return the derivative (n, 2) of a functional with respect to the nodes of each moved wall.
 
-        `pulls` (ni, nj, 2), one a block, is its derivative by all nodes, as if each could move alone. The
-        first node of a closed line has the whole of its own, the repeated one 0.
+        `pulls`, one array (ni, nj, 2) per block, is the derivative of the functional with respect to all
+        nodes, taken as independent. In a closed wall the first node has its whole derivative, the repeated
+        one 0.
         """
         arrays = [pulls] if isinstance(pulls, np.ndarray) else list(pulls)
         if [a.shape[:2] for a in arrays] != [block.counts for block in self.grid.blocks]:
@@ -126,5 +128,5 @@ class DeformationDerivative:
 
 
 def _slope(angles: Floats) -> Floats:
-    """Return the derivative (n, 2, 2) of rotations by their angles (n,)."""
+    """Return the derivative (n, 2, 2) of rotation matrices with respect to their angles (n,)."""
     return turns_in_plane(angles + 0.5 * np.pi) + np.eye(2)

@@ -1,10 +1,10 @@
-"""The Jacobian of equations on a lattice, by differences of many nodes at once.
+"""The sparse Jacobian of equations on a structured grid, by finite differences with graph colouring.
 
 ::
 
-    1 2 3 1 2 3      Nodes of one number are so far apart that no equation sees two of them. With a stencil
-    4 5 6 4 5 6      of `reach` nodes each way (2 reach + 1)² numbers suffice, whatever the size of the grid.
-    7 8 9 7 8 9
+    1 2 3 1 2 3      Nodes of one colour are so far apart that no equation depends on two of them. A stencil
+    of 4 5 6 4 5 6      `reach` nodes each way needs (2 reach + 1)² colours, whatever the size of the grid. 7
+    8 9 7 8 9
 
 Curtis, Powell, Reid, J. Inst. Maths. Applics. 13 (1974) 117-119.
 """
@@ -20,23 +20,24 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import Indices
 
 STEP = 1e-5
-"""Difference, in lengths of the shortest edge at a node; errors are about its square."""
+"""Step of central differences, in lengths of the shortest edge at a node; errors are about its square."""
 
 Equations = Callable[[Floats], Floats]
-"""From nodes (2, ni, nj) to as many numbers, of which those at inner nodes count."""
+"""Function from nodes (2, ni, nj) to residuals of the same shape; only those at inner nodes are used."""
 
 
 @dataclass(frozen=True, eq=False)
 class Jacobian:
-    """Entries of the derivative of equations at inner nodes by the coordinates of all nodes."""
+    """Entries of the derivative of equations at inner nodes with respect to the coordinates of all nodes."""
 
     rows: Indices
-    """(m,) equations: counted through (2, ni, nj)."""
+    """(m,) flat indices of equations in (2, ni, nj)."""
     columns: Indices
-    """(m,) coordinates, counted likewise."""
+    """(m,) flat indices of coordinates, likewise."""
     values: Floats
     """(m,)"""
     size: int
+    """Count of coordinates, 2 ni nj."""
 
     def times(self, x: Floats) -> Floats:
         """Return J x of x (size,)."""
@@ -48,7 +49,7 @@ class Jacobian:
 
 
 def jacobian(equations: Equations, nodes: Floats, reach: int) -> Jacobian:
-    """Return the Jacobian at `nodes` (2, ni, nj) of equations that see `reach` nodes each way."""
+    """Return the Jacobian at `nodes` (2, ni, nj) of equations whose stencil has `reach` nodes each way."""
     _, ni, nj = nodes.shape
     step, period = STEP * shortest_edges(nodes), 2 * reach + 1
     number = np.arange(nodes.size).reshape(nodes.shape)
@@ -72,12 +73,12 @@ def jacobian(equations: Equations, nodes: Floats, reach: int) -> Jacobian:
 
 
 def _seen(first: int, period: int, n: int) -> Indices:
-    """Return which of the nodes `first`, `first` + `period` ... each inner one of n nodes sees."""
+    """Return which of `first`, `first` + `period` ... is in the stencil of each inner one of n nodes."""
     return first + period * np.round((np.arange(1, n - 1) - first) / period).astype(np.intp)
 
 
 def shortest_edges(nodes: Floats) -> Floats:
-    """Return the shortest edge (ni, nj) at each of `nodes` (2, ni, nj)."""
+    """Return the length (ni, nj) of the shortest edge at each of `nodes` (2, ni, nj)."""
     shortest = np.full(nodes.shape[1:], np.inf)
     for axis in (0, 1):
         edge = np.hypot(*np.diff(nodes, axis=axis + 1))

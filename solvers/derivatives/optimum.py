@@ -1,11 +1,11 @@
-"""Derivatives of a grid that solves equations, by its boundary, without solving them again.
+"""Derivatives, by the implicit function theorem, of a grid that solves equations.
 
-With F(x, b) = 0 at the inner nodes x, b the boundary, dx = -F_x⁻¹ F_b db; and what a functional pulls x by,
-p, pulls b by -F_bᵀ F_x⁻ᵀ p: one solve for a functional, whatever the number of boundary nodes. F is the
-gradient of the variational functional (`meshonet.solvers.energy.functional`), whose F_x is symmetric, or
-Winslow's equations, whose is not: its factors are those of ((1, F_x), (F_xᵀ, 0)).
-
-The ratio a of the functional follows from the boundary, and is differentiated too.
+With F(x, b) = 0 for inner nodes x and boundary nodes b, dx = -F_x⁻¹ F_b db; and a functional whose derivative
+by x is p has the derivative -F_bᵀ F_x⁻ᵀ p by b (adjoint method): one linear solve per functional, whatever
+the number of boundary nodes. F is the gradient of the variational functional
+(`meshonet.solvers.energy.functional`), whose F_x is symmetric, or Winslow's equations, whose F_x is not; then
+the symmetric matrix ((1, F_x), (F_xᵀ, 0)) is factored. The aspect ratio a in the functional depends on the
+boundary, and is differentiated too.
 """
 
 from __future__ import annotations
@@ -27,29 +27,29 @@ from meshonet.solvers.sparse import Factor, SparseMatrix, SparsePattern
 
 STEPS = 20  # of Newton's method, to the optimum itself
 STILL = 1e-11
-"""Move of a node, in its shortest edges, below which these end."""
-_NEAR = 0.5  # of its shortest edge, that a node of a grid near the optimum moves by at the most
-_SHIFT = 1e-9  # of the second diagonal of the system that is not symmetric
-_REFINED = 3  # steps of refinement that make up for that
-_REACH = {"variational": 2, "winslow": 1}  # nodes each way that an equation sees
+"""Largest displacement of a node, in its shortest edges, at which the iteration ends."""
+_NEAR = 0.5  # displacement of a node, in its shortest edges, above which the grid is too far from the optimum
+_SHIFT = 1e-9  # subtracted from the zero diagonal of the augmented system, so that it can be factored
+_REFINED = 3  # steps of iterative refinement that make up for that
+_REACH = {"variational": 2, "winslow": 1}  # nodes each way in the stencil of an equation
 
 
 class OptimumDerivative:
-    """The derivative of a four-sided grid's inner nodes by the nodes of its rim.
+    """The derivative of the inner nodes of a four-sided grid with respect to its boundary nodes.
 
     Parameters
     ----------
-    grid : near the minimum of the variational functional, or the solution of Winslow's equations, inside its
-        rim, which is fixed; Newton's method takes it there.
+    grid : a grid near the minimum of the variational functional, or near the solution of Winslow's equations,
+        for its boundary nodes; Newton's method then converges to it.
     method : ``variational`` or ``winslow``.
-    weights : of the functional; None is what `solve_pde` minimises.
+    weights : of the functional; None stands for those that `solve_pde` uses.
 
     Raises InputError: an O grid, many blocks, a volume, an unknown method; SolverError: the grid is far from
     the solution.
     """
 
     grid: Grid
-    """The solution itself."""
+    """The converged solution."""
 
     def __init__(self, grid: Grid, method: str = "variational", weights: Weights | None = None) -> None:
         if grid.topology not in ("quad", "c"):
@@ -67,9 +67,9 @@ class OptimumDerivative:
         self._by_aspect = self._aspect_term(nodes)
 
     def along(self, moves: Floats) -> Floats:
-        """Return the moves (ni, nj, 2) of all nodes when those of the rim make `moves` (ni, nj, 2).
+        """Return the derivative (ni, nj, 2) of all nodes along `moves` (ni, nj, 2) of the boundary nodes.
 
-        What `moves` has at inner nodes does not count. One solve.
+        Values of `moves` at inner nodes are ignored. Costs one linear solve.
         """
         rim = np.array(np.moveaxis(moves, -1, 0), dtype=np.float64, order="C")
         rim[:, 1:-1, 1:-1] = 0.0
@@ -79,9 +79,10 @@ class OptimumDerivative:
         return np.ascontiguousarray(np.moveaxis(rim, 0, -1))
 
     def transposed(self, pull: Floats) -> Floats:
-        """Return the derivative (ni, nj, 2) of a functional by the rim, zero inside.
+        """Return the derivative (ni, nj, 2) of a functional with respect to the boundary nodes, zero inside.
 
-        `pull` (ni, nj, 2) is its derivative by all nodes, as if each could move alone. One solve.
+        `pull` (ni, nj, 2) is its derivative with respect to all nodes, taken as independent. Costs one linear
+        solve.
         """
         flat = np.array(np.moveaxis(pull, -1, 0), dtype=np.float64, order="C")
         adjoint = np.zeros(flat.size)
@@ -95,7 +96,7 @@ class OptimumDerivative:
     def _approach(self, nodes: Floats) -> None:
         """Move `nodes` (2, ni, nj) to the solution and linearise there.
 
-        Newton's method, with one derivative as long as moves fall to a quarter each.
+        Newton's method; a Jacobian is kept while each step is less than a quarter of the one before.
         """
         edges, before, fresh = shortest_edges(nodes), np.inf, False
         for _ in range(STEPS):
@@ -138,7 +139,7 @@ class OptimumDerivative:
         return self._system.solve(right, transposed=transposed)
 
     def _aspect_term(self, nodes: Floats) -> Floats:
-        """Return the derivative of the equations by a, and keep that of a by the nodes."""
+        """Return the derivative of the equations with respect to a; store that of a by the nodes."""
         self._aspect_slope = np.zeros(nodes.size)
         if self._method == "winslow":
             return np.zeros(nodes.size)
@@ -159,7 +160,7 @@ def _inner_numbers(nodes: Floats) -> Indices:
 
 
 def aspect_slope(nodes: Floats) -> Floats:
-    """Return the derivative (2, ni, nj) of `meshonet.solvers.energy.functional.aspect_of`."""
+    """Return the derivative (2, ni, nj) of `aspect_of` (in `solvers.energy.functional`) by `nodes`."""
     slope = np.zeros_like(nodes)
     walls, sides = nodes[:, :, :: nodes.shape[2] - 1], nodes[:, :: nodes.shape[1] - 1]
     along, across = np.diff(walls, axis=1), np.diff(sides, axis=2)
@@ -177,7 +178,7 @@ def aspect_slope(nodes: Floats) -> Floats:
 
 
 def winslow_residual(nodes: Floats) -> Floats:
-    """Return the left side of Winslow's equations at inner nodes of (2, ni, nj), by central differences."""
+    """Return the residual of Winslow's equations at inner nodes of (2, ni, nj), by central differences."""
     residual, middle = np.zeros_like(nodes), nodes[:, 1:-1, 1:-1]
     west, east = nodes[:, :-2, 1:-1], nodes[:, 2:, 1:-1]
     south, north = nodes[:, 1:-1, :-2], nodes[:, 1:-1, 2:]
@@ -190,15 +191,15 @@ def winslow_residual(nodes: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class _System:
-    """The factored derivative of the equations by the inner nodes."""
+    """The factored Jacobian of the equations with respect to the inner nodes."""
 
     matrix: SparseMatrix
     factor: Factor
     scale: Floats | None
-    """(n,) of the equations; None of a symmetric system."""
+    """(n,) scaling of the equations; None for a symmetric system."""
 
     def solve(self, right: Floats, *, transposed: bool) -> Floats:
-        """Return x of A x = right, or of Aᵀ x = right, both (n,)."""
+        """Return the solution (n,) of A x = right, or of Aᵀ x = right."""
         if self.scale is None:
             return self.factor.refine(self.matrix, right, 1)
         zero = np.zeros(len(right))
@@ -210,7 +211,7 @@ class _System:
 
 
 class _Systems:
-    """Makes systems of Jacobians with the same places, those of `inner` unknowns among `size`."""
+    """Makes systems of Jacobians of one sparsity pattern, for `inner` unknowns among `size` coordinates."""
 
     def __init__(self, inner: Indices, size: int, *, symmetric: bool) -> None:
         self._own = np.full(size, -1, dtype=np.intp)

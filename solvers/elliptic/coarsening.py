@@ -1,7 +1,7 @@
-"""One direction of a grid, finer and coarser: difference weights and transfers between levels.
+"""Multigrid data of one index direction: finite-difference weights and transfers between levels.
 
-The coarse nodes are every second one and the last, whatever the count. The last coarse step is then shorter
-than the others when the count of cells is odd, so every level carries its own node positions::
+The coarse nodes are every second one and the last. If the count of cells is odd, the last coarse step is
+shorter than the others, so every level has its own node positions::
 
     fine    0   1   2   3   4   5   6   7        seven cells
     coarse  0       1       2       3   4        four cells, the last half as long
@@ -20,7 +20,9 @@ from meshonet.geometry.arrays import Floats
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """Positions (n,) of the nodes of one direction, in finest steps; `periodic`: the last node is the first.
+    """One index direction: node positions (n,), in steps of the finest level.
+
+    If `periodic`, the last node is the first.
 
     >>> Direction(np.arange(8.0), periodic=False).coarse.positions
     array([0., 2., 4., 6., 7.])
@@ -31,7 +33,7 @@ class Direction:
 
     @property
     def cells(self) -> int:
-        """Cells along the direction."""
+        """Count of cells."""
         return len(self.positions) - 1
 
     @cached_property
@@ -63,8 +65,8 @@ class Direction:
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
         """Weights (right (n,); before, at, after (coarse n,)) of interpolation and restriction.
 
-        Interpolation is linear; restriction is its transpose, scaled by the lengths that nodes stand for,
-        so that a constant residual stays what it is.
+        Interpolation is linear; restriction is its transpose, scaled by the dual lengths of nodes, so that a
+        constant residual is preserved.
         """
         before, after = self._steps
         length = (before + after) / 2
@@ -84,7 +86,7 @@ class Direction:
 
     @cached_property
     def _steps(self) -> tuple[Floats, Floats]:
-        """Steps before and after each node; at the ends, around the seam or mirrored."""
+        """Steps before and after each node; at the ends periodic or mirrored."""
         h = np.diff(self.positions)
         first, last = (h[-1], h[0]) if self.periodic else (h[0], h[-1])
         return np.concatenate([[first], h]), np.concatenate([h, [last]])
@@ -92,5 +94,5 @@ class Direction:
 
 @lru_cache(maxsize=16)
 def uniform(n: int, periodic: bool) -> Direction:
-    """Return the direction of n nodes at equal steps; solves of equal counts share its weights."""
+    """Return the direction of n equally spaced nodes; it is cached, so solves of equal counts share it."""
     return Direction(np.arange(float(n)), periodic)

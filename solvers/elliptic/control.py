@@ -1,12 +1,12 @@
-"""Control functions: how steps between nodes grow along ξ and along η, as sources of Winslow's equations.
+"""Control functions: source terms of Winslow's equations that set the growth of steps along ξ and η.
 
 ::
 
     α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0
 
-On a straight line φ = -(ln |x_ξ|)_ξ. A control function is kept as the logarithm l of the ratio of
-neighbouring steps, and as a sum of products of a function of ξ and one of η: it takes no memory on the grid,
-coarser levels get it by leaving nodes out, and the scheme (φ = -(2/h) tanh(h l/2), see ``stencil.h``) is
+On a straight line φ = -(ln |x_ξ|)_ξ. A control function is stored as the logarithm l of the ratio of
+neighbouring steps, a sum of products of a function of ξ and one of η. So it needs no array of the size of the
+grid, coarser levels take every second value, and the scheme (φ = -(2/h) tanh(h l/2), see ``stencil.h``) is
 exact for geometric growth on every level.
 """
 
@@ -20,19 +20,19 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.elementary import log, product
 
-STEEPEST = 2.0  # largest logarithm of a ratio of neighbouring steps that is taken from a boundary: 7.4
+STEEPEST = 2.0  # limit of the logarithm of step ratios on a boundary: a ratio of 7.4
 
 
 @dataclass(frozen=True, eq=False)
 class Factors:
-    """Σ_t along[t, i] across[t, j]."""
+    """A function on the nodes (i, j) as a sum of products: Σ_t along[t, i] across[t, j]."""
 
     along: Floats  # (terms, ni)
     across: Floats  # (terms, nj)
 
     @classmethod
     def none(cls, ni: int, nj: int) -> Factors:
-        """Return the sum of no terms."""
+        """Return the zero function, a sum of no terms, on ni x nj nodes."""
         return cls(np.zeros((0, ni)), np.zeros((0, nj)))
 
     def values(self) -> Floats:
@@ -42,11 +42,11 @@ class Factors:
     def kept(
         self, i: np.ndarray[tuple[int], np.dtype[np.intp]], j: np.ndarray[tuple[int], np.dtype[np.intp]]
     ) -> Factors:
-        """Return the factors at the nodes `i` and `j`."""
+        """Return the function on the nodes with indices `i` and `j`."""
         return Factors(np.ascontiguousarray(self.along[:, i]), np.ascontiguousarray(self.across[:, j]))
 
     def scaled(self, part: float) -> Factors:
-        """Return `part` times the sum."""
+        """Return the function times `part`."""
         return replace(self, along=part * self.along)
 
     def __add__(self, other: Factors) -> Factors:
@@ -62,7 +62,7 @@ class Controls:
     psi: Factors
 
     def scaled(self, part: float) -> Controls:
-        """Return `part` times both."""
+        """Return both control functions times `part`."""
         return Controls(self.phi.scaled(part), self.psi.scaled(part))
 
     def __add__(self, other: Controls) -> Controls:
@@ -70,11 +70,11 @@ class Controls:
 
 
 def thomas_middlecoff(boundary: Boundary) -> Controls:
-    """Return the control functions that carry the spacing of the edges into the domain.
+    """Return the control functions that propagate the spacing of the edges into the domain.
 
-    On an edge, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ), which is -(ln s_ξ)_ξ with its arc length s: it asks of the lines
-    that leave the edge that they be straight and at right angles to it. Inside it is linear between opposite
-    edges. An O boundary has no west and east to take ψ from but its cut.
+    On an edge with arc length s, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ) = -(ln s_ξ)_ξ, which assumes that the lines that
+    leave the edge are straight and orthogonal to it. Inside, φ and ψ are interpolated linearly between
+    opposite edges. Of an O boundary, ψ is that of the cut.
 
     Thomas and Middlecoff, AIAA J. 18 (1980) 652-656.
     """
@@ -92,7 +92,8 @@ def thomas_middlecoff(boundary: Boundary) -> Controls:
 def step_ratios(edge: Floats, *, periodic: bool) -> Floats:
     """Return the logarithm (n,) of the ratio of the steps after and before each node of an edge (n, 2).
 
-    At the ends of an open edge that of the neighbours; at most `STEEPEST`: a corner may have any.
+    Ends of an open edge have the value of their neighbour. Values are clipped to `STEEPEST`, since ratios at
+    corners are arbitrary.
 
     >>> edge = np.array([[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [7.0, 0.0]])
     >>> np.exp(step_ratios(edge, periodic=False)).tolist()

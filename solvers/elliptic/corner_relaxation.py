@@ -1,7 +1,7 @@
-"""More relaxation around re-entrant corners, where the solution is not smooth and coarse levels help little.
+"""Local relaxation at re-entrant corners, where the solution is singular and coarse levels help little.
 
-A cycle reduces the error near such a corner less than elsewhere, and what it leaves there is soon all that is
-left. A few sweeps on the nodes around, a fixed number on every level, restore most of the rate.
+A cycle reduces the error near such a corner less than elsewhere, so this error soon dominates. A fixed number
+of additional sweeps on the nodes around it, on every level, restores most of the convergence rate.
 
 Bai, Brandt, SIAM J. Sci. Stat. Comput. 8 (1987) 109-134 (local relaxation at singularities).
 """
@@ -15,20 +15,20 @@ from meshonet.solvers.algebraic.tfi import Four
 from meshonet.solvers.elliptic.coarsening import Direction
 
 REENTRANT = np.radians(30.0)
-"""A corner whose angle inside the domain is larger than 180 degrees by this is relaxed more."""
+"""Excess of a corner's interior angle over 180 degrees from which there is local relaxation."""
 
 REACH = 32  # cells to each side of the corner, and inwards
-SWEEPS = 8  # sweeps there after each of the level
+SWEEPS = 8  # local sweeps after each sweep of the level
 
 LEAST = 120
-"""Cells along both directions of a level that has patches; on smaller ones they would cost too much."""
+"""Least count of cells per direction of a level with local relaxation; on smaller ones it costs too much."""
 
 Window = tuple[slice, slice]
 Corner = tuple[str, int]
 
 
 class CornerPatch:
-    """The nodes in a `window` around one corner of a `level`, relaxed with those beyond held fixed."""
+    """The nodes in a `window` (two index ranges) at a corner of a `level`, relaxed with all others fixed."""
 
     def __init__(
         self, level: MultigridLevel, xi: Direction, eta: Direction, window: Window, scratch: Floats
@@ -39,7 +39,7 @@ class CornerPatch:
         self._own = MultigridLevel(x, y, of_xi, of_eta, False, scratch, True)
 
     def smooth(self, forced: bool) -> None:
-        """Relax the nodes of the level in place, with its right side when `forced`."""
+        """Relax the nodes of the window in place, with the level's right-hand side if `forced`."""
         level, own, window = self._level, self._own, self._window
         own.x[...], own.y[...] = level.x[window], level.y[window]
         if forced:

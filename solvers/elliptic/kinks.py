@@ -1,4 +1,4 @@
-"""Sweeps of Winslow's equations around kinks of a boundary, where splines through coarse nodes are wrong."""
+"""Relaxation of Winslow's equations around kinks of a boundary, where spline interpolation is inaccurate."""
 
 from collections.abc import Iterator
 
@@ -27,8 +27,8 @@ def sweep_kinks(
 ) -> bool:
     """Relax planar `nodes` in place around the kinks of the boundary; return whether there are any.
 
-    A spline through the `counts` coarse nodes smears the solution there. With `only_better` a kink is left
-    alone around which the largest angle would not be smaller.
+    Spline interpolation from a coarse grid of `counts` nodes smooths the solution there. With `only_better`
+    the nodes around a kink are kept unless relaxation makes the largest angle smaller.
     """
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]

@@ -1,9 +1,10 @@
 """Full multigrid (nested iteration) with FAS V-cycles for Winslow's system, with or without controls.
 
-Each level relaxes alternating zebra lines, coefficients re-evaluated line by line. A cycle sends nodes and
-residual down, solves the coarse equations with the truncation error as right side (full approximation
-scheme), and interpolates the change back. Nested iteration passes the *difference from the transfinite
-interpolation* up, so that boundaries stay exact and kinks in them are not smeared.
+The smoother is alternating zebra line relaxation, with coefficients re-evaluated line by line. A cycle
+restricts nodes and residual, solves the coarse equations with the truncation error on the right-hand side
+(full approximation scheme), and interpolates the correction. Nested iteration interpolates the *difference
+from the transfinite interpolation* to finer levels, so that boundaries are exact and their kinks are not
+smoothed.
 
 Brandt, Math. Comp. 31 (1977) 333-390; Trottenberg, Oosterlee, Schüller, Multigrid (2001), chapters 5 and 8.
 """
@@ -23,7 +24,7 @@ from meshonet.solvers.elliptic.corner_relaxation import CornerPatch, patches, re
 
 @dataclass(frozen=True)
 class Settings:
-    """How the cycles run."""
+    """Parameters of the multigrid cycles."""
 
     # a direction with this many cells or fewer is not coarsened further. 8 is too few for airfoils, 50 slow.
     coarsest: int = 16
@@ -31,9 +32,9 @@ class Settings:
 
 
 class Multigrid:
-    """The hierarchy of levels above `edges` (south, north, west, east), `periodic` in xi or not.
+    """The hierarchy of levels for planar `nodes` (ni, nj, 2) inside `edges` (south, north, west, east).
 
-    The finest level are planar `nodes` (ni, nj, 2), worked on in place; they need not be initialised.
+    `nodes` are the finest level; they change in place and need not be initialised. `periodic`: an O grid.
     """
 
     def __init__(
@@ -73,7 +74,7 @@ class Multigrid:
             self.control(controls)
 
     def control(self, controls: Controls) -> None:
-        """Set the control functions of every level; the patches at corners know none."""
+        """Set the control functions of every level; there is then no local relaxation at corners."""
         self._patches = [[] for _ in self.levels]
         phi, psi = controls.phi, controls.psi
         for k, (level, (xi, eta)) in enumerate(zip(self.levels, self._directions, strict=True)):
@@ -89,12 +90,12 @@ class Multigrid:
         interpolate(level.x, level.y, self._edges[k], self._along[k])
 
     def residual(self, k: int = 0) -> float:
-        """Return the root mean square of the residual of level `k`, with no right side."""
+        """Return the root mean square of the residual of level `k`, with zero right-hand side."""
         level = self.levels[k]
         return float(np.sqrt(level.residual(False) / level.x.size))
 
     def nested_iteration(self) -> float:
-        """Fill the finest level from the coarser ones; return the residual of its interpolated edges."""
+        """Fill the finest level from coarser ones; return the residual of its transfinite interpolation."""
         last = len(self.levels) - 1
         self.interpolate_edges(last)
         start = self.residual(last)
@@ -111,9 +112,9 @@ class Multigrid:
         return start
 
     def cycle(self, k: int = 0, forced: bool = False) -> float:
-        """Run one V-cycle from level `k` down and back; return the size of the coarser level's correction.
+        """Run one V-cycle from level `k`; return the root mean square of the coarse correction.
 
-        That is its root mean square in units of length, about the error before the cycle; 0 on the coarsest.
+        It has the unit of length and estimates the error before the cycle; 0 on the coarsest level.
         """
         if k == len(self.levels) - 1:
             self._relax_coarsest(forced, 1e-2, 10)
@@ -151,7 +152,7 @@ def relax(nodes: Floats, sweeps: int) -> None:
 
 
 def _thinned(four: Four, xi: Direction, eta: Direction) -> Four:
-    """Return what the next coarser level keeps of (south, north, west, east)."""
+    """Return the edges (south, north, west, east) on the next coarser level."""
     south, north, west, east = four
     i, j = xi.kept, eta.kept
     return south[i], north[i], west[j], east[j]

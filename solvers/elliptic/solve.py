@@ -1,4 +1,4 @@
-"""From a boundary to an elliptic grid: start, cycles, stopping, and what follows divergence.
+"""Elliptic grids of boundaries: initial grid, cycles, stopping criterion, and other attempts on divergence.
 
 ::
 
@@ -22,17 +22,17 @@ from meshonet.solvers.solution import Outcome, Solution, timed
 ATTEMPTS = (Settings(), Settings(coarsest=32, sweeps=4), Settings(coarsest=64, sweeps=8))
 """Settings tried in turn when the residual grows, stalls or is not finite.
 
-Around slits and spikes, one sweep leaves coarse levels with corrections that the fine one cannot follow.
+Around slits and spikes, one sweep smooths too little, and coarse corrections make the iteration diverge.
 """
 
 CONTINUATION = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Parts of the control functions, each solved from the solution before, when all at once diverge."""
+"""Factors of the control functions for continuation from solution to solution, if the full ones diverge."""
 
 SOLVED = 1e-4  # relative residual that counts as discretisation level when there is no better estimate
 
 
 class _DivergedError(Exception):
-    """The residual is not finite or grew."""
+    """The residual is not finite, or it grew or stalled."""
 
 
 @timed
@@ -42,12 +42,12 @@ def solve(
 ) -> Solution:  # fmt: skip
     """Solve Winslow's equations, with control functions or without, for the nodes inside `boundary`.
 
-    `boundary` is a quad, o or c, whose wake stays where it is. `tol` is the residual at which to stop, over
-    that of the transfinite interpolation; None stops when more of the at most `max_cycles` cycles would
-    change the grid by less than refining it would. `initial`, of the same counts, takes the place of nested
-    iteration. The grid may be folded at re-entrant corners (`meshonet.solvers.pipeline.fallback`).
+    `boundary` is a quad, o or c; the wake of a c is fixed. `tol` is the residual at which to stop, relative
+    to that of the transfinite interpolation; None stops when the estimated error of the iteration is below
+    the discretisation error. At most `max_cycles` cycles are run. `initial`, of the same counts, replaces
+    nested iteration. The grid may be folded at re-entrant corners (`meshonet.solvers.pipeline.fallback`).
 
-    Raises InputError for bad settings or counts, SolverError when it diverged from every start tried.
+    Raises InputError for bad settings or counts, SolverError when every attempt diverged.
     """
     check_settings(boundary, tol, max_cycles, initial)
     notes: tuple[str, ...] = ()
@@ -76,7 +76,7 @@ def solve(
 def solve_thomas_middlecoff(
     boundary: Boundary, *, tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None
 ) -> Solution:
-    """Solve Winslow's equations with the control functions of the edges' own spacing.
+    """Solve Winslow's equations with the control functions of Thomas and Middlecoff.
 
     As `solve`, with `meshonet.solvers.elliptic.control.thomas_middlecoff`.
     """
@@ -87,7 +87,7 @@ def solve_thomas_middlecoff(
 
 
 def _attempts(controls: Controls | None) -> list[tuple[Settings, tuple[float, ...]]]:
-    """Return the settings to try in turn and the parts of the controls, one after another, of each."""
+    """Return the settings to try in turn, each with its sequence of factors of the controls."""
     whole: list[tuple[Settings, tuple[float, ...]]] = [(settings, (1.0,)) for settings in ATTEMPTS]
     return whole if controls is None else [*whole, (ATTEMPTS[-1], CONTINUATION)]
 
@@ -96,7 +96,7 @@ def _attempt(
     boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None, settings: Settings,
     controls: Controls | None, method: str,
 ) -> tuple[Floats, float, int]:  # fmt: skip
-    """Return nodes, relative residual and cycles of one try; raise _DivergedError."""
+    """Return nodes, relative residual and cycles of one attempt. Raises _DivergedError."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
     levels = Multigrid(nodes, edges, boundary.periodic, settings, controls)
@@ -127,7 +127,7 @@ def _attempt(
 
 
 def _round_off(boundary: Boundary) -> float:
-    """Return the residual that rounding makes: alpha x_xi_xi, with steps h and coordinates of size x."""
+    """Return the residual due to rounding: that of alpha x_xi_xi, with steps h and coordinates of size x."""
     edges = [getattr(boundary, side) for side in SIDES]
     size = max(float(np.abs(edge).max()) for edge in edges)
     step = float(np.sqrt(np.mean(np.concatenate([np.diff(edge, axis=0) for edge in edges]) ** 2)))
@@ -147,9 +147,9 @@ def _diverges(residuals: list[float], start: float, growth: float) -> bool:
 def _at_discretisation_level(corrections: list[float]) -> bool:
     """Return whether the error left by the cycles is below that of the discretisation.
 
-    After nested iteration the first correction is about what refining has changed, three times the
-    discretisation error of a second-order scheme. Corrections shrink as the error does, so the one after
-    the last would be c ρ, and all to come c ρ / (1 - ρ), with ρ the ratio of the last two.
+    After nested iteration the first correction is about the change from the coarser solution, three times the
+    discretisation error of a second-order scheme. With the last correction c and the ratio ρ of the last two,
+    the sum of all further corrections, the error left, is about c ρ / (1 - ρ).
     """
     if len(corrections) < 2 or corrections[-1] == 0.0:
         return False

@@ -1,4 +1,4 @@
-"""Elliptic grids whose lines leave chosen edges at a given angle, first cells at a given height.
+"""Elliptic grids with prescribed angle of grid lines and first-cell height at chosen edges.
 
 ::
 
@@ -6,9 +6,9 @@
                              ^                                      |
                              +------- until angles are right -------+    first on few nodes, then on all
 
-The sources (`meshonet.solvers.elliptic.wall_control`) can hold first cells somewhat thinner than those of
-even rows. Thinner ones are made by `meshonet.solvers.layers.redistribute`, along lines that by then leave the
-wall at the angle.
+The sources (`meshonet.solvers.elliptic.wall_control`) can only make first cells somewhat thinner than those
+of Winslow's solution. Thinner ones are made by `meshonet.solvers.layers.redistribute`, along grid lines that
+by then leave the wall at the prescribed angle.
 """
 
 import math
@@ -36,8 +36,8 @@ ROUNDS = 80, 12  # rounds of correction at the most, on few nodes and on all
 FIRST = 2  # cycles before the first correction
 PATIENCE = 12  # rounds without improvement after which the best so far is taken
 CLOSE = 0.002  # error (sine of an angle, logarithm of a height; root mean square) at which correction stops
-THINNEST = 0.5  # thinnest first cells that sources are to hold, in those of Winslow's solution
-RELAXATION = 0.5  # part of the linearised correction that is made
+THINNEST = 0.5  # least first-cell height by sources, in those of Winslow's solution
+RELAXATION = 0.5  # relaxation factor of the linearised correction
 
 
 @timed
@@ -45,12 +45,12 @@ def solve_steger_sorenson(
     boundary: Boundary, *, heights: Mapping[str, float] | None = None, angle: float = 90.0,
     tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None,
 ) -> Solution:  # fmt: skip
-    """Solve Winslow's equations with sources that turn the lines at edges and hold first cells.
+    """Solve Winslow's equations with sources that control angle and first-cell height at edges.
 
-    `heights` of first cells by side, in the unit of the quad or o `boundary`, 0 for any, name the sides under
-    control; None: south and north of a quad, the body of an o. `angle` is in degrees between an edge's
-    direction and the lines that leave it. `tol`, `max_cycles` and `initial` are those of `solve`. Notes say
-    how near the angles came, and whether sources that folded cells were weakened.
+    `heights` maps the controlled sides of the quad or o `boundary` to first-cell heights in its unit, 0 for
+    free ones; None: south and north of a quad, the body of an o, with free heights. `angle` is that between
+    an edge and the lines that leave it, in degrees. `tol`, `max_cycles` and `initial` are those of `solve`.
+    Notes state the remaining error of the angles, and whether sources were weakened because cells folded.
 
     Raises InputError: a side that cannot be controlled, an angle out of range, or as `solve`; SolverError.
     """
@@ -76,7 +76,7 @@ def solve_steger_sorenson(
 
 
 def largest_lean(nodes: Floats, boundary: Boundary) -> float:
-    """Return the largest lean in degrees of the lines of a quad at south and north, except near corners."""
+    """Return the largest deviation from 90 degrees of a quad's lines at south and north, not near corners."""
     sides = ("south", "north")
     edges = _edges(boundary, dict.fromkeys(sides, 0.0), 90.0, nodes)
     sine = max(float(np.abs(edge.errors(nodes)[0]).max()) for edge in edges)
@@ -84,7 +84,7 @@ def largest_lean(nodes: Floats, boundary: Boundary) -> float:
 
 
 def _checked(boundary: Boundary, heights: Mapping[str, float] | None, angle: float) -> Mapping[str, float]:
-    """Return the heights by side, once all is checked."""
+    """Return the heights by side, after checks of all settings."""
     if boundary.topology == "c":
         problem, remedy = "steger-sorenson has no C grids", "use topology o or method hyperbolic"
         raise InputError(problem, remedy, parameter="method")
@@ -104,7 +104,7 @@ def _checked(boundary: Boundary, heights: Mapping[str, float] | None, angle: flo
 def _edges(
     boundary: Boundary, heights: Mapping[str, float], angle: float, nodes: Floats
 ) -> list[ControlledEdge]:
-    """Return the edges under control, with heights that sources can hold beside those of `nodes`."""
+    """Return the controlled edges, with heights limited to those that sources can reach from `nodes`."""
     edges = []
     closed = boundary.periodic
     for side, height in heights.items():
@@ -121,7 +121,7 @@ def _sum(edges: Sequence[ControlledEdge], boundary: Boundary) -> Controls:
 
 
 def _seek(nodes: Floats, boundary: Boundary, edges: Sequence[ControlledEdge], rounds: int) -> None:
-    """Correct the sources of `edges`, and `nodes` with them, until angles and heights are right."""
+    """Iterate on the sources of `edges` and on `nodes`, in place, until angles and heights are right."""
     four = boundary.south, boundary.north, boundary.west, boundary.east
     work = planar_nodes(boundary.ni, boundary.nj)
     levels = Multigrid(work, four, boundary.periodic, controls=_sum(edges, boundary))
@@ -168,7 +168,7 @@ def _settled(
     boundary: Boundary, start: Floats, nodes: Floats, edges: Sequence[ControlledEdge], tol: float | None,
     max_cycles: int,
 ) -> tuple[Solution, float]:  # fmt: skip
-    """Return the solution with the sources kept, and the part of them that folds no more than `start` is."""
+    """Return the solution with fixed sources, and their largest factor with no more folds than `start`."""
     folded, most = count_folded(start), max(_error(start, edges), 5.0 * CLOSE)
     controls = _sum(edges, boundary)
     for part in (1.0, 0.5, 0.25):
@@ -188,7 +188,7 @@ def _settled(
 
 
 def _angle_note(nodes: Floats, edges: Sequence[ControlledEdge], part: float) -> str:
-    """Return how near the lines came to their angles."""
+    """Return a note on the remaining error of the angles."""
     off = [np.degrees(arcsin(np.clip(np.abs(edge.errors(nodes)[0]), 0.0, 1.0))) for edge in edges]
     sides, most = ", ".join(edge.side for edge in edges), max(map(np.max, off))
     note = f"lines leave {sides} at {edges[0].angle:g} degrees, off by {most:.1f} at most"

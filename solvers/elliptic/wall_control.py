@@ -1,9 +1,10 @@
 """One controlled edge: angle of its lines, height of its first cells, and the sources that change both.
 
 The sources decay from the edge inwards, φ(i, j) = p(i) e^{-b j} along it and ψ(i, j) = q(i) e^{-b j} across,
-as Steger and Sorenson's. To first order on an even grid with steps dx, dy a wave κ/dy of p turns the lines at
-the edge by (dy/dx) p/(b + κ), one of q changes the logarithm of the first cells' height by q/(b + κ): so what
-is wrong is multiplied by b + κ, wave by wave, to correct p and q.
+as those of Steger and Sorenson. To first order, on a uniform grid with steps dx and dy, a Fourier mode of p
+with wave number κ/dy rotates the lines at the edge by (dy/dx) p/(b + κ), and one of q changes the logarithm
+of the first-cell height by q/(b + κ). So the corrections of p and q are the errors with each mode multiplied
+by b + κ.
 
 Steger and Sorenson, J. Comput. Phys. 33 (1979) 405-410; feedback of angle and height: Hilgenstock, in
 Numerical Grid Generation in Computational Fluid Mechanics (1988) 137-146.
@@ -21,14 +22,14 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.solvers.elliptic.control import Controls, Factors
 
 DECAY = 6.0  # exponent of the decay from an edge to the opposite one
-RAMP = 0.03  # part of the nodes of an edge over which control sets in beside a corner
-LIMIT = 1.0  # largest logarithm of a ratio of neighbouring steps that a source may stand for
+RAMP = 0.03  # fraction of an edge's nodes over which control rises from 0 at a corner to 1
+LIMIT = 1.0  # largest logarithm of a step ratio due to a source
 
 
 class ControlledEdge:
-    """An edge (n, 2) under control, with so many nodes `across` to the opposite one; closed when `periodic`.
+    """A controlled edge (n, 2), with `across` nodes to the opposite one; closed when `periodic`.
 
-    Lines leave it at `angle`, in degrees to its own direction, with first cells of `height`, 0 for any.
+    Lines leave it at `angle` (degrees, from the edge), with first cells of `height`, 0 for any.
     """
 
     def __init__(
@@ -44,9 +45,9 @@ class ControlledEdge:
         self._count = across
 
     def errors(self, nodes: Floats) -> tuple[Floats, Floats]:
-        """Return by how much lines lean forward (sine) and the logarithm of height over what it should be.
+        """Return the errors of the lines' angle (sine) and of the logarithm of first-cell height, (n,) each.
 
-        (n,) each, less and less towards corners and ends of the edge, where the angle cannot be had.
+        They are weighted to 0 towards corners and ends of the edge, where the angle cannot be prescribed.
         """
         lines = lines_from_side(nodes, self.side)
         lean = leaning(lines, self._tangent) - math.cos(math.radians(self.angle))
@@ -54,7 +55,7 @@ class ControlledEdge:
         return self._weight * lean, self._weight * high
 
     def correct(self, nodes: Floats, relaxation: float) -> None:
-        """Change the sources against what is wrong with `nodes`."""
+        """Correct the sources by the errors of `nodes`, times `relaxation`."""
         lean, high = self.errors(nodes)
         up = first_heights(lines_from_side(nodes, self.side))
         steps = self._steps
@@ -78,7 +79,7 @@ class ControlledEdge:
         return Controls(Factors(fade[None], across), Factors(fade[None], along))
 
     def resample(self, coarse: ControlledEdge) -> None:
-        """Take over the sources of the same edge with other counts."""
+        """Take the sources of the same edge with other node counts, interpolated."""
         n, m = self.sources.shape[1], coarse.sources.shape[1]
         place, few = np.linspace(0.0, 1.0, n), np.linspace(0.0, 1.0, m)
         factors = (m - 1) / (n - 1), (coarse._count - 1) / (self._count - 1)
@@ -99,7 +100,7 @@ def _away_from(curve: Curve, n: int, periodic: bool) -> Floats:
 
 
 def _stiffened(values: Floats, decay: float, flat: float, periodic: bool) -> Floats:
-    """Return values (n,) along an edge, each wave times decay + κ, κ its phase a step times `flat`."""
+    """Return values (n,) with each Fourier mode times `decay` + κ, κ its phase per step times `flat`."""
     n = len(values) - 1
     if periodic:
         waves = np.fft.rfft(values[:-1])
@@ -119,7 +120,7 @@ def lines_from_side(nodes: Floats, side: str) -> Floats:
 
 
 def first_heights(lines: Floats) -> Floats:
-    """Return the lengths (n,) of the first pieces of `lines` (n, m, 2)."""
+    """Return the lengths (n,) of the first segments of `lines` (n, m, 2)."""
     return np.asarray(np.hypot(*(lines[:, 1] - lines[:, 0]).T))
 
 

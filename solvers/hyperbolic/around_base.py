@@ -1,12 +1,12 @@
-"""C grids that keep a base: a block marched around the section and both wake lines, and one between these.
+"""C grids around a blunt base: a block marched around section and both wake lines, one between these.
 
 ::
 
     C block: south is lower wake, wall, upper wake; marched from there
     H block: west is the base, south the lower wake, north the upper one, east the outlet
 
-Across both wake lines first cells are equally high: off the line those of the march, which are higher farther
-behind, as far as the H block's cells are.
+First cells on both sides of a wake line have equal heights, which increase with the distance behind the base
+up to about the mean cell of the H block.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ from meshonet.solvers.hyperbolic.front import Front, opening
 from meshonet.solvers.hyperbolic.march import check_layers, marched
 from meshonet.solvers.solution import Solution, timed
 
-_FULL = 0.95  # part of the H block's mean cell that its first ones reach, far behind
+_FULL = 0.95  # largest height of the H block's first cells far behind the base, in its mean cells
 _FADE = 1.0  # widths of the base over which the correction of first cells off it fades out
 
 
@@ -34,9 +34,9 @@ _FADE = 1.0  # widths of the base over which the correction of first cells off i
 def around_base(
     lines: BaseWake, *, first: float, growth: float | None, free_rows: bool, constant: int
 ) -> Solution:
-    """Return the grid of two blocks around `lines`, first cells `first` high in their unit.
+    """Return the grid of two blocks around `lines`, with first cells of height `first` in their unit.
 
-    Rows are as for `hyperbolic`.
+    The other parameters are those of `hyperbolic`.
 
     Raises InputError: as `hyperbolic`; SolverError: the march diverged.
     """

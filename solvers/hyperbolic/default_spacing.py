@@ -1,8 +1,9 @@
-"""C grids without a given height of first cells: marched with one that suits the nodes of the wall.
+"""Marched C grids without a given first-cell height: it is chosen from the node spacing of the wall.
 
-Elliptic C grids hold the nodes of the wake, where small cells behind the edge face large ones of the far
-field, and so their first cells are as high as a tenth of the chord. When the grid is marched from wall and
-wake they are a fraction of the smallest cell along the wall, and cells grow by one ratio to the far field.
+In elliptic C grids, whose wake nodes are fixed, small cells behind the trailing edge face large ones of the
+far field, so their first cells are as high as a tenth of the chord. In a grid marched from wall and wake the
+first-cell height is a fraction of the smallest cell along the wall, and cells grow by one ratio to the far
+field.
 """
 
 from dataclasses import replace
@@ -36,8 +37,8 @@ def first_cell(boundary: Boundary) -> float:
 def march_by_default(boundary: Boundary) -> Solution | None:
     """Return the C grid marched from `boundary`, or None where another method suits better.
 
-    That is where the far field is given node by node, since a march ends in its own; where rows are so few
-    that cells would grow by more than `STEEPEST`; and where cells are folded.
+    This is the case if the far field is given node by node, since a march ends in its own; if rows are so few
+    that cells would grow by more than `STEEPEST`; or if cells are folded.
     """
     if boundary.wall is None:
         return None

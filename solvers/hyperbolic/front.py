@@ -1,12 +1,15 @@
-"""What a march starts from and how far it goes: a closed wall, or wake, wall and wake.
+"""The front of a march: the wall, or wake, wall and wake, from which it starts, and the distance it covers.
+
+A level is a grid line along xi, made by one step of the march.
 
 ::
 
-    o: one ring, node after node; the far field asked for is a circle of the area of the boundary's
-    c: from outlet to outlet; the ends move along the outlet, the cells beside the wake may open, and the far
-       field asked for is half a circle with two straight sides of the same area
+    o: the front is closed; the far field is a circle that encloses the area of the boundary's far field c:
+    the front runs from outlet to outlet, and its ends move along the outlet; cells beside the wake may become
+       higher downstream; the far field is half a circle with two straight sides, of the same area
 
-The last level is rounder or flatter than that: what is asked for is its least distance from the middle.
+The last level has not exactly this shape; the march is to reach its radius with the least distance of the
+last level from the centre of the body.
 """
 
 import math
@@ -21,7 +24,7 @@ from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
 _OPENING = 5.0
 _NEAR = 0.3
-"""First cells beside a wake are higher than at the wall by 1 + 5 x²/(x + 0.3), x chords behind the edge."""
+"""First cells at x chords behind the edge are 1 + `_OPENING` x²/(x + `_NEAR`) times those of the wall."""
 
 _CLOSED_AHEAD, _ASIDE, _OPEN_AHEAD, _OPEN_MORE = 1.8, 0.055, 23.0, 0.016
 """How levels differ from those around a circle, measured on airfoils, where it leaves 1 %. Around slender
@@ -32,20 +35,20 @@ on the safe side."""
 
 
 class Front:
-    """Level 0 of a march from an ``o`` or ``c`` boundary, and the measure of its last level."""
+    """Level 0 of a march from an ``o`` or ``c`` boundary, and the distance its last level is to reach."""
 
     inner: float  # radius of the circle of the body's area
     slender: float
     """1 - l/L, with l the perimeter of the circle of the body's area and L its own: 0 for a circle."""
-    outer: float  # radius of the far field: the least distance of the last level from the middle
+    outer: float  # radius of the far field: least distance of the last level from the centre of the body
     ends: Floats | None  # (2, 2) unit directions in which the ends of an open front move
-    widening: Floats | None  # (n,) how much larger than at the wall first steps are, for an open front
+    widening: Floats | None  # (n,) factors of the first step, relative to the wall, for an open front
     edge: Edge | None  # the sharpest corner of a closed front
 
     def __init__(self, boundary: Boundary, wake: int = 0, widening: Floats | None = None) -> None:
-        """Take an ``o`` or ``c``, or a ``quad`` with a `wake` of so many cells at both ends of south.
+        """Take an ``o`` or ``c`` boundary, or a ``quad`` with a wake of `wake` cells at both ends of south.
 
-        `widening` (wake + 1,), from the edge on, is how much higher first cells are beside that.
+        `widening` (wake + 1,) are the factors of the first-cell height along this wake, from the edge on.
         """
         self._south = boundary.south
         self._closed = boundary.periodic
@@ -74,11 +77,11 @@ class Front:
         self.outer = self._far(boundary.north)
 
     def start(self) -> Floats:
-        """Return the nodes (n, 2) of level 0, a closed one's first node not repeated."""
+        """Return the nodes (n, 2) of level 0; a closed front does not repeat its first node."""
         return self._south[:-1] if self._closed else self._south
 
     def reach(self, levels: Floats) -> float:
-        """Return the least distance of the last of `levels` (2, m, n) from the middle of the body."""
+        """Return the least distance of the last of `levels` (2, m, n) from the centre of the body."""
         return float(np.hypot(*(levels[:, -1].T - self._middle).T).min())
 
     def nodes(self, levels: Floats) -> Floats:
@@ -107,7 +110,7 @@ class Front:
 
 
 def opening(behind: Floats) -> Floats:
-    """Return how much higher than at the wall first cells are `behind` (n,) the edge, in chords."""
+    """Return the factors (n,) of first-cell heights at distances `behind` (n,) the edge, in chords."""
     return np.asarray(1.0 + _OPENING * behind**2 / (behind + _NEAR))
 
 
@@ -117,7 +120,7 @@ def _radius(ring: Floats) -> float:
 
 
 def _middle(wall: Floats) -> Floats:
-    """Return the middle (2,) between the first node of a wall (n, 2) and the one farthest from it."""
+    """Return the midpoint (2,) of the first node of a wall (n, 2) and the node farthest from it."""
     farthest = wall[np.argmax(np.hypot(*(wall - wall[0]).T))]
     return np.asarray(0.5 * (wall[0] + farthest))
 
@@ -125,11 +128,12 @@ def _middle(wall: Floats) -> Floats:
 def distance_to_march(
     front: Front, first: float, cells: int, settings: MarchSettings, constant: int, edge: Edge | None
 ) -> float:
-    """Return the sum of the steps that lead from the radius of the body to that of the far field.
+    """Return the sum of the steps with which a march from the body reaches the radius of the far field.
 
-    Around a circle of n nodes a step s leads from r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the weight
-    of the flux along a level, e = 2π ε q/n + b h/r the dissipation, q what is left of it where lines spread.
-    So it does in front of a C. Airfoils are no circles: `_CLOSED_AHEAD` and what stands beside it.
+    Around a circle of n nodes a step s leads from radius r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the
+    weight of the flux along a level, e = 2π ε q/n + b h/r the dissipation, q its reduction where lines
+    diverge. The same holds in front of a C. `_CLOSED_AHEAD` and the constants next to it correct for bodies
+    that are no circles.
     """
     distance = front.outer - front.inner
     around = 2.0 * math.pi * settings.dissipation / len(front.start())

@@ -1,9 +1,9 @@
-"""How far apart the levels of a march are: growing by one ratio, slower while lines at a sharp edge spread.
+"""Spacing of the levels of a march: growth by one ratio, but slower where lines from a sharp edge diverge.
 
-Off a sharp edge a front of cells much longer than high lags behind; once levels are as far away as these
-cells are long the lines there open like a fan and the front catches up, so that cells grow faster along that
-line than along all others. There the steps grow more slowly, and elsewhere faster for it: along no line by
-much more than on average.
+At a sharp edge a front of cells much longer than high lags behind. At a distance of about the length of these
+cells the lines from the edge diverge like a fan and the front catches up, so that cells grow faster along the
+line from the edge than along all others. Steps grow more slowly there, and faster elsewhere, so that growth
+is nearly the same along all lines.
 """
 
 import math
@@ -16,7 +16,7 @@ from meshonet.geometry.elementary import exp, log, power
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.spacing.growth import growing_steps, growth_rate
 
-_LESS = 0.24  # part of the growth that is left out where lines off an edge without a wedge begin to spread
+_LESS = 0.24  # largest reduction of growth, as a fraction, where lines from an edge of zero angle diverge
 _BEGIN, _FULL = 1.2, 3.0
 """Heights over the cell at the edge at which half of that is left out, and from which it fades."""
 _FADE = 0.45  # power of the height with which it fades
@@ -45,16 +45,16 @@ def sharpest_edge(ring: Floats) -> Edge | None:
 
 
 def fastest(nodes: Floats) -> Floats:
-    """Return the log (nj - 2,) of the largest ratio of neighbouring cells at levels of nodes (ni, nj, 2)."""
+    """Return the logarithm (nj - 2,) of the largest growth ratio at inner levels of `nodes` (ni, nj, 2)."""
     heights = norms(np.diff(nodes, axis=1))
     return np.asarray(log(heights[:, 1:] / heights[:, :-1]).max(axis=0))
 
 
 def even_shares(nodes: Floats, steps: Floats, rate: float, constant: int) -> Floats:
-    """Return shares (n,) of growth for steps (n,) with which no cells should grow by more than `rate`.
+    """Return shares (n,) of growth for steps with which no cells should grow by more than `rate` (logarithm).
 
-    Where cells of `nodes`, marched by these steps, grow the most at a level, that level's steps grow as much
-    less or more as leads to `rate`, by logarithm.
+    The growth of `steps` (n,) at each level is changed by the difference between `rate` and the largest
+    growth of cells there in `nodes`, marched by `steps`, in logarithms.
     """
     grown = np.diff(log(steps))
     shares = np.maximum(grown + rate - fastest(nodes), 0.0)
@@ -67,10 +67,10 @@ def level_steps(
 ) -> Floats:
     """Return `cells` steps from `first` on that add up to `distance`.
 
-    The first `constant` ones are equal. The others grow by one ratio, or by its power 1 - q: q is at most
-    `_LESS` times the sharpness of `edge`, where that is given. The constants were found
-    by trial on airfoils, so that cells grow alike along all lines. With `shares` (cells,), the logarithm of
-    each step over the one before is in proportion to these.
+    The first `constant` ones are equal. The others grow by one ratio, or, if `edge` is given, by its power 1
+    - q with q at most `_LESS` times the sharpness of the edge (constants fitted on airfoils, so that growth
+    is equal along all lines). With `shares` (cells,), the logarithms of growth ratios are proportional to
+    these.
 
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]

@@ -1,4 +1,4 @@
-"""Grids for boundary layers, marched from the wall; the height of first cells is met exactly.
+"""Hyperbolic grids for boundary layers, marched from the wall, with exact first-cell height.
 
 ::
 
@@ -6,8 +6,8 @@
               ^                    |                                                     |
               +-- other distance --+<--------------- more dissipation ------------------+
 
-The equations stand in ``kernels/hyperbolic/march.c``. The far field is where the march ends: nearly a circle
-or a C, with the area of the far field of the boundary.
+The equations are in ``kernels/hyperbolic/march.c``. The last level is the far field: nearly a circle or a C,
+with the area of the boundary's far field.
 """
 
 import math
@@ -43,10 +43,10 @@ NEAREST, FARTHEST = 1.001, 1.025
 aim a quarter of the way from the first to the second."""
 
 MOST_GROWTH = 1.5
-"""Ratio of neighbouring cells beyond which no march is begun: it would not get away from the wall."""
+"""Growth ratio beyond which no march is tried: it would not get away from the wall."""
 
-EVENINGS = 6  # marches at most in which steps are chosen anew so that growth is even
-WITHIN = 0.998  # part of the growth beyond 1 that these aim at
+EVENINGS = 6  # most marches in which steps are corrected so that growth is even
+WITHIN = 0.998  # fraction of the growth beyond 1 that these aim at
 
 AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a level
 
@@ -56,13 +56,13 @@ def hyperbolic(
     boundary: Boundary, *, wall_spacing: float, growth: float | None = None, free_rows: bool = False,
     constant: int = 1,
 ) -> Solution:  # fmt: skip
-    """Return an O or C grid marched from the wall of `boundary`, which is met bitwise.
+    """Return an O or C grid marched from the wall of `boundary`, whose nodes are kept bitwise.
 
-    The far field of `boundary` says how far to march, its `nj` how many rows to take, unless they are
-    `free_rows`: as many as `growth` needs, the largest ratio of neighbouring cells. The ends of a C's rows
-    move along its west and east, taken as straight. `wall_spacing` is the height of first cells in chords,
-    met to 1e-8 of it; so many first rows are `constant`. The solution has the boundary that the march ended
-    at, and may be folded when every attempt was.
+    The far field of `boundary` determines the distance to march, its `nj` the number of rows, or, with
+    `free_rows`, `growth` does: the largest growth ratio. The ends of a C's rows move along its west and east,
+    taken as straight. `wall_spacing` is the first-cell height in chords, met to a relative 1e-8; the first
+    `constant` rows have this height. The boundary of the solution is the one that the march reached. The grid
+    may be folded if it was in every attempt.
 
     Raises InputError: a four-sided boundary; a spacing or growth out of range; rows that do not suffice;
     SolverError: no attempt gave finite nodes.
@@ -82,7 +82,7 @@ def hyperbolic(
 def marched(
     front: Front, asked: int, first: float, growth: float | None, free_rows: bool, constant: int
 ) -> Floats:
-    """Return the nodes (ni, nj, 2) of a march of `asked` rows of cells, or of as many as growth needs.
+    """Return the nodes (ni, nj, 2) of a march of `asked` rows of cells, or of as many as `growth` needs.
 
     Raises InputError: rows that do not suffice; SolverError: no attempt gave finite nodes.
     """
@@ -100,7 +100,7 @@ def marched(
 
 
 def _unfolded(front: Front, cells: int, first: float, growth: float | None, constant: int) -> Floats:
-    """Return nodes (ni, cells + 1, 2) marched with the settings that fold the fewest cells.
+    """Return the nodes (ni, cells + 1, 2) of the attempt with the fewest folded cells.
 
     Raises SolverError: no attempt gave finite nodes.
     """
@@ -152,7 +152,7 @@ def _rows(cells: int, first: float, distance: float, growth: float | None, free:
 def _evened(
     front: Front, cells: int, first: float, settings: MarchSettings, constant: int, growth: float | None
 ) -> Floats | None:
-    """Return the nodes of a march whose steps are such that cells grow by `growth` at most, if possible."""
+    """Return the nodes of a march whose steps are corrected so that cells grow by at most `growth`."""
     nodes, steps = _marched(front, cells, first, settings, constant, edge=None if growth else front.edge)
     for _ in range(EVENINGS):
         if nodes is None or growth is None or cells < 3:
@@ -175,7 +175,7 @@ def _marched(
     edge: Edge | None,
     shares: Floats | None = None,
 ) -> tuple[Floats | None, Floats]:
-    """Return nodes (ni, cells + 1, 2) with a far field as large as that of `front`, or None, and steps."""
+    """Return nodes (ni, cells + 1, 2) that reach the far field of `front`, None if not finite, and steps."""
     start = front.start()
     n = len(start)
     levels = np.empty((2, cells + 1, n))
@@ -210,7 +210,7 @@ def _marched(
 
 
 def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
-    """Make first cells as high as `heights` (ni,), moving nodes along lines, less away from the wall."""
+    """Move nodes along lines, in place, so that first cells have `heights` (ni,); less away from the wall."""
     rows = nodes.shape[1]
     rate = math.log(steps[-1] / steps[-2]) if rows > 2 else 1.0
     fade = exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(FADE_ROWS, 1.5 / max(rate, 1e-3)))
@@ -257,7 +257,7 @@ def _solution(boundary: Boundary, nodes: Floats, first: float) -> Solution:
 
 
 def _first_cell_note(boundary: Boundary, nodes: Floats, first: float) -> str:
-    """Return the heights of the first cells and the growth of rows, as a note."""
+    """Return a note of the first-cell heights and of the growth ratio."""
     behind = boundary.wake
     wall = nodes[behind : len(nodes) - behind]
     heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T)

@@ -1,4 +1,4 @@
-"""Grids of many boundaries by torch on a CPU or GPU, straight from the networks: folds are not repaired."""
+"""Inference for many boundaries by torch on a CPU or GPU, without repair of folded cells."""
 
 from __future__ import annotations
 
@@ -37,11 +37,12 @@ def solve_on(
     polish: Polish,
     instead: Callable[[Boundary], Solution],
 ) -> list[Solution]:
-    """Return a grid inside each boundary, those of equal size computed together.
+    """Return a grid inside each boundary; boundaries with equal node counts are computed in one batch.
 
-    `polish`: Picard steps of the strip operator; ``auto`` or ``off`` for quad operators, which take none;
-    `instead`: solves a boundary that cannot be solved on the device. Raises InputError: torch or the device
-    is not there; boundaries or polish that do not suit the operator; MemoryError: the device has too little.
+    `polish`: number of Picard steps of the strip operator; ``auto`` or ``off`` for quad operators, which take
+    none; `instead`: solver for a boundary that cannot be solved on the device. Raises InputError: torch or
+    the device is missing; boundaries or polish that do not suit the operator; MemoryError: too little device
+    memory.
     """
     if not operator.batched:
         raise InputError(f"model {operator.name} has no grids on a device", "leave {device} out")
@@ -74,7 +75,7 @@ def solve_on(
 
 
 def _grids(device: Device, operator: Operator, polish: Polish) -> Callable[[Sequence[Boundary]], Tensor]:
-    """Return what makes the nodes (batch, ni, nj, 2) of boundaries with equal counts."""
+    """Return the function from boundaries with equal node counts to nodes (batch, ni, nj, 2)."""
     import torch
 
     from meshonet.solvers.neural.differentiable import AirfoilGrids, BodyGrids, QuadGrids
@@ -103,7 +104,10 @@ def _grids(device: Device, operator: Operator, polish: Polish) -> Callable[[Sequ
 def _nodes(
     grids: Callable[[Sequence[Boundary]], Tensor], boundaries: Sequence[Boundary], *, lifted: bool
 ) -> list[Floats | None]:
-    """Return the nodes of each boundary; None of one that cannot be lifted, which fails its whole batch."""
+    """Return the nodes of each boundary; None for one without a conformal lift.
+
+    One such boundary makes its whole batch fail; then each boundary is computed alone.
+    """
     try:
         return list(grids(boundaries).cpu().numpy())
     except InputError:

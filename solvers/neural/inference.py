@@ -1,4 +1,4 @@
-"""From boundaries to grids by the network that is named, or by the default one of the topology."""
+"""Grids of boundaries by a given network, or by the default one of their topology."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,8 +17,8 @@ from meshonet.solvers.neural.registry import BASE, DEFAULTS, load
 from meshonet.solvers.solution import Solution
 
 Answer = Literal["valid", "pasted", "raw"]
-"""What becomes of a network's answer: ``raw`` nothing; ``pasted`` the boundary's own nodes are put on its
-edges, as the paper does; ``valid`` folded cells are repaired as well (by the caller's guard)."""
+"""Treatment of a network's output: ``raw`` none; ``pasted`` its edges are replaced by the boundary's nodes,
+as in the paper; ``valid`` folded cells are repaired as well (by the caller)."""
 
 
 def infer_many(
@@ -32,9 +32,9 @@ def infer_many(
 
     `model` is the name of a shipped model, the path of a ``.safetensors`` file, ``base`` for the conformal
     solver, or None for the default of the topology. `polish` are steps after the network
-    (`operator.Operator.solve`). On a `device` torch computes the grids, with 3 Picard steps or no descent
-    when polish is ``auto``; by default numpy does. Raises InputError: a model that does not exist, cannot be
-    read or does not suit a boundary; no such device.
+    (`operator.Operator.solve`). On a `device` torch computes the grids, where polish ``auto`` means 3 Picard
+    steps of a strip operator and none of a quad operator; without one NumPy does. Raises InputError: a model
+    that does not exist, cannot be read or does not suit a boundary; no such device.
     """
     named = None if model is None else load(model)
     solutions: dict[int, Solution] = {}
@@ -53,7 +53,7 @@ def infer_many(
 
 
 def grid_of_body(boundary: Boundary, why: str) -> Solution | None:
-    """Return the grid of a compact body by `hole-o`, None if it is folded; a note says `why` it was used."""
+    """Return the grid of a compact body by `hole-o`, with a note of `why` it was used; None if folded."""
     from meshonet.solvers.algebraic.resample.grids import thinned
     from meshonet.solvers.neural.quad.encoding import LATENT
     from meshonet.solvers.neural.quad.o_grids import compact
@@ -75,7 +75,7 @@ def grid_of_body(boundary: Boundary, why: str) -> Solution | None:
 
 
 def _without_network(boundary: Boundary) -> Solution:
-    """Return the grid of a boundary that a network does not suit: conformal, or variational in a quad."""
+    """Return the grid of a boundary unsuited to networks: by the conformal solver, for a quad variational."""
     if boundary.topology == "o":
         return conformal.solve([boundary], substitute=grid_of_body)[0]
     from meshonet.solvers.energy.variational import solve
@@ -84,7 +84,7 @@ def _without_network(boundary: Boundary) -> Solution:
 
 
 def _refuse(**parameters: object) -> None:
-    """Raise InputError for parameters that C grids, which no network makes, have no use for."""
+    """Raise InputError for parameters that do not apply to C grids, which no network makes."""
     for name, value in parameters.items():
         if value is not None:
             problem = f"{{{name}}} {value} is of no use to a c grid: it is marched, no model makes it"
@@ -93,7 +93,7 @@ def _refuse(**parameters: object) -> None:
 
 @dataclass(frozen=True)
 class OperatorMethod:
-    """A neural operator; its settings are those of `infer_many`."""
+    """The method ``operator``: grids by `infer_many`, whose settings are its fields."""
 
     model: str | None = None
     polish: Polish = "auto"
@@ -103,7 +103,7 @@ class OperatorMethod:
 
     @cached_property
     def together(self) -> Topology | None:
-        """The topology of boundaries that go through the network in one pass; None if none do."""
+        """The topology of boundaries that the network processes in one batch; None if one by one."""
         if self.device is None and self.model == BASE:
             return None  # no network
         network = load(self.model or DEFAULTS["o"])
@@ -114,5 +114,5 @@ class OperatorMethod:
         problems: Sequence[Boundary],
         start: Sequence[Grid] | None = None,  # noqa: ARG002 - networks start from nothing
     ) -> list[Solution]:
-        """Return a solution for each of the boundaries, by one pass of the network where it can."""
+        """Return a solution for each of the boundaries, in batches where the network allows it."""
         return infer_many(problems, self.model, self.polish, self.answer, self.device)

@@ -1,4 +1,4 @@
-"""Model files: safetensors with a header that says what the model is, checked before anything is used."""
+"""Model files: safetensors with a header that describes the model, checked when read."""
 
 import json
 from collections.abc import Mapping
@@ -18,19 +18,19 @@ OURS = "use a file made by meshonet train"  # remedy for a file that is no model
 
 
 class Kind(NamedTuple):
-    """A kind of model: what its header says under ``kind``, and under `key` for its version."""
+    """A kind of model: `text` is the entry ``kind`` of its header, `version` the entry `key`."""
 
     text: str
     key: str
     version: int
 
 
-# told apart by their headers; the version is that of what the arrays mean
+# the version changes with the meaning of the arrays
 STRIP = Kind("meshonet strip operator", "encoding", 1)
 QUAD = Kind("meshonet quad operator", "encoding", 2)
 PAPER = Kind("meshonet operator", "version", 1)
 KINDS = {kind.text: kind for kind in (STRIP, QUAD, PAPER)}
-"""Kinds by their text; files of another version are refused."""
+"""Kinds by their `text`; files of another version are refused."""
 
 
 def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]]]:
@@ -81,7 +81,7 @@ def write_model(
 ) -> None:
     """Write a model file for `read_model`, whole or not at all, with each array in its own precision.
 
-    `recipe`, `figures`: how it was trained, and what it does on held-out shapes; `facts`: further entries of
+    `recipe`, `figures`: settings of the training, and errors on held-out shapes; `facts`: further entries of
     the header, which depend on the kind of model.
     """
     from safetensors.numpy import save

@@ -1,4 +1,4 @@
-"""The interface of all trained operators, whatever their network: boundaries in, solutions out."""
+"""The interface of all trained operators, from boundaries to solutions."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
@@ -45,10 +45,10 @@ class Operator(ABC):
     ) -> list[Solution]:
         """Return a grid inside each boundary; it may be folded (see `meshonet.solvers.pipeline.fallback`).
 
-        `polish`: steps after the network, where the operator has such steps; `paste`: put the boundary's own
-        nodes on the edges, where a network does not meet them itself; `dtype`: ``float64`` or ``float32``,
-        arithmetic of the quad network, with which grids differ by 1e-6; `threads`: batches of the quad
-        network at work at a time. Grids do not depend on it. Raises InputError: a boundary of another
+        `polish`: number of steps after the network, where the operator has such steps; `paste`: replace the
+        edges by the boundary's nodes, where the network does not reproduce them; `dtype`: ``float64`` or
+        ``float32`` arithmetic of the quad network, whose grids differ by about 1e-6; `threads`: concurrent
+        batches of the quad network, which do not change grids. Raises InputError: a boundary of another
         topology.
         """
 
@@ -61,10 +61,9 @@ class Operator(ABC):
 
 
 def in_batches(boundaries: Sequence[Boundary], threads: int = 1) -> Iterator[list[int]]:
-    """Yield indices of boundaries with equal node counts, `BATCH` at the most, each boundary once.
+    """Yield batches, as indices of at most `BATCH` boundaries with equal node counts, each boundary once.
 
-    Batches with the same node counts hold about equally many, and there are enough of them to keep all
-    `threads` at work to the end.
+    Batches with the same node counts have about equal sizes, and are many enough to keep all `threads` busy.
     """
     groups: dict[tuple[int, int], list[int]] = {}
     for k, boundary in enumerate(boundaries):

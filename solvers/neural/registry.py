@@ -19,10 +19,10 @@ BASE = "base"  # the harmonic base with no network, where a strip operator can b
 DEFAULTS: dict[Topology, str] = {"o": "airfoil-o", "quad": "quad-general"}  # where none is named
 
 HEADS = {"quad-winslow": ("quad-general", 0), "hole-winslow": ("hole-o", 0)}
-"""Models that are another answer of a network: the name of its file, and the number of the answer."""
+"""Models that are another output of a network: the name of its file, and the index of the output."""
 
 NEVER = {"airfoil-c": "leave {model} out: {topology} c is marched from wall and wake, better than by a model"}
-"""Models that one may look for and that are not made, and what serves instead."""
+"""Models that do not exist but may be asked for, with the remedy in the error message."""
 
 OPERATORS: dict[Kind, str] = {
     STRIP: "meshonet.solvers.neural.strip.operator:StripOperator",
@@ -39,7 +39,7 @@ def shipped() -> tuple[str, ...]:
 
 
 def model_path(name: str) -> Path:
-    """Return the file of a shipped model's name, or of a path. Raises InputError when there is none."""
+    """Return the file of a model by name or path. Raises InputError when there is none."""
     if name in shipped():
         return FOLDER / f"{HEADS.get(name, (name, 0))[0]}.safetensors"
     path = Path(name)
@@ -91,7 +91,7 @@ def _load(path: Path, _modified: int) -> Operator:
 
 
 def described(name: str) -> dict[str, Any]:
-    """Return what a shipped model says of itself: name, topology, recipe, figures, parameters, file."""
+    """Return the description of a shipped model: name, topology, recipe, figures, parameter count, file."""
     path = model_path(name)
     _, header, arrays = read_model(path)
     facts: dict[str, Any] = {key: header[key] for key in ("topology", "recipe", "figures") if key in header}

@@ -1,4 +1,4 @@
-"""Grids that an operator learns from or is judged by: one size, one topology."""
+"""Grids of one size and topology on which an operator is trained or tested."""
 
 from __future__ import annotations
 
@@ -43,13 +43,13 @@ class Samples:
         return [edges(nodes, self.topology, name) for nodes, name in zip(self.nodes, self.names, strict=True)]
 
     def pick(self, rows: Iterable[int]) -> Samples:
-        """Return some of the samples."""
+        """Return the samples with indices `rows`."""
         chosen = np.fromiter(rows, dtype=np.intp)
         names, splits = (tuple(have[k] for k in chosen) for have in (self.names, self.splits))
         return Samples(self.nodes[chosen], self.topology, names, splits, self.parameters[chosen])
 
     def where(self, split: str) -> NDArray[np.intp]:
-        """Return the rows of a split; those of no split count as ``train``."""
+        """Return the indices of the samples of a split; samples of no split count as ``train``."""
         return np.array([k for k, own in enumerate(self.splits) if (own or "train") == split], dtype=np.intp)
 
     def fingerprint(self) -> str:
@@ -65,7 +65,7 @@ def edges(nodes: Floats, topology: Topology, name: str = "") -> Boundary:
 
 
 def gathered(grids: Iterable[Grid]) -> Samples:
-    """Return grids as samples.
+    """Return `grids` as samples.
 
     Raises InputError: no grid, one of another size or topology than the first, a C grid.
     """

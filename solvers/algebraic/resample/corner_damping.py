@@ -1,10 +1,12 @@
-"""Splines made less curved near acute corners, so that they do not fold the thin cells there.
+"""Damping of splines near acute corners, so that they do not fold the thin cells there.
 
-Between the walls of an acute corner cells are much thinner than long, and lines turn within a cell or two of
-the walls. A cubic through their nodes swings by more than the thickness of a cell; straight lines between
-coarse nodes do not. So a share of the second derivatives is left out: all of them at the corner itself, less
-with the distance from it and the wider it opens. With L the matrices of linear interpolation, C those of what
-second derivatives B add between, and K the share left at each node::
+Between the walls of an acute corner cells are much thinner than long, and grid lines turn within a cell or
+two of the walls. A cubic spline through the nodes of such a line overshoots by more than the thickness of a
+cell; linear interpolation does not. So the second derivatives of the spline are reduced: to 0 at an acute
+corner, by less farther away, and not at all at corners of 60 degrees or more. With X the coarse nodes, L the
+matrices of linear interpolation, B those that give second derivatives at coarse nodes (`bending`), C those
+that give their contribution between nodes (`cubic`), and K the factor 0 to 1 at each coarse node, the fine
+nodes are::
 
     L X Lᵀ + C (K∘B X) Lᵀ + L (K∘X Bᵀ) Cᵀ + C (K∘B X Bᵀ) Cᵀ
 """
@@ -19,14 +21,14 @@ from meshonet.geometry.elementary import functions_of, times
 from meshonet.solvers.algebraic.resample.spline import places
 
 ACUTE, WIDE = np.radians((30.0, 60.0))
-"""Angles of a corner up to which all is taken out, and from which nothing is."""
+"""Corner angles up to which damping is complete, and from which there is none."""
 
 NEAR, FAR = 4.0, 10.0
-"""Coarse cells from the corner, along xi or eta, up to which all is taken out, and from which nothing is."""
+"""Coarse cells from the corner, along xi or eta, up to which damping is complete, and from which it is 0."""
 
 
 def openings(z: Any, xp: Any) -> Any:
-    """Return how much is taken out at the four corners (.., 2, 2), 0 to 1, of grids `z` (.., m, n), complex.
+    """Return the damping (.., 2, 2), 0 to 1, at the four corners of planar grids `z` (.., m, n), complex.
 
     `xp` is numpy or torch.
     """
@@ -41,7 +43,7 @@ def openings(z: Any, xp: Any) -> Any:
 
 @lru_cache(maxsize=16)
 def fading(m: int, n: int) -> Floats:
-    """Return how much of what is taken out at each of the corners reaches each node, (4, m, n)."""
+    """Return the fraction (4, m, n) of each corner's damping that applies at each node of an m x n grid."""
     cells = np.maximum(*np.ogrid[0.0:m, 0.0:n])
     first = np.clip((FAR - cells) / (FAR - NEAR), 0.0, 1.0)
     return np.stack([first, first[:, ::-1], first[::-1], first[::-1, ::-1]])
@@ -49,13 +51,13 @@ def fading(m: int, n: int) -> Floats:
 
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) that takes second derivatives at n knots to what they add between."""
+    """Return the matrix (count, n) from second derivatives at n knots to what they add to the interpolant."""
     return _weighted(n, count, 2)
 
 
 @lru_cache(maxsize=16)
 def linear(n: int, count: int) -> Floats:
-    """Return the matrix (count, n) of linear interpolation between n knots."""
+    """Return the matrix (count, n) of linear interpolation from n uniform knots to `count` uniform places."""
     return _weighted(n, count, 0)
 
 

@@ -1,7 +1,7 @@
-"""Boundaries thinned to few nodes, and the grids inside them evaluated at many.
+"""Coarsening of boundaries, and interpolation of coarse grids to the full resolution.
 
-In four-sided domains, splines through the coarse nodes are evaluated (`quad`). Around a body each line keeps
-its own shape instead (`o_grid`).
+Grids of four-sided domains are interpolated by splines in both directions (`quad`), O grids along their own
+grid lines (`o_grid`).
 """
 
 import numpy as np
@@ -16,9 +16,9 @@ from meshonet.solvers.iteration import put_edges
 
 
 def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
-    """Return `boundary` with ni x nj nodes, at equal steps of the index of the given ones.
+    """Return `boundary` with ni x nj nodes, linearly interpolated at equal steps of the index.
 
-    A C becomes a quad: thinned, its trailing edge need not be a node.
+    A C boundary becomes a quad, because its trailing edge need not be one of the new nodes.
     """
     topology: Topology = "quad" if boundary.topology == "c" else boundary.topology
     south, north = _thinned(boundary.south, ni), _thinned(boundary.north, ni)
@@ -27,7 +27,7 @@ def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
 
 
 def refine_grid(coarse: Floats, boundary: Boundary) -> Floats:
-    """Return planar nodes inside `boundary`, from a coarse grid (m, n, 2) inside its thinned edges."""
+    """Return the nodes (ni, nj, 2) inside `boundary`, interpolated from `coarse` (m, n, 2) (`thinned`)."""
     if boundary.periodic:
         return refine_around(coarse, boundary)
     names = ("south", "north", "west", "east")
@@ -37,10 +37,10 @@ def refine_grid(coarse: Floats, boundary: Boundary) -> Floats:
 
 
 def divided(coarse: Floats, boundary: Boundary) -> Floats:
-    """Return what `refine_grid` does for a quad by straight lines between coarse nodes.
+    """Return the bilinear interpolation (ni, nj, 2) of a quad grid `coarse` (m, n, 2) inside `boundary`.
 
-    They bend at these, but cells inside a valid coarse cell are valid: folds are left only beside edges that
-    bend between coarse nodes.
+    Grid lines have kinks at coarse nodes, but cells inside a valid coarse cell are valid: folded cells can
+    occur only next to edges that are curved between coarse nodes.
     """
     nodes = planar_nodes(boundary.ni, boundary.nj)
     along, across = (

@@ -1,12 +1,14 @@
-"""An O grid of any resolution from a small one, along its own lines.
+"""Interpolation of a coarse O grid to any resolution, along its own grid lines.
 
-Lines from the body outwards may step by very unequal lengths, and a spline of their nodes would swing and
-fold. So each keeps its course, a cubic of arc length, on which new nodes follow a rising cubic of the index::
+Steps along a line from the body outwards may be very unequal; a spline of its nodes by index would overshoot
+and fold. So each line keeps its shape, a cubic x_c of arc length, and the arc length of the new nodes is a
+monotonic cubic s(j) of the index::
 
     x = S x_c(s(j)) + (1 - s)⁸ (south - S south_c) + s⁸ (north - S north_c)
 
-with s the share of a line's length and S periodic splines along xi. What few nodes miss of the walls is felt
-only near them.
+with s the fraction of a line's length and S periodic splines along xi. The powers confine the difference
+between the given walls (south, north) and the splines through their coarse nodes (south_c, north_c) to their
+vicinity.
 """
 
 from typing import Any
@@ -23,13 +25,13 @@ from meshonet.solvers.algebraic.resample.spline import bending, places, spline_m
 from meshonet.solvers.iteration import put_edges
 
 STEEP, FLAT = 1.15, 0.5
-"""Slopes of the rising cubic in harmonic means of both steps, between which they are those of a spline."""
+"""Upper and lower bound of the slopes of the monotonic cubic, in harmonic means of the two adjacent steps."""
 
 SQUARINGS = 3  # squarings that make the eighth power
 
 
 def refine_around(coarse: Floats, boundary: Boundary) -> Floats:
-    """Return planar nodes inside the O `boundary` from a grid (m, n, 2) inside its thinned edges."""
+    """Return the nodes (ni, nj, 2) inside the O `boundary`, interpolated from `coarse` (m, n, 2)."""
     m, ni, nj = len(coarse), boundary.ni, boundary.nj
     threads = threads_for(ni * nj)
     lines, share = map(np.ascontiguousarray, along_lines(coarse[..., 0] + 1j * coarse[..., 1], nj))
@@ -53,9 +55,9 @@ def refine_around(coarse: Floats, boundary: Boundary) -> Floats:
 
 
 def along_lines(z: Any, nj: int, xp: Any = np) -> tuple[Any, Any]:
-    """Return nj nodes on each of the lines `z` (..., n), complex, and the share of its length up to each.
+    """Return nj nodes (..., nj) on each of the lines `z` (..., n), complex, and their arc-length fractions.
 
-    `xp`: the module, numpy or torch, that `z` is an array of.
+    `xp` is numpy or torch, the module of `z`.
     """
     n = z.shape[-1]
     moves = z[..., 1:] - z[..., :-1]
@@ -72,14 +74,14 @@ def along_lines(z: Any, nj: int, xp: Any = np) -> tuple[Any, Any]:
 
 
 def _hermite(values: Any, slopes: Any, first: NDArray[np.intp], t: Any, span: Any) -> Any:
-    """Return cubics through `values` (..., n) with `slopes`, at t of the way across spans from `first` on."""
+    """Return Hermite cubics of `values` and `slopes` (..., n) at fraction t of the intervals from `first`."""
     rest = 1.0 - t
     ends = (1.0 + 2.0 * t) * rest**2 * values[..., first] + (3.0 - 2.0 * t) * t**2 * values[..., first + 1]
     return ends + span * t * rest * (rest * slopes[..., first] - t * slopes[..., first + 1])
 
 
 def _slopes(length: Any, steps: Any, xp: Any) -> Any:
-    """Return the slopes by index of rising `length` (..., n), a spline's where steps vary little."""
+    """Return the derivatives of arc `length` (..., n) by the index: a spline's, bounded to be monotonic."""
     bends = functions_of(xp).matmul(length, array_like(bending(length.shape[-1], False), length, xp).T)
     before, after = steps[..., :-1], steps[..., 1:]
     inner = steps - (2.0 * bends[..., :-1] + bends[..., 1:]) / 6.0
@@ -89,7 +91,7 @@ def _slopes(length: Any, steps: Any, xp: Any) -> Any:
 
 
 def _tangents(directions: Any, steps: Any, xp: Any) -> Any:
-    """Return the tangents (..., n) of lines whose pieces have `directions` and lengths `steps` (..., n-1)."""
+    """Return the tangents (..., n) of polylines, whose segments (..., n-1) have `directions` and `steps`."""
     if steps.shape[-1] == 1:
         return xp.concatenate([directions, directions], -1)
     before, after = steps[..., :-1], steps[..., 1:]

@@ -1,23 +1,21 @@
-"""Four-sided grids on few nodes evaluated at many: splines, with edges that are met bitwise.
+"""Interpolation of coarse four-sided grids by splines, with edges that are reproduced bitwise.
 
-With X the planes of a grid's nodes::
+With X the coordinates of the coarse nodes::
 
-    x = S X Tᵀ + shares * (edges - S X Tᵀ there)
+    x = S X Tᵀ + shares * (edges - S X Tᵀ on the edges)
 
-S and T are cubic splines, less curved near acute corners (`corner_damping`). They do not reproduce the edges
-exactly; the mismatch is blended into the interior over two coarse cells. A cubic swings
-between nodes, which may fold cells where spacings differ much, although the coarse ones are valid. Then lines
-are made straight around these, as far as it takes: between straight lines, cells inside a valid coarse cell
-are valid.
+S and T are cubic splines, damped near acute corners (`corner_damping`). Splines overshoot where spacings
+differ much, and may fold fine cells in valid coarse ones. Around folded cells they are replaced by linear
+interpolation, in as large a neighbourhood as it takes: with it, cells inside a valid coarse cell are valid.
 
-Between the nodes of a coarse edge the full one has detail. In a smooth grid, detail as long as a coarse step
-dies out over about that distance from the edge, however thin the cells there are. Blended along whole lines,
-the detail would fold thin cells far away. So at coarse node (i, j), at a distance d along its line from the
-edge ::
+Between coarse nodes the given edges differ from the splines; this mismatch is blended into the interior. In a
+smooth grid, a detail of the edge as long as a coarse step decays over about that distance from the edge,
+however thin the cells there are; blended along whole lines, it would fold thin cells far away. So at coarse
+node (i, j), at a distance d along its line from the edge::
 
     share = max(0, 1 - d / r),    r = max(d_1, min(`REACH` h, length of the line))
 
-with h the mean of the edge's steps to both sides of the line and d_1 the line's first cell. Between nodes
+with h the mean of the edge's steps on both sides of the line and d_1 the line's first cell. Between nodes
 shares are linear.
 """
 
@@ -34,20 +32,20 @@ from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.resample.spline import places
 
 Sides = tuple[Floats, Floats, Floats, Floats]
-"""Planes of south and north (batch, 2, ni), west and east (batch, 2, nj)."""
+"""Coordinates of the nodes on south and north (batch, 2, ni), west and east (batch, 2, nj)."""
 
 Straight = NDArray[np.uint8]
 
 REACH = 2.0  # steps of the edge over which its mismatch is blended
 
-CORNERS = [0, 1, -2, -1]  # rows and columns of a grid that tell how wide its corners open
+CORNERS = [0, 1, -2, -1]  # rows and columns of a grid from which its corner angles are computed
 
 WIDER = (0, 1, 3)
-"""Coarse cells beyond those with folds whose lines become straight, one try after another; at last all do."""
+"""Coarse cells around those with folds that become linear, one attempt after another; at last all do."""
 
 
 def refine_quad(coarse: Floats, sides: Sides) -> Floats:
-    """Return the planes (batch, 2, ni, nj) inside the `sides` of grids `coarse` (batch, 2, m, n)."""
+    """Return the nodes (batch, 2, ni, nj) inside `sides`, interpolated from `coarse` (batch, 2, m, n)."""
     nodes = _evaluated(coarse, sides, None)
     for k, one in enumerate(nodes):
         if count_folded(one.transpose(1, 2, 0)):
@@ -56,9 +54,10 @@ def refine_quad(coarse: Floats, sides: Sides) -> Floats:
 
 
 def mended(coarse: Floats, sides: tuple[Floats, ...], nodes: Floats) -> Straight | None:
-    """Evaluate a valid grid `coarse` (2, m, n) again, into its folded fine planes `nodes` (2, ni, nj).
+    """Interpolate `coarse` (2, m, n) anew into `nodes` (2, ni, nj), linearly around their folded cells.
 
-    Returns an array (m, n), 1 at coarse nodes around which lines became straight; None where that is no use.
+    Returns an array (m, n), 1 at coarse nodes with linear interpolation; None if `coarse` itself has folded
+    cells or no attempt leaves fewer.
     """
     if count_folded(coarse.transpose(1, 2, 0)):
         return None
@@ -76,7 +75,7 @@ def mended(coarse: Floats, sides: tuple[Floats, ...], nodes: Floats) -> Straight
 
 
 def _straighter(shape: tuple[int, ...], nodes: Floats) -> Iterator[Straight]:
-    """Yield ever more coarse nodes around the folded cells of planes `nodes` (2, ni, nj)."""
+    """Yield growing masks (m, n) of coarse nodes around the folded cells of `nodes` (2, ni, nj)."""
     straight = np.zeros(shape, np.uint8)
     for wider in WIDER:
         first = [

@@ -1,4 +1,4 @@
-"""Cubic splines on uniform knots as matrices, so that a table of values is evaluated at any resolution.
+"""Cubic splines on uniform knots as matrices, for interpolation of arrays to any resolution.
 
 On knots 0, 1, ..., m-1 with values f and second derivatives M the spline between knots k and k+1 is, with
 t the place between them (0 to 1)::
@@ -28,7 +28,7 @@ def bending(m: int, periodic: bool) -> Floats:
     """
     if m == 2 or (periodic and m == 3):
         return np.zeros((m, m))
-    bends = np.zeros((m, m))  # at first the right sides
+    bends = np.zeros((m, m))  # at first the right-hand sides
     inner = np.arange(1, m - 1)
     bends[inner, inner - 1], bends[inner, inner], bends[inner, inner + 1] = 6.0, -12.0, 6.0
     if periodic:
@@ -43,14 +43,14 @@ def bending(m: int, periodic: bool) -> Floats:
 
 
 def _around(n: int) -> Floats:
-    """Return the inverse (n, n) of the matrix of rows 1, 4, 1 that go round."""
+    """Return the inverse (n, n) of the circulant tridiagonal matrix of rows 1, 4, 1."""
     z, k = math.sqrt(3.0) - 2.0, np.arange(n)
     row = (power(z, k) + power(z, n - k)) / (2.0 * math.sqrt(3.0) * (1.0 - z**n))
     return np.asarray(row[(k[:, None] - k) % n])
 
 
 def _solve_between(rows: Floats) -> None:
-    """Solve x_k-1 + 4 x_k + x_k+1 = `rows` in place; the first and the last are x. Thomas' elimination."""
+    """Solve x_k-1 + 4 x_k + x_k+1 = `rows` in place by Thomas' algorithm; the first and last rows hold x."""
     last, part = len(rows) - 1, 0.0
     parts = []
     for k in range(1, last):
@@ -62,7 +62,7 @@ def _solve_between(rows: Floats) -> None:
 
 
 def between(values: Floats, n: int) -> Floats:
-    """Return (..., n), linear between the columns of `values` (..., m), at equal steps; the ends are kept."""
+    """Return `values` (..., m) interpolated linearly at n uniform places (..., n); end values are kept."""
     m = values.shape[-1]
     if n == m:
         return values
@@ -80,7 +80,7 @@ def between(values: Floats, n: int) -> Floats:
 def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
     """Return for n uniform places over m knots the knot before each (n,) and four weights (n, 4).
 
-    The weights go to the values at that knot and the next and to the second derivatives there.
+    The weights apply to the values at that knot and the next, then to the second derivatives at both.
     """
     at = np.arange(n) * ((m - 1) / (n - 1))
     first = np.minimum(at.astype(np.intp), m - 2)
@@ -92,7 +92,7 @@ def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
 
 @lru_cache(maxsize=16)
 def spline_matrix(m: int, n: int, periodic: bool = False) -> Floats:
-    """Return the matrix (n, m) that takes values at m uniform knots to the spline at n uniform places.
+    """Return the matrix (n, m) that evaluates the spline of values at m uniform knots at n uniform places.
 
     >>> cubes = np.arange(5.0) ** 3
     >>> np.abs(spline_matrix(5, 9) @ cubes - np.linspace(0, 4, 9) ** 3).max() < 1e-12

@@ -1,4 +1,4 @@
-"""The grid of a volume marched from a surface: a block a patch, its sides named or connected."""
+"""The grid of a volume marched from a surface: one block per patch, with sides named or connected."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The graph that a march works on: neighbours in order, ghosts beyond open edges, nodes in two groups.
+"""The graph of a surface for the march: ordered neighbours, ghost nodes beyond open edges, two colours.
 
 ::
 
@@ -10,7 +10,7 @@
         :                                   :
         B                                   B
 
-Nodes of the first group (red) are no neighbours of each other; ``kernels/surfaces/graph.h`` has the arrays.
+Red nodes, the first colour, are not neighbours of each other; ``kernels/surfaces/graph.h`` has the arrays.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 
 _WIDTH, _FALL = 4, 0.35
-"""Rings of nodes smoothed more around those where other than four faces meet, and how that falls."""
+"""Rings of nodes around irregular (not 4-valent) ones that are smoothed more, and the factor per ring."""
 
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """What a node sees in a direction: own x(node) + sign x(base) + shift, with signs and shift (3,)."""
+    """A neighbour of a node, real or ghost, at own x(node) + sign x(base) + shift; sign, shift are (3,)."""
 
     base: int
     own: float = 0.0
@@ -40,25 +40,25 @@ class Seen:
 
     @property
     def real(self) -> bool:
-        """Whether it is a node itself."""
+        """Whether the neighbour is a node of the surface."""
         return self.own == 0.0 and bool((self.sign == 1.0).all())
 
     def mirrored(self, plane: Plane) -> Seen:
-        """Return it on the other side of a plane."""
+        """Return its mirror image in a plane."""
         turned = np.where(np.arange(3) == plane.axis, -1.0, 1.0)
         return Seen(
             self.base, self.own, turned * self.sign, turned * self.shift + (1.0 - turned) * plane.value
         )
 
     def opposite(self, splay: float) -> Seen:
-        """Return what lies opposite it, 1 + `splay` times as far."""
+        """Return the ghost opposite it, at 1 + `splay` times its distance."""
         far = 1.0 + splay
         return Seen(self.base, 1.0 + far, -far * self.sign, -far * self.shift)
 
 
 @dataclass(frozen=True, eq=False)
 class MarchGraph:
-    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) is the node of the surface that each node is."""
+    """Arrays of ``kernels/surfaces/graph.h``; `order` (n,) are the indices of its nodes on the surface."""
 
     order: Indices
     red: int
@@ -79,10 +79,10 @@ class MarchGraph:
 def march_graph(
     surface: Surface, planes: Sequence[Plane], in_plane: Indices, splay: float, boost: float
 ) -> MarchGraph:
-    """Return the graph of a surface, whose open edges lie in `planes` as far as `in_plane` (p, k) says.
+    """Return the graph of a surface; mask `in_plane` (p, k) marks the open edges that lie in `planes`.
 
-    `splay` is how much farther than their opposites ghosts at free edges lie, `boost` how much more than
-    elsewhere nodes are smoothed where other than four faces meet.
+    `splay` is the relative excess distance of ghosts at free edges (`Seen.opposite`), `boost` the additional
+    smoothing at irregular nodes, relative to others.
     """
     n = len(surface.nodes)
     regular = surface.valence == 4
@@ -139,7 +139,7 @@ def _with_diagonals(surface: Surface, node: int, pair: list[Seen]) -> list[Seen]
 
 
 def _oddness(surface: Surface) -> Floats:
-    """Return 1 at nodes (n,) inside the surface where other than four faces meet, less around them."""
+    """Return 1 at irregular (not 4-valent) nodes (n,) inside the surface, and less around them."""
     odd = (surface.valence != 4).astype(float)
     odd[surface.open_edges.ravel()] = 0.0
     for _ in range(_WIDTH):

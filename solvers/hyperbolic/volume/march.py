@@ -1,4 +1,4 @@
-"""Volumes marched from surfaces of many patches; the height of first cells is met exactly.
+"""Volumes marched from multi-patch surfaces, with exact first-cell height.
 
 ::
 
@@ -6,7 +6,7 @@
                          ^                                                         |
                          +--------------- other smoothing, smaller steps ----------+
 
-The equations stand in ``kernels/surfaces/step.c``, what is tried while cells are folded in
+The equations are in ``kernels/surfaces/step.c``, the settings tried while cells are folded in
 `meshonet.solvers.hyperbolic.volume.settings`.
 """
 
@@ -48,14 +48,14 @@ from meshonet.solvers.stages import filling
 
 __all__ = ["VolumeMarch", "march_surface"]
 
-FADE = 12.0  # cells over which what first cells needed fades away along a line
+FADE = 12.0  # cells over which the correction of first cells fades out along a line
 SWEEPS = 10  # of the smoothing of steps along lines
-_SLOWER = 2  # marches by smaller steps where cells grow too much
-WORST = 10  # folded cells that a refusal names
+_SLOWER = 2  # further marches by smaller steps where cells grow too much
+WORST = 10  # folded cells named in the error message
 
 
 class _Volume(NamedTuple):
-    """Blocks of a march, how many cells it came from the wall, and how many of all are folded."""
+    """Blocks of a march, `made` layers of cells off the wall, with `folded` folded cells."""
 
     blocks: tuple[Block, ...]
     made: int
@@ -64,11 +64,11 @@ class _Volume(NamedTuple):
 
 @timed
 def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
-    """Return the volume between a surface and a far field, a block a patch.
+    """Return the volume between a surface and a far field, with one block per patch.
 
     i and j of a block are those of its patch, k goes from the wall (``bottom``) to the far field (``top``).
     Sides in planes of symmetry are patches ``symmetry``, free ones ``free``; all others are connected. First
-    cells are as high as asked, along every line.
+    cells have the given height along every line.
 
     Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` has what differs.
 
@@ -97,7 +97,7 @@ def _best(
     surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, steps: Floats,
     growth: float,
 ) -> tuple[_Volume, int]:  # fmt: skip
-    """Return the first volume without folded cells, or that which comes closest, and how many were tried.
+    """Return the first volume without folded cells, or else the best, and the number of attempts.
 
     The first is marched again by smaller steps where its cells grow by more than `growth`.
     """
@@ -161,7 +161,7 @@ def _least_jacobian(blocks: tuple[Block, ...]) -> float:
 def march_levels(
     surface: Surface, graph: MarchGraph, nodes: Floats, steps: Floats, smoothing: Smoothing
 ) -> Floats:
-    """Return levels (made + 1, 3, n) of a march by `steps` (m,) as far as it goes, nodes as in `graph`."""
+    """Return the levels (made + 1, 3, n) of a march by `steps` (m,), until it fails; nodes as in `graph`."""
     levels = np.empty((len(steps) + 1, 3, len(nodes)))
     levels[0] = nodes[graph.order].T
     numbers = smoothing.numbers(0.5 * surface.size)
@@ -172,7 +172,7 @@ def march_levels(
 
 
 def _respaced(levels: Floats, graph: MarchGraph, steps: Floats) -> Floats:
-    """Return the lines (3, n, levels) of a march, nodes moved along them so that first cells are exact."""
+    """Return the lines (3, n, levels) of a march, with nodes moved along them to exact first-cell heights."""
     made = len(levels) - 1
     lines = np.empty((3, levels.shape[2], made + 1))
     if made < 2:
@@ -184,7 +184,7 @@ def _respaced(levels: Floats, graph: MarchGraph, steps: Floats) -> Floats:
 
 
 def _keep_planes(lines: Floats, surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> None:
-    """Put what rounding moved out of planes of symmetry back, in place."""
+    """Move nodes back, in place, that rounding moved out of planes of symmetry."""
     edges = surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
         lines[plane.axis, edges[flags]] = plane.value

@@ -1,4 +1,4 @@
-"""What a march from a surface is asked for, and the smoothing that is tried in turn."""
+"""Settings of a march from a surface, and the smoothing parameters that are tried in turn."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import cells_for_growth, growing_steps
 
 GROWTH = 1.2
-"""Of cells along a line, where neither layers nor growth are given."""
+"""Growth ratio of cells along a line, where neither layers nor growth are given."""
 FAR_FIELD = 15.0
 """Distance of the far field in lengths of the surface, where none is given."""
 _LONGER = 1.1  # lines than the far field is away, as a rule
@@ -58,7 +58,7 @@ class VolumeMarch:
         return math.inf if self.layers is not None and self.growth is None else self.growth or GROWTH
 
     def steps(self, size: float) -> Floats:
-        """Return the steps (layers - 1,) of a march from a surface of that size.
+        """Return the steps (layers - 1,) of a march from a surface of extent `size`.
 
         Raises InputError: too few layers for the growth, or for any.
         """
@@ -81,7 +81,7 @@ class VolumeMarch:
 
 
 class Smoothing(NamedTuple):
-    """Numbers of ``kernels/surfaces/march.h`` in its order, but for the size, which stands between them."""
+    """Parameters of ``kernels/surfaces/march.h`` in its order, without the size of the surface."""
 
     explicit: float = 0.3
     implicit: float = 1.2
@@ -99,7 +99,7 @@ class Smoothing(NamedTuple):
     """Of free edges, and where other than four faces meet (`meshonet.solvers.hyperbolic.volume.graph`)."""
 
     def numbers(self, size: float) -> tuple[float, ...]:
-        """Return the numbers of a march over a surface of half that size."""
+        """Return the parameters as kernels take them, with half the extent (`size`) of the surface."""
         return (*self[:4], size, *self[4:11])
 
 

@@ -1,4 +1,4 @@
-"""Which open edges of a surface lie in planes of symmetry, and the nodes moved exactly into these."""
+"""Planes of symmetry of a surface: detection, and nodes of its open edges moved exactly into them."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from meshonet.geometry.surface.planes import FLAT, Plane, edges_in
 from meshonet.geometry.surface.surface import Surface
 
 ROUGH = 1e-3
-"""Part of the size of a surface by which nodes may be off a plane of symmetry that was named."""
+"""Largest distance of nodes from a given plane of symmetry, relative to the size of the surface."""
 
 
 def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ...], Indices]:
-    """Return the planes of symmetry and which (p, k) of the open edges lie in each.
+    """Return the planes of symmetry, and a mask (p, k) of the open edges that lie in each.
 
-    `axis` is that of planes that were named, ``none`` for no plane, None for those that the surface shows.
+    `axis` is the normal direction of the planes, ``none`` for no plane, None to detect them.
 
     Raises InputError: no open edge lies across the axis.
     """
@@ -41,7 +41,7 @@ def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ..
 
 
 def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plane, ...]:
-    """Return planes at the ends of the surface along an axis that open edges lie in, to `slack`."""
+    """Return the planes at the ends of the surface along `axis` in which open edges lie, within `slack`."""
     planes = []
     for end in (float(nodes[:, axis].min()), float(nodes[:, axis].max())):
         inside = edges_in(nodes, sides, Plane(axis, end), 2.0 * slack)
@@ -51,7 +51,7 @@ def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plan
 
 
 def in_planes(surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> Floats:
-    """Return the nodes (n, 3) of a surface, those of open edges `inside` planes moved exactly into them."""
+    """Return the nodes (n, 3) of a surface, with open edges `inside` planes moved exactly into them."""
     nodes, edges = surface.nodes.copy(), surface.open_edges
     for plane, flags in zip(planes, inside, strict=True):
         nodes[edges[flags], plane.axis] = plane.value

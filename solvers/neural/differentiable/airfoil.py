@@ -1,6 +1,6 @@
-"""Airfoil O grids in torch: lift, harmonic base, network, Picard steps, all modes at the nodes.
+"""Differentiable airfoil O grids in torch: lift, harmonic base, network, Picard steps, evaluation.
 
-The arithmetic of `meshonet.solvers.conformal.solve` on tensors, without guard.
+The formulas are those of `meshonet.solvers.conformal.solve`; folded cells are not repaired.
 """
 
 import numpy as np
@@ -27,9 +27,9 @@ CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner 
 class AirfoilGrids:
     """The airfoil operator as a differentiable function.
 
-    `model`: a strip operator, its name or path, or ``base`` for the harmonic base with no network; `polish`:
-    Picard steps after it; `device`: torch's name of where to compute; the lifts of the bodies are computed
-    there too. Raises InputError: no such model, or one that cannot be read or is of another kind.
+    `model`: a strip operator, its name or path, or ``base`` for the harmonic base without a network;
+    `polish`: number of Picard steps after the network; `device`: torch's name of the device. Raises
+    InputError: no such model, or one that cannot be read or is of another kind.
     """
 
     def __init__(self, model: str | Operator = "airfoil-o", polish: int = 2, device: str = "cpu") -> None:
@@ -44,8 +44,8 @@ class AirfoilGrids:
         """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
 
         `south`, `north`: (batch, ni, 2) nodes of the bodies and of the far fields, float64, clockwise from
-        the trailing edge, the last one the first; `nj`: nodes from wall to far field. Raises InputError: a
-        body that cannot be lifted; tensors of other shapes or not float64; fewer than 2 nodes away.
+        the trailing edge, the first repeated at the end; `nj`: node count from wall to far field. Raises
+        InputError: a body without a conformal lift; tensors of other shapes or not float64; `nj` below 2.
         """
         check_sides(torch.float64, 4, nj, south=south, north=north)
         edges = [torch.complex(edge[:, :-1, 0], -edge[:, :-1, 1]).to(self._device) for edge in (south, north)]
@@ -70,7 +70,7 @@ class AirfoilGrids:
 
 
 class _Correction:
-    """`StripOperator.residual`: modes of the walls (batch, modes) to those of Winslow - harmonic."""
+    """`StripOperator.residual` in torch: modes of Winslow - harmonic from modes of walls (batch, modes)."""
 
     def __init__(self, operator: StripOperator, device: str) -> None:
         weights = {name: torch.tensor(array, device=device) for name, array in operator.weights.items()}
@@ -79,7 +79,7 @@ class _Correction:
         self._scale = operator.scale
 
     def __call__(self, wall: Tensor, far: Tensor, hand: Tensor) -> Tensor:
-        """Return the answer to bodies: to the mirror image, and mirrored, where `hand` is negative."""
+        """Return the residual of bodies; where `hand` is negative, the mirror image's, mirrored back."""
         flip, even = (hand < 0)[:, None], hand == 0
         answer = self._answer(*(torch.where(flip, side.conj(), side) for side in (wall, far)))
         answer = torch.where(flip[..., None], answer.conj(), answer)
@@ -96,7 +96,7 @@ class _Correction:
 
 
 def _picard(c: Tensor) -> Tensor:
-    """Return the modes (batch, modes, LEVELS) after a step; see `strip.picard`."""
+    """Return the modes (batch, modes, LEVELS) after a Picard step; see `strip.picard`."""
     grid = across()
     d1, d2, vectors, inverse = (
         torch.tensor(m, device=c.device).to(c.dtype) for m in (grid.d1, grid.d2, grid.vectors, grid.inverse)
@@ -116,7 +116,7 @@ def _picard(c: Tensor) -> Tensor:
 
 
 def _evaluated(c: Tensor, wall: Tensor, far: Tensor, nj: int) -> Tensor:
-    """Return F (batch, n, nj) at the nodes by all modes of the walls; those above `MODES` stay at theirs."""
+    """Return F (batch, n, nj) at the nodes by all modes of the walls; those above `MODES` are harmonic."""
     n, eta = wall.shape[1], np.linspace(0.0, 1.0, nj)
     theta = _theta(n, wall)[:, None]
     low = c @ torch.as_tensor(strip.interpolation(eta), device=c.device).to(c.dtype)
@@ -134,7 +134,7 @@ def _evaluated(c: Tensor, wall: Tensor, far: Tensor, nj: int) -> Tensor:
 
 
 def _nudge(body: TorchWalls, c: Tensor, first: Tensor, nj: int) -> Tensor:
-    """Return what is added to phi (n, nj), so that the first lines off the corners halve their angles."""
+    """Return the change of phi (n, nj) with which the first grid lines from corners bisect their angles."""
     n, corners = len(first), list(body.corners)
     eta = np.linspace(0.0, 1.0, nj)
     if not corners or nj < 4:

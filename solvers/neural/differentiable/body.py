@@ -1,4 +1,4 @@
-"""O grids around bodies in torch: `neural.quad.o_grids` on tensors, without polish and guard."""
+"""Differentiable O grids around bodies: `neural.quad.o_grids` in torch, without polish or repair."""
 
 from typing import ClassVar
 
@@ -28,10 +28,10 @@ class BodyGrids(NetworkGrids):
     def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
         """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
 
-        `south`, `north`: (batch, ni, 2) nodes of the bodies and of the far fields, clockwise, the last one
-        the first; `nj`: nodes from wall to far field. Raises InputError: tensors of other shapes, or of
-        another dtype than the network's; fewer than 2 nodes away; walls that do not go once round a middle of
-        the body.
+        `south`, `north`: (batch, ni, 2) nodes of the bodies and of the far fields, clockwise, the first
+        repeated at the end; `nj`: node count from wall to far field. Raises InputError: tensors of other
+        shapes, or of another dtype than the network's; `nj` below 2; walls that do not wind once around a
+        centre of the body.
         """
         check_sides(self._dtype, 4, nj, south=south, north=north)
         sides = [edge.movedim(-1, 1) for edge in (south, north)]
@@ -50,7 +50,7 @@ class BodyGrids(NetworkGrids):
 
 
 def _inside(wall: Tensor) -> Tensor:
-    """Return the point of `inside.inside`; its gradient is that of one step of Newton's method."""
+    """Return the point of `inside.inside`, with the gradient of one step of Newton's method at it."""
     point = complex(inside(as_numpy(wall).astype(np.complex128)))
     size = (wall.detach() - wall[0].detach()).abs().max()
     curve = (wall - wall[0]) / size

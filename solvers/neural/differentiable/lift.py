@@ -1,7 +1,7 @@
-"""The conformal lift in torch: `meshonet.geometry.conformal.lift` with gradients to the nodes of the wall.
+"""The conformal lift in torch: `meshonet.geometry.conformal.lift` with gradients by the nodes of the wall.
 
-Decisions are taken from there: which nodes are corners and tips, on which branch of a root or a logarithm a
-node lies.
+Discrete decisions are taken from that function: which nodes are corners and tips, and which branch of a root
+or a logarithm applies at a node.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from meshonet.solvers.neural.quad.unrolled import middles
 class TorchWalls:
     """The two walls of a body in the strip: F (n,) on the `wall` and on the `far` field (`StripWalls`).
 
-    `lift` holds tensors, `numpy` is the same of numbers.
+    `lift` holds the conformal lift as tensors, `numpy` the same as NumPy arrays.
     """
 
     lift: Lift
@@ -33,9 +33,9 @@ class TorchWalls:
 
 
 def torch_walls(z: Tensor, far: Tensor) -> TorchWalls:
-    """Return the walls (n,) of a body in the strip, both walked counter-clockwise.
+    """Return the walls of a body in the strip, from nodes `z` and `far` (n,), both counter-clockwise.
 
-    Raises InputError: the body cannot be lifted.
+    Raises InputError: the body has no conformal lift.
     """
     nodes, origin = z, z[0]
     hand, _ = handedness(as_numpy(z), as_numpy(far))

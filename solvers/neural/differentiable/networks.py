@@ -1,8 +1,8 @@
-"""The networks in torch, for training and for gradients; the order of their layers is that of inference.
+"""The networks in torch, for training and for gradients; inference in NumPy shares the order of their layers.
 
-The strip network is `meshonet.solvers.neural.strip.network`. The quad network, a U-Net on a small grid, is
-equivariant under the eight relabellings of a quad (`meshonet.solvers.neural.quad.network`); around a body its
-layers go round along xi, where a quad's see zeros outside the grid.
+The strip network is that of `meshonet.solvers.neural.strip.network`. The quad network, a U-Net on a small
+grid, is equivariant under the eight symmetries of a quad (`meshonet.solvers.neural.quad.network`). Around a
+body its layers are periodic along xi; for a quad they are padded with zeros.
 """
 
 import math
@@ -22,7 +22,7 @@ from meshonet.solvers.neural.strip.network import shapes as strip_shapes
 
 
 class NamedParameters(nn.Module):
-    """A network whose parameters are `arrays`; a dot in a name leads into a module of parameters."""
+    """A network whose parameters are `arrays` by name; dots in names separate submodules."""
 
     def __init__(self, arrays: Mapping[str, Tensor]) -> None:
         super().__init__()
@@ -37,9 +37,10 @@ class NamedParameters(nn.Module):
 
 
 class StripFNO(NamedParameters):
-    """Channels and scalars of `meshonet.solvers.neural.strip.encoding` to `outputs` channels.
+    """The strip network, from the inputs of `meshonet.solvers.neural.strip.encoding` to `outputs` channels.
 
-    `inputs`, `scalars`, `outputs`: channel counts; `width`, `modes`, `layers`: of the hidden state.
+    `inputs`, `scalars`, `outputs`: channel counts; `width`, `modes`: channels and Fourier modes of the hidden
+    state; `layers`: count of Fourier layers.
     """
 
     def __init__(
@@ -49,13 +50,13 @@ class StripFNO(NamedParameters):
         super().__init__({name: _first_of_strip(name, shape, wanted) for name, shape in wanted.items()})
 
     def forward(self, channels: Tensor, scalars: Tensor) -> Tensor:
-        """(batch, inputs, columns), (batch, scalars) to (batch, outputs, columns)."""
+        """Return (batch, outputs, columns) for (batch, inputs, columns) and (batch, scalars)."""
         out: Tensor = StripNetwork(dict(self.named_parameters()), torch)(channels, scalars)
         return out
 
 
 def _first_of_strip(name: str, shape: tuple[int, ...], shapes: dict[str, tuple[int, ...]]) -> Tensor:
-    """Return first values: spectral ones normal over their inputs, others uniform as torch's layers have."""
+    """Return initial values: normal ones, over the count of inputs, for spectral weights, else torch's."""
     if name.startswith("spectral"):
         return torch.randn(shape) / shape[1]
     _, inputs, taps = shapes[name.replace("bias", "weight")]
@@ -63,10 +64,11 @@ def _first_of_strip(name: str, shape: tuple[int, ...], shapes: dict[str, tuple[i
 
 
 class QuadUNet(NamedParameters, UNet[Tensor]):
-    """Features of a grid to displacements of its nodes.
+    """The quad network, from features of a grid to displacements of its nodes.
 
-    `widths` are sets of eight channels on each level, the finest first, each with every second node; `blocks`
-    residual blocks on each, on the way down and on the way up; `around`, O grids go round along xi.
+    `widths` are counts of sets of eight channels on each level, the finest first, each coarser by 2; `blocks`
+    counts of residual blocks on each level, before and after the coarser ones; `around` stands for O grids,
+    periodic along xi.
     """
 
     def __init__(self, widths: Sequence[int], blocks: Sequence[int], around: bool = False) -> None:
@@ -80,9 +82,10 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
             self.register_buffer(name, values, persistent=False)
 
     def forward(self, features: Tensor) -> Tensor:
-        """Return (batch, heads, m, n), complex, for `features` (batch, m, n, FEATURES); zero on the rim.
+        """Return displacements (batch, heads, m, n), complex, for `features` (batch, m, n, FEATURES).
 
-        m is n, or around a body a multiple of 2 for each level but the coarsest.
+        They are zero on the boundary. m is n, or around a body divisible by 2 for each level but the
+        coarsest.
         """
         answer = self.through(features.movedim(-1, 1), self.counts)
         rim = torch.tensor(
@@ -99,7 +102,7 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
         add: Tensor | None = None,
         room: str = "",  # noqa: ARG002
     ) -> Tensor:
-        """Return the convolution `name` of channels x (batch, 8 in, m, n) that hold their own padding."""
+        """Return the convolution `name` of channels x (batch, 8 in, m, n), which are padded already."""
         if name == "lift":
             kernel = symmetry.lift(self.get_parameter("lift"), self.get_buffer("seen"))[..., None, None]
             bias = self.get_parameter("lift_bias").repeat_interleave(ORDER)
@@ -115,14 +118,14 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
         return out if add is None else out + add
 
     def silu(self, x: Tensor, pad: int = 1) -> Tensor:
-        """Return x / (1 + exp(-x)), with zeros around it, or going round along xi."""
+        """Return x / (1 + exp(-x)), padded with zeros, or periodically along xi."""
         x = functional.silu(x)
         if self.around and pad:
             return functional.pad(functional.pad(x, (0, 0, pad, pad), mode="circular"), (pad, pad))
         return functional.pad(x, (pad,) * 4)
 
     def finer(self, low: Tensor, skip: Tensor) -> Tensor:
-        """Return `low` linear between its nodes, with as many as `skip` has, and `skip`."""
+        """Return the sum of `skip` and of `low`, interpolated linearly to the nodes of `skip`."""
         m, n = skip.shape[-2:]
         if self.around:
             low, m = torch.cat([low, low[:, :, :1]], 2), m + 1
@@ -131,7 +134,7 @@ class QuadUNet(NamedParameters, UNet[Tensor]):
 
 
 def _first_of_quad(name: str, shape: tuple[int, ...]) -> Tensor:
-    """Return first values: those of He and others, less in the second half of a residual block."""
+    """Return initial values: those of He et al., smaller in the second half of a residual block."""
     if name.endswith("bias"):
         return torch.zeros(shape)
     if name in ("lift", "project"):

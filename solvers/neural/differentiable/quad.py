@@ -1,4 +1,4 @@
-"""Four-sided grids in torch: `neural.quad.coarse_grids` on tensors, without polish and guard."""
+"""Differentiable four-sided grids: `neural.quad.coarse_grids` in torch, without polish or repair."""
 
 from typing import Any, ClassVar
 
@@ -46,7 +46,7 @@ class QuadGrids(NetworkGrids):
 
 
 def _shares(near: Tensor, by: Tensor) -> Tensor:
-    """Return the share (batch, 1, 1) of the moves `by` to take from grids `near`, without gradients."""
+    """Return fractions (batch, 1, 1) of displacements `by` to apply to grids `near`, without gradients."""
     start, answer = near.detach(), (near + by).detach()
     where = folded(as_planes(answer)).nonzero()[:, 0]
     parts = [share(*pair) for pair in zip(as_numpy(start[where]), as_numpy(answer[where]), strict=True)]
@@ -55,9 +55,9 @@ def _shares(near: Tensor, by: Tensor) -> Tensor:
 
 
 def interpolated(sides: Any, laws: Any) -> Tensor:
-    """Return planes (batch, 2, ni, nj) by transfinite interpolation, as `meshonet.solvers.algebraic.tfi`.
+    """Return nodes (batch, 2, ni, nj) by transfinite interpolation, as `meshonet.solvers.algebraic.tfi`.
 
-    `sides`: south, north (batch, 2, ni), west, east (batch, 2, nj); `laws`: parameters along them, 0 to 1,
+    `sides`: south, north (batch, 2, ni), west, east (batch, 2, nj); `laws`: their parameters, 0 to 1,
     (batch, n) each.
     """
     south, north, west, east = sides

@@ -1,4 +1,4 @@
-"""`algebraic.resample.quad` on tensors: grids on few nodes evaluated at many, with gradients."""
+"""Interpolation of coarse grids with gradients: `algebraic.resample.quad` in torch."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ from meshonet.solvers.algebraic.resample.spline import bending
 
 
 def refined(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
-    """Return the planes (batch, 2, ni, nj) inside `sides` of grids `coarse` (batch, 2, m, n).
+    """Return the nodes (batch, 2, ni, nj) inside `sides`, interpolated from `coarse` (batch, 2, m, n).
 
     `sides`: south, north (batch, 2, ni), west, east (batch, 2, nj).
     """
@@ -32,7 +32,7 @@ def refined(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
 
 
 def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None = None) -> Tensor:
-    """Return grids evaluated with the share `curved` (batch, 1, m, n) of the second derivatives."""
+    """Return grids interpolated with second derivatives scaled by `curved` (batch, 1, m, n), if given."""
     (m, n), ni, nj = coarse.shape[2:], sides[0].shape[-1], sides[2].shape[-1]
 
     def matrix(values: Floats) -> Tensor:
@@ -61,9 +61,9 @@ def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None 
 
 
 def inwards(planes: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """Return the shares (.., m, n) of south, north, west and east at the nodes of `planes` (.., 2, m, n).
+    """Return the blending weights (.., m, n) of south, north, west and east at nodes `planes` (.., 2, m, n).
 
-    How far a mismatch of edges is felt: `meshonet.solvers.algebraic.resample.quad`.
+    They blend the mismatch of edges into the interior: `meshonet.solvers.algebraic.resample.quad`.
     """
     south, north = _both(planes)
     west, east = (share.mT for share in _both(planes.mT))
@@ -71,7 +71,7 @@ def inwards(planes: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
 
 
 def _both(planes: Tensor) -> list[Tensor]:
-    """Return the shares of the first and of the last column."""
+    """Return the blending weights of the first and of the last column."""
     along, beside = (torch.hypot(*planes.diff(dim=axis).unbind(-3)) for axis in (-1, -2))
     off = torch.nn.functional.pad(along.cumsum(-1), (1, 0))
     whole, shares = off[..., -1:], []
@@ -86,7 +86,7 @@ def _both(planes: Tensor) -> list[Tensor]:
 
 
 def folded(nodes: Tensor) -> Tensor:
-    """Return which of the planes (batch, 2, ni, nj) have folded cells, (batch,)."""
+    """Return a mask (batch,) of the grids (batch, 2, ni, nj) that have folded cells."""
     along, across = nodes[:, :, 1:] - nodes[:, :, :-1], nodes[..., 1:] - nodes[..., :-1]
     valid = torch.ones(len(nodes), dtype=torch.bool, device=nodes.device)
     for u in (along[..., :-1], along[..., 1:]):
@@ -96,11 +96,11 @@ def folded(nodes: Tensor) -> Tensor:
 
 
 def arrays(planes: Tensor) -> Any:
-    """Return `planes` as arrays of numpy, in float64."""
+    """Return `planes` as a NumPy array in float64."""
     return planes.detach().cpu().double().contiguous().numpy()
 
 
 def between(values: Tensor, n: int) -> Tensor:
-    """Return (..., n), linear between the last axis' `values` (..., m), as `spline.between`."""
+    """Return `values` (..., m) interpolated linearly at n uniform places (..., n), as `spline.between`."""
     m = values.shape[-1]
     return values if m == n else values @ array_like(acute.linear(m, n), values, torch).mT

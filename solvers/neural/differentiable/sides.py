@@ -1,4 +1,4 @@
-"""Arguments of differentiable operators: nodes of sides in batches, an operator by name or as an object."""
+"""What differentiable operators share: checks of their arguments, the network, conversions of arrays."""
 
 from typing import Any, ClassVar
 
@@ -17,9 +17,9 @@ SHIPPED: dict[Topology, str] = {"quad": "quad-general", "o": "hole-o"}  # by top
 
 
 def check_sides(dtype: torch.dtype, least: int, nj: int = 2, **sides: Tensor) -> None:
-    """Raise InputError unless opposite sides are (batch, n, 2) alike, of `dtype`, n at least `least`.
+    """Raise InputError unless opposite sides have one shape (batch, n, 2), n at least `least`, and `dtype`.
 
-    `sides`: by name, each beside the one it is opposite to.
+    `sides`: by name, in pairs of opposite ones.
     """
     names = list(sides)
     for name, side in sides.items():
@@ -42,9 +42,9 @@ def check_sides(dtype: torch.dtype, least: int, nj: int = 2, **sides: Tensor) ->
 class NetworkGrids:
     """An operator of the quad network as a differentiable function.
 
-    `model`: name of a shipped operator, the path of a file, or such an operator itself; `device`: torch's
-    name of where to compute; `dtype`: torch's type of the arithmetic. Raises InputError: no such model, or
-    one that cannot be read or makes grids of another topology.
+    `model`: name of a shipped operator, the path of a file, or an operator; `device`: torch's name of the
+    device; `dtype`: floating-point type of the arithmetic. Raises InputError: no such model, or one that
+    cannot be read or makes grids of another topology.
     """
 
     topology: ClassVar[Topology]
@@ -77,5 +77,5 @@ def as_planes(z: Tensor) -> Tensor:
 
 
 def as_numpy(values: Tensor) -> Any:
-    """Return the values as an array of numpy, without gradients."""
+    """Return `values` as a NumPy array, without gradients."""
     return values.detach().cpu().numpy()

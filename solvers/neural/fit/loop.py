@@ -1,4 +1,4 @@
-"""The training loop of every model, read from top to bottom; what it trains, and where it goes on from."""
+"""The training loop of every model, its tasks, and checkpoints from which training is resumed."""
 
 import os
 import time
@@ -20,7 +20,7 @@ from meshonet.solvers.stages import reached
 SLOWER = "resume from the last checkpoint with a smaller learning rate"
 """Remedy for a run that diverged, by its loss or by its weights."""
 
-FREE = ("rate",)  # settings that may change when a run goes on: a smaller rate is that remedy
+FREE = ("rate",)  # settings that may change when a run is resumed: a smaller rate is that remedy
 
 
 class Task(nn.Module):
@@ -34,9 +34,9 @@ class Task(nn.Module):
 
     @abstractmethod
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the parts of the loss over the shapes `rows`, weighted, each a mean over them.
+        """Return the weighted parts of the loss, each a mean over the training shapes with indices `rows`.
 
-        `step` seeds what is drawn at random, so that a resumed run and every process draw the same.
+        `step` seeds random draws, so that a resumed run and every process draw the same.
         """
 
     def validate(self) -> dict[str, float]:
@@ -45,7 +45,7 @@ class Task(nn.Module):
 
     @abstractmethod
     def figures(self, epoch: int) -> dict[str, Any]:
-        """Return what the trained model does on the held-out shapes; its weights are of `epoch`."""
+        """Return errors and other figures of the model, with weights of `epoch`, on held-out shapes."""
 
     @abstractmethod
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
@@ -54,7 +54,7 @@ class Task(nn.Module):
 
 @dataclass(frozen=True)
 class Run:
-    """A task, the facts for its recipe, and further facts that a resumed run must have in common."""
+    """A task, the settings recorded as its recipe, and further ones that a resumed run must share."""
 
     task: Task
     recipe: Mapping[str, Any]
@@ -63,11 +63,11 @@ class Run:
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a run is: figures of the epochs since the last report.
+    """Progress of a run: figures of the epochs since the last report.
 
-    `loss` and its `parts` are means over the steps; `held_out` figures of the held-out shapes, when they were
-    evaluated; `rate` the learning rate; `seen` shapes since the start, a shape seen twice counting twice;
-    `seconds` since this process began, `speed` shapes a second in it, and `done` its epochs.
+    `loss` and its `parts` are means over the steps; `held_out` are figures of the held-out shapes, if they
+    were evaluated; `rate` is the learning rate; `seen` counts shapes since the start, once per epoch;
+    `seconds`, `speed` (shapes per second) and `done` (epochs) are those of this process.
     """
 
     epoch: int
@@ -84,7 +84,7 @@ class Progress:
 
 @dataclass
 class _State:
-    """What changes from epoch to epoch; all of it is in the checkpoint."""
+    """The state of a run that changes from epoch to epoch; a checkpoint holds all of it."""
 
     epoch: int = 0
     summed: Any = 0.0
@@ -106,12 +106,12 @@ def fit(
 ) -> int:
     """Train `task` in place and return the epoch whose weights it has.
 
-    A checkpoint stands at `checkpoint` after every `plan.checkpoint_every` epochs; `resume` starts from it.
-    With `plan.patience` the weights are those of the least held-out loss. `facts`: what a checkpoint must
-    have in common with this run; ``model`` among them; `report`: told every `plan.log_every` epochs and at
-    the end. Raises InputError: a checkpoint of another model or of other settings; patience, and no shapes
-    held out. Raises SolverError: a loss or a weight that is not finite, not enough memory; the last
-    checkpoint stays.
+    A checkpoint is written to `checkpoint` every `plan.checkpoint_every` epochs; `resume` starts from it.
+    With `plan.patience` the weights are those of the least held-out loss. `facts`: settings, ``model`` among
+    them, that a checkpoint must have in common with this run; `report`: called every `plan.log_every` epochs
+    and at the end. Raises InputError: a checkpoint of another model or of other settings; patience without
+    held-out shapes. Raises SolverError: a loss or a weight that is not finite, not enough memory; the last
+    checkpoint is kept.
     """
     trained = list(task.parameters())
     optimiser: torch.optim.Optimizer = torch.optim.Adam(trained, plan.rate, fused=True)
@@ -161,7 +161,7 @@ def _one_epoch(
     run: Callable[[Tensor, int], Tensor], task: Task, optimiser: torch.optim.Optimizer, plan: Plan,
     team: Team, state: _State,
 ) -> float:  # fmt: skip
-    """Take the steps of one epoch, add to the sums of `state`, and return the last learning rate."""
+    """Take the steps of one epoch, add their losses to `state`, and return the last learning rate."""
     order = torch.from_numpy(np.random.default_rng([plan.seed, state.epoch]).permutation(task.count))
     steps = -(-task.count // plan.batch)
     rate = plan.rate
@@ -190,7 +190,7 @@ def _one_epoch(
 
 
 def _explained(error: Exception, plan: Plan) -> Exception:
-    """Return what to raise for an error of a step: a compiler or memory that is missing is the user's."""
+    """Return the exception to raise for an error in a step: a clear one for a missing compiler or memory."""
     if plan.compiled and type(error).__module__.startswith(("torch._dynamo", "torch._inductor")):
         first = str(error).splitlines()[0]
         remedy = "leave it out, or install a C++ compiler"
@@ -202,7 +202,7 @@ def _explained(error: Exception, plan: Plan) -> Exception:
 
 
 def _judged(task: Task, plan: Plan, state: _State) -> dict[str, float]:
-    """Return the figures of the held-out shapes, and keep the weights if patience has an eye on them."""
+    """Return the figures of the held-out shapes; with patience, keep the weights if they are the best."""
     figures = task.validate()
     if plan.patience is None:
         return figures
@@ -226,14 +226,14 @@ def _progress(
 
 
 def beside(output: Path) -> Path:
-    """Return the checkpoint of a model file."""
+    """Return the path of the checkpoint of a model file."""
     return output.with_name(output.name + ".checkpoint")
 
 
 def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
-    """Replace the checkpoint at `path`; a machine that stops in between leaves the last one.
+    """Replace the checkpoint at `path` atomically.
 
-    Raises SolverError: a weight is not finite: the last checkpoint stays.
+    Raises SolverError: a weight is not finite; the last checkpoint is kept.
     """
     for name, value in state["task"].items():
         if not torch.isfinite(value).all():

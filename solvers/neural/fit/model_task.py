@@ -1,4 +1,4 @@
-"""What both ways of training a model of the paper's have in common: its arrays, its figures, its file."""
+"""The common base of both training tasks for the paper's models, on solved grids and physics-informed."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,12 +21,12 @@ from meshonet.solvers.neural.samples import Samples
 
 
 class ModelTask(Task):
-    """A model on solved grids.
+    """Training of a model of the paper.
 
-    `model`: what is trained; `training`: its shapes; `targets`: (n, ni, nj, 2) what the network is to answer
-    for them; `points`: places drawn for a step, inside and on the boundary; None takes all; `seed`: of the
-    first weights and of the places. `samples`: on which `figures` judges the trained model, by their splits;
-    at first those of training.
+    `model`: the architecture; `training`: its shapes; `targets`: (n, ni, nj, 2) the wanted outputs for them;
+    `points`: numbers of points drawn for a step, inside and on the boundary; None takes all; `seed`: of the
+    initial weights and of the points. `samples`: those on which `figures` evaluates the trained model, by
+    their splits; initially those of training.
     """
 
     def __init__(
@@ -45,16 +45,16 @@ class ModelTask(Task):
         self.places = tensor(square(training.ni, training.nj)).to(device)
 
     def arrays(self) -> Arrays:
-        """Return what is trained and what is fixed, by name."""
+        """Return the trained and the fixed arrays, by name."""
         trained = {name: value.detach().cpu().numpy() for name, value in self.named_parameters()}
         return {**trained, **{name: value.cpu().numpy() for name, value in self.fixed.items()}}
 
     def operator(self, name: str = "trained") -> PaperOperator:
-        """Return the operator with the weights as they are."""
+        """Return the operator with the current weights."""
         return PaperOperator(name, self.frame.topology, {}, self.model, self.frame, self.arrays())
 
     def figures(self, epoch: int) -> dict[str, Any]:
-        """Return the epoch, and what the model does on training and on test grids."""
+        """Return the epoch, and the errors (`judged`) on training and on test grids."""
         operator, own = self.operator(), self.samples
         parts = {name: judged(operator, own.pick(own.where(name))) for name in ("train", "test")}
         return {"epoch": epoch, **{name: figures for name, figures in parts.items() if figures}}
@@ -67,10 +67,10 @@ class ModelTask(Task):
 
 
 def judged(operator: PaperOperator, samples: Samples) -> dict[str, float]:
-    """Return what a model does on samples, before its boundary is replaced: nothing when there are none.
+    """Return the errors of a model on `samples`, before its edges are replaced; nothing when there are none.
 
-    `median` and `worst` are of the relative L2 error against the solved grids, `boundary` is the largest
-    distance of a boundary node from its place, `folded` counts the folded cells of all.
+    `median` and `worst` are those of the relative L2 error against the solved grids, `boundary` is the
+    largest distance of a boundary node from the given one, `folded` counts the folded cells of all grids.
     """
     boundary, errors, folded = 0.0, [], 0
     for nodes, edges in zip(samples.nodes, samples.boundaries(), strict=True):

@@ -1,4 +1,4 @@
-"""Training of the paper's models: batches over geometries and over places drawn at random."""
+"""Training of the paper's models: batches of geometries and of randomly drawn points."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -24,23 +24,23 @@ from meshonet.solvers.neural.samples import Samples
 
 PLAN = Plan(epochs=15_000, points=(1000, 200))  # the authors' published settings
 
-HELD_OUT = 0  # few shapes, as the paper has: all that are not for tests are trained on
+HELD_OUT = 0  # datasets are small, as in the paper: all shapes outside the test split are trained on
 
 MACHINE = ("device", "compiled", "log_every", "validate_every", "checkpoint_every")
 """Settings that a resumed run may change without changing what it computes."""
 
 
 class OperatorTask(ModelTask):
-    """An operator model on solved grids.
+    """Training of an operator on solved grids.
 
     ::
 
         loss = interior * mean |error|^2 inside + boundary * mean |error|^2 on the boundary
 
-    over the places of a step, in squares of the unit of length; error = answer - (grid - base). Where there
+    over the points of a step, in squares of the unit of length; error = output - (grid - base). Where there
     is a base, both are divided by the mean square of grid - base, so that the loss is of the order of 1.
-    `model`: what is trained; `training`, `held_out`: its shapes; `points`: places drawn for a step, inside
-    and on the boundary; None takes all; `seed`: of the first weights and of the places.
+    `model`: the architecture; `training`, `held_out`: its shapes; `points`: numbers of points drawn for a
+    step, inside and on the boundary; None takes all; `seed`: of the initial weights and of the points.
     """
 
     parts: ClassVar[tuple[str, ...]] = ("interior", "boundary")
@@ -52,7 +52,7 @@ class OperatorTask(ModelTask):
         targets = differences(model, training)
         super().__init__(model, training, targets, points, seed, device)
         self.inputs = tensors(model.encode(training.boundaries()), device)
-        # places first: those of a step are then whole rows of a matrix, which torch gathers fastest
+        # points first: those of a step are then whole rows of a matrix, which torch gathers fastest
         self.targets = tensor(_by_place(targets).reshape(training.ni * training.nj, -1)).to(device)
         size = float((targets**2).mean()) if model.base != "none" else 1.0
         self.weights = model.interior / size, model.boundary / size
@@ -92,7 +92,7 @@ class OperatorTask(ModelTask):
         return self.model.answer(torch, weights, inputs, points, place)
 
     def _drawn(self, step: int) -> tuple[np.ndarray[Any, np.dtype[np.intp]], int]:
-        """Return numbers of nodes, those inside first, and how many are inside."""
+        """Return indices of nodes, those inside first, and how many are inside."""
         if self.points is None:
             return np.concatenate([self.inside, self.outside]), len(self.inside)
         rng = np.random.default_rng([self.seed, 1, step])
@@ -101,14 +101,14 @@ class OperatorTask(ModelTask):
         return np.concatenate(drawn), self.points[0]
 
     def _weighted(self, answer: Tensor, goal: Tensor, inner: int) -> Tensor:
-        """Return both parts of the loss of answers (p, batch, 2), of which the first `inner` are inside."""
+        """Return both parts of the loss of outputs (p, batch, 2), of which the first `inner` are inside."""
         inside, outside = (2.0 * weight for weight in self.weights)  # two coordinates a place
         first, second = mse_loss(answer[:inner], goal[:inner]), mse_loss(answer[inner:], goal[inner:])
         return torch.stack([inside * first, outside * second])
 
 
 def differences(model: Architecture, samples: Samples) -> Floats:
-    """Return the grids less the model's base (n, ni, nj, 2)."""
+    """Return the grids minus the model's base (n, ni, nj, 2)."""
     if model.base == "none":
         return samples.nodes
     return samples.nodes - np.array([extend(boundary) for boundary in samples.boundaries()])
@@ -126,10 +126,11 @@ def run(
     held_out: int,
     settings: Mapping[str, Any] | None = None,
 ) -> Run:
-    """Return what `train` needs of the training grids of `data`; its test grids are never trained on.
+    """Return the run that trains `model` on the training split of `data`, never on its test split.
 
-    `held_out`: training grids, spread evenly, that are kept out to watch the loss; `settings`: of the model,
-    in place of its defaults. Raises InputError: too few grids; settings that the model does not have.
+    `held_out`: number of training grids, spread evenly, that are held out to monitor the loss; `settings`: of
+    the model, in place of its defaults. Raises InputError: too few grids; settings that the model does not
+    have.
     """
     made = architecture(model, data.topology, settings)
     rows = np.arange(len(data)) if made.physics else data.where("train")

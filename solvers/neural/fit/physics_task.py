@@ -17,8 +17,8 @@ from meshonet.solvers.neural.samples import Samples
 class PhysicsTask(ModelTask):
     """Networks of `MGNet` or `MeshNet` on the geometries of `samples`.
 
-    `points`: places drawn for a step, inside (anywhere, not only at nodes) and on the boundary (at nodes);
-    None takes every node.
+    `points`: numbers of points drawn for a step, inside (anywhere, not only at nodes) and on the boundary (at
+    nodes); None takes every node.
     """
 
     model: MGNet
@@ -50,7 +50,7 @@ class PhysicsTask(ModelTask):
         return torch.stack([winslow, self.model.rim * boundary, self.model.data * data])
 
     def _drawn(self, step: int) -> tuple[Tensor, Tensor]:
-        """Return places inside (p, 2) and numbers of nodes on the boundary."""
+        """Return points inside (p, 2), in (xi, eta), and indices of nodes on the boundary."""
         device = self.places.device
         if self.points is None:
             inside, outside = (torch.from_numpy(k).to(device) for k in (self.inside, self.outside))
@@ -65,7 +65,7 @@ class PhysicsTask(ModelTask):
         return _layers(net, [h])[0]
 
     def _residual(self, net: dict[str, Tensor], points: Tensor) -> Tensor:
-        """Return the left side of Winslow's equations (batch, p, 2)."""
+        """Return the residual of Winslow's equations (batch, p, 2)."""
         h = self.model.finite
         if h > 0:
             X: Sequence[Tensor] = self._differences(net, points, h)
@@ -85,7 +85,7 @@ class PhysicsTask(ModelTask):
 
 
 def _layers(net: dict[str, Tensor], h: list[Tensor]) -> list[Tensor]:
-    """Return the network's answer (batch, p, 2), and its derivatives when `h` has those of the features.
+    """Return the network's output (batch, p, 2), and its derivatives when `h` has those of the features.
 
     With z = h W + b and t = tanh z: t_a = (1 - t^2) z_a, t_ab = (1 - t^2) z_ab - 2 t (1 - t^2) z_a z_b.
     """
@@ -109,7 +109,7 @@ def _layers(net: dict[str, Tensor], h: list[Tensor]) -> list[Tensor]:
 
 
 def _known(model: MGNet, ni: int, nj: int) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """Return (ni * nj,) which nodes are known: those of auxiliary lines and of a coarse grid."""
+    """Return a mask (ni * nj,) of the known nodes: those of auxiliary lines and of a coarse grid."""
     known = np.zeros((ni, nj), dtype=bool)
     for axis, n in ((0, ni), (1, nj)):
         if model.lines:

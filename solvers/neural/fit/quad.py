@@ -29,15 +29,16 @@ PLAN = Plan(
 )
 """The shipped model's."""
 
-HELD_OUT = 600  # domains, so that one folded grid is a share of 0.2 %
+HELD_OUT = 600  # domains, so that one folded grid is a fraction of 0.2 %
 
-AVERAGED = 0.999  # of the running mean of the weights, whose answers count, each step keeps so much
+AVERAGED = 0.999  # decay per step of the exponential moving average of the weights, which the file holds
 
 PARTS = {"winslow": 0.2, "variational": 1.0, "angles": 5.0, "widest": 1.0, "folds": 0.8}
-"""Weights of the loss's parts: the distances from Winslow's and from variational grids, then the mean angle,
-the largest and the folds of the variational answer. Picard steps are all but Winslow's grids."""
+"""Weights of the parts of the loss: distances from Winslow's and from variational grids, then the mean angle,
+the largest angle and the folds of the variational output. The first is small, since Picard steps alone almost
+give Winslow's grids."""
 
-FADE_IN = (0.1, 0.3)  # between these shares of the steps angles and folds come into the loss
+FADE_IN = (0.1, 0.3)  # fractions of all steps between which angles and folds are faded into the loss
 NEAR, CLOSE = 0.1, 3e-4  # weight of the logarithm of the distance from Winslow's grids, and where it sets in
 STARTS = 8  # columns that strips begin at in turn: those that the coarsest of four levels tells apart
 
@@ -51,10 +52,11 @@ class QuadUNetSizes:
 
 
 class QuadTask(Task):
-    """The quad network: distances of steps to both targets' steps, then the angles of its answer as well.
+    """Training of the quad network on edges of both target grids, and later on the angles of its output too.
 
-    `training`, `held_out`: domains; `sizes`: of the network; `steps`: in the whole run; `device`: to compute
-    on; `weights`: of the parts of the loss, by name.
+    `training`, `held_out`: domains; `sizes`: of the network; `steps`: their number in the whole run;
+    `device`: to compute on; `weights`: of the parts of the loss, by name; `initial`: initial weights of the
+    network, by name.
     """
 
     parts: ClassVar[tuple[str, ...]] = tuple(PARTS)
@@ -99,14 +101,14 @@ class QuadTask(Task):
         return torch.stack([weight * value for weight, value in zip(self.weights, values, strict=True)])
 
     def _answers(self, net: QuadUNet, base: Tensor, step: Tensor) -> Tensor:
-        """Return the grids (m, heads, ...) of a network, with the column that closes O grids."""
+        """Return the grids (m, heads, ...) of a network, with the repeated column that closes O grids."""
         answer = SCALE * net(features(base, step, torch, self.around))
         if self.around:
             answer = torch.cat([answer, answer[:, :, :1]], 2)
         return base[:, None] + answer
 
     def _average(self, step: int) -> None:
-        """Take the weights that the last step left into their running mean."""
+        """Update the exponential moving average of the weights."""
         keep = min(AVERAGED, step / (step + 20.0))
         with torch.no_grad():
             for own, mean in zip(self.net.parameters(), self.mean.parameters(), strict=True):
@@ -122,20 +124,20 @@ class QuadTask(Task):
         return {"loss": loss["variational"], **loss}
 
     def answers(self) -> Tensor:
-        """Return the held-out grids (m, heads, n, n) of the mean weights."""
+        """Return the grids (m, heads, n, n) of the held-out domains by the averaged weights."""
         with torch.no_grad():
             pairs = zip(*(torch.split(z, 100) for z in (self.held_out.base, self.held_out.step)), strict=True)
             parts = [self._answers(self.mean, *(z.to(self.device) for z in pair)).cpu() for pair in pairs]
         return torch.cat(parts)
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
-        """Return what the network's held-out grids are like beside their targets."""
+        """Return figures that compare the network's grids of held-out domains with their targets."""
         base, _, *goals = self.held_out.grids()
         grids = (self.answers(), base, *goals)
         return held_out_figures(*(_in_plane(z) if self.around else z.numpy() for z in grids))
 
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
-        """Write the model file: the mean weights in float32 by torch's names."""
+        """Write the model file: the averaged weights in float32, by their names in torch."""
         state = self.mean.state_dict()
         arrays = {key: value.cpu().numpy().astype(np.float32) for key, value in state.items()}
         topology: Topology = "o" if self.around else "quad"
@@ -143,13 +145,13 @@ class QuadTask(Task):
 
 
 def _further(z: Tensor, by: int) -> Tensor:
-    """Return strips (m, n + 1, k) that begin `by` columns further round."""
+    """Return strips (m, n + 1, k) that begin `by` columns further around the body."""
     turn = z[:, -1:, :1] - z[:, :1, :1]
     return torch.cat([z[:, by:-1], z[:, : by + 1] + turn], 1)
 
 
 def _error(answer: Tensor, goal: Tensor) -> Tensor:
-    """Return the mean relative error of the steps between nodes, and a little of the nodes themselves."""
+    """Return the mean relative error of the edges between nodes, plus a little of that of the nodes."""
     error = answer - goal
     total = 3.0 * error.abs().mean()
     rough = torch.zeros(len(goal), device=goal.device)
@@ -160,7 +162,7 @@ def _error(answer: Tensor, goal: Tensor) -> Tensor:
 
 
 def _distance(answer: Tensor, goal: Tensor) -> Tensor:
-    """Return the mean logarithm of the distance between grids, so that small distances count too."""
+    """Return the mean logarithm of the distance between grids, which gives weight to small distances too."""
     distance = (answer - goal).abs().square().mean((1, 2)).sqrt()
     return NEAR * torch.log1p(distance / CLOSE).mean()
 
@@ -175,11 +177,11 @@ def run(
     initial: Operator | None = None,
     weights: Mapping[str, float] | None = None,
 ) -> Run:
-    """Return what `train` needs; the last `held_out` domains are never trained on.
+    """Return the run that trains the quad network; the last `held_out` domains are never trained on.
 
-    `initial`: quad operator whose weights are the first, and whose sizes count; `weights`: of parts of the
-    loss, by name, other than those of `PARTS`. Raises InputError: fewer domains than one batch beside those
-    held out; a weight of no part, or one that is no number from 0 on; an initial operator of another kind.
+    `initial`: quad operator that gives the initial weights and the sizes; `weights`: of parts of the loss, by
+    name, in place of those in `PARTS`. Raises InputError: fewer domains than one batch after those held out;
+    a weight of an unknown part, or a negative or non-finite one; an initial operator of another kind.
     """
     sizes, kept = sizes or QuadUNetSizes(), plan.kept(len(data), held_out, "domains")
     if initial is not None:
@@ -210,7 +212,7 @@ def _weights(changed: Mapping[str, float]) -> dict[str, float]:
 
 
 def _in_plane(z: Tensor) -> Complexes:
-    """Return unrolled grids (..., m + 1, n) as they are around bodies."""
+    """Return O grids around bodies from unrolled grids (..., m + 1, n)."""
     strips = z.numpy().astype(np.complex128)
     turn = (strips[..., -1:, :1] - strips[..., :1, :1]).real
     return np.asarray(rolled(strips * (TURN / turn)))

@@ -19,11 +19,11 @@ Grids = NDArray[np.complexfloating[Any, Any]]
 
 
 def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
-    """Return what the network's grids `answers` (m, heads, n, n) are like beside their targets (m, n, n).
+    """Return figures that compare the network's grids `answers` (m, heads, n, n) with targets (m, n, n).
 
-    Angles are those of cells' corners: the largest of a grid and the mean over cells of the largest of each.
-    A gain is what a grid's figure improves on Winslow's, over what the variational grid does; Winslow's grid
-    may fold where its equations do, and such domains are left out of gains.
+    Angles are those at cell corners: the largest of a grid, and the mean over cells of each cell's largest. A
+    gain is a grid's improvement of such a figure over Winslow's grid, relative to that of the variational
+    grid. Domains whose Winslow grid has folded cells are left out of gains.
     """
     solved, best = angles(winslow), angles(variational)
     valid = solved[0] < 360.0
@@ -46,7 +46,7 @@ def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: G
 
 
 def angles(z: Grids) -> tuple[Floats, Floats]:
-    """Return largest angles and means of cells' largest (m,), degrees, of grids (m, n, n); 360 if folded."""
+    """Return maximum and mean (m,) of cells' largest angles, degrees, of grids (m, n, n); 360 if folded."""
     least, most = (np.degrees(value.numpy()) for value in extremes(torch.from_numpy(z)))
     folded = (least <= 0.0).any((1, 2)) | (most >= 180.0).any((1, 2))
     return np.where(folded, 360.0, most.max((1, 2))), np.where(folded, 360.0, most.mean((1, 2)))
@@ -67,9 +67,9 @@ def _share(values: NDArray[np.bool_]) -> float:
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return by how much grids `z` (batch, m, n) are worse than `goal`, of the same shape, both complex.
 
-    For each the mean of the cells' largest included angles less the goal's, and the largest of them less the
-    goal's, in radians, 0 where they are smaller; and the logarithm of how far cells fold, or nearly so, where
-    the goal's do not.
+    For each grid, in radians: the excess over the goal of the mean of cells' largest angles, and of their
+    maximum, 0 where they are smaller; then the logarithm of the sum of angles beyond `NARROW` and `WIDE` in
+    cells where the goal's are not.
     """
     least, most = extremes(z)
     with torch.no_grad():
@@ -83,7 +83,8 @@ def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
 def extremes(z: Tensor) -> tuple[Tensor, Tensor]:
     """Return the smallest and the largest included angle of each cell (batch, m - 1, n - 1), in radians.
 
-    Those of folded corners go on below 0, to -90 degrees, and above 180, so that the way back is uphill.
+    Angles of folded corners are below 0, down to -90 degrees, or above 180, so that the loss has a gradient
+    there.
     """
     u, v = z.diff(dim=1), z.diff(dim=2)
     south, north, west, east = u[:, :, :-1], u[:, :, 1:], v[:, :-1], v[:, 1:]

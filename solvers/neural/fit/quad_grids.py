@@ -1,4 +1,4 @@
-"""What the quad operator is trained on: Winslow's and variational grids of the same domains, normalised."""
+"""Training data of the quad operator: Winslow's and variational grids of the same domains, normalised."""
 
 from __future__ import annotations
 
@@ -24,8 +24,9 @@ from meshonet.solvers.neural.samples import Samples, gathered
 class Quads:
     """m domains of unit size: `base`, `winslow` and `variational` grids (m, n, n), complex64.
 
-    The base, with the last `step` to it, is what `approach` makes of transfinite grids. Domains `around`
-    bodies are unrolled, (m, 65, n), and their base is made from even steps between wall and far field.
+    `base` and the last Picard `step` to it are what `approach` returns for transfinite grids. Domains
+    `around` bodies are unrolled to strips (m, 65, n), whose base starts from equal steps between wall and far
+    field.
     """
 
     base: Tensor
@@ -49,7 +50,7 @@ class Quads:
 def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
     """Return the domains that datasets of Winslow's and of variational grids have in common, normalised.
 
-    A dataset's first grid says by which method all of it was solved; several may be of one method. Raises
+    The method of a dataset is that of its first grid; several datasets may have one method. Raises
     InputError: no grids; grids by one of the methods only, or by others; as `quads`.
     """
     groups: dict[str, list[Grid]] = {}
@@ -93,7 +94,7 @@ def quads(variational: Samples, winslow: Samples) -> Quads:
 
 
 def _unrolled(best: Complexes, solved: Complexes) -> Quads:
-    """Return the domains around bodies that both grids go round once in the same sense."""
+    """Return the domains around bodies around which both grids wind once in the same sense."""
     centres = middles(best[:, :-1, 0])
     (best, once), (solved, also) = unrolled(best, centres), unrolled(solved, centres)
     kept = once & also & (np.abs(best[:, :, -1] - solved[:, :, -1]).max(axis=1) < 1e-6)
@@ -103,7 +104,7 @@ def _unrolled(best: Complexes, solved: Complexes) -> Quads:
 
 
 def _approached(base: Complexes, winslow: Complexes, variational: Complexes, around: bool = False) -> Quads:
-    """Return domains by their grids, the base transfinite."""
+    """Return the domains of these grids; `base` is transfinite, and brought nearer to Winslow's here."""
     near, step = approach(base, np, around)
     return Quads(_single(near), _single(step), _single(winslow), _single(variational), around)
 

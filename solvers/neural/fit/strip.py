@@ -31,7 +31,7 @@ QUANTILES = {"median": 0.5, "p90": 0.9, "worst": 1.0}  # of held-out errors, in 
 
 @dataclass(frozen=True)
 class StripSizes:
-    """The network's: basis functions across the strip, width, modes and layers of the hidden state."""
+    """Sizes of the network: basis functions across the strip, channels, Fourier modes and layers."""
 
     basis: int = 16
     width: int = 32
@@ -40,7 +40,7 @@ class StripSizes:
 
 
 class StripTask(Task):
-    """The strip network on solved strips and their mirror images, small answers weighted up.
+    """Training of the strip network on solved strips and their mirror images, small residuals weighted up.
 
     `training`, `held_out`: strips; `sizes`: of the network; `device`: to compute on.
     """
@@ -58,7 +58,7 @@ class StripTask(Task):
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:  # noqa: ARG002 - nothing is drawn
-        """Return the weighted mean square error of the answers to the strips `rows`."""
+        """Return the weighted mean square error over the strips with indices `rows`."""
         channels, scalars, wanted = (array[rows] for array in self.data)
         error = self.net(channels, scalars).float() - wanted
         return (self.importance[rows] * (error**2).sum(1).mean(1)).mean()[None]
@@ -114,9 +114,9 @@ def run(
     held_out: int,
     sizes: StripSizes | None = None,
 ) -> Run:
-    """Return what `train` needs; the last `held_out` strips are never trained on.
+    """Return the run that trains the strip network; the last `held_out` strips are never trained on.
 
-    Raises InputError: fewer strips than one batch beside those held out.
+    Raises InputError: fewer strips than one batch after those held out.
     """
     sizes, kept = sizes or StripSizes(), plan.kept(len(data), held_out, "shapes")
     torch.manual_seed(plan.seed)

@@ -13,10 +13,10 @@ from meshonet.solvers.neural.fit.plan import Device
 
 @dataclass(frozen=True)
 class Team:
-    """A process among those that train together."""
+    """One of the processes that train a model together."""
 
     device: torch.device  # of this process
-    rank: int = 0  # its number, and how many there are
+    rank: int = 0  # index of this process, and number of processes
     size: int = 1
 
     @property
@@ -49,7 +49,7 @@ class Team:
 
 
 def team(device: Device) -> Team:
-    """Return this process's place, joining the others under torchrun.
+    """Return this process's team, joining the others under torchrun.
 
     Raises InputError: ``cuda`` is asked for and there is none.
     """

@@ -1,4 +1,4 @@
-"""The trainer of every model: a task made of its data, the loop, held-out figures, and the model file."""
+"""Training of any model: its task, the training loop, held-out figures, and the model file."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -53,7 +53,7 @@ def train(
 
 
 def standard(model: str) -> Plan:
-    """Return the plan of a model's own: that of the shipped one, or the paper's."""
+    """Return the default plan of a model: that of the shipped one, or the paper's."""
     plan: Plan = _module(model).PLAN
     return plan
 

@@ -15,7 +15,7 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class Frame:
-    """Topology, node counts and number of the training grids."""
+    """Topology, node counts `ni` and `nj`, and number `count` of the training grids."""
 
     topology: Topology
     ni: int
@@ -27,48 +27,47 @@ class Frame:
 class Architecture:
     """An operator from boundaries to grids; its fields are its settings, kept in the header of its file."""
 
-    base: ClassVar[Literal["none", "harmonic"]] = "none"  # what the answer is added to
-    physics: ClassVar[bool] = False  # it learns from Winslow's equations, a network for each geometry
-    interior: ClassVar[float] = 1.0  # weights of the two parts of its loss
+    base: ClassVar[Literal["none", "harmonic"]] = "none"  # grid to which the network's output is added
+    physics: ClassVar[bool] = False  # whether it is trained on Winslow's equations, one network per geometry
+    interior: ClassVar[float] = 1.0  # weights of interior and boundary in the loss
     boundary: ClassVar[float] = 1.0
 
     sensors: int = 50  # points of the boundary that the branches read, m in the paper
 
     @property
     def native(self) -> bool:
-        """Whether it answers on the nodes of its training grids only; other grids are splined from those."""
+        """Whether it is evaluated only on the nodes of its training grids, and other grids by splines."""
         return False
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
+        """Return the array shapes of the trained parameters, by name, for training grids of `frame`."""
         raise NotImplementedError
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return arrays that are computed from the training set once, and not trained.
+        """Return constant arrays, by name, computed from the training set and not trained.
 
-        `targets` (n, ni, nj, 2) are the grids less the base.
+        `targets` (n, ni, nj, 2) are the training grids minus the base.
         """
         return {}
 
     def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
-        """Return the inputs of a batch of boundaries, each array with the batch first."""
+        """Return the network's inputs for a batch of boundaries, by name, the batch on the first axis."""
         return {"sensors": np.array([sensors(boundary, self.sensors) for boundary in boundaries])}
 
     def check(self, w: Weights, inputs: Weights) -> None:
-        """Raise InputError for boundaries that the model cannot answer; there are none."""
+        """Raise InputError for `inputs` outside the model's scope; without one in a subclass, do nothing."""
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return what the network sees of places (p, 2): themselves, or what they are lifted to (p, any).
+        """Return the trunk's input (p, any) at `points` (p, 2) in (xi, eta): themselves, or features of them.
 
-        Nothing that is trained takes part, so that training computes it for all nodes once.
+        It does not depend on trained parameters, so training computes it once for all nodes.
         """
         return points
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2) less the base.
+        """Return the coordinates (batch, p, 2) minus the base at p points.
 
-        `xp`: numpy or torch; `w`: trained and fixed arrays by name; `inputs`: of `encode`; `places`: what
-        `seen` returned of p places (xi, eta); `index`: (p,) their numbers among the nodes of the training
-        grids; only native models use it.
+        `xp`: numpy or torch; `w`: trained and fixed arrays by name; `inputs`: from `encode`; `places`: from
+        `seen`; `index`: (p,) indices of the points among the nodes of the training grids, for native models.
         """
         raise NotImplementedError

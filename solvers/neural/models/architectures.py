@@ -25,12 +25,12 @@ ARCHITECTURES: dict[str, str] = {
 """Class of each model that is trained on solved grids, in the order of the help."""
 
 MODELS = ("strip", "quad", *ARCHITECTURES)
-"""What can be trained: the airfoil operator in the periodic strip, trained from boundaries; the operator for
-four-sided domains or bodies, from Winslow's and variational grids; the paper's, from solved grids."""
+"""Names of trainable models: the airfoil operator in the periodic strip, trained on boundaries; the operator
+for four-sided domains or bodies, on Winslow's and variational grids; those of the paper, on solved grids."""
 
 
 def architecture(name: str, topology: Topology, settings: Mapping[str, Any] | None = None) -> Architecture:
-    """Return the model `name` of the paper's with `settings` in place of its defaults.
+    """Return the model `name` of `ARCHITECTURES`, with `settings` in place of its defaults.
 
     Raises InputError: no such model or setting, or a value of another type than the setting's.
 
@@ -50,7 +50,7 @@ def architecture(name: str, topology: Topology, settings: Mapping[str, Any] | No
 
 
 def name_of(model: Architecture) -> str:
-    """Return the name of a model of the paper's."""
+    """Return the name of a model in `ARCHITECTURES`."""
     own = f":{type(model).__name__}"
     return next(name for name, path in ARCHITECTURES.items() if path.endswith(own))
 
@@ -61,7 +61,7 @@ def settings_of(model: Architecture) -> dict[str, Any]:
 
 
 def _fitting(name: str, defaults: Mapping[str, Any], key: str, value: Any) -> Any:
-    """Return a setting's value. Raises InputError unless it is like the setting's default."""
+    """Return a setting's value. Raises InputError unless it has the type of the default."""
     if key not in defaults:
         raise InputError(f"{name} has no setting {key!r}", "use one of " + ", ".join(defaults))
     default = defaults[key]

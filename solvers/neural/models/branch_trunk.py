@@ -1,4 +1,4 @@
-"""Operators of branch and trunk: a product of features of the boundary and features of places.
+"""DeepONets: inner products of branch features (of the boundary) and trunk features (of points).
 
 With s the coordinates of m sensors, [:k] and [k:] the halves of features for x and y, and biases b::
 
@@ -7,10 +7,10 @@ With s the coordinates of m sensors, [:k] and [k:] the halves of features for x 
     MIONet         x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b         y by [k:]
     POD-DeepONet   (x, y) = mean + sum_k branch(s)_k * mode_k(xi, eta)
 
-MeshONet is to the paper's letter, with the authors' published settings: branch 50-64-128-64-50, trunk
+MeshONet is exactly that of the paper, with the authors' published settings: branch 50-64-128-64-50, trunk
 12-50-50-50-50 with tanh after its last layer, powers to 4, 900 interior + 1000 boundary; 54,482 parameters.
-POD-DeepONet's trunk is the proper orthogonal decomposition of the training grids, x and y of a grid one
-vector, scaled so that the branch answers numbers of the order of 1; it answers on their nodes.
+POD-DeepONet's trunk is the proper orthogonal decomposition of the training grids (x and y of a grid form one
+vector), scaled so that the branch's outputs are of the order of 1; it is evaluated on their nodes.
 
 Xiao et al., arXiv 2501.11937; Lu et al., Nature Machine Intelligence 3 (2021) 218; Computer Methods in
 Applied Mechanics and Engineering 393 (2022) 114778, sections 3.1.4 and 3.1.6; Jin, Meng & Lu, SIAM Journal on
@@ -31,7 +31,7 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONet(Architecture):
-    """Dual branch, shared trunk."""
+    """The paper's operator: two branches, for x and y, and one trunk."""
 
     interior: ClassVar[float] = 900.0
     boundary: ClassVar[float] = 1000.0
@@ -47,7 +47,7 @@ class MeshONet(Architecture):
         return {**branches, **dense_shapes("trunk", trunk), "output/bias": (2,)}
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return places as the Lift-Layer makes them."""
+        """Return the output of the Lift-Layer at `points`."""
         return lift(xp, points, self.powers)
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
@@ -59,7 +59,7 @@ class MeshONet(Architecture):
 
 @dataclass(frozen=True)
 class DeepONet(Architecture):
-    """One branch, one trunk, features in halves."""
+    """One branch and one trunk, half of whose features serve x, the other half y."""
 
     hidden: tuple[int, ...] = (64, 128, 64)  # widths of a branch's hidden layers
     features: int = 50  # of each coordinate
@@ -81,7 +81,7 @@ class DeepONet(Architecture):
 
 @dataclass(frozen=True)
 class MIONet(DeepONet):
-    """Two branches, multiplied, their features in halves, and a trunk."""
+    """Two branches (of x and y) multiplied, half of whose features serve x, the other half y; one trunk."""
 
     def shapes(self, frame: Frame) -> Shapes:
         branches = _two_branches((self.sensors, *self.hidden, 2 * self.features))
@@ -96,7 +96,7 @@ class MIONet(DeepONet):
 
 @dataclass(frozen=True)
 class PODDeepONet(Architecture):
-    """A branch that answers coefficients of fixed modes."""
+    """A branch whose outputs are coefficients of fixed modes."""
 
     hidden: tuple[int, ...] = (64, 128, 64)  # widths of the branch's hidden layers
     features: int = 16  # modes; fewer where the training set has fewer grids
@@ -109,7 +109,7 @@ class PODDeepONet(Architecture):
         return dense_shapes("branch", (2 * self.sensors, *self.hidden, self.features))
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return the mean grid (nodes, 2) and the modes (nodes, features, 2); missing ones are zero."""
+        """Return the mean grid (nodes, 2) and the modes (nodes, features, 2), 0 beyond the count of grids."""
         n = len(targets)
         rows = targets.reshape(n, -1)
         mean = rows.mean(axis=0)

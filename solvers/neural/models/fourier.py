@@ -7,9 +7,9 @@
     FNO2D  in    at (xi, eta): x and y of south and north at xi and of west and east at eta; xi; eta
            out   x and y there
 
-Fourier layers h <- gelu(K h + W h + b), K mixing the lowest modes of h. Edges of an open direction are not
-periodic, so h is continued by zeros before it is transformed. They answer on the nodes of the training grids.
-Li et al., Fourier Neural Operator for Parametric Partial Differential Equations, arXiv 2010.08895.
+Fourier layers are h <- gelu(K h + W h + b), where K mixes the channels of the lowest modes of h. h is padded
+with zeros before the transform, since it is not periodic. Both are evaluated on the nodes of the training
+grids. Li et al., Fourier Neural Operator for Parametric Partial Differential Equations, arXiv 2010.08895.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ SIDE = 5  # nodes of west and of east that FNO1D sees
 
 @dataclass(frozen=True)
 class Fourier(Architecture):
-    """The settings and layers of both."""
+    """Settings and layers that both Fourier neural operators share."""
 
     width: int = 48  # channels of the hidden state
     modes: int = 16  # that are mixed, in each direction (of eta positive and negative ones)
@@ -56,19 +56,19 @@ class Fourier(Architecture):
         return h
 
     def _mixed(self, xp: Any, weight: Any, h: Any) -> Any:
-        """Return h with its lowest modes mixed, a complex matrix each."""
+        """Return h with the channels of each of its lowest modes multiplied by a complex matrix."""
         raise NotImplementedError
 
 
 @dataclass(frozen=True)
 class FNO1D(Fourier):
-    """Fourier layers along xi."""
+    """One-dimensional Fourier neural operator along xi; eta is in the output channels."""
 
     def shapes(self, frame: Frame) -> Shapes:
         return self._shapes(4 + 4 * SIDE + 1, (self.modes,), (128, 2 * frame.nj))
 
     def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
-        """Return what is seen at every xi (batch, ni, channels)."""
+        """Return the input channels at every xi (batch, ni, channels)."""
         rows = []
         for boundary in boundaries:
             chosen = np.linspace(0, boundary.nj - 1, SIDE).round().astype(int)
@@ -93,13 +93,13 @@ class FNO1D(Fourier):
 
 @dataclass(frozen=True)
 class FNO2D(Fourier):
-    """Fourier layers on the square, into which the boundary is carried."""
+    """Two-dimensional Fourier neural operator; its inputs at (xi, eta) are boundary nodes at xi and eta."""
 
     width: int = 12
     modes: int = 8
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained. Raises InputError: more modes than the grids have."""
+        """Return the shapes of trained parameters. Raises InputError: more modes than the grids have."""
         most = (min(frame.ni, frame.nj) + self.padding) // 2
         if not 1 <= self.modes <= most:
             problem = f"modes={self.modes} of grids of {frame.ni} x {frame.nj} nodes"
@@ -116,7 +116,7 @@ class FNO2D(Fourier):
         along, across = inputs["along"], inputs["across"]
         batch, ni, nj = len(along), along.shape[1], across.shape[1]
         weight, bias = w["lift/0/weight"], w["lift/0/bias"]
-        # the first layer is linear, so it is applied to the edges before they are carried into the square
+        # the first layer is linear, so it is applied to the edges before they are broadcast to the square
         xi, eta = (array_like(np.linspace(0.0, 1.0, n)[:, None], along, xp) for n in (ni, nj))
         rows, columns = along @ weight[:4] + xi * weight[8], across @ weight[4:8] + eta * weight[9]
         h = self._layered(xp, w, rows[:, :, None] + columns[:, None] + bias)
@@ -126,7 +126,7 @@ class FNO2D(Fourier):
         batch, ni, nj, width = h.shape
         m = self.modes
         along, across, back = (array_like(table, h, xp) for table in _waves(ni, nj, m, self.padding))
-        # products with the few waves that are kept take a fifth of the time of whole transforms
+        # products with the few modes that are kept take a fifth of the time of complete transforms
         rows = (across @ h).reshape(batch, ni, m, 2, width)
         rows = (rows[..., 0, :] + 1j * rows[..., 1, :]).reshape(batch, ni, m * width)
         kept = (along.T @ rows).reshape(batch, 2 * m, m, width)
@@ -137,10 +137,10 @@ class FNO2D(Fourier):
 
 @cache
 def _waves(ni: int, nj: int, modes: int, padding: int) -> tuple[NDArray[Any], Floats, Floats]:
-    """Return the matrices of Fourier transforms of n nodes and `padding` zeros, lowest modes only.
+    """Return the matrices of Fourier transforms of n nodes and `padding` zeros to the lowest modes.
 
-    Along xi (ni, 2 modes), complex, from 0 up and from -`modes` up; across it (2 modes, nj), real and
-    imaginary part of every mode from 0 up, and the way back (nj, 2 modes), which has both norms.
+    Along xi (ni, 2 modes), complex, modes from 0 and from -`modes` up; along eta (2 modes, nj), real and
+    imaginary part of every mode from 0 up, and its inverse (nj, 2 modes), with the scaling of both inverses.
     """
     m, k = ni + padding, np.concatenate([np.arange(modes), np.arange(-modes, 0)])
     along = np.exp(-2j * np.pi / m * np.outer(np.arange(ni), k))

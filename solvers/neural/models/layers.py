@@ -1,4 +1,4 @@
-"""Layers that are written once for numpy and torch: `xp` is either module.
+"""Layers for both NumPy and torch; `xp` is either module.
 
 A network is a mapping from names to arrays; ``name/0/weight`` (in, out) and ``name/0/bias`` (out,) are its
 first layer.
@@ -38,20 +38,20 @@ def dense(xp: Any, w: Weights, name: str, h: Any, *, last: bool = False) -> Any:
 
 
 def _affine(xp: Any, h: Any, weight: Any, bias: Any) -> Any:
-    """Return h W + b; where torch can, as one operation, which saves a pass over memory."""
+    """Return h W + b, in torch as one operation, which saves a pass over memory."""
     if xp is np or weight.ndim > 2:
         return h @ weight + bias
     return xp.nn.functional.linear(h, weight.T, bias)
 
 
 def products(trunk: Any, branches: Any) -> Any:
-    """Return the answers (batch, p, 2) of a trunk (p, k) to branches (batch, 2, k), places first."""
+    """Return inner products (batch, p, 2) of features of a trunk (p, k) and of branches (batch, 2, k)."""
     batch, two, k = branches.shape
     return (trunk @ branches.reshape(batch * two, k).T).reshape(-1, batch, two).swapaxes(0, 1)
 
 
 def initial(shapes: Shapes, rng: np.random.Generator) -> Arrays:
-    """Return first values: weights uniform as Glorot's, spectral weights 1/inputs, biases zero.
+    """Return initial parameters: Glorot's uniform weights, spectral weights of size 1/inputs, biases 0.
 
     Glorot & Bengio, Understanding the difficulty of training deep feedforward neural networks (2010).
     """

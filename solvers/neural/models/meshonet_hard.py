@@ -1,18 +1,18 @@
-"""MeshONet with the boundary met exactly by construction.
+"""MeshONet with exact Dirichlet conditions by construction.
 
 ::
 
     (x, y) = H + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
 
-H is the harmonic extension of the boundary and B is zero there, so that the answer has the boundary's own
-nodes, whatever the weights. The network learns the difference from H, whose size is s. Of an O grid the lift
-is periodic in xi, and so is the answer.
+H is the harmonic extension of the boundary, and B is zero on the boundary, so that grids have the given
+boundary nodes whatever the weights. The network learns the difference from H, whose magnitude is s. For an O
+grid the lift, and so the grid, is periodic in xi.
 
 With `modes`, B trunk is replaced by modes of the training grids' differences from H (proper orthogonal
-decomposition of x and y together): where they are small, at sharp kinks of the boundary, so are errors, which
-of a smooth trained trunk fold cells there. Lu et al., Computer Methods in Applied Mechanics and Engineering
-393 (2022) 114778. With `within` the branch sees sensors no further out than any training shape's, since what
-it adds to H beyond them may fold cells.
+decomposition of x and y together). These are small at sharp kinks of the boundary, and so are their errors;
+the errors of a trained trunk are smooth, and fold cells there. Lu et al., Computer Methods in Applied
+Mechanics and Engineering 393 (2022) 114778. With `within` the sensors are clipped to the range of the
+training shapes, since extrapolation may fold cells.
 """
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONetHard(Architecture):
-    """One branch that sees everything, a trunk that vanishes on the boundary."""
+    """One branch of all sensor coordinates, and a trunk that vanishes on the boundary."""
 
     base: ClassVar[Literal["none", "harmonic"]] = "harmonic"
     boundary: ClassVar[float] = 0.0
@@ -69,7 +69,7 @@ class MeshONetHard(Architecture):
         return {**fixed, "fixed/modes": _modes(targets, self.modes)} if self.modes else fixed
 
     def seen(self, xp: Any, points: Any) -> Any:
-        """Return waves, and in the last column what is zero on the boundary; modes need neither."""
+        """Return sines and cosines of `points`, with B in the last column; with `modes`, the points alone."""
         if self.modes:
             return points
         return xp.concatenate([self._lifted(xp, points), self._bubble(points)], -1)
@@ -101,7 +101,7 @@ class MeshONetHard(Architecture):
 
 
 def _modes(targets: Floats, count: int) -> Floats:
-    """Return modes (nodes, count) of x and y of `targets` (n, ni, nj, 2), as large as they occur in them."""
+    """Return modes (nodes, count) of x and y of `targets` (n, ni, nj, 2), scaled as they occur in them."""
     rows = np.moveaxis(targets, -1, 0).reshape(2 * len(targets), -1)
     _, size, vectors = np.linalg.svd(rows, full_matrices=False)
     largest = vectors[:count] * (size[:count, None] / (size[0] or 1.0)) * np.sqrt(rows.shape[1])

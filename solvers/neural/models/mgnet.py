@@ -1,13 +1,13 @@
-"""MGNet: a network for each geometry, trained on Winslow's equations and the boundary, without solved grids.
+"""MGNet: physics-informed networks, one for each geometry, trained on Winslow's equations and the boundary.
 
 ::
 
     (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1); of an O grid (sin, cos of 2 pi xi, 2 eta - 1)
     loss   = mean |alpha X_xx - 2 beta X_xe + gamma X_ee|^2 + boundary * mean |X - U|^2
 
-in units of each geometry's own size. The networks of all geometries are stacked and trained together. A
-trained file answers these geometries, at any resolution, and no others. Chen et al., MGNet, Engineering with
-Computers 38 (2022) 4409; an improved method, arXiv 2210.09546 (auxiliary lines).
+in units of each geometry's own size. The networks of all geometries are stacked and trained together. A model
+file serves these geometries only, at any resolution. Chen et al., MGNet, Engineering with Computers 38 (2022)
+4409; an improved method, arXiv 2210.09546 (auxiliary lines).
 """
 
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ SAME = 1e-4  # largest distance of a sensor, over the geometry's size, at which 
 
 @dataclass(frozen=True)
 class MGNet(Architecture):
-    """Dense networks with tanh, one a geometry."""
+    """Dense networks with tanh, one for each geometry."""
 
     physics: ClassVar[bool] = True
 
@@ -61,11 +61,11 @@ class MGNet(Architecture):
         return scaled * net["fixed/size"][:, None] + net["fixed/centre"][:, None]
 
     def which(self, w: Weights, seen: Any) -> Any:
-        """Return the number of the network of each geometry, the nearest by its sensors."""
+        """Return the index of the network of each geometry: that with the nearest sensors."""
         return ((seen[:, None] - w["fixed/sensors"][None]) ** 2).sum(-1).sum(-1).argmin(1)
 
     def check(self, w: Weights, inputs: Weights) -> None:
-        """Raise InputError when a geometry is none of those trained on."""
+        """Raise InputError for a geometry that the model was not trained on."""
         seen = inputs["sensors"]
         k = self.which(w, seen)
         away = np.sqrt(((seen - w["fixed/sensors"][k]) ** 2).sum(-1)).max(axis=1) / w["fixed/size"][k, 0]
@@ -75,7 +75,7 @@ class MGNet(Architecture):
             raise InputError(problem, "train it on this one too: it has a network for each geometry")
 
     def features(self, xp: Any, points: Any) -> Any:
-        """Return what the networks see at places (p, 2)."""
+        """Return the networks' inputs phi (p, features) at `points` (p, 2) in (xi, eta)."""
         xi, eta = points[..., :1], points[..., 1:]
         if not self.periodic:
             return 2.0 * points - 1.0
@@ -98,7 +98,7 @@ class MGNet(Architecture):
 
 @dataclass(frozen=True)
 class MeshNet(MGNet):
-    """MGNet with the nodes of a coarse solved grid among what it learns from.
+    """MGNet with the nodes of a coarse solved grid in its loss.
 
     Chen et al., Developing a novel structured mesh generation method based on deep neural networks, Physics
     of Fluids 35 (2023) 097151.

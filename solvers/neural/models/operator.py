@@ -28,7 +28,7 @@ CLOSE = 1e-6  # largest error of that interpolation, relative to the answer, at 
 
 @dataclass(frozen=True)
 class PaperOperator(Operator):
-    """A model of `ARCHITECTURES` with its weights."""
+    """A trained model of `ARCHITECTURES`."""
 
     batched: ClassVar[bool] = False
 
@@ -52,14 +52,14 @@ class PaperOperator(Operator):
         return operator
 
     def facts(self) -> dict[str, Any]:
-        """Return what the header of a file says of the model."""
+        """Return the entries of a file's header that describe the model."""
         frame, facts = self.frame, {"model": name_of(self.model), "settings": settings_of(self.model)}
         return {**facts, "topology": frame.topology, "ni": frame.ni, "nj": frame.nj, "count": frame.count}
 
     def solve(
         self, boundaries: Sequence[Boundary], polish: Polish = "auto", *, paste: bool = True, **_: Any
     ) -> list[Solution]:
-        """Return a grid inside each boundary, made one by one; there are no steps after the network."""
+        """Return a grid inside each boundary, computed one by one; `polish` has no effect."""
         self.check(boundaries)
         return [self._solved(boundary, paste=paste) for boundary in boundaries]
 
@@ -75,9 +75,9 @@ class PaperOperator(Operator):
         return Solution(grid, "operator", model=self.name, seconds={"grid": spent}, notes=notes)
 
     def nodes(self, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
-        """Return the nodes (ni, nj, 2), and how far their edges were from `boundary` at most before pasting.
+        """Return the nodes (ni, nj, 2), and the largest distance of edges from `boundary` before pasting.
 
-        The nodes of an O grid's cut are made one either way.
+        The two sides of an O grid's cut are made equal even without `paste`.
         """
         answer = self.difference(boundary)
         if self.model.base == "harmonic":
@@ -95,7 +95,7 @@ class PaperOperator(Operator):
         return nodes, error
 
     def difference(self, boundary: Boundary) -> Floats:
-        """Return the answer at the nodes of `boundary`'s grid (ni, nj, 2), less the model's base.
+        """Return the network's output, minus the base, at the nodes of `boundary`'s grid (ni, nj, 2).
 
         Raises InputError: a boundary of another topology than the training grids'.
         """
@@ -123,7 +123,7 @@ class PaperOperator(Operator):
         return np.asarray(self.model.answer(np, self.weights, inputs, seen, None)[0], dtype=np.float64)
 
     def _interpolated(self, inputs: Weights, ni: int, nj: int) -> Floats | None:
-        """Return the answer from its values at Chebyshev points, None where that is not exact enough."""
+        """Return the output interpolated from Chebyshev points; None where this is not accurate enough."""
         axis = points(TABLE)
         grid = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
         table = self._at(inputs, grid).reshape(TABLE, TABLE, 2)
@@ -150,7 +150,7 @@ class PaperOperator(Operator):
         return np.stack([along @ nodes[..., k] @ across for k in (0, 1)], axis=-1)
 
     def _try(self) -> None:
-        """Evaluate a few nodes, so that arrays which do not fit are reported when the file is read."""
+        """Evaluate a few nodes, so that arrays of wrong shapes are reported when the file is read."""
         model, frame = self.model, self.frame
         inputs = {"sensors": np.zeros((1, model.sensors, 2), np.float32)}
         where, index = square(2, 2).astype(np.float32), np.array([0, 1, 2, frame.ni * frame.nj - 1])

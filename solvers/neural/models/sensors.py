@@ -1,4 +1,4 @@
-"""Places of the computational square: of sensors and of nodes, and how their coordinates are lifted."""
+"""Points of the computational square: those of sensors and of nodes, and features of their coordinates."""
 
 from typing import Any
 
@@ -9,11 +9,11 @@ from meshonet.geometry.blocks.boundary import Boundary
 
 
 def sensors(boundary: Boundary, count: int) -> Floats:
-    """Return (count, 2) points of the boundary at fixed places of the computational domain.
+    """Return (count, 2) points of the boundary at fixed parameters xi or eta.
 
-    Around a quad they start at the south-west corner and run counter-clockwise at equal steps of xi and eta;
-    of an O, the first half (the odd one included) is on the body and the rest on the far field. They are
-    nodes where a node is there, as on 101 x 101 with 50; between nodes they lie on the straight line.
+    On a quad they start at the south-west corner and run counter-clockwise at equal steps of xi and eta. On
+    an O, half of them (an odd one included) are on the body and the others on the far field. They are nodes,
+    or linearly interpolated between nodes.
     """
     if boundary.periodic:
         inner = count - count // 2
@@ -29,13 +29,13 @@ def sensors(boundary: Boundary, count: int) -> Floats:
 
 
 def square(ni: int, nj: int) -> Floats:
-    """Return (ni * nj, 2) places (xi, eta) of a grid's nodes, eta running fastest."""
+    """Return the parameters (ni * nj, 2), (xi, eta), of a grid's nodes, eta running fastest."""
     xi, eta = np.linspace(0.0, 1.0, ni), np.linspace(0.0, 1.0, nj)
     return np.stack(np.meshgrid(xi, eta, indexing="ij"), axis=-1).reshape(-1, 2)
 
 
 def rim(ni: int, nj: int, topology: Topology) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """Return (ni * nj,) whether a node lies on the boundary; the cut of an O grid does not."""
+    """Return a mask (ni * nj,) of the nodes on the boundary, which does not include the cut of an O grid."""
     on = np.zeros((ni, nj), dtype=bool)
     on[:, [0, -1]] = True
     if topology != "o":
@@ -52,7 +52,7 @@ def lift(xp: Any, points: Any, powers: int) -> Any:
 
 
 def _at(side: Floats, place: Floats) -> Floats:
-    """Return points of a polyline of nodes at fractions of their number."""
+    """Return points of the polyline `side`, linearly interpolated at fractions 0 to 1 of the index."""
     index = place * (len(side) - 1)
     nodes = np.arange(len(side))
     return np.stack([np.interp(index, nodes, side[:, 0]), np.interp(index, nodes, side[:, 1])], axis=1)

@@ -1,9 +1,9 @@
 """Boundaries in a canonical frame, where the steps after the network are taken.
 
-Descents amplify rounding: thirty steps around a corner turn 1e-16 into 1e-3. A domain that is moved, turned,
-scaled, mirrored or has its sides named otherwise must take the same steps to the bit. Its edges are therefore
-taken to a frame of their own and rounded there to 1e-9 of their size; of all their relabellings, a fixed rule
-chooses one:
+Descent amplifies rounding errors: thirty steps around a corner turn 1e-16 into 1e-3. A domain that is
+translated, rotated, scaled, mirrored or has its sides relabelled must take bitwise the same steps. So its
+edges are transformed to a frame defined by themselves and rounded there to 1e-9 of their size; a fixed rule
+chooses one of their relabellings:
 
 ========  ==================================================  ============================================
 o         the cut runs from 0 to 1                            mirrored if the mirror image comes first
@@ -24,8 +24,8 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
 
-STEP = 2.0**-30  # of the rounding, over the size of the edges up to the next power of two
-LEAST = 0.1  # mean side along xi over the size that still tells a direction; else a diagonal does
+STEP = 2.0**-30  # of the rounding, over the size of the edges rounded up to a power of two
+LEAST = 0.1  # mean side along xi over the size, below which a diagonal defines the direction of the frame
 Element = tuple[bool, bool, bool]  # xi runs the other way, eta does, both change places
 
 IDENTITY: Element = (False, False, False)  # of a boundary that stays as it is
@@ -33,7 +33,7 @@ IDENTITY: Element = (False, False, False)  # of a boundary that stays as it is
 
 @dataclass(frozen=True)
 class Canonical:
-    """A boundary and what it is in its canonical frame."""
+    """A boundary and its image in its canonical frame."""
 
     original: Boundary
     boundary: Boundary  # the same in the frame, its edges rounded and relabelled
@@ -43,7 +43,7 @@ class Canonical:
     symmetric: bool = False  # an O boundary that is its own mirror image
 
     def back(self, planes: Floats) -> Floats:
-        """Return the planes (2, ni, nj) of a grid in the frame, inside the original boundary."""
+        """Transform a grid `planes` (2, ni, nj) from the frame back into the original boundary."""
         z = planes[0] + 1j * planes[1]
         along, across, transposed = self.element
         if self.symmetric:

@@ -1,4 +1,4 @@
-"""Four-sided domains to grids by the quad network: once for a whole batch, at any resolution.
+"""Grids of four-sided domains by the quad network, in batches and at any resolution.
 
 ::
 
@@ -6,8 +6,8 @@
           -> features -> network -> 33 x 33 grid, its rim that of the edges; part of the way to it if it folds
           -> splines -> grid at the edges' own counts
 
-Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its equations. The last step is
-`meshonet.solvers.algebraic.resample.quad`, as in `meshonet.solvers.pipeline.coarse`.
+Winslow's grid is first refined to 65 x 65 nodes, where a few Picard steps reduce its residual. The last step
+is `meshonet.solvers.algebraic.resample.quad`, as in `meshonet.solvers.pipeline.coarse`.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from meshonet.solvers.neural.quad.network import CHUNK, Network
 from meshonet.solvers.neural.quad.picard import AFTER, approach, nodes_after
 
 Moves: TypeAlias = Callable[[Any, Any], Any]  # of grids and steps, or of grids and moves
-SHARES = (0.95, 0.9, 0.8)  # of the way to the network's answer, the first without folds; else all
+SHARES = (0.95, 0.9, 0.8)  # fractions of the network's displacement, tried in turn if all of it folds cells
 
 
 def sides_of(boundaries: Sequence[Boundary]) -> Sides:
@@ -51,12 +51,12 @@ def rims(planes: Floats) -> Sides:
 
 
 def thinned(sides: Sides, ni: int, nj: int) -> Sides:
-    """Return the sides with ni and nj nodes, at equal steps of the index of the given ones."""
+    """Return the sides with ni and nj nodes, interpolated linearly at equal steps of the index."""
     return between(sides[0], ni), between(sides[1], ni), between(sides[2], nj), between(sides[3], nj)
 
 
 def transfinite(sides: Sides) -> Floats:
-    """Return the planes (batch, 2, ni, nj) of transfinite interpolation between sides, by their lengths."""
+    """Return the nodes (batch, 2, ni, nj) by transfinite interpolation with arc-length parameters."""
     nodes = np.empty((*sides[0].shape, sides[2].shape[-1]))
     laws = [arc_length_fraction(np.moveaxis(side, 1, -1)) for side in sides]
     for k, (x, y) in enumerate(nodes):
@@ -66,9 +66,9 @@ def transfinite(sides: Sides) -> Floats:
 
 
 def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
-    """Return the planes (batch, 2, m, n) of the network's grids inside the `sides`: 33 x 33 nodes.
+    """Return the nodes (batch, 2, m, n) of the network's grids inside `sides`, 33 x 33 of them.
 
-    Winslow's have up to 65 along a direction, where the sides have as many. `head`: index into
+    Winslow's grids have up to 65 per direction, if the sides have as many. `head`: index into
     `encoding.HEADS`.
     """
     base = transfinite(thinned(sides, LATENT, LATENT))
@@ -87,11 +87,12 @@ def coarse_grids(sides: Sides, network: Network, head: int) -> Floats:
 
 
 def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, around: bool = False) -> Any:
-    """Return grids `z` (batch, n, n), or strips (batch, m + 1, n) that go `around`, moved by a network.
+    """Return grids `z` (batch, n, n), or strips (batch, m + 1, n) of bodies (`around`), moved by a network.
 
-    `unit`: the same at unit size, and the factors (batch, 1, 1) back; `network`: answers to grids near
-    Winslow's and their last step; `shares` (batch, 1, 1) of a move to take from a grid, or all of it; of
-    `xp`.
+    `unit`: the same grids at unit size, and the factors (batch, 1, 1) back; `network`: function from grids
+    near Winslow's and their last Picard step to displacements; `shares`: function from grids and
+    displacements to the fractions (batch, 1, 1) to apply, None applies all; `xp`: numpy or torch, the module
+    of the arrays.
     """
     sized, back = unit
     near, step = approach(sized, xp, around)
@@ -104,7 +105,7 @@ def answered(z: Any, unit: Any, network: Moves, shares: Moves | None, xp: Any, a
 
 
 def nearer(z: Any, unit: Any, xp: Any, around: bool = False) -> Any:
-    """Return grids, as in `answered`, after the steps that follow the network for Winslow's."""
+    """Return grids `z` after the Picard steps that follow the network's Winslow output; as in `answered`."""
     sized, back = unit
     return z + times(approach(sized, xp, around, AFTER, harmonic=False)[0] - sized, back)
 
@@ -121,6 +122,6 @@ def _shares(near: Complexes, move: Complexes) -> Floats:
 
 
 def share(start: Complexes, answer: Complexes) -> float:
-    """Return the share of the way from `start` to `answer`, grids (m, n), to take: 1 unless it folds."""
+    """Return the fraction of the way from `start` to `answer` (m, n) to take: 1 unless cells fold."""
     tried = (part for part in (1.0, *SHARES) if not count_folded(pairs_of(start + part * (answer - start))))
     return next(tried, 1.0)

@@ -1,7 +1,7 @@
-"""What the quad network sees and what its answer means: the one copy that training and inference share.
+"""Inputs of the quad network and scaling of its outputs, shared by training and inference.
 
-At every node of a grid in its own frame: the grid, its steps and their changes, and what last moved it. `xp`
-is the module, numpy or torch, that arrays are of.
+Features of a node are the grid in its own frame, its first and second differences, and the last Picard step.
+`xp` is numpy or torch, the module of the arrays.
 """
 
 from typing import Any
@@ -11,13 +11,13 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.elementary import functions_of, modulus, times
 
-LATENT = 33  # nodes along xi and eta of the grid the network sees
+LATENT = 33  # nodes along xi and eta of the network's input grid
 SCALE = 0.1  # what an answer of 1 means, in the normalised domain's unit
-HEADS = ("winslow", "variational")  # the grids a network answers with, in order
+HEADS = ("winslow", "variational")  # the grids that a network's outputs approximate, in order
 WINSLOW = 0  # the first of these, which takes a few steps of `picard.approach` after the network
 
 FEATURES = 20
-"""Channels a node: first differences (4), second differences (4), log lengths of both steps (2), place (2),
+"""Channels per node: first differences (4), second differences (4), log lengths of both steps (2), place (2),
 cosine and sine between the steps (2), the Jacobian's inverse hyperbolic sine (1), xi and eta (2), the last
 step of `approach` over its size (2), and the logarithm of that size (1)."""
 
@@ -26,15 +26,15 @@ FLOOR = 1e-2  # added to lengths before their logarithm
 TINY = 1e-6  # keeps quotients and slopes of lengths finite where nodes coincide
 
 STILL = 1e-3  # added to the size of the last step
-STRETCH = 30.0  # how far small steps are drawn out, by the inverse hyperbolic sine
+STRETCH = 30.0  # factor of small Picard steps in the inverse hyperbolic sine
 
 
 def frame(z: Any, xp: Any) -> tuple[Any, Any]:
-    """Return the middle (batch,) of grids `z` (batch, n, n), complex, and the factor (batch,) to unit size.
+    """Return the centre (batch,) of grids `z` (batch, n, n), complex, and the factor (batch,) to unit size.
 
-    ``(z - middle) * factor`` has its outline's area 1, and its mean step from west to east and, turned by a
-    quarter, from south to north points along x. The eight relabellings of a domain have the same frame,
-    relabelled. Only the rim is looked at.
+    ``(z - middle) * factor`` has area 1; x is the direction of the sum of its mean vector from west to east
+    and of that from south to north, rotated by a quarter turn. The eight relabellings of a domain have the
+    same frame, relabelled. It depends on boundary nodes only.
     """
     south, north, west, east = z[:, :, 0], z[:, :, -1], z[:, 0], z[:, -1]
     outline = xp.concatenate(
@@ -49,16 +49,17 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
 
 
 def planes_of(z: Complexes) -> Floats:
-    """Return the planes (batch, 2, m, n) of complex grids (batch, m, n), as kernels take them."""
+    """Return the nodes (batch, 2, m, n), as kernels take them, of complex grids (batch, m, n)."""
     return np.ascontiguousarray(np.stack([z.real, z.imag], axis=1))
 
 
 def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
-    """Return (batch, n, n, FEATURES) of normalised grids `z` (batch, n, n), complex.
+    """Return the network's inputs (batch, n, n, FEATURES) for normalised grids `z` (batch, n, n), complex.
 
-    `step`, of the shape of `z`, is what last moved it (`picard.approach`). `around`: `z` are unrolled O grids
-    (batch, m + 1, n), whose last column is the first a turn on: differences along xi go round, places are
-    those less even steps, and the answer is (batch, m, n, ...). The order is that of `symmetry.SEEN`.
+    `step`, of the shape of `z`, is the last Picard step (`picard.approach`). `around`: `z` are unrolled O
+    grids (batch, m + 1, n), whose last column is the first plus one period: differences along xi are
+    periodic, equal steps are subtracted from places, and the result is (batch, m, n, ...). The order is that
+    of `symmetry.SEEN`.
     """
     n = z.shape[-1]
     if around:
@@ -85,7 +86,7 @@ def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
 
 
 def _round(z: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
-    """Return slopes, bends, places, places less even steps (batch, m, n) of strips (batch, m + 1, n)."""
+    """Return first and second differences, places, places minus equal steps (batch, m, n) of strips `z`."""
     cells, m = z.shape[2] - 1, z.shape[1] - 1
     turn = z[:, -1:, :1] - z[:, :1, :1]
     ring = xp.concatenate([z[:, -2:-1] - turn, z], 1)

@@ -1,11 +1,11 @@
-"""A point inside a body whose centroid is not: where the wall's own potential is least.
+"""A point inside a body whose centroid lies outside: the minimum of a potential of the wall.
 
 ::
 
     V(p) = ∮ |p - x|⁻⁴ ds
 
-rises without bound towards the wall, so it is least where the body is thickest. The point moves, turns and
-grows with the body; of equal places that nearest to the wall's first node is taken.
+tends to infinity at the wall, so its minimum is where the body is thickest. The point is translated, rotated
+and scaled with the body; of equal minima that nearest to the wall's first node is taken.
 """
 
 from typing import Any
@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.elementary import angle
 
-PIECES = 8  # pieces of each of the wall's edges whose middles stand for it
+PIECES = 8  # segments of each edge of the wall, for the midpoint rule
 EQUAL = 1e-9  # relative difference of two values of the potential that count as equal
-WITHIN = 0.3  # share of the distance to the wall that a step may have
-STEPS, STILL = 50, 1e-14  # Newton's steps at the most, and the step over the body's size that is the last
+WITHIN = 0.3  # largest step, as a fraction of the distance to the wall
+STEPS, STILL = 50, 1e-14  # most Newton steps, and the step over the body's size at which they end
 
 
 def inside(wall: Complexes) -> complex:
@@ -58,7 +58,7 @@ def _pieces(wall: Any, xp: Any) -> tuple[Any, Any]:
 
 
 def _first(wall: Complexes) -> complex:
-    """Return the middle of the inscribed circle in which the potential is least."""
+    """Return the initial guess: of the centres of inscribed circles, that of least potential."""
     x, lengths = _pieces(wall, np)
     middles = _inscribed(wall, x)
     values = np.array([(lengths / (np.abs(p - x) ** 2) ** 2).sum() for p in middles])
@@ -68,7 +68,7 @@ def _first(wall: Complexes) -> complex:
 
 
 def _inscribed(wall: Complexes, x: Complexes) -> Complexes:
-    """Return the middles of circles inside a closed curve that touch it at `x`, as far as these tell."""
+    """Return the centres of the largest circles that touch a closed curve at `x` and contain no other `x`."""
     edges = np.roll(wall, -1) - wall
     turn = 1j * np.sign((wall.conj() * edges).imag.sum())
     inwards = np.repeat(turn * edges / np.maximum(np.abs(edges), 1e-300), PIECES)
@@ -81,7 +81,7 @@ def _inscribed(wall: Complexes, x: Complexes) -> Complexes:
 
 
 def _within(points: Complexes, wall: Complexes) -> NDArray[np.bool_]:
-    """Return which points a closed curve goes round once."""
+    """Return a mask of the points around which a closed curve winds once."""
     off = wall - points[:, None]
     turns = angle(np.roll(off, -1, axis=1) / off).sum(axis=1)
     return np.asarray(np.abs(np.abs(turns) - 2.0 * np.pi) < 1e-6)

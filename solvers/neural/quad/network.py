@@ -1,10 +1,10 @@
-"""The quad network's forward pass: a U-Net whose layers commute with the relabellings of a quad.
+"""The quad network's forward pass: a U-Net that is equivariant under the relabellings of a quad.
 
 On n = 33, 17, 9 and 5 nodes along each axis, with channels in sets of eight (`symmetry`)::
 
     h = lift(features)
-    h = blocks(h);  h = down(silu(h))          on each level but the coarsest, whose blocks come once
-    h = blocks(skip + finer(up(h)))            back up, finer: linear between nodes
+    h = blocks(h);  h = down(silu(h))          on each level but the coarsest, which has one set of blocks
+    h = blocks(skip + finer(up(h)))            back up, finer: linear interpolation
     d = m · project(silu(h))                   two components for each head, m = 0 on the rim
 
 with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b and down. Expanded
@@ -28,19 +28,19 @@ from meshonet.solvers.neural.quad.encoding import FEATURES, HEADS, features, pla
 from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
 
 Reals: TypeAlias = NDArray[Any]
-Field = TypeVar("Field")  # of a level: an array of numpy, or a tensor
+Field = TypeVar("Field")  # channels on a level: a NumPy array, or a tensor
 Shapes: TypeAlias = dict[str, tuple[int, ...]]
 
-CHUNK = 16  # domains that go through a layer together: their fields stay in the cache, and so do its weights
-MOST_LEVELS, MOST_SETS, MOST_BLOCKS = 5, 64, 8  # that are read; five levels have 33 to 3 nodes
+CHUNK = 16  # domains per call of a layer: their channels and its weights fit in the cache
+MOST_LEVELS, MOST_SETS, MOST_BLOCKS = 5, 64, 8  # limits for files; five levels have 33 to 3 nodes
 LINE = 64  # bytes that a row of weights is rounded up to
 
 
 def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
     """Return the names and shapes of the weights of a network.
 
-    `widths`: sets of eight channels on each level, the finest first; `blocks`: residual blocks on each;
-    `heads`: displacement fields that it answers with.
+    `widths`: counts of sets of eight channels on each level, the finest first; `blocks`: counts of residual
+    blocks on each; `heads`: count of displacement fields in its output.
     """
     arrays: Shapes = {"lift": (widths[0], FEATURES), "lift_bias": (widths[0],)}
 
@@ -59,9 +59,9 @@ def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
 
 
 def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Return widths and blocks of the network that `tensors` are of, as their names and shapes tell them.
+    """Return widths and blocks of a network from the names and shapes of its weights `tensors`.
 
-    Raises ValueError: of no network.
+    Raises ValueError: they are not those of such a network.
     """
     if not {"lift", "project"} <= set(tensors):
         raise ValueError("no lift, or no project")
@@ -80,17 +80,20 @@ def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...
 
 @lru_cache(maxsize=4)
 def rim_factor(m: int, n: int, around: bool) -> Floats:
-    """Return (m, n): 0 on the rim, d/(d+2) along each axis, d nodes from it; `around`, across only."""
+    """Return the factor (m, n) of displacements: 0 on the boundary, d/(d+2) per axis at d nodes from it.
+
+    `around` bodies only the distance along eta counts.
+    """
     along, across = (np.minimum(np.arange(k), np.arange(k)[::-1]).astype(np.float64) for k in (m, n))
     rise = np.multiply.outer(np.ones(m) if around else along / (along + 2.0), across / (across + 2.0))
     return read_only(rise)
 
 
 class UNet(Generic[Field]):
-    """The order of a network's layers, which `layer`, `silu` and `finer` of a subclass compute or record."""
+    """The sequence of the network's layers; subclasses compute or record `layer`, `silu` and `finer`."""
 
     def layer(self, name: str, x: Field, stride: int = 1, add: Field | None = None, room: str = "") -> Field:
-        """Return the convolution `name` of `x`, plus `add`; results of one `room` may replace each other."""
+        """Return the convolution `name` of `x`, plus `add`; results with one `room` may share memory."""
         raise NotImplementedError
 
     def silu(self, x: Field, pad: int = 1) -> Field:
@@ -98,11 +101,11 @@ class UNet(Generic[Field]):
         raise NotImplementedError
 
     def finer(self, low: Field, skip: Field) -> Field:
-        """Return `skip` and `low`, which is linear between its nodes."""
+        """Return the sum of `skip` and of `low`, interpolated linearly to the finer level."""
         raise NotImplementedError
 
     def through(self, h: Field, blocks: Sequence[int]) -> Field:
-        """Return the answer to features `h`, by so many residual blocks on each level."""
+        """Return the output for features `h`, with the counts `blocks` of residual blocks on each level."""
         h = self.layer("lift", h)
         skips: list[Field] = []
         coarsest = len(blocks) - 1
@@ -124,10 +127,10 @@ class UNet(Generic[Field]):
 
 
 class Network:
-    """The network of one set of weights, its kernels expanded and laid out once.
+    """The network of one set of weights, whose kernels are expanded once.
 
     `weights` and `blocks` as in `shapes`, in any precision; `dtype` (float32 or float64) of the arithmetic;
-    `around`, unrolled O grids go round along xi.
+    `around`: for unrolled O grids, periodic along xi.
     """
 
     def __init__(
@@ -152,7 +155,7 @@ class Network:
         self.heads = len(exact["project"])
 
     def __call__(self, seen: Reals, head: int | None = None) -> Complexes:
-        """Return the fields (batch, heads, m, n), or one `head`'s, for features (batch, m, n, FEATURES)."""
+        """Return displacements (batch, heads, m, n), or one `head`'s, for `seen` (batch, m, n, FEATURES)."""
         batch, m, n = seen.shape[:3]
         seen = np.ascontiguousarray(seen, self.dtype)
         answer = np.empty((batch, m, n, 2 * self.heads), self.dtype)
@@ -170,7 +173,7 @@ class Network:
         return np.asarray(moved.view(np.complex128)[..., 0])
 
     def moves(self, near: Complexes, step: Complexes, head: int) -> Complexes:
-        """Return one head's answers (batch, m, n) to grids near Winslow's and their last step."""
+        """Return one head's displacements (batch, m, n) of grids `near` Winslow's, with their last step."""
         if self.around:
             return self(features(near, step, np, around=True), head)
         seen = np.empty((*near.shape, FEATURES), self.dtype)
@@ -178,7 +181,7 @@ class Network:
         return self(seen, head)
 
     def _recorded(self, h: Reals) -> LayerProgram:
-        """Return the layers for as many domains as `h` has or fewer, on arrays that no other program has."""
+        """Return a program of the layers for at most as many domains as `h` has, with arrays of its own."""
         work = _ProgramRecorder(self._layers, self.around)
         work.through(h, self.blocks)
         return work.program
@@ -212,14 +215,14 @@ class _ProgramRecorder(UNet[Reals]):
         return out
 
     def _room(self, name: str, shape: tuple[int, ...], dtype: Any) -> Reals:
-        """Return an array that later layers use again."""
+        """Return an array that later layers reuse."""
         if (name, shape) not in self._rooms:
             self._rooms[name, shape] = _aligned(shape, dtype)
         return self._rooms[name, shape]
 
 
 def _packed(kernel: Floats, bias: Floats | None, dtype: np.dtype[Any]) -> tuple[Reals, Reals, int]:
-    """Return a kernel as (size² in, out rounded up), biases likewise, and how many outputs there are."""
+    """Return a kernel as a matrix (size² in, out rounded up), its biases, and the count of outputs."""
     outputs = len(kernel)
     rows = np.moveaxis(kernel, (0, 1), (-1, -2)).reshape(-1, outputs)
     per = LINE // dtype.itemsize

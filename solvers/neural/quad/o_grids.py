@@ -1,4 +1,4 @@
-"""Bodies in far fields to O grids by the quad network, which goes round the unrolled strip.
+"""O grids around bodies by the quad network, applied to the unrolled, periodic strip.
 
 ::
 
@@ -6,8 +6,9 @@
           -> features -> network -> 65 x 33 grid, its walls those nodes
           -> splines -> grid at the walls' own counts
 
-Turning, moving and scaling only move the strip, a mirrored body has the mirrored one, and beginning an eighth
-of the way further round shifts it: the network's answer does the same, to rounding.
+The network's output is invariant under rotation, translation and scaling of the body, up to rounding, which
+only shift the strip, and equivariant under reflection and under a start of numbering one eighth further
+around.
 """
 
 from collections.abc import Sequence
@@ -27,17 +28,17 @@ from meshonet.solvers.neural.quad.inside import inside
 from meshonet.solvers.neural.quad.network import CHUNK, Network
 from meshonet.solvers.neural.quad.unrolled import AROUND, around_middles, even, factors, rolled
 
-# problem and remedy, the same for numpy and torch
+# problem and remedy of the error, for NumPy and torch
 NOT_ROUND = "its walls do not go once round a middle of the body", "use meshonet solve-pde for this shape"
 
 COMPACT = 0.15  # least over largest distance of the wall from the middle, of bodies to train on
 
 
 def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) -> Floats:
-    """Return the planes (batch, 2, 65, 33) of the network's grids of O `boundaries` with equal node counts.
+    """Return the nodes (batch, 2, 65, 33) of the network's grids of O `boundaries` with equal node counts.
 
-    `head`: index into `encoding.HEADS`. Raises InputError: walls that, at 65 nodes, do not go once round the
-    body's centroid, nor round a point inside it.
+    `head`: index into `encoding.HEADS`. Raises InputError: walls that, at 65 nodes, wind once neither around
+    the body's centroid nor around a point inside it.
     """
     walls, strips, centres, once = _strips(boundaries)
     if not once.all():
@@ -53,9 +54,9 @@ def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) ->
 
 
 def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
-    """Return strips `base` (batch, m + 1, n) of even steps, moved as the network says and closed.
+    """Return strips `base` (batch, m + 1, n) of equal steps, moved by the network and closed.
 
-    `factor`: (batch, 1, 1) to unit size; `network` as in `coarse_grids.answered`; all of `xp`.
+    `factor`: (batch, 1, 1) to unit size; `network` as in `coarse_grids.answered`; `xp`: numpy or torch.
     """
     strip = answered(base, (base * factor, 1.0 / factor), network, None, xp, around=True)
     if head == WINSLOW:
@@ -66,14 +67,14 @@ def moved(base: Any, factor: Any, head: int, network: Moves, xp: Any) -> Any:
 
 
 def _strips(boundaries: Sequence[Boundary]) -> tuple[Complexes, Complexes, Complexes, NDArray[np.bool_]]:
-    """Return the walls at 65 nodes, their strips, the middles, and which walls go round these once."""
+    """Return the walls at 65 nodes, their strips, the centres, and which walls wind once around them."""
     sides = [np.stack([getattr(b, side) for b in boundaries]).swapaxes(1, 2) for side in ("south", "north")]
     walls = _complex(np.stack([between(side, AROUND) for side in sides], axis=3))
     return walls, *around_middles(_complex(sides[0]), walls, inside)
 
 
 def compact(boundary: Boundary) -> bool:
-    """Return whether an O boundary's body is about as thick as those that models are trained on."""
+    """Return whether the body of an O boundary is about as thick as those of the training set."""
     _, _, centres, once = _strips([boundary])
     reach = np.abs(_complex(boundary.south.T[None]) - centres)
     return bool(once[0] and reach.min() > COMPACT * reach.max())

@@ -1,4 +1,4 @@
-"""The operator for four-sided domains and for bodies: one network with two answers, then polish."""
+"""The operator for four-sided domains and for bodies: one network with two outputs, then polish."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ AUTO = {WINSLOW: 2, 1: 5}  # steps of "auto": multigrid cycles for Winslow's ans
 
 @dataclass(frozen=True)
 class QuadOperator(Operator):
-    """A network for four-sided domains, or for what is between a body and its far field."""
+    """A trained quad network, for four-sided domains or for O grids around bodies."""
 
     widths: tuple[int, ...] = ()  # of the network
     blocks: tuple[int, ...] = ()
@@ -41,7 +41,7 @@ class QuadOperator(Operator):
         return cls(name, "o" if header.get("topology") == "o" else "quad", header, widths, blocks, arrays)
 
     def network(self, dtype: str = "float64") -> Network:
-        """Return the network in ``float64`` or ``float32`` arithmetic, made once."""
+        """Return the network in ``float64`` or ``float32`` arithmetic; it is built once."""
         if dtype not in self._networks:
             self._networks[dtype] = Network(self.weights, self.blocks, dtype, around=self.topology == "o")
         return self._networks[dtype]
@@ -55,10 +55,10 @@ class QuadOperator(Operator):
         threads: int = 1,
         **_: Any,
     ) -> list[Solution]:
-        """Return a grid inside each boundary, whose edges it has bitwise.
+        """Return a grid inside each boundary, with bitwise its edges.
 
-        Boundaries with equal node counts go through the network together; their seconds are a batch's,
-        divided by its members.
+        Boundaries with equal node counts form batches; the seconds of a solution are those of its batch,
+        divided by its size.
         """
         self.check(boundaries)
         network = self.network(dtype)

@@ -1,17 +1,16 @@
-"""From an interpolated grid towards Winslow's: the harmonic grid, then a few Picard steps, for a whole batch.
+"""Approximate Winslow grids for a batch: the harmonic grid, then a few Picard steps.
 
-Winslow's equations with the coefficients of the last grid::
+Winslow's equations with the coefficients of the previous iterate::
 
     alpha z_xixi - 2 beta z_xieta + gamma z_etaeta = 0,
     alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2
 
 Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha + gamma)
-at their means over the domain. Three quarters of the leading error of differences are taken out. Steps after
-the network, which alone converge slowly or not at all, are extrapolated to where they would vanish if they
-were linear along the last move. For NumPy they are compiled (`kernels/neural/approach.c`); the formulas here
-are torch's, which has their gradients.
-Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501; Anderson, J. ACM 12
-(1965) 547-560.
+at their means over the domain. Three quarters of the leading error of differences are corrected. Steps after
+the network, which alone converge slowly or not at all, are accelerated by Anderson's method with one previous
+iterate. For NumPy they are compiled (`kernels/neural/approach.c`); the formulas here serve torch, with
+gradients. Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501; Anderson,
+J. ACM 12 (1965) 547-560.
 """
 
 from functools import lru_cache
@@ -25,10 +24,10 @@ from meshonet.kernels._native import LINE, winslow_steps
 from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.neural.quad.encoding import LATENT, planes_of
 
-STEPS = 4  # after the harmonic grid; a fifth takes a tenth of what is left on average
-AFTER = 3  # once more, after the network's answer for Winslow's grid
+STEPS = 4  # after the harmonic grid; a fifth would reduce the error by a tenth on average
+AFTER = 3  # steps after the network's Winslow output
 FINER = 65  # most nodes along a direction that these are taken on: splines from 33 err by 3e-4
-SHARE = 0.75  # of the leading error of differences that is taken out
+SHARE = 0.75  # fraction of the leading error of differences that is corrected
 GROWTH = 4.0  # a step whose square is so many times the last one's, in the mean, is not taken
 
 TINY = 1e-30  # keeps quotients finite where nothing moves
@@ -41,11 +40,11 @@ THIRD, FOURTH = np.array(
 def approach(
     z: Any, xp: Any, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
 ) -> tuple[Any, Any]:
-    """Return grids nearer to Winslow's in the rims of `z`, and the last step, both of the shape of `z`.
+    """Return grids nearer to Winslow's inside the boundaries of `z`, and the last step, of the shape of `z`.
 
     `z`: (batch, n, n) grids of unit size, complex, arrays of `xp`, numpy or torch; `around`: `z` are strips
-    (batch, m + 1, n), whose last column is the first a turn on; `steps`: of Picard's iteration; `harmonic`:
-    they go out from the harmonic grid, else from `z`, and are extrapolated.
+    (batch, m + 1, n), whose last column is the first plus one period; `steps`: number of Picard steps;
+    `harmonic`: start from the harmonic grid, else from `z` with acceleration.
     """
     if xp is np:
         return _compiled(z, around, steps, harmonic)
@@ -80,20 +79,20 @@ def _compiled(z: Complexes, around: bool, steps: int, harmonic: bool) -> tuple[C
 
 
 def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
-    """Return the move to where steps vanish that were `step` before the last `move`, then `correction`."""
+    """Return the accelerated `correction`, given the previous one (`step`) and the `move` made since then."""
     change = correction - step
     share = (change * correction).sum((1, 2, 3)) / ((change**2).sum((1, 2, 3)) + TINY)
     return correction - xp.clip(share, -1.0, 1.0)[:, None, None, None] * (change + move)
 
 
 def nodes_after(n: int) -> int:
-    """Return on how many nodes along a direction the steps after the network are taken, of `n` asked for."""
+    """Return the node count per direction of the steps after the network, for a grid of `n` nodes."""
     return min(max(n, LATENT), FINER)
 
 
 @lru_cache(maxsize=8)
 def _padded(n: int, around: bool) -> tuple[Floats, Floats]:
-    """Return the tables of `_transform` with lines as the compiled steps take them."""
+    """Return the tables of `_transform` with padded rows, as the compiled steps take them."""
     table, values = _transform(n, around)
     more = -len(values) % LINE
     tables = np.pad(table, ((0, 0), (0, more))), np.pad(values, (0, more), constant_values=1.0)
@@ -101,7 +100,7 @@ def _padded(n: int, around: bool) -> tuple[Floats, Floats]:
 
 
 def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tuple[Any, Any, Any]:
-    """Return by how much planes `p` miss the equations at nodes off the rim, and their mean coefficients."""
+    """Return the residual of the equations for grids `p` at inner nodes, and their mean coefficients."""
     m, n = p.shape[2:]
     first, second, across, curve = (
         array_like(matrix, p, xp)
@@ -121,10 +120,10 @@ def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tup
 
 @lru_cache(maxsize=16)
 def _differences(n: int, share: float, around: bool) -> tuple[Floats, Floats]:
-    """Return the matrices (., n) of first and of second differences a step, at all but the ends of n nodes.
+    """Return the matrices (., n) of first and second differences, per step, at all but the ends of n nodes.
 
-    A `share` of their leading error, by the five nodes nearest to each, is taken out. Of values that go
-    `around`, two of which are repeated at either end, at all but these.
+    A `share` of their leading error is corrected with five-point stencils. `around`: periodic values, two of
+    which are repeated at either end; differences are those at all others.
     """
     inner = np.arange(2, n - 2) if around else np.arange(1, n - 1)
     rows, near = np.arange(len(inner))[:, None], np.clip(inner - 2, 0, n - 5)[:, None] + np.arange(5)
@@ -137,13 +136,13 @@ def _differences(n: int, share: float, around: bool) -> tuple[Floats, Floats]:
 
 
 def _waves(p: Any, axis: int, xp: Any, around: bool) -> tuple[Any, Any]:
-    """Return an axis' transform and minus the eigenvalues of second differences, as arrays like `p`."""
+    """Return the transform of an axis and negated eigenvalues of second differences, as arrays like `p`."""
     return tuple(array_like(table, p, xp) for table in _transform(p.shape[axis], around))
 
 
 @lru_cache(maxsize=8)
 def _transform(n: int, around: bool) -> tuple[Floats, Floats]:
-    """Return a matrix, its own inverse, to which second differences are diagonal: sines, or Hartley's."""
+    """Return the sine or Hartley transform, its own inverse, and negated eigenvalues of differences."""
     if around:
         k = np.arange(n)
         angle = 2.0 * np.pi * (np.outer(k, k) % n) / n

@@ -18,8 +18,9 @@ MOST_DESCENDED, LARGER_DESCENDED = 513, 257  # most nodes that descend in full; 
 LAST = 2
 """Most steps that are taken at full resolution; those before are taken on the network's coarse grid.
 
-There they gain most of the angles in the mean, above all by Newton's method, which four-sided domains have.
-The last, a descent that follows the coarse grid's Hessian in smooth moves, remove folds and kinks between.
+Steps on the coarse grid improve mean angles the most, above all by Newton's method, used for four-sided
+domains. The last, a descent preconditioned by the coarse grid's Hessian, remove folds and kinks between
+coarse nodes.
 """
 
 STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`
@@ -28,7 +29,7 @@ STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.ener
 def polished(
     boundaries: Sequence[Boundary], network: Network, topology: Topology, head: int, steps: int
 ) -> tuple[Floats, list[int]]:
-    """Return the planes (batch, 2, ni, nj) of boundaries with equal counts, and the steps taken for each."""
+    """Return nodes (batch, 2, ni, nj) inside boundaries of equal counts, and the steps taken for each."""
     if topology == "quad":
         coarse = coarse_grids.coarse_grids(coarse_grids.sides_of(boundaries), network, head)
     else:
@@ -54,7 +55,7 @@ def polished(
 
 
 def _evaluated(grids: Floats, boundaries: Sequence[Boundary], counts: tuple[int, int]) -> Floats:
-    """Return planes with so many nodes within `boundaries` of `grids` (batch, 2, m, n) on fewer nodes."""
+    """Return `grids` (batch, 2, m, n) interpolated to `counts` nodes inside `boundaries`."""
     if counts != (boundaries[0].ni, boundaries[0].nj):
         boundaries = [thinned(boundary, *counts) for boundary in boundaries]
     nodes = [refine_grid(np.moveaxis(grid, 0, -1), b) for grid, b in zip(grids, boundaries, strict=True)]
@@ -62,7 +63,7 @@ def _evaluated(grids: Floats, boundaries: Sequence[Boundary], counts: tuple[int,
 
 
 def _newton(planes: Floats, steps: int, topology: Topology) -> int:
-    """Take steps of Newton's method from the planes (2, m, n) in place; return how many."""
+    """Take at most `steps` Newton steps from the grid `planes` (2, m, n) in place; return how many."""
     if not steps:
         return 0
     from meshonet.solvers.energy.descent import newton
@@ -72,7 +73,7 @@ def _newton(planes: Floats, steps: int, topology: Topology) -> int:
 
 
 def _descent(planes: Floats, steps: int, topology: Topology, coarse: Floats | None = None) -> int:
-    """Descend from the planes (2, m, n) in place, steered by the `coarse` grid; return the steps taken."""
+    """Descend from `planes` (2, m, n) in place, preconditioned by the `coarse` grid; return the steps."""
     if not steps:
         return 0
     from meshonet.solvers.energy.descent import descend, stiffness_of
@@ -87,7 +88,7 @@ def _descent(planes: Floats, steps: int, topology: Topology, coarse: Floats | No
 
 
 def _cycles(planes: Floats, steps: int, topology: Topology) -> int:
-    """Solve Winslow's equations from the planes (2, m, n) by so many cycles, in place; return how many."""
+    """Take multigrid cycles for Winslow's equations from `planes` (2, m, n), in place; return how many."""
     from meshonet.solvers.elliptic.solve import solve
 
     nodes = np.moveaxis(planes, 0, -1)

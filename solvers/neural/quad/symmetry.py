@@ -1,14 +1,14 @@
-"""The eight relabellings of a quad, and convolutions that commute with them.
+"""The eight relabellings of a quad, and convolutions that are equivariant under them.
 
-A quad stays the same domain when its index axes, and the plane with them, are turned by quarters or mirrored:
-the dihedral group D4. A layer's channels come in sets of eight, one for each element; a kernel of the layer
-is one small set of weights, seen from every element::
+A quad stays the same domain when its index axes are rotated by quarter turns or reflected: the dihedral group
+D4. A layer's channels come in sets of eight, one for each element h; all kernels between two sets are
+transforms of one small set of weights w::
 
     K[h, g](p) = w[h^-1 g](h^-1 p)
 
-so the network's answer to a relabelled domain is the relabelled answer, to rounding. Channels lie as (set,
-element), the element fastest; arrays are of numpy or of torch where `xp` is the module they are of.
-Cohen & Welling, Group Equivariant Convolutional Networks, ICML 2016.
+so the network's output for a relabelled domain is the relabelled output, up to rounding. Channels are ordered
+as (set, element), the element fastest; `xp` is numpy or torch, the module of the arrays. Cohen & Welling,
+Group Equivariant Convolutional Networks, ICML 2016.
 """
 
 from typing import Any, TypeAlias
@@ -66,7 +66,7 @@ def _sum(*blocks: Reals) -> Floats:
 
 
 def _seen(element: Integers) -> Floats:
-    """Return the matrix that takes the features of `features` to those an observer at `element` sees."""
+    """Return the matrix that transforms the features of `encoding.features` by `element`."""
     turn = element.astype(np.float64)
     axes = np.abs(turn)
     sign = axes[0, 0] * turn[0, 0] * turn[1, 1] + axes[0, 1] * turn[0, 1] * turn[1, 0]
@@ -81,24 +81,24 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURE
 
 
 def table(size: int) -> Integers:
-    """Return (8, 8, size²): where in a set of weights (8 size²,) each tap of the kernel K[h, g] stands."""
+    """Return the indices (8, 8, size²) of the entries of the kernels K[h, g] in one set w (8 size²,)."""
     count = size * size
     return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))
 
 
 def convolution(weight: Any, places: Any, xp: Any) -> Any:
-    """Return (8 out, 8 in, size, size) from `weight` (out, in, 8, size, size) and `places`, its `table`."""
+    """Return the kernel (8 out, 8 in, size, size) of `weight` (out, in, 8, size, size), by its `table`."""
     out, into, _, size, _ = weight.shape
     spread = weight.reshape(out, into, -1)[:, :, places]
     return xp.moveaxis(spread, 2, 1).reshape(ORDER * out, ORDER * into, size, size)
 
 
 def lift(weight: Any, seen: Any) -> Any:
-    """Return (8 out, FEATURES) from `weight` (out, FEATURES): the features as seen from each element."""
+    """Return the first layer's matrix (8 out, FEATURES) from `weight` (out, FEATURES) and `SEEN`."""
     return (weight[:, None, :, None] * seen).sum(2).reshape(ORDER * len(weight), -1)
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return `weight` (heads, 2, in) as a matrix (2 heads, 8 in): the mean over the elements."""
+    """Return the last layer's matrix (2 heads, 8 in) from `weight` (heads, 2, in): a mean over elements."""
     back = weight[:, None, :, :, None] * xp.moveaxis(elements, 0, -1)[:, :, None]
     return back.sum(2).reshape(2 * len(weight), -1) / ORDER

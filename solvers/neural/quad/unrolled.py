@@ -1,11 +1,11 @@
-"""O grids as strips: the logarithm around the middle of the body, where a turn is a step to the right.
+"""O grids as periodic strips, by the complex logarithm around a centre of the body.
 
 ::
 
     Z = i log(z - centre)        xi runs along the real axis, 2 pi once around; eta along the imaginary one
 
-The map is conformal, so that Winslow's equations and the angles of cells are the same in both, and turning,
-moving and scaling a body only moves its strip. What is even in the strip grows evenly outwards in the plane.
+The map is conformal, so Winslow's equations and cell angles are the same in both; rotation, translation and
+scaling of a body only shift its strip. Equal steps in the strip are geometric growth outwards in the plane.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ import numpy as np
 
 from meshonet.geometry.elementary import functions_of, modulus, times
 
-AROUND = 65  # nodes along xi, the last a turn after the first, that the network sees around a body
+AROUND = 65  # nodes along xi, the last one period after the first, of the network's input around a body
 
 TURN = 2.0 * np.pi  # once around, the period of a strip
 
@@ -32,7 +32,7 @@ def middles(walls: Any, xp: Any = np) -> Any:
 
 
 def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return the strips of closed O grids `z` (batch, m + 1, n), and which of them go round once."""
+    """Return the strips of closed O grids `z` (batch, m + 1, n), and a mask of those that wind once."""
     off = z - centres[:, None, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         angle_of = functions_of(xp).angle
@@ -47,10 +47,10 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
-    """Return the strips of `walls` (batch, m + 1, n), the middles of bodies, and which are gone round once.
+    """Return the strips of `walls` (batch, m + 1, n), their centres, and a mask of those that wind once.
 
-    Middles are the centroids of the bodies' closed walls `wall` (batch, ni) where `walls` go round them,
-    elsewhere the point that `inside` returns inside a curve (m,).
+    Centres are the centroids of the bodies' closed walls `wall` (batch, ni) if `walls` wind around them,
+    otherwise the points that `inside` returns for closed curves (m,).
     """
     centres = middles(wall[:, :-1], xp)
     strips, once = unrolled(walls, centres, xp)
@@ -62,7 +62,7 @@ def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any 
 
 
 def even(strips: Any, n: int, xp: Any = np) -> Any:
-    """Return strips (batch, m + 1, n) with even steps between the first and the last row of `strips`."""
+    """Return strips (batch, m + 1, n) with equal steps between the first and the last row of `strips`."""
     eta = xp.linspace(0.0, 1.0, n, dtype=strips.real.dtype, device=strips.device)
     return strips[:, :, :1] * (1.0 - eta) + strips[:, :, -1:] * eta
 

@@ -1,7 +1,7 @@
-"""Training strips: boundaries lifted, their Winslow solutions by Picard's iteration to convergence.
+"""Training data of the strip operator: lifted boundaries, and their Winslow solutions by Picard iteration.
 
-The network's targets are coefficients of R / size^2 in a basis across the strip, the best one for the
-training set in the H1 sense (proper orthogonal decomposition), so that angles count and not only positions.
+The network's targets are coefficients of R / size^2 in a basis across the strip: the proper orthogonal
+decomposition of the training set in the H1 inner product, which accounts for angles as well as positions.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ class Strips:
 def solve_strips(
     boundaries: Iterable[Boundary], progress: Callable[[int, int], None] | None = None
 ) -> Strips:
-    """Return the strips of O boundaries; those without a lift or a converged solution are left out.
+    """Return the strips of O boundaries; those without a lift or a converged solution are omitted.
 
-    `progress` is called with how many are done and how many were left out. Raises InputError: no boundary
-    could be used, or one is not an O boundary.
+    `progress` is called with the counts of processed and of omitted boundaries. Raises InputError: no
+    boundary could be used, or one is not an O boundary.
     """
     rows: list[tuple[Complexes, Complexes, Complexes]] = []
     left_out = 0
@@ -88,9 +88,9 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
 
 @dataclass(frozen=True)
 class StripTargets:
-    """Inputs (n, CHANNELS, COLUMNS) and (n, SCALARS); wanted answers (n, 2 Q, COLUMNS) of unit mean square.
+    """Inputs (n, CHANNELS, COLUMNS) and (n, SCALARS); wanted outputs (n, 2 Q, COLUMNS) of unit mean square.
 
-    An answer times `scale`, in the `basis` (Q, LEVELS - 2), is R / size^2.
+    An output times `scale` gives the coefficients of R / size^2 in `basis` (Q, LEVELS - 2).
     """
 
     channels: Floats
@@ -101,14 +101,14 @@ class StripTargets:
 
 
 def make_targets(strips: Strips, count: int) -> StripTargets:
-    """Return the inputs and answers of `strips` and their mirror images, with `count` basis functions."""
+    """Return inputs and wanted outputs for `strips` and their mirror images, with `count` basis functions."""
     # the mirror image F(theta) -> conj F(-theta) turns mode c_k into conj c_k
     wall, far, residual = (np.concatenate([c, c.conj()]) for c in (strips.wall, strips.far, strips.residual))
     channels, scalars, size = encode(wall, far)
     inner = np.array([to_columns(r.T).T[:, 1:-1] for r in residual])
     inner /= (size**2)[:, None, None]
     product = _h1_product()
-    rows = inner[:, ::4].reshape(-1, inner.shape[2])  # every fourth column tells as much
+    rows = inner[:, ::4].reshape(-1, inner.shape[2])  # every fourth column suffices
     gram = rows.real.T @ rows.real + rows.imag.T @ rows.imag
     root = np.linalg.cholesky(product)
     _, vectors = np.linalg.eigh(root.T @ gram @ root)

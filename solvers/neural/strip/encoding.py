@@ -1,8 +1,8 @@
-"""What the strip network sees and what its answer means: the one copy that training and inference share.
+"""Inputs of the strip network and scaling of its output, shared by training and inference.
 
-The answer is R = Winslow - harmonic, zero on both walls by construction. To leading order R is quadratic in
-how far the walls are from straight, so the network sees walls of unit size and its answer is scaled by
-size^2. Functions take and return arrays of numpy or torch: `xp` is the module.
+The output is R = Winslow - harmonic, zero on both walls by construction. To leading order R is quadratic in
+the walls' deviation from straight lines, so the network's input has deviations of unit size and its output is
+scaled by size^2. Functions take and return arrays of `xp`, numpy or torch.
 """
 
 from typing import Any
@@ -13,7 +13,7 @@ from meshonet.geometry.arrays import array_like
 from meshonet.geometry.elementary import functions_of, modulus, times
 from meshonet.solvers.conformal.strip import decay, from_columns, to_columns, wavenumbers
 
-DEPTHS = np.array([0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0])  # eta at which the network sees the harmonic base
+DEPTHS = np.array([0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0])  # eta of the harmonic base in the network's input
 
 CHANNELS = 4 * len(DEPTHS)  # real and imaginary parts of value and slope
 SCALARS = 3  # log size, height and shear of the strip
@@ -43,7 +43,7 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 
 
 def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np) -> Any:
-    """Return the modes (batch, 2 MODES + 1, LEVELS) of R from the network's answers.
+    """Return the modes (batch, 2 MODES + 1, LEVELS) of R from the network's outputs.
 
     `coefficients`: (batch, 2 Q, COLUMNS) real parts, then imaginary parts; `basis`: (Q, LEVELS - 2) functions
     of the inner Chebyshev points; `scale`: of the training targets; `size`: (batch,) from `encode`.

@@ -17,12 +17,12 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import functions_of, product, tanh
 
-TAPS = 5  # columns that conv5 sees
+TAPS = 5  # width of conv5's kernel, in columns
 GATE = 0.3  # factor of b tanh(a)
 
 
 class StripNetwork:
-    """The network of one set of weights, its arrays laid out once for the products below.
+    """The network of one set of weights, rearranged once as matrices for its products.
 
     `weights`: arrays by name (`shapes`), of the module `xp`, numpy or torch.
     """
@@ -93,7 +93,7 @@ def gelu(x: Any, xp: Any) -> Any:
 
 
 def spectral(mixing: Any, h: Any, xp: Any) -> Any:
-    """Return (d, batch, n): the first modes of h (c, batch, n), mixed by a matrix of `_mixing` each."""
+    """Return (d, batch, n): the channels of h (c, batch, n) mixed by a matrix of `_mixing` for each mode."""
     spectrum = xp.fft.rfft(h)[..., : len(mixing)].swapaxes(0, 2)
     parts = xp.stack([spectrum.real, spectrum.imag], -1).reshape(len(mixing), h.shape[1], -1)
     if xp is np:
@@ -122,7 +122,7 @@ class _Convolution:
 
 
 def _mixing(weights: Mapping[str, Any], name: str, xp: Any) -> Any:
-    """Return complex matrices (modes, c, d) as real ones (modes, 2 c, 2 d), parts of numbers in turn."""
+    """Return complex matrices (modes, c, d) as real (modes, 2 c, 2 d), with alternating parts."""
     weight = weights[f"{name}.weight"]
     turned = xp.stack([-weight[..., 1], weight[..., 0]], -1)  # i times it
     modes, c, d, _ = weight.shape

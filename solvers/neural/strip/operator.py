@@ -1,4 +1,4 @@
-"""The airfoil operator: the conformal solver, started from what a network adds to the harmonic base."""
+"""The airfoil operator: the conformal solver, started from a network's correction of the harmonic base."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -45,9 +45,10 @@ class StripOperator(Operator):
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
         """Return modes (batch, 2 MODES + 1, LEVELS) of Winslow - harmonic for modes (batch, 2 MODES + 1).
 
-        `hand` (batch,) is that of `meshonet.geometry.polygon.mirror.handedness`: of a strip and its mirror
-        image, whose modes are conjugate, the network sees the same one, and the answer for a symmetric strip
-        is made symmetric. Modes that Picard's steps would not correct are left out.
+        `hand` (batch,) is from `meshonet.geometry.polygon.mirror.handedness`. It makes the result equivariant
+        under reflection: of a strip and its mirror image, whose modes are conjugate, the network is applied
+        to the same one, and the result for a symmetric strip is made symmetric. Modes that Picard steps would
+        not correct are left out.
         """
         if self.network is None:
             return np.zeros((*wall.shape, LEVELS), complex)
@@ -61,7 +62,7 @@ class StripOperator(Operator):
         return answer * smoothing()[:, None]
 
     def solve(self, boundaries: Sequence[Boundary], polish: Polish = "auto", **_: Any) -> list[Solution]:
-        """Return a grid inside each O boundary, whose nodes it has bitwise."""
+        """Return a grid inside each O boundary, with bitwise its nodes."""
         self.check(boundaries)
         if not self.network:
             return conformal.solve(boundaries, polish)
