@@ -7,26 +7,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats: TypeAlias = NDArray[np.float64]
-"""float64 array; the docstring of its user says its shape."""
+"""float64 array; docstrings of functions state the shape."""
 
 Complexes: TypeAlias = NDArray[np.complex128]
-"""complex128 array, a point x + iy each."""
+"""complex128 array of points x + iy."""
 
 Topology: TypeAlias = Literal["quad", "o", "c", "blocks"]
-"""Name of what the connections of a grid make of it; ``blocks`` is whatever the others are not."""
+"""Kind of a grid by its connections; ``blocks`` stands for all that are not of the other three."""
 Side: TypeAlias = Literal["south", "east", "north", "west", "bottom", "top"]
 
 TOPOLOGIES: tuple[Topology, ...] = ("quad", "o", "c")
 """The topologies of a single block."""
 SIDES: tuple[Side, ...] = ("south", "east", "north", "west")
-"""The sides of a block of two directions, counter-clockwise."""
+"""The sides of a two-dimensional block, counter-clockwise."""
 
 
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
 
 
 def distinct(values: AnyArray) -> AnyArray:
-    """Return the sorted distinct values of a one-dimensional array. np.unique loads numpy.ma: 25 ms."""
+    """Return the sorted distinct values of a one-dimensional array; np.unique would load numpy.ma (25 ms)."""
     ordered = np.sort(values)
     return ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]
 
@@ -59,25 +59,25 @@ def pairs_of(values: NDArray[Any]) -> Floats:
 
 
 def running_sums(values: Floats, count: int) -> Floats:
-    """Return the sums (n - count + 1,) of every `count` of values (n,) in a row."""
+    """Return the sums (n - count + 1,) of each `count` consecutive `values` (n,)."""
     last = len(values) - count + 1
     return np.asarray(sum(values[k : last + k] for k in range(count)))
 
 
 def along_and_across(vectors: Floats, axis: Floats) -> tuple[Floats, Floats]:
-    """Return the coordinates (...) of vectors (..., 2) along `axis` (2,) and left of it, times its size."""
+    """Return the coordinates (...) of vectors (..., 2) along `axis` (2,) and left of it, times its length."""
     x, y = vectors[..., 0], vectors[..., 1]
     return x * axis[0] + y * axis[1], y * axis[0] - x * axis[1]
 
 
 def middle(values: Floats) -> float:
-    """Return the median of a one-dimensional array without NaN. np.median loads numpy.ma: 25 ms."""
+    """Return the median of a one-dimensional array without NaN; np.median would load numpy.ma (25 ms)."""
     ordered, half = np.sort(values), len(values) // 2
     return float(ordered[half] if len(values) % 2 else 0.5 * (ordered[half - 1] + ordered[half]))
 
 
 def percentiles_of(values: NDArray[Any], percents: Sequence[float]) -> list[float]:
-    """Return the percentiles of all `values`, to the bit those of np.percentile, which loads numpy.ma: 25 ms.
+    """Return the percentiles of all `values`, bitwise those of np.percentile, which loads numpy.ma (25 ms).
 
     >>> percentiles_of(np.array([[3.0, 1.0], [2.0, 4.0]]), (0, 50, 100))
     [1.0, 2.5, 4.0]
@@ -92,15 +92,15 @@ def percentiles_of(values: NDArray[Any], percents: Sequence[float]) -> list[floa
 
 
 def read_only(values: AnyArray) -> AnyArray:
-    """Return `values`, from now on protected against writing."""
+    """Make `values` read-only, and return them."""
     values.flags.writeable = False
     return values
 
 
 def array_like(values: NDArray[Any], like: Any, xp: Any) -> Any:
-    """Return `values` as an array of the module `xp`, numpy or torch, where `like` is and as precise.
+    """Return `values` as an array of the module `xp` (numpy or torch), with device and precision of `like`.
 
-    Complex values stay complex, real ones real, whichever `like` is.
+    Complex values stay complex and real ones real, whatever `like` is.
     """
     dtype = like.real.dtype
     if xp is np:
@@ -112,12 +112,12 @@ def array_like(values: NDArray[Any], like: Any, xp: Any) -> Any:
 
 
 def planar_nodes(ni: int, nj: int) -> Floats:
-    """Return an uninitialised (ni, nj, 2) array whose x and y planes are each contiguous, as kernels need."""
+    """Return an uninitialised (ni, nj, 2) array in planar layout: its x and y planes are each contiguous."""
     return np.moveaxis(np.empty((2, ni, nj)), 0, -1)
 
 
 def as_planar(nodes: Floats) -> Floats:
-    """Return `nodes` (ni, nj, ..., d) as float64 in planar layout, copied only when it is not so already."""
+    """Return `nodes` (ni, nj, ..., d) as float64 in planar layout, copied only if they are not in it yet."""
     last = nodes.ndim - 1
     planes = np.asarray(nodes, dtype=np.float64).transpose(last, *range(last))
     return np.ascontiguousarray(planes).transpose(*range(1, last + 1), 0)

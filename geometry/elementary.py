@@ -1,12 +1,12 @@
-"""Elementary functions of arrays and products of matrices, the same to the bit on every processor.
+"""Elementary functions and matrix products that are bitwise the same on every processor.
 
-NumPy takes these from libraries that round by the processor: a BLAS for products, vector forms of the
-functions where there is AVX-512. What nodes or decisions come from uses those here. Sums, square roots,
-`np.hypot`, differences and quotients are NumPy's own, which are the same everywhere;
-`docs/reference/reproducibility.md` has the list.
+NumPy takes these from libraries whose rounding depends on the processor: a BLAS for matrix products,
+vectorised functions where there is AVX-512. Everything that nodes or decisions depend on uses the functions
+of this module instead. Sums, square roots, `np.hypot`, differences and quotients of NumPy are the same
+everywhere; `docs/reference/reproducibility.md` has the list.
 
-Functions take what those of NumPy of the same name take, and give float64 (float32 for float32). Complex
-numbers are left to the C library, which NumPy calls one by one for them.
+Functions take the arguments of NumPy's functions of the same name and return float64 (float32 for float32).
+Complex numbers are left to the C library, which NumPy calls for each one.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ sinh, cosh, tanh, arcsinh, arccosh = map(_kernel, ("sinh", "cosh", "tanh", "arcs
 
 
 def arctan2(y: Any, x: Any) -> Any:
-    """Return the angle of the points (x, y) from -pi to pi, to 2 units in the last place."""
+    """Return the angle of the points (x, y) from -pi to pi, within 2 units in the last place."""
     return _function_of_two(_native.angles_of, y, x)
 
 
@@ -57,14 +57,14 @@ def angle(z: Any) -> Any:
 
 
 def modulus(z: Any) -> Any:
-    """Return the modulus of complex numbers, or the size of real ones; of tensors by torch."""
+    """Return the modulus of complex numbers, or the absolute value of real ones; torch does its tensors."""
     return np.hypot(z.real, z.imag) if _is_complex(z) else abs(z)
 
 
 def times(a: Any, b: Any) -> Any:
-    """Return the product of complex numbers, with every product and sum of its parts rounded.
+    """Return the product of complex numbers, each product and sum of real parts rounded by itself.
 
-    NumPy joins them where the processor can. Real numbers and tensors are multiplied as ever.
+    NumPy fuses them on some processors. Real numbers and tensors are multiplied as usual.
     """
     if not (_is_complex(a) and _is_complex(b)):
         return a * b
@@ -76,7 +76,7 @@ def times(a: Any, b: Any) -> Any:
 
 
 def _is_complex(values: Any) -> bool:
-    """Say whether it is a complex number, or an array of them, of NumPy."""
+    """Return whether `values` is a complex number, or a NumPy array of them."""
     if isinstance(values, np.ndarray | np.generic):
         return values.dtype.kind == "c"
     return isinstance(values, complex)
@@ -90,21 +90,21 @@ def power(x: Any, exponent: Any) -> Any:
 
 
 def geomspace(start: float, stop: float, count: int) -> Floats:
-    """Return `count` numbers from `start` to `stop`, both positive, each the same multiple of the last."""
+    """Return `count` numbers in geometric progression from `start` to `stop`, both positive."""
     numbers = start * exp(np.linspace(0.0, math.log(stop / start), count))
     numbers[-1:] = stop
     return np.asarray(numbers)
 
 
 def functions_of(xp: Any) -> Any:
-    """Return the module whose functions take arrays of `xp`, numpy or torch: this one for numpy."""
+    """Return the module of elementary functions for arrays of `xp`, numpy or torch: this one for numpy."""
     return sys.modules[__name__] if xp is np else xp
 
 
 def product(a: Any, b: Any) -> Any:
-    """Return the matrix product of `a` and `b` in double precision; as ``a @ b``, its sums in a fixed order.
+    """Return the matrix product ``a @ b`` in double precision, its sums in a fixed order.
 
-    Stacks of matrices `b` (..., inner, columns) are for short sums, which are made term by term.
+    Stacks of matrices `b` (..., inner, columns) should have few inner terms, which are summed one by one.
     """
     left, right = np.asarray(a), np.asarray(b)
     if left.dtype.kind == "c" or right.dtype.kind == "c":
@@ -127,7 +127,7 @@ matmul = product
 
 
 def _stacked_product(left: Floats, right: Floats) -> Floats:
-    """Return the products of matrices (..., rows, inner) or one row (inner,) and (..., inner, columns)."""
+    """Return the products of matrices (..., rows, inner), or one row (inner,), and (..., inner, columns)."""
     rows = left if left.ndim > 1 else left[None]
     stack = np.broadcast_shapes(rows.shape[:-2], right.shape[:-2])
     out = np.zeros((*stack, rows.shape[-2], right.shape[-1]))
@@ -151,7 +151,7 @@ def _function_of_two(kernel: Any, x: Any, y: Any) -> Any:
 
 
 def _doubles(values: Any) -> Floats:
-    """Return an array as kernels read it, contiguous doubles; those of files may be odd in memory."""
+    """Return an array as the kernels need it, contiguous float64, whatever its memory layout is."""
     answer = np.ascontiguousarray(values, np.float64)
     if answer.dtype.byteorder == "=" and answer.flags.aligned:
         return answer
@@ -161,7 +161,7 @@ def _doubles(values: Any) -> Floats:
 
 
 def _shaped(out: Floats, shape: tuple[int, ...], of: np.dtype[Any]) -> Any:
-    """Return results in the shape and, for single precision, the type `of` what they are of."""
+    """Return results in `shape`, as float32 if they were computed from float32."""
     answer = out.reshape(shape)
     answer = answer.astype(np.float32) if of == np.float32 else answer
     return answer if answer.ndim else answer[()]

@@ -1,11 +1,11 @@
-"""The one tree of errors.
+"""The exceptions of meshonet, in one tree.
 
 ::
 
-    MeshonetError                 exit 2 unless said otherwise
-    ├── InputError                bad file, bad geometry, bad option value      exit 2
-    ├── NoValidGridError          every way to a grid ended in folded cells     exit 3
-    └── SolverError               an iteration diverged and its retries too     exit 3
+    MeshonetError                 exit code 2 unless stated otherwise
+    ├── InputError                bad file, bad geometry, bad option value             exit code 2
+    ├── NoValidGridError          every method ended in folded cells                   exit code 3
+    └── SolverError               an iteration diverged, and so did its retries        exit code 3
 """
 
 import re
@@ -15,16 +15,16 @@ from dataclasses import dataclass
 
 
 class MeshonetError(Exception):
-    """Root of every error a user can cause or must hear of."""
+    """Base class of every error that a user can cause or must be told of."""
 
     exit_code = 2
 
 
 class InputError(MeshonetError):
-    """Input that cannot be used; its message reads ``place: problem; remedy``.
+    """Input that cannot be used; the message reads ``place: problem; remedy``.
 
-    Problem and remedy refer to parameters in braces, ``{far_field}``: in Python these read ``far_field``, on
-    the command line ``--far-field`` (`spelled`).
+    Problem and remedy name parameters in braces, such as ``{far_field}``: this reads ``far_field`` in Python
+    and ``--far-field`` on the command line (`spelled`).
 
     Parameters
     ----------
@@ -33,11 +33,11 @@ class InputError(MeshonetError):
     remedy : str, optional
         What the user can do.
     source : str, optional
-        A file, which a caller may set later.
+        A file; a caller may set it later.
     place : str, optional
-        A place in it, ``line 12``.
+        A place in the source, such as ``line 12``.
     parameter : str, optional
-        Python name of the parameter concerned.
+        Python name of the parameter in question.
 
     Examples
     --------
@@ -56,7 +56,7 @@ class InputError(MeshonetError):
         return self.text(str)
 
     def text(self, spelling: Callable[[str], str]) -> str:
-        """Return the message, the names of parameters passed through `spelling`."""
+        """Return the message, with `spelling` applied to the names of parameters in braces."""
         parameter = spelling(self.parameter) if self.parameter else ""
         parts = (self.source, parameter, self.place, spelled(self.problem, spelling))
         text = ": ".join(part for part in parts if part)
@@ -64,9 +64,9 @@ class InputError(MeshonetError):
 
 
 def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
-    """Return ``did you mean ...?`` with the most similar word of `known`, or an empty text.
+    """Return ``did you mean ...?`` with the most similar word of `known`, or an empty string.
 
-    `likeness` is the part of their letters that is alike at the least, unless the word begins with one.
+    `likeness` is the least similarity ratio, 0 to 1, unless `word` begins with one of `known`.
 
     >>> meant("max_angel", ["max_angle", "min_angle"])
     "did you mean 'max_angle'? "
@@ -83,7 +83,7 @@ def meant(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
 
 @contextmanager
 def in_source(name: str) -> Iterator[None]:
-    """Name the source in the input errors of a block that do not name one."""
+    """Within the ``with`` block, set the source of input errors that have none."""
     try:
         yield
     except InputError as error:
@@ -93,7 +93,7 @@ def in_source(name: str) -> Iterator[None]:
 
 @contextmanager
 def in_place(place: str) -> Iterator[None]:
-    """Name the place in the input errors of a block that do not name one."""
+    """Within the ``with`` block, set the place of input errors that have none."""
     try:
         yield
     except InputError as error:
@@ -102,7 +102,7 @@ def in_place(place: str) -> Iterator[None]:
 
 
 def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
-    """Return `text`, its names of parameters in braces passed through `spelling`; double braces stay single.
+    """Return `text` with `spelling` applied to the parameter names in braces; double braces become single.
 
     >>> spelled("give {far_field} as 'a-{{index}}'", lambda name: "--" + name.replace("_", "-"))
     "give --far-field as 'a-{index}'"
@@ -113,9 +113,9 @@ def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
 
 @dataclass(frozen=True)
 class BadCell:
-    """A folded cell: the indices of its lower-left node and its centre; of many blocks, which of them.
+    """A folded cell: the indices of its lower-left node, its centre and, in several blocks, its block.
 
-    k is None on a surface and in the plane, z in the plane.
+    k is None on a surface and in the plane, z is None in the plane.
     """
 
     i: int
@@ -128,13 +128,13 @@ class BadCell:
 
     @property
     def indices(self) -> str:
-        """``block=2, i=3, j=4, k=5``, what there is of them."""
+        """``block=2, i=3, j=4, k=5``, without those that are None."""
         places = {"block": self.block, "i": self.i, "j": self.j, "k": self.k}
         return ", ".join(f"{name}={value}" for name, value in places.items() if value is not None)
 
     @property
     def centre(self) -> str:
-        """``x=0.1, y=0.2, z=0.3``, what there is of them."""
+        """``x=0.1, y=0.2, z=0.3``, without those that are None."""
         places = {"x": self.x, "y": self.y, "z": self.z}
         return ", ".join(f"{name}={value:.6g}" for name, value in places.items() if value is not None)
 
@@ -143,7 +143,7 @@ class BadCell:
 
 
 class NoValidGridError(MeshonetError):
-    """Every way tried ended in folded cells.
+    """Every method that was tried ended in folded cells.
 
     Parameters
     ----------
@@ -163,13 +163,13 @@ class NoValidGridError(MeshonetError):
         return self.text(str)
 
     def text(self, spelling: Callable[[str], str]) -> str:
-        """Return the message, the names of parameters in braces passed through `spelling`."""
+        """Return the message, with `spelling` applied to the names of parameters in braces."""
         cells = ", ".join(f"({cell})" for cell in self.worst[:10])
         problem = spelled(self.problem, spelling)
         return f"{problem}; worst cells: {cells}" if cells else problem
 
 
 class SolverError(MeshonetError):
-    """An iteration diverged or stalled, and its retries too."""
+    """An iteration diverged or stalled, and so did its retries."""
 
     exit_code = 3

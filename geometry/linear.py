@@ -1,7 +1,8 @@
-"""Linear algebra of small matrices, the same to the bit on every processor.
+"""Linear algebra of small matrices, bitwise the same on every processor.
 
-LAPACK and the BLAS below it round by the processor. These are made of sums, products, quotients and square
-roots in a fixed order, in NumPy: for matrices of a few rows, or stacks of them, and systems of a few hundred.
+The rounding of LAPACK and BLAS depends on the processor. These functions use sums, products, quotients and
+square roots in a fixed order, in NumPy: for matrices of a few rows, stacks of them, and systems of a few
+hundred rows.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ from meshonet.geometry.elementary import product
 _SWEEPS = 60
 """Most sweeps of Jacobi rotations; they converge quadratically, in 4 to 10."""
 _SMALL = 2**-58
-"""What is left of the sizes of matrices where sweeps end: it changes no digit."""
+"""Relative size of off-diagonal entries at which sweeps end: they no longer change any digit."""
 _RIGHT_ANGLE = 2**-50
-"""Cosine of columns that count as orthogonal: what rounding leaves."""
+"""Cosine up to which columns count as orthogonal: that of rounding errors."""
 
 
 def solve(matrix: Any, right: Any) -> Floats:
@@ -31,12 +32,12 @@ def solve(matrix: Any, right: Any) -> Floats:
     matrix
         Shape (..., m, m).
     right
-        Shape (..., m), a vector each, or (..., m, n); as many directions before these as `matrix` has.
+        Shape (..., m), one vector per matrix, or (..., m, n); the leading axes are those of `matrix`.
 
     Returns
     -------
     Floats
-        Of the shape of `right`.
+        Same shape as `right`.
 
     Raises
     ------
@@ -71,10 +72,10 @@ def inverse(matrix: Any) -> Floats:
 
 
 def symmetric_eigen(matrix: Any) -> tuple[Floats, Floats]:
-    """Return the eigenvalues (..., m), rising, and unit eigenvectors of symmetric matrices (..., m, m).
+    """Return eigenvalues (..., m), ascending, and unit eigenvectors of symmetric matrices (..., m, m).
 
-    The vectors are columns (..., m, m). By cyclic Jacobi rotations (Golub & Van Loan, Matrix Computations,
-    2013, section 8.5).
+    The eigenvectors are the columns of an array (..., m, m). By cyclic Jacobi rotations (Golub & Van Loan,
+    Matrix Computations, 2013, section 8.5).
     """
     a = np.array(matrix, np.float64)
     size = a.shape[-1]
@@ -101,9 +102,9 @@ def symmetric_eigen(matrix: Any) -> tuple[Floats, Floats]:
 
 
 def singular_values(matrix: Any) -> tuple[Floats, Floats, Floats]:
-    """Return u (n, m), s (m,) and v (m, m) of ``matrix = u @ diag(s) @ v``, a matrix (n, m); s falls.
+    """Return u (n, m), s (m,) and v (m, m) with ``matrix = u @ diag(s) @ v`` (n, m), s descending.
 
-    Rows of v are orthonormal, and so are columns of u where s is not 0; elsewhere these are 0. By one-sided
+    The rows of v are orthonormal, and so are the columns of u with s > 0; the others are 0. By one-sided
     Jacobi rotations (Hestenes, J. SIAM 6, 1958).
     """
     columns = np.array(matrix, np.float64)
@@ -129,7 +130,7 @@ def singular_values(matrix: Any) -> tuple[Floats, Floats, Floats]:
 
 
 def least_squares(matrix: Any, right: Any) -> Floats:
-    """Return the least-squares solution x (m,) or (m, k) of ``matrix @ x = right``, of minimum norm."""
+    """Return the least-squares solution x (m,) or (m, k) of ``matrix @ x = right`` with minimum norm."""
     u, s, v = singular_values(matrix)
     seen = s > np.finfo(float).eps * len(u) * s[:1]
     share = np.where(seen, 1.0 / np.where(seen, s, 1.0), 0.0)
@@ -137,10 +138,11 @@ def least_squares(matrix: Any, right: Any) -> Floats:
 
 
 def nearest_rotation(maps: Any) -> Floats:
-    """Return the rotation nearest to each map (..., d, d) of a plane or of space, in the sum of squares.
+    """Return the rotation nearest, in the Frobenius norm, to each matrix (..., d, d), with d 2 or 3.
 
-    In space it is the unit quaternion that is an eigenvector to the largest eigenvalue of a matrix of the map
-    (Horn, J. Opt. Soc. Am. A 4, 1987): mirrored and flattened maps have one too.
+    In three dimensions it is the unit quaternion that is the eigenvector of largest eigenvalue of a matrix
+    made from the given one (Horn, J. Opt. Soc. Am. A 4, 1987), also where that has a negative or zero
+    determinant.
     """
     m = np.asarray(maps, np.float64)
     if m.shape[-1] == 2:
@@ -168,14 +170,14 @@ def nearest_rotation(maps: Any) -> Floats:
 
 
 def gauss_legendre(count: int) -> tuple[Floats, Floats]:
-    """Return the nodes, rising, and the weights of Gauss quadrature from -1 to 1.
+    """Return the ascending nodes and the weights of Gauss-Legendre quadrature on [-1, 1].
 
-    Nodes are zeros of Legendre's polynomial, by Newton's iteration.
+    The nodes, zeros of the Legendre polynomial, are found by Newton's method.
     """
     nodes, weights = np.zeros(count), np.zeros(count)
     for k in range((count + 1) // 2):
         x, slope = math.cos(math.pi * (k + 0.75) / (count + 0.5)), 1.0
-        for _ in range(8):  # from these starts four are enough
+        for _ in range(8):  # from these initial values four suffice
             before, value = 1.0, x
             for n in range(2, count + 1):
                 before, value = value, ((2 * n - 1) * x * value - (n - 1) * before) / n
@@ -188,7 +190,7 @@ def gauss_legendre(count: int) -> tuple[Floats, Floats]:
 
 
 def _rotation(first: Any, second: Any, off: Any) -> tuple[Any, Any]:
-    """Return the cosine and sine of the turns that make matrices [[first, off], [off, second]] diagonal."""
+    """Return cosine and sine of the rotations that diagonalise [[first, off], [off, second]]."""
     half = 0.5 * (second - first)
     to = np.abs(half) + np.hypot(half, off)
     tangent = np.where(half < 0.0, -off, off) / np.where(to > 0.0, to, 1.0)
@@ -197,7 +199,7 @@ def _rotation(first: Any, second: Any, off: Any) -> tuple[Any, Any]:
 
 
 def _turn_columns(a: Floats, p: int, q: int, cosine: Any, sine: Any) -> None:
-    """Turn columns `p` and `q` of each matrix (..., n, m)."""
+    """Rotate columns `p` and `q` of each matrix (..., n, m), in place."""
     c, s = np.asarray(cosine)[..., None], np.asarray(sine)[..., None]
     one, two = a[..., p], a[..., q]
     a[..., p], a[..., q] = c * one - s * two, s * one + c * two

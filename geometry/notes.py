@@ -1,22 +1,22 @@
-"""Notes that are reported for batches of many grids too, not only for a single grid."""
+"""Notes that are also reported for batches of many grids, not only for a single grid."""
 
 from collections.abc import Iterable
 
 
 class Change(str):
-    """A sentence that says what was changed of a shape, or left out of its file."""
+    """A sentence that says how a shape was changed, or what was left out of its file."""
 
     __slots__ = ()
 
 
 class Advice(str):
-    """A sentence about what was asked for, which is the same for every shape."""
+    """A sentence about the settings, which is the same for every shape."""
 
     __slots__ = ()
 
 
 def changes_in(notes: Iterable[str]) -> tuple[str, ...]:
-    """Return those of the notes that say what was changed.
+    """Return the notes that say how a shape was changed.
 
     >>> changes_in(("spacing tanh is used", Change("the base is closed by a wedge")))
     ('the base is closed by a wedge',)
@@ -25,11 +25,11 @@ def changes_in(notes: Iterable[str]) -> tuple[str, ...]:
 
 
 def change_facts(notes: Iterable[str]) -> dict[str, str]:
-    """Return what was changed by the name that it has in the provenance of a grid; nothing if nothing was."""
+    """Return the changes as an entry of a grid's provenance; an empty dict if there are none."""
     changes = changes_in(notes)
     return {"changes": "; ".join(changes)} if changes else {}
 
 
 def advice_in(notes: Iterable[str]) -> tuple[str, ...]:
-    """Return those of the notes that are about what was asked for."""
+    """Return the notes about the settings."""
     return tuple(str(note) for note in notes if isinstance(note, Advice))

@@ -1,4 +1,4 @@
-"""What was measured of the cells of a grid: a summary of every metric."""
+"""Statistics of quality metrics over the cells of a grid."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from meshonet.geometry.errors import meant
 
 @dataclass(frozen=True)
 class Summary:
-    """One metric over all cells; its percentiles, when they were asked for."""
+    """Statistics of one metric over all cells, with percentiles if they were asked for."""
 
     min: float
     mean: float
@@ -21,10 +21,11 @@ class Summary:
 
 @dataclass(frozen=True)
 class Quality:
-    """Quality of a grid: how many cells it has, how many are folded, and every metric by name.
+    """Quality of a grid: the number of cells and of folded cells, and every metric by name.
 
-    `bezier_folded` counts the cells of volumes of which a Bezier coefficient of the Jacobian is not positive:
-    those of folded corners, and those that may be folded inside. None in the plane and on surfaces.
+    `bezier_folded` counts the cells of volumes with a Bezier coefficient of the Jacobian that is not
+    positive: those with folded corners, and those that may be folded inside. It is None in the plane and on
+    surfaces.
     """
 
     cells: int
@@ -33,9 +34,9 @@ class Quality:
     bezier_folded: int | None = None
 
     def __getitem__(self, name: str) -> Summary:
-        """Return the summary of one metric.
+        """Return the statistics of one metric.
 
-        Raises KeyError: there is none of that name, with the names that there are.
+        Raises KeyError: an unknown metric; the message lists the known ones.
         """
         if name not in self.metrics:
             known = f"{meant(str(name), self.metrics)}use one of {', '.join(self.metrics)}"

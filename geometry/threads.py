@@ -1,7 +1,6 @@
-"""How many threads kernels work with on one grid. Results are the same to the bit for any number.
+"""The number of threads that kernels use for one grid. Results are bitwise the same for any number.
 
-`limited_to` sets the number for a while, for the Python thread that it is called in: others that work at the
-same time keep theirs.
+`limited_to` sets the number temporarily, for the Python thread that calls it: other threads keep theirs.
 """
 
 import os
@@ -15,7 +14,7 @@ MOST = 64
 """Threads that a kernel starts at the most (``TEAM_MOST`` of ``team.h``)."""
 
 NODES_EACH = 1 << 17
-"""Nodes that are worth a thread: starting it costs what the quickest kernel takes for 5,000."""
+"""Nodes per thread: starting one takes as long as the fastest kernel takes for 5,000 nodes."""
 MANY_VISITS = 16
 """How often kernels that iterate, as descents and marches do, visit a node at the least."""
 
@@ -30,20 +29,20 @@ def cores() -> int:
 
 
 def thread_count() -> int:
-    """Return the number of threads to use: that of the cores, unless limited."""
+    """Return the number of threads to use: the number of cores, unless limited."""
     return min(_limit.get() or cores(), MOST)
 
 
 def threads_for(nodes: int, visits: int = 1) -> int:
-    """Return the number of threads for so much work, in nodes times visits: one where it is little."""
+    """Return the number of threads for a loop that visits `nodes` nodes `visits` times; 1 if it is short."""
     return max(min(thread_count(), visits * nodes // NODES_EACH), 1)
 
 
 @contextmanager
 def limited_to(threads: int | None) -> Iterator[None]:
-    """Limit the threads of kernels inside the block; None keeps the number.
+    """Limit the number of kernel threads within the ``with`` block; None changes nothing.
 
-    Python threads that are started inside do not inherit it.
+    Python threads started inside do not inherit the limit.
 
     Raises InputError: fewer than one.
     """

@@ -1,7 +1,7 @@
-"""Choices that do not hang on a last bit: of ways that are equally good to `EQUAL` the first is taken.
+"""Choices that do not depend on rounding: of candidates that are equal to `EQUAL`, the first is taken.
 
-Symmetric shapes have many ways that are equally good. Which of two is better by rounding alone
-depends on how a shape is turned or moved, or on a library; the order in which they stand does not.
+Symmetric shapes have many equally good candidates. Which of two is better by rounding alone depends on how a
+shape is turned or moved, or on a library; their order does not.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from meshonet.geometry.polygon.corners import Indices
 EQUAL = 1e-9
 """Difference, over the larger of two values, up to which they are equal."""
 _NOISE = 1e-7
-"""Part by which costs are made unlike: above rounding, far below what differs in earnest."""
+"""Relative perturbation of costs: above rounding errors, far below real differences."""
 
 Item = TypeVar("Item")
 
@@ -28,7 +28,7 @@ def less(a: float, b: float) -> bool:
 
 
 def first_least(items: Iterable[Item], key: Callable[[Item], float]) -> Item:
-    """Return the first item that no other's `key` is less than.
+    """Return the first item whose `key` no other's is less than, by more than rounding.
 
     Raises ValueError: there are none.
 
@@ -51,7 +51,7 @@ def first_least(items: Iterable[Item], key: Callable[[Item], float]) -> Item:
 
 
 def ascending(values: Floats) -> Indices:
-    """Return the indices (n,) of values (n,) in ascending order, equal ones in theirs.
+    """Return the indices (n,) that sort `values` (n,); values equal to rounding keep their order.
 
     Examples
     --------
@@ -67,7 +67,7 @@ def ascending(values: Floats) -> Indices:
 
 
 def nearest_whole(values: Floats) -> Floats:
-    """Return the whole numbers nearest to positive values; of two as near, the smaller one.
+    """Return the integers nearest to positive values; of two equally near, to rounding, the smaller one.
 
     Examples
     --------
@@ -78,10 +78,10 @@ def nearest_whole(values: Floats) -> Floats:
 
 
 def made_unlike(costs: Floats) -> Floats:
-    """Return costs (..., n) of which hardly any sums are equal, so that a linear programme has one answer.
+    """Return costs (..., n) perturbed so that hardly any sums are equal: linear programmes have one solution.
 
-    Each is changed by less than `_NOISE` of itself, by its place alone: digits of square roots, of which sums
-    are not equal.
+    The relative change is less than `_NOISE` and depends on the index alone: it is taken from the digits of
+    square roots.
     """
     digits = np.mod(1e3 * np.sqrt(np.arange(costs.size) + 0.618), 1.0)
     return costs + _NOISE * np.abs(costs) * digits.reshape(costs.shape)

@@ -109,7 +109,7 @@ def layer_lines(
 ) -> float: ...
 def redistribute(x: Floats, y: Floats, first: Floats, fade: Floats, threads: int = 1) -> None: ...
 
-# conformal: `maps` are a geometry.lift.Lift
+# conformal: `maps` are a geometry.conformal.lift.Lift
 Removed: TypeAlias = tuple[complex, complex, complex, complex, float]
 
 def lift_body(
@@ -206,7 +206,7 @@ class QuadDescent:
         self, shape: float, smoothness: float, epsilon: float, size: float, gradient: Floats
     ) -> float: ...
 
-# sparse: `pattern` is order, parent, start, row, fill
+# sparse: `pattern` is the symbolic factorisation: order, parent, start, row, fill
 SparsePattern: TypeAlias = tuple[Reals, Reals, Indices, Reals, Indices]
 
 def sparse_analyse(n: int, rows: Indices, columns: Indices) -> tuple[SparsePattern, Indices]: ...
@@ -214,7 +214,7 @@ def sparse_factor(pattern: SparsePattern, values: Floats) -> tuple[tuple[Reals, 
 def sparse_solve(pattern: SparsePattern, factor: tuple[Reals, Floats, Floats], x: Floats) -> None: ...
 def sparse_multiply(pattern: SparsePattern, values: Floats, x: Floats, product: Floats) -> None: ...
 
-# blocking: a surface is vertices, neighbours and the edge's number in these, (t, 3) each
+# blocking: a surface is (vertices, neighbours, number of the edge in each neighbour), (t, 3) each
 Surface: TypeAlias = tuple[Indices, Indices, Indices]
 
 def surface_fans(surface: Surface, vertices: int) -> tuple[Indices, Indices, int]: ...

@@ -1,9 +1,9 @@
-"""Grid lines across a connection: the nodes next to it on both sides, in one order.
+"""Nodes next to a connection, on both sides of it, in the same order.
 
 ::
 
     own[2]  own[1]  own[0] = donor[0]  donor[1]  donor[2]
-    --o-------o------------o--------------o---------o--     a line for each node of the connection
+    --o-------o------------o--------------o---------o--     one such grid line for each node of the connection
 """
 
 import numpy as np
@@ -17,10 +17,10 @@ from meshonet.geometry.errors import InputError
 
 
 def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floats]:
-    """Return rows of nodes on both sides of a connection, the shared row first, in the order of the first.
+    """Return rows of nodes on both sides of a connection, in the order of the first side, shared row first.
 
-    They are (depth, n, d), of volumes (depth, n, m, 3). The first nodes are carried to the second by the
-    motion of a periodic connection; there are fewer rows where a block has no more.
+    Both arrays are (depth, n, d), in volumes (depth, n, m, 3), with fewer rows if a block has fewer. At a
+    periodic connection the rows of the first side are moved to the second.
     """
     own, donor = (rows_beside(grid, *end, depth) for end in connection.ends)
     if connection.transform:
@@ -31,7 +31,7 @@ def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floa
 
 
 def planar(grid: Grid) -> None:
-    """Raise InputError unless all blocks are of two directions in the plane."""
+    """Raise InputError unless all blocks are two-dimensional, in the plane."""
     for number, block in enumerate(grid.blocks):
         if block.nodes.shape[2:] != (2,):
             sizes = " x ".join(map(str, block.counts))
@@ -40,13 +40,13 @@ def planar(grid: Grid) -> None:
 
 
 def rows_at(grid: Grid, patch: Patch, depth: int) -> Floats:
-    """Return rows (depth, n, d) or (depth, n, m, 3) of nodes from a patch inwards."""
+    """Return `depth` rows of nodes, (depth, n, d) or (depth, n, m, 3), from a patch inwards."""
     counts = face_counts(grid.blocks[patch.block].counts, patch.side)
     return rows_beside(grid, patch.block, patch.side, patch.range(counts), depth)
 
 
 def rows_beside(grid: Grid, block: int, side: Side, span: Range, depth: int) -> Floats:
-    """Return rows (depth, n, d) or (depth, n, m, 3) of nodes from a side inwards, of its nodes `span`."""
+    """Return `depth` rows (depth, n, d) or (depth, n, m, 3) from the nodes `span` of a side inwards."""
     axis, end = PLACES[side]
     nodes = np.moveaxis(grid.blocks[block].nodes, axis, 0)
     return (nodes[::-1] if end else nodes)[(slice(depth), *(slice(first, last + 1) for first, last in span))]

@@ -1,11 +1,11 @@
-"""A block: a lattice of nodes, in the plane, in space, or on a surface in space.
+"""A block: a structured array of nodes, in the plane, on a surface in space, or in a volume.
 
 ::
 
-        north (j = nj-1)         A block of three directions has two more sides: bottom (k = 0) and
-      +----------------+         top (k = nk-1). Directions and sides are those of the lattice; how many
-      |                |         coordinates a node has is another matter: a surface patch in space has
- west |   eta          | east    two directions and three coordinates.
+        north (j = nj-1)         A three-dimensional block has two more sides, bottom (k = 0) and top
+      +----------------+         (k = nk-1). Directions and sides are those of the indices. A node may have
+      |                |         more coordinates than its block has directions: a surface patch in space
+ west |   eta          | east    has two directions and three coordinates.
 (i=0) |    ^           | (i = ni-1)
       |    |           |
       |    +--> xi     |
@@ -28,20 +28,20 @@ Range: TypeAlias = tuple[tuple[int, int], ...]
 PLACES: dict[Side, tuple[int, int]] = {
     "west": (0, 0), "east": (0, -1), "south": (1, 0), "north": (1, -1), "bottom": (2, 0), "top": (2, -1),
 }  # fmt: skip
-"""Direction that a side is an end of (0 is xi, 1 eta, 2 zeta), and which end: 0 the first, -1 the last."""
+"""The index direction normal to a side (0 is xi, 1 eta, 2 zeta), and its end: 0 the first, -1 the last."""
 
 Form: TypeAlias = Literal["plane", "surface", "volume"]
 
-_KINDS = {(2, 2), (2, 3), (3, 3)}  # directions of a block and coordinates of its nodes
+_KINDS = {(2, 2), (2, 3), (3, 3)}  # number of index directions of a block, number of coordinates of its nodes
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Nodes of one block; validates itself.
+    """The nodes of one block; they are checked when it is made.
 
-    `nodes` (ni, nj, 2), (ni, nj, nk, 3), or (ni, nj, 3) on a surface, in any unit of length, are kept as
-    float64 in planar layout (see `meshonet.geometry.arrays`). Nodes known to be `finite` are not checked for
-    that, which takes a tenth of the time of some methods.
+    `nodes` are (ni, nj, 2), (ni, nj, nk, 3), or (ni, nj, 3) on a surface, in any unit of length; they are
+    kept as float64 in planar layout (see `meshonet.geometry.arrays`). With `finite`, they are known to be
+    finite: the check takes a tenth of the run time of some methods.
 
     Raises InputError: nodes of another shape, fewer than 2 along a direction, or not finite.
     """
@@ -64,41 +64,41 @@ class Block:
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """Nodes along each direction."""
+        """Number of nodes along each direction."""
         return self.nodes.shape[:-1]
 
     def face(self, side: Side) -> Floats:
-        """Return the nodes (n, d) or (n, m, d) of a side, a view."""
+        """Return a view of the nodes (n, d) or (n, m, d) of a side."""
         return face_of(self.nodes, side)
 
 
 def face_of(values: AnyArray, side: Side) -> AnyArray:
-    """Return a view of what `values` (ni, nj, ...) are on a side of the block."""
+    """Return a view of the entries of `values` (ni, nj, ...) on a side of the block."""
     axis, end = PLACES[side]
     return values[(slice(None),) * axis + (end,)]  # type: ignore[return-value]
 
 
 def part_of(values: AnyArray, span: Range) -> AnyArray:
-    """Return a view of `values` (n, m, ...) at the nodes of `span`, both ends included."""
+    """Return a view of `values` (n, m, ...) at the nodes of `span`, first and last included."""
     for axis, (first, last) in enumerate(span):
         values = values[(slice(None),) * axis + (slice(first, last + 1),)]  # type: ignore[assignment]
     return values
 
 
 def face_counts(counts: tuple[int, ...], side: Side) -> tuple[int, ...]:
-    """Return the nodes along each direction of a side of a block with `counts` nodes."""
+    """Return the number of nodes along each direction of a side of a block with `counts` nodes."""
     axis = PLACES[side][0]
     return counts[:axis] + counts[axis + 1 :]
 
 
 def sides_of(counts: tuple[int, ...]) -> tuple[Side, ...]:
-    """Return the sides of a block with `counts` nodes, in the order of `PLACES`."""
+    """Return the sides of a block with `counts` nodes per direction, in the order of `PLACES`."""
     return tuple(PLACES)[: 2 * len(counts)]
 
 
 def _check_finite(nodes: Floats) -> None:
-    # sums are finite exactly when (overflow aside) their terms are: one pass, no temporary
-    with np.errstate(invalid="ignore", over="ignore"):  # infinity less infinity
+    # a sum is finite exactly if its terms are (overflow aside): one pass without a temporary array
+    with np.errstate(invalid="ignore", over="ignore"):  # infinity minus infinity
         total = nodes.sum()
     if not np.isfinite(total):
         finite = np.isfinite(nodes).all(axis=-1)
@@ -108,14 +108,14 @@ def _check_finite(nodes: Floats) -> None:
 
 
 def form_of(nodes: Floats) -> Form:
-    """Return what the nodes of a block make: (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3)."""
+    """Return the form of a block, ``plane``, ``surface`` or ``volume``, from the shape of its nodes."""
     if nodes.ndim == 4:
         return "volume"
     return "plane" if nodes.shape[-1] == 2 else "surface"
 
 
 def check_alike(blocks: Sequence[Block]) -> None:
-    """Raise InputError unless all blocks are in the plane, or patches of surface, or volumes."""
+    """Raise InputError unless all blocks are planar, all are surface patches, or all are volumes."""
     first = form_of(blocks[0].nodes)
     for number, block in enumerate(blocks):
         if form_of(block.nodes) != first:

@@ -1,4 +1,4 @@
-"""The boundary of a block: four edges of nodes that meet, and the curves they were sampled from.
+"""The boundary of a block: four edges of nodes that share corners, and the curves they were sampled from.
 
 ::
 
@@ -43,7 +43,7 @@ _CORNERS = (  # side and end, twice: where neighbouring sides meet
 
 @dataclass(frozen=True, eq=False)
 class Boundary(Connected):
-    """Four edges of nodes; validates itself.
+    """Four edges of nodes that share corners; they are checked when the boundary is made.
 
     Parameters
     ----------
@@ -52,24 +52,24 @@ class Boundary(Connected):
     west, east : array
         (nj, 2) nodes along eta.
     topology : {'quad', 'o', 'c'}, optional
-        ``quad``, ``o`` or ``c``. The wake of a ``c`` is where south lies on itself.
+        Kind of grid. The wake of a ``c`` is where south lies on itself.
     patches : tuple of Patch, optional
         Named stretches of the sides; empty means those of `default_patches`.
     name : str, optional
-        What the input called this shape.
+        Name of the shape in the input.
     wall : Curve, optional
-        The curve that `south` was sampled from, if any: it lets operators see the body between nodes.
+        The curve that `south` was sampled from: it gives operators the shape of the body between nodes.
     chord : float, optional
-        Unit of spacings: an airfoil's chord, another body's largest extent. 0 stands for the distance of the
-        first node of the body from the farthest.
+        Unit of spacings: the chord of an airfoil, or the largest extent of another body. 0: the distance
+        from the first node of the body to the farthest.
     sensors : array, optional
-        (m, 2) nodes that an operator's branches read (`with_sensors`), when asked for.
+        (m, 2) nodes that the branch nets of an operator read (`with_sensors`).
     notes : tuple of str, optional
-        Sentences a user should read, such as that an outline was changed.
+        Sentences for users, for example that an outline was changed.
     origin : Origin, optional
-        The numbers that made it and what it is kept for, of a sample of a dataset.
+        Of a sample of a dataset: its parameters, and whether it is for training or testing.
     sampled : bool, optional
-        Whether the nodes were chosen here, on curves, and may be chosen otherwise.
+        Whether meshonet placed the nodes on curves, and may place them otherwise.
 
     Raises
     ------
@@ -116,17 +116,17 @@ class Boundary(Connected):
 
     @property
     def ni(self) -> int:
-        """Nodes along xi."""
+        """Number of nodes along xi."""
         return len(self.south)
 
     @property
     def nj(self) -> int:
-        """Nodes along eta."""
+        """Number of nodes along eta."""
         return len(self.west)
 
     @cached_property
     def corners(self) -> Mapping[str, Indices]:
-        """Indices of the corners of each edge, its ends left out (`meshonet.geometry.polygon.corners`)."""
+        """Indices of the corners on each edge, without its two ends (`meshonet.geometry.polygon.corners`)."""
         return {side: read_only(find_corners(getattr(self, side))) for side in SIDES}
 
     def grid(
@@ -137,15 +137,15 @@ class Boundary(Connected):
         return Grid((block,), self.patches, self.connections, self.name, provenance or {})
 
     def outline(self) -> Floats:
-        """Return the closed outline (n, 2) south, east, north, west, first node not repeated."""
+        """Return the closed outline (n, 2): south, east, north, west; the first node is not repeated."""
         return np.concatenate([self.south[:-1], self.east[:-1], self.north[:0:-1], self.west[:0:-1]])
 
     def with_sensors(self, count: int) -> Boundary:
-        """Return the boundary with `count` sensors: nodes at equal steps of their number.
+        """Return the boundary with `count` sensors: nodes at equal steps of their index.
 
-        Around a quad they start at the south-west corner and run counter-clockwise; of an O, the first half
-        (the odd one included) is on the body and the rest on the far field. Fixed places of the computational
-        domain, as an operator needs them: Xiao et al., arXiv 2501.11937, section III.
+        Around a quad they start at the south-west corner and run counter-clockwise; of an O grid, half of
+        them (rounded up) are on the body and the others on the far field. They are fixed places of the
+        computational domain, as operators need them: Xiao et al., arXiv 2501.11937, section III.
 
         Raises InputError: fewer than 2 sensors, or more than there are nodes.
         """
@@ -158,9 +158,9 @@ class Boundary(Connected):
         return replace(self, sensors=np.concatenate(chosen))
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return this boundary with the node counts of `sampling`, if other than its own, corners kept.
+        """Return this boundary resampled to the node counts of `sampling`; corners stay nodes.
 
-        Raises InputError: `sampling` asks for anything else: another topology, a spacing, a far field ...
+        Raises InputError: `sampling` sets anything else, such as another topology, a spacing or a far field.
         """
         self._check_sampling(sampling)
         ni, nj = sampling.ni or self.ni, sampling.nj or self.nj
@@ -174,7 +174,7 @@ class Boundary(Connected):
         return replace(self, **edges, patches=patches, sensors=None, sampled=not self.wake or self.sampled)
 
     def _check_sampling(self, sampling: Sampling) -> None:
-        """Raise InputError when `sampling` sets what the edges have settled."""
+        """Raise InputError if `sampling` sets what the given edges determine."""
         if sampling.topology not in ("auto", self.topology):
             raise InputError(
                 f"edges of topology {self.topology} do not make topology {sampling.topology}",
@@ -225,7 +225,7 @@ class Boundary(Connected):
             raise InputError("the far field does not enclose the body", "use a larger far field")
 
     def _check_outline(self) -> None:
-        """Raise InputError for what makes the sign of an area say nothing: its size, edges that cross."""
+        """Raise InputError if the sign of the area has no meaning: extent out of range, edges that cross."""
         check_extent(float(np.hypot(*np.ptp(self.outline(), axis=0))))
         check_edges(self)
 
@@ -234,9 +234,9 @@ def _edge(side: str, points: Floats) -> Floats:
     edge = np.ascontiguousarray(points, dtype=np.float64)
     if edge.ndim != 2 or edge.shape[1] != 2 or len(edge) < 2:
         raise InputError(f"{side} has shape {edge.shape}", "give (n, 2) with n at least 2")
-    with np.errstate(invalid="ignore", over="ignore"):  # infinity less infinity
+    with np.errstate(invalid="ignore", over="ignore"):  # infinity minus infinity
         steps = np.abs(edge[1:] - edge[:-1]).sum(axis=1)
-    if steps.min() > 0 and steps.max() < np.inf:  # neither is so with a node that is not a number
+    if steps.min() > 0 and steps.max() < np.inf:  # neither holds if a node is NaN
         return edge
     bad = np.flatnonzero(~np.isfinite(edge).all(axis=1))
     if bad.size:

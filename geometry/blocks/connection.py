@@ -1,13 +1,8 @@
-"""Connections: parts of two sides, of different blocks or of one, whose nodes coincide.
+"""Connections: parts of two sides, of different blocks or of one block, whose nodes coincide.
 
 ::
 
-    o   west is connected to east              c   the first nodes of south to its last ones, reversed
-
-        +--+--+--+--+                              +--+--+--+--+--+--+--+
-        |           |  east = west                 |                    |
-        +--+--+--+--+                              +--+--+--+--+--+--+--+
-                                                    a  b  c      c  b  a
+    o   west is connected to east              c   the first nodes of south to its last, in reverse order
 
 As in the 1-to-1 interfaces of CGNS (Standard Interface Data Structures, 8.2).
 """
@@ -28,7 +23,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.linear import solve
 
 Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
-"""Gives the nodes of a side of a block."""
+"""Returns the nodes of a side of a block, given its number."""
 
 
 @dataclass(frozen=True)
@@ -38,16 +33,16 @@ class Motion:
     Parameters
     ----------
     shift : tuple of float, optional
-        Of every coordinate; an empty one does nothing.
+        Shift of each coordinate; empty for none.
     turn : tuple of tuple of float, optional
-        Rows of a rotation matrix; an empty one does nothing.
+        Rows of a rotation matrix; empty for no rotation.
     """
 
     shift: tuple[float, ...] = ()
     turn: tuple[tuple[float, ...], ...] = ()
 
     def __call__(self, nodes: Floats) -> Floats:
-        """Return `nodes` (..., d) moved; a node comes out the same to the last bit, alone or with others."""
+        """Return `nodes` (..., d) moved; the result for a node is bitwise the same alone or among others."""
         moved = nodes
         if self.turn:  # written out: what a matrix product rounds to depends on the count of rows
             terms = [np.array(row) * nodes for row in self.turn]
@@ -63,7 +58,7 @@ class Motion:
     def rotation(self) -> tuple[float, Floats]:
         """Angle in radians, counter-clockwise, and centre (2,) of a motion in the plane.
 
-        Without a turn the angle is 0 and the centre the origin, and the shift is all there is.
+        Without a rotation the angle is 0 and the centre is the origin: the motion is its shift.
         """
         if not self.turn:
             return 0.0, np.zeros(2)
@@ -72,14 +67,14 @@ class Motion:
         return angle, solve(np.eye(2) - turn, self.translation) if angle else np.zeros(2)
 
     def alike(self, other: Motion, tolerance: float) -> bool:
-        """Return whether two motions carry nodes to the same place, to a part of the shifts."""
+        """Return whether two motions are equal, to `tolerance` of the shifts (of 1 if they rotate)."""
         size = max(1e-300, *map(abs, (*self.shift, *other.shift, float(bool(self.turn or other.turn)))))
         dimension = max(2, *(len(rows) for rows in (self.shift, self.turn, other.shift, other.turn)))
         frame = size * np.concatenate([np.zeros((1, dimension)), np.eye(dimension)])
         return bool(np.abs(self(frame) - other(frame)).max() <= tolerance * size)
 
     def inverse(self) -> Motion:
-        """Return the motion back, to rounding."""
+        """Return the inverse motion, to rounding."""
         turn = np.array(self.turn).T
         back = Motion(turn=tuple(map(tuple, turn.tolist())) if self.turn else ())
         shift = back(-np.array(self.shift)) if self.shift else np.empty(0)
@@ -88,7 +83,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Connection:
-    """A part of one side and a part of another, the donor, whose nodes are the same; both ranges ascend."""
+    """A part of one side and a part of another, the donor, with the same nodes; index ranges ascend."""
 
     block: int
     side: Side
@@ -97,17 +92,17 @@ class Connection:
     donor_side: Side
     donor_range: Range
     orientation: tuple[int, ...]
-    """The donor's direction along each of the side's, counted from 1, negative where they are opposed."""
+    """The donor's direction, from 1, along each direction of the side; negative if they are opposite."""
     transform: Motion | None = None
-    """What carries the nodes of the side to the donor's, when they are periodic."""
+    """Motion from the nodes of the side to those of the donor, if they are periodic."""
 
     @property
     def ends(self) -> tuple[tuple[int, Side, Range], tuple[int, Side, Range]]:
-        """Block, side and nodes of both sides."""
+        """Block, side and index range of both sides."""
         return (self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range)
 
     def pairs(self, values: Sequence[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return views of what `values` (of each block) are at both sides, in one order, (n, m, 1)."""
+        """Return views (n, 1) or (n, m, 1) of `values` (one array per block) at both sides, in one order."""
 
         def face(block: int, side: Side) -> NDArray[Any]:
             return np.asarray(face_of(values[block], side)[..., None])
@@ -115,7 +110,7 @@ class Connection:
         return replace(self, transform=None).nodes(face)
 
     def nodes(self, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return the nodes of both sides in one order (n, d) or (n, m, d), the first moved by `transform`."""
+        """Return the nodes of both sides in one order, (n, d) or (n, m, d); `transform` moves the first."""
         own = part_of(face(self.block, self.side), self.range)
         donor = part_of(face(self.donor, self.donor_side), self.donor_range)
         if len(self.orientation) != own.ndim - 1:
@@ -125,7 +120,7 @@ class Connection:
         return (self.transform(own) if self.transform else own), donor
 
     def check(self, face: Face) -> None:
-        """Raise InputError unless the nodes of both sides are the same, bitwise."""
+        """Raise InputError unless the nodes of both sides are bitwise equal."""
         own, donor = self.nodes(face)
         if own.shape != donor.shape:
             counts = f"{own.shape[:-1]} nodes to {donor.shape[:-1]}"
@@ -140,7 +135,7 @@ class Connection:
         )
 
     def reversed(self) -> Connection:
-        """Return it as seen from the donor; its transform is the inverse one, to rounding."""
+        """Return the connection as seen from the donor; its transform is inverted, to rounding."""
         ways = [0] * len(self.orientation)
         for k, way in enumerate(self.orientation, start=1):
             ways[abs(way) - 1] = k if way > 0 else -k
@@ -154,23 +149,23 @@ class Connection:
         return f"the connection of {own} of block {self.block} to {donor} of block {self.donor}"
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
-        """Return side, first and last node of the parts of a planar block's boundary that it connects."""
+        """Return side, first and last node of each part of a planar block's boundary that it connects."""
         return [(side, *nodes[0]) for number, side, nodes in self.ends if number == block]
 
 
 def cells_at(connection: Connection, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return views of the values (n, m, d) of the cells at both sides of a connection, in one order.
+    """Return views (n, d) or (n, m, d) of the values of the cells at both sides, in one order.
 
-    `face` gives the values of the cells at a side of a block.
+    `face` returns the values of the cells at a side of a block.
     """
     spans = [tuple((a, b - 1) for a, b in span) for span in (connection.range, connection.donor_range)]
     return replace(connection, range=spans[0], donor_range=spans[1], transform=None).nodes(face)
 
 
 def check_connections(connections: Sequence[Connection], counts: Sequence[tuple[int, ...]]) -> None:
-    """Raise InputError for a connection of blocks, sides or nodes that there are none of.
+    """Raise InputError if a connection names a block, side or node that does not exist.
 
-    `counts` are the nodes of every block along each direction.
+    `counts` are the numbers of nodes of each block along its directions.
     """
     for each in connections:
         for block, side, span in each.ends:
@@ -193,12 +188,12 @@ def o_seam(nj: int) -> Connection:
 
 
 def c_wake(ni: int, cells: int) -> Connection:
-    """Return the connection of the first `cells` cells of the south side of a C block to its last ones."""
+    """Return the connection of the first `cells` cells of the south side of a C block to its last."""
     return Connection(0, "south", ((0, cells),), 0, "south", ((ni - 1 - cells, ni - 1),), (-1,))
 
 
 def topology_of(counts: Sequence[tuple[int, ...]], connections: Sequence[Connection]) -> Topology:
-    """Return what the connections make of blocks with `counts` nodes along their directions.
+    """Return the topology of blocks with `counts` nodes along their directions, joined by `connections`.
 
     >>> topology_of([(9, 5)], ()), topology_of([(9, 5)], [o_seam(5)]), topology_of([(9, 5)], [c_wake(9, 2)])
     ('quad', 'o', 'c')
@@ -214,22 +209,23 @@ def topology_of(counts: Sequence[tuple[int, ...]], connections: Sequence[Connect
 
 
 def wake_cells(connections: Sequence[Connection]) -> int:
-    """Return the cells of the wake in the connections of a C block, 0 for others."""
+    """Return the number of wake cells in the connections of a C block; 0 for other blocks."""
     joined = connections[0] if len(connections) == 1 else None
     return joined.range[0][1] if joined and joined.side == joined.donor_side == "south" else 0
 
 
 def wake_nodes(south: Floats) -> int:
-    """Return how many nodes `south` (ni, 2) begins with are repeated in reverse at its end; 0 if all are."""
+    """Return how many first nodes of `south` (ni, 2) are repeated in reverse at its end; 0 if all are."""
     half = south[: len(south) // 2]
     differs = (half != south[::-1][: len(half)]).any(axis=1)
     return int(np.argmax(differs)) if differs.any() else 0
 
 
 def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connection, ...]:
-    """Return the connections of a block of `topology`, found in its south side (ni, 2), with nj rows.
+    """Return the connections of a block of `topology` to itself: the seam of an O grid, the wake of a C grid.
 
-    Raises InputError: a topology of several blocks; a C block without a wake.
+    `south` (ni, 2) holds the nodes of its south side, in which a wake is found; `nj` is its number of nodes
+    along eta. Raises InputError: an unknown topology; a C block without a wake.
     """
     if topology == "quad":
         return ()
@@ -247,22 +243,22 @@ def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connecti
 
 
 class Connected:
-    """What the connections of a grid or boundary of one block say of it."""
+    """Properties of a grid or boundary that follow from its connections."""
 
     connections: tuple[Connection, ...]
     topology: Topology
 
     @property
     def periodic(self) -> bool:
-        """Whether xi runs around a body and closes (topology ``o``)."""
+        """Whether xi runs around a body and closes on itself (topology ``o``)."""
         return self.topology == "o"
 
     @property
     def around_body(self) -> bool:
-        """Whether the south side is a body, in a far field (topology ``o`` or ``c``)."""
+        """Whether the south side is a body within a far field (topology ``o`` or ``c``)."""
         return self.topology in ("o", "c")
 
     @property
     def wake(self) -> int:
-        """Cells of the wake at each end of the south side: node (i, 0) is node (ni-1-i, 0) up to this i."""
+        """Number of wake cells at each end of south: up to this i, node (i, 0) is node (ni-1-i, 0)."""
         return wake_cells(self.connections)

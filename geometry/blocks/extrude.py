@@ -1,10 +1,10 @@
-"""Planar blocks repeated along z to blocks of volume, and the plane that such blocks are copies of.
+"""Planar blocks repeated along z to make volumes, and the inverse: the plane that volumes repeat.
 
 ::
 
       +--------+      top of each block: the patch front, at the last height
      /   /   / |
-    +--------+ |      patches and connections of the plane run over all heights
+    +--------+ |      patches and connections of the plane extend over all heights
     |  xi    | +
     |  eta   |/       bottom of each block: the patch back, at the first height
     +--------+
@@ -34,11 +34,11 @@ BACK, FRONT = "back", "front"
 
 
 def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
-    """Return planar `grid` with its nodes at each z of `heights`, two or more that increase, in its unit.
+    """Return `grid`, which is planar, with its nodes repeated at each z of `heights`, in its unit.
 
-    Patches and connections run over all heights; a body that is a wall by its place is one by its kind then.
-    Bottoms are the patch `BACK` and tops `FRONT`, symmetry planes, so that a patch of such a name gets
-    another one.
+    `heights` are at least two and increase. Patches and connections extend over all heights. A body that is a
+    wall by its position alone gets the kind wall. Bottoms are the patch `BACK` and tops the patch `FRONT`,
+    both symmetry planes; a patch of the plane with one of these names is renamed.
 
     Raises InputError: blocks that are not planar, fewer than two heights, heights that do not increase.
     """
@@ -55,12 +55,12 @@ def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
 
 
 def thickened(grid: Grid, nodes: Sequence[Floats], ends: tuple[End, End] | None) -> Grid:
-    """Return a planar grid as blocks of volume, given the nodes (ni, nj, nk, 3) of each.
+    """Return a planar grid as volumes, given the finite nodes (ni, nj, nk, 3) of each block.
 
-    Patches and connections run over all planes. `ends` are name and kind of the patches at the first and at
-    the last plane; None connects the last plane of each block with its first. The nodes are finite.
+    Patches and connections extend over all planes of nodes. `ends` are the name and the kind of the patches
+    at the first and at the last plane; None connects the last plane of each block with its first.
 
-    Raises InputError: blocks that are not planar; nodes that part where blocks are connected.
+    Raises InputError: blocks that are not planar; nodes that differ where blocks are connected.
     """
     planar(grid)
     planes = nodes[0].shape[2]
@@ -79,7 +79,7 @@ def thickened(grid: Grid, nodes: Sequence[Floats], ends: tuple[End, End] | None)
 
 
 def plane_of_extruded(grid: Grid) -> Grid | None:
-    """Return the planar grid that `extruded` makes this one of; None of any other."""
+    """Return the planar grid of which `extruded` makes `grid`; None if it cannot have been made so."""
     if any(block.nodes.shape[3:] != (3,) for block in grid.blocks):
         return None
     z = grid.blocks[0].nodes[0, 0, :, 2]
@@ -110,7 +110,7 @@ def plane_of_extruded(grid: Grid) -> Grid | None:
 
 
 def _with_walls(grid: Grid) -> list[Patch]:
-    """Return the patches of a planar grid, those of a body walls, which in space nothing else would say."""
+    """Return the patches of a planar grid; those of a body become walls, which a volume cannot infer."""
     if not grid.around_body:
         return list(grid.patches)
     body = [p for p in grid.outer_patches() if p.side == "south"]
@@ -121,7 +121,7 @@ def _with_walls(grid: Grid) -> list[Patch]:
 
 
 def _renamed(patches: Sequence[Patch], ends: Sequence[str]) -> list[Patch]:
-    """Return `patches`, none of them called as the planes at the `ends` are."""
+    """Return `patches`, renamed where one has the name of an end plane (`ends`)."""
     taken = {*ends, *(patch.name for patch in patches)}
     new = {name: next(word for k in count(2) if (word := f"{name}-{k}") not in taken) for name in ends}
     return [replace(patch, name=new.get(patch.name, patch.name)) for patch in patches]

@@ -1,9 +1,9 @@
-"""Families of grid lines: those that run along a direction of a block, and on over its connections.
+"""Families of grid lines: the lines along a direction of a block, continued across its connections.
 
 ::
 
-    +-----+-----+      the lines i = const of the left block run on into nothing else, those
-    |     |     |      j = const into the right block
+    +-----+-----+      the lines i = const of the left block continue into no other block, its lines
+    |     |     |      j = const continue into the right block
     +-----+-----+
 """
 
@@ -16,10 +16,10 @@ from meshonet.geometry.blocks.grid import Grid
 
 @dataclass(frozen=True)
 class Member:
-    """The lines along a direction (0 is xi, 1 eta) of a block, and whether their numbers run backwards.
+    """The lines along a direction (0 is xi, 1 eta) of a block, as a part of a family.
 
-    Lines are numbered by the other direction; `aligned` says whether they are numbered as those of the
-    family's first block are, backwards if `flipped`, or belong to it in part only.
+    Lines are numbered by the index of the other direction. `aligned`: they have the numbers that they have in
+    the family's first block, in reverse order if `flipped`. Not `aligned`: only some belong to the family.
     """
 
     block: int
@@ -29,7 +29,7 @@ class Member:
 
 
 def joins_whole_sides(grid: Grid, connection: Connection) -> bool:
-    """Say whether a connection joins all of a side to all of another."""
+    """Return whether a connection joins a whole side to a whole side."""
     return all(
         span == tuple((0, count - 1) for count in face_counts(grid.blocks[block].counts, side))
         for block, side, span in connection.ends
@@ -37,9 +37,9 @@ def joins_whole_sides(grid: Grid, connection: Connection) -> bool:
 
 
 def families(grid: Grid) -> list[list[Member]]:
-    """Return the families of the lines of a grid, each (block, direction) in one of them.
+    """Return the families of the lines of a grid; each (block, direction) is in exactly one.
 
-    In volumes, where lines have two numbers, `flipped` says nothing.
+    `flipped` has no meaning in volumes, where lines have two indices.
     """
     beyond: dict[tuple[int, int], list[tuple[tuple[int, int], bool, bool]]] = {}
     for each in grid.connections:
@@ -57,7 +57,7 @@ def families(grid: Grid) -> list[list[Member]]:
             continue
         seen.add(start)
         family = [Member(*start, flipped=False, aligned=True)]
-        for member in family:  # it grows meanwhile
+        for member in family:  # the list grows meanwhile
             for other, flip, whole in beyond.get((member.block, member.axis), ()):
                 if other not in seen:
                     seen.add(other)

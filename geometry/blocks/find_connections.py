@@ -1,15 +1,15 @@
-"""The connections of blocks that state none: where they touch each other or themselves.
+"""The connections of blocks for which none are given: where they touch each other or themselves.
 
 ::
 
     +--+--+--+--+
-    |  block 0  |      Every cell at a boundary is a directed edge, the block on its left. Two blocks that
-    +--+--+-----+      touch run along their interface in opposite directions; blocks that only lie on each
-    |  |  |            other, copies for instance, run the same way and are not joined. A part of a side may
-    +--+--+            be joined, and a side to itself, as the wake of a C grid is.
+    |  block 0  |      Every boundary cell is a directed edge with the block on its left. Two blocks that
+    +--+--+-----+      touch run along their interface in opposite directions; blocks that merely coincide,
+    |  |  |            such as copies, run in the same direction and are not joined. Parts of sides may be
+    +--+--+            joined, and a side to itself, as at the wake of a C grid.
     block 1
 
-How they are found: `meshonet.geometry.blocks.meeting_sides`.
+The search itself is in `meshonet.geometry.blocks.meeting_sides`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from meshonet.geometry.blocks.meeting_sides import meeting_sides
 from meshonet.geometry.errors import InputError
 
 TOLERANCE = 1e-6
-"""Nodes are the same when they are no farther apart than this, in lengths of the shorter of two edges."""
+"""Nodes are the same up to this distance, over the length of the shorter of two edges."""
 Stretch: TypeAlias = tuple[int, Side, int, int]
 """Block, side, first and last node of a part of its boundary."""
 Part: TypeAlias = tuple[int, Side, Range]
@@ -36,13 +36,13 @@ def find_connections(
 ) -> tuple[Connection, ...]:
     """Return the connections of right-handed `blocks`, sorted by block and side.
 
-    Nodes are the same when they are no farther apart than `tolerance` edges, or than the digits tell that
-    their coordinates were rounded to (`rounding`). Nodes of a connection need not be equal yet:
-    `with_equal_nodes` (`meshonet.geometry.blocks.shared_nodes`) makes them. `without` has stretches that are
-    known to be no interface. Where more than two sides lie on each other, a block is joined to itself first,
-    then one to the next.
+    Nodes count as equal up to a distance of `tolerance` edge lengths, or of the last digit that coordinates
+    were rounded to (`rounding`), if that is more. `with_equal_nodes`
+    (`meshonet.geometry.blocks.shared_nodes`) then makes them bitwise equal. `without` lists parts of sides
+    that are known to be no interface. Where more than two sides coincide, a block is joined to itself first,
+    then to the next.
 
-    Raises InputError: blocks in the plane and in space mixed.
+    Raises InputError: planar blocks mixed with blocks in space.
     """
     parts = [each if len(each) == 3 else (*each[:2], (each[2:],)) for each in without]
     planar = [block.nodes.shape[-1] == 2 for block in blocks]
@@ -54,5 +54,5 @@ def find_connections(
 
 
 def order(connection: Connection) -> tuple[int, int, Range]:
-    """Return what connections are sorted by: block, side and nodes."""
+    """Return the sort key of a connection: block, side and nodes."""
     return connection.block, list(PLACES).index(connection.side), connection.range

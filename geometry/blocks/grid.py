@@ -1,13 +1,13 @@
-"""A structured grid: blocks, where they are connected, and the names of what is left of their sides.
+"""A structured grid: blocks, their connections, and the named patches of the other parts of their sides.
 
 ::
 
     o: i runs clockwise around the body from the trailing edge: lower side, leading edge, upper side; south
-       is the body, north the far field; west is connected to east, so that column ni-1 is column 0.
-    c: south is wake, body, wake; the first wake is connected to the second, reversed.
+       is the body, north the far field; west is connected to east, so that i = ni-1 and i = 0 coincide.
+    c: south is wake, body, wake; the first wake part is connected to the second, in reverse order.
 
-Nodes are ``[i, j] = (x, y)`` at (xi_i, eta_j); a valid grid is right-handed: every corner of every cell
-has a positive Jacobian. `meshonet.geometry.blocks.block` draws the sides.
+Nodes are ``[i, j] = (x, y)`` at (xi_i, eta_j); a valid grid is right-handed: the Jacobian is positive at
+every corner of every cell. `meshonet.geometry.blocks.block` draws the sides.
 """
 
 from __future__ import annotations
@@ -44,34 +44,34 @@ _COUNTS = attrgetter("counts")
 
 @dataclass(frozen=True)
 class Origin:
-    """Names and values of the numbers that made a sample, and ``train``, ``test`` or nothing."""
+    """Names and values of the parameters that a sample was made from, and ``train``, ``test`` or nothing."""
 
     parameters: tuple[tuple[str, float], ...] = ()
     split: str = ""
 
 
 UNKNOWN = Origin()
-"""Of a sample that no dataset holds."""
+"""Origin of a grid that is not a sample of a dataset."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Grid(Connected):
-    """At least one block, named stretches of the sides, and where sides are the same nodes; validates itself.
+    """Blocks, named patches of their sides, and their connections; all are checked when the grid is made.
 
     Parameters
     ----------
     blocks : tuple of Block
-        Arrays of nodes: (ni, nj, 2) in the plane, (ni, nj, 3) on a surface, (ni, nj, nk, 3) in space.
+        Arrays of nodes: (ni, nj, 2) in the plane, (ni, nj, 3) on a surface, (ni, nj, nk, 3) in a volume.
     patches : tuple of Patch, optional
         Named stretches of the outer sides.
     connections : tuple of Connection, optional
-        Sides that are the same nodes.
+        Parts of sides that share their nodes.
     name : str, optional
-        What the input called the shape.
+        Name of the shape in the input.
     provenance : dict, optional
         How the grid was made: method, settings, version.
     origin : Origin, optional
-        Origin of its boundary, of a sample of a dataset.
+        Of a sample of a dataset: its parameters, and whether it is for training or testing.
 
     Raises
     ------
@@ -109,14 +109,14 @@ class Grid(Connected):
         *,
         finite: bool = False,
     ) -> Grid:
-        """Return the grid of a single block (see `Block`), its connections found in the nodes.
+        """Return the grid of a single block (see `Block`); its connections are found from its nodes.
 
         The wake of a ``c`` is where the south side lies on itself; no `patches` means `default_patches`.
 
         Returns
         -------
         Grid
-            The grid of a single block (see `Block`), its connections found in the nodes.
+            The grid.
 
         Raises
         ------
@@ -140,19 +140,19 @@ class Grid(Connected):
 
     @cached_property
     def topology(self) -> Topology:  # type: ignore[override]
-        """``quad``, ``o`` or ``c`` for a single planar block connected in that way, else ``blocks``."""
+        """``quad``, ``o`` or ``c`` for a single planar block, by its connections; otherwise ``blocks``."""
         if self.form != "plane":
             return "blocks"
         return topology_of(list(map(_COUNTS, self.blocks)), self.connections)
 
     @property
     def form(self) -> Form:
-        """``plane`` of blocks (ni, nj, 2), ``surface`` of (ni, nj, 3), ``volume`` of (ni, nj, nk, 3)."""
+        """Form of its blocks: ``plane`` (ni, nj, 2), ``surface`` (ni, nj, 3), ``volume`` (ni, nj, nk, 3)."""
         return form_of(self.blocks[0].nodes)
 
     @cached_property
     def nodes(self) -> Floats:
-        """(ni, nj, 2) nodes of the only block."""
+        """(ni, nj, 2) nodes of a grid of one block."""
         if len(self.blocks) != 1:
             remedy = "take the nodes of its blocks one by one"
             raise InputError(f"a grid of {len(self.blocks)} blocks", remedy)
@@ -160,12 +160,12 @@ class Grid(Connected):
 
     @property
     def ni(self) -> int:
-        """Nodes of the only block along xi."""
+        """Number of nodes along xi, of a grid of one block."""
         return int(self.nodes.shape[0])
 
     @property
     def nj(self) -> int:
-        """Nodes of the only block along eta."""
+        """Number of nodes along eta, of a grid of one block."""
         return int(self.nodes.shape[1])
 
     @property
@@ -200,7 +200,7 @@ class Grid(Connected):
         return low, np.max([block.nodes.max(axis=axes) for block in self.blocks], axis=0)
 
     def outer_patches(self) -> list[Patch]:
-        """Return the outer boundary, each cell at it in one patch (`outer_patches`)."""
+        """Return patches that cover the outer boundary, each boundary cell once (`outer_patches`)."""
         from meshonet.geometry.blocks.outer_patches import outer_patches
 
         named: list[list[Patch]] = [[] for _ in self.blocks]
@@ -213,7 +213,7 @@ class Grid(Connected):
         return outer
 
     def joined_ranges(self) -> list[list[tuple[Side, Range]]]:
-        """Return for every block the sides and ranges of nodes that are connected."""
+        """Return for each block the sides, and their index ranges, that are connected."""
         inside: list[list[tuple[Side, Range]]] = [[] for _ in self.blocks]
         for each in self.connections:
             for block, side, span in each.ends:
@@ -221,9 +221,10 @@ class Grid(Connected):
         return inside
 
     def walls(self) -> list[Patch]:
-        """Return patches named as walls; without these, a body's or south's and north's unnamed stretches.
+        """Return the patches of kind wall, and those of unknown kind on a body.
 
-        A grid of several blocks has walls only where they are named.
+        A four-sided grid of one block with no wall has those of unknown kind on south and north. In a grid of
+        several blocks only patches named as walls are walls.
         """
         outer = self.outer_patches()
         body = ("south",) if self.around_body else ()
@@ -233,7 +234,7 @@ class Grid(Connected):
         return [patch for patch in outer if patch.side in ("south", "north") and patch.kind == "other"]
 
     def with_nodes(self, nodes: Floats, *, finite: bool = False) -> Grid:
-        """Return the same grid with other nodes (ni, nj, 2) of the same counts."""
+        """Return the same grid with other nodes (ni, nj, 2), as many as before."""
         return replace(self, blocks=(Block(nodes, finite),))
 
     def with_provenance(self, **facts: Any) -> Grid:
@@ -252,18 +253,18 @@ class Grid(Connected):
         return quality
 
     def write(self, path: str | Path, *, to_format: str | None = None) -> None:
-        """Write the grid to a file, whole or not at all; the ending says the format (`meshonet.write`)."""
+        """Write the grid to a file, in the format of its extension, or none at all (`meshonet.write`)."""
         ABOVE["write"](self, path, to_format=to_format)
 
     def to_pyvista(self) -> Any:
-        """Return the grid as a `pyvista.StructuredGrid`, many blocks as a `pyvista.MultiBlock` of these.
+        """Return the grid as a `pyvista.StructuredGrid`, several blocks as a `pyvista.MultiBlock` of these.
 
-        What is in the plane has z = 0.
+        Planar grids get z = 0.
 
         Returns
         -------
         pyvista.StructuredGrid or pyvista.MultiBlock
-            The grid as a `pyvista.StructuredGrid`, many blocks as a `pyvista.MultiBlock` of these.
+            One structured grid for each block.
 
         Raises
         ------
@@ -282,7 +283,7 @@ class Grid(Connected):
 
 
 def _coordinates(nodes: Floats) -> list[Floats]:
-    """Return x, y, z, each (ni, nj, nk), of nodes; nk is 1 but in volumes, z 0 in the plane."""
+    """Return x, y, z of nodes, each (ni, nj, nk): nk is 1 except in volumes, z is 0 in the plane."""
     planes = [np.ascontiguousarray(nodes[..., axis]) for axis in range(nodes.shape[-1])]
     if form_of(nodes) == "plane":
         planes.append(np.zeros_like(planes[0]))

@@ -8,10 +8,10 @@ from meshonet.geometry.arrays import Floats
 
 
 def signed_volume(coordinates: Sequence[Floats]) -> float:
-    """Return the volume of a block of x, y, z, each (ni, nj, nk): negative where i, j, k are left-handed.
+    """Return the volume of a block of x, y, z, each (ni, nj, nk): negative if i, j, k are left-handed.
 
-    By the divergence theorem, V = 1/3 ∮ r·n dA, each quadrilateral of the six faces as its centre and half
-    the cross product of its diagonals: exact but for the curvature of these. Unit L³ of nodes in L.
+    By the divergence theorem, V = 1/3 ∮ r·n dA over the six faces. Each quadrilateral counts as its centre r
+    and half the cross product of its diagonals, which neglects its curvature. In L³ for nodes in L.
     """
     centre = [float(values[0, 0, 0]) for values in coordinates]
     total = 0.0
@@ -21,7 +21,7 @@ def signed_volume(coordinates: Sequence[Floats]) -> float:
             face = np.stack(
                 [values[at].astype(np.float64) - x for values, x in zip(coordinates, centre, strict=True)]
             )
-            # the directions of a face follow its own: (j, k), (k, i), (i, j)
+            # the order of a face's directions: (j, k), (k, i), (i, j)
             total += sign * flux_through(face if axis != 1 else face.swapaxes(1, 2))
     return total / 3.0
 

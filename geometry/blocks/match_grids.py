@@ -1,4 +1,4 @@
-"""Which grid of one set belongs to which of another."""
+"""Pairing the grids of one set with those of a reference set."""
 
 from collections.abc import Iterator
 from itertools import repeat
@@ -11,10 +11,10 @@ Pairing: TypeAlias = Literal["auto", "name", "order"]
 
 
 class GridMatcher:
-    """Finds for each of many grids the one it belongs to in a reference set, which is read as far as needed.
+    """Finds for each of many grids its partner in a reference set, which is read only as far as needed.
 
-    They are matched by ``name`` or ``order``; with ``auto`` a single grid serves all, several are matched by
-    name when they have different names and that of the first grid is among them, else by order.
+    Grids are paired by ``name`` or by ``order``. ``auto``: a single reference grid serves for all; several
+    are paired by name if they have different names, one of which is that of the first grid, else by order.
     """
 
     def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:
@@ -23,7 +23,7 @@ class GridMatcher:
         self._passed: list[Grid] = []
 
     def match(self, name: str) -> Grid:
-        """Return the grid that belongs to the one called `name`, or to the next one.
+        """Return the reference grid called `name`, or, paired by order, the next one.
 
         Raises InputError: there is none.
         """

@@ -1,17 +1,17 @@
-"""Where blocks touch each other or themselves, found by the places of their nodes.
+"""Where blocks touch each other or themselves, found from the positions of their nodes.
 
 ::
 
     +-------+-------+      A cell of a side (a quadrilateral of a volume, an edge of a surface patch) meets a
-    |   0   |   1   |      cell of another side where their corners coincide, in one of the eight (or two)
-    +---+---+-------+      orientations in which one lattice can lie on the other. Neighbouring cells that
-        | 2 |              meet in the same orientation make a connection, of whole sides or, as that of
-        +---+              blocks 0 and 2, of parts of them.
+    |   0   |   1   |      cell of another side if their corners coincide in one of the eight (or two)
+    +---+---+-------+      orientations in which one array of nodes can lie on the other. Neighbouring cells
+        | 2 |              that meet in the same orientation form a connection, of whole sides or of parts
+        +---+              of sides, as between blocks 0 and 2.
 
-Volumes that touch lie on different sides of their common face, and planar blocks, each on the left of its
-boundary, run along their common side in opposite directions: copies of a block are not joined to it. A side
-that is a line, or an edge that is a point, joins nothing. A side may be joined to itself, as the wake of a C
-grid is.
+Volumes that touch lie on different sides of their common face. Planar blocks lie on the left of their
+boundary, and so run along a common side in opposite directions: a copy of a block is not joined to it. A side
+collapsed to a line, or an edge collapsed to a point, joins nothing. A side may be joined to itself, as at the
+wake of a C grid.
 """
 
 from __future__ import annotations
@@ -33,22 +33,22 @@ from meshonet.geometry.polygon.corners import Indices
 AROUND: Mapping[Side, int] = {"west": -1, "east": 1, "south": 1, "north": -1}
 """Whether the nodes of a side of a planar block run counter-clockwise around it."""
 _DIRECTION = np.array([0.5403023, 0.6710117, 0.5076571])
-"""Cells are sorted along this direction, along which few grids have many of equal place."""
+"""Cells are sorted along this direction, in which few grids have many cells at the same position."""
 _MOST = 0.25
-"""Nodes farther apart than this part of an edge are different, however coarsely they were rounded."""
+"""Nodes farther apart than this fraction of an edge are different, whatever their rounding."""
 _FLAT = 1e-12
-"""Area of a cell, over the square of its longest edge, up to which it is a line."""
+"""Area of a cell, over the square of its longest edge, up to which it counts as a line."""
 
-_DECIMALS = range(3, 13)  # places behind the point that numbers may have been written with
+_DECIMALS = range(3, 13)  # decimal places that numbers may have been written with
 _DIGITS = range(5, 14)  # significant digits that numbers may have been written with
 _COUNTED = 400
-"""Values of which digits are counted, one after the other."""
+"""Number of values of which the digits are counted."""
 
 
 def meeting_sides(
     blocks: Sequence[Block], tolerance: float, without: Iterable[tuple[int, Side, Range]]
 ) -> list[Connection]:
-    """Return the connections of planar blocks, surface patches and volumes, as `find_connections` does."""
+    """Return the connections of planar blocks, surface patches or volumes, as `find_connections` does."""
     known = list(without)
     joined: list[Connection] = []
     for form in ("plane", "volume", "surface"):
@@ -99,7 +99,7 @@ class _SideCells:
         return self.corners.reshape(len(self.block), -1, self.corners.shape[-1])
 
     def reach(self, tolerance: float) -> Floats:
-        """Return how far nodes that are the same may be apart, (n,)."""
+        """Return the distance (n,) up to which nodes count as equal."""
         lengths = _edges(self.corners)
         length = np.where(lengths > 0, lengths, np.inf).min(axis=1)
         return np.minimum(np.maximum(tolerance * length, self.slack), _MOST * length)
@@ -148,7 +148,7 @@ def _edges(corners: Floats) -> Floats:
 
 
 def _extended(corners: Floats) -> NDArray[np.bool_]:
-    """Say for each cell of a side whether it is more than a point, or as a quadrilateral more than a line."""
+    """Say for each cell of a side whether it has an extent: an edge a length, a quadrilateral an area."""
     shape = corners.shape[: (corners.ndim - 1) // 2]
     flat = corners.reshape(-1, *corners.shape[len(shape) :])
     longest = _edges(flat).max(axis=1)
@@ -160,7 +160,7 @@ def _extended(corners: Floats) -> NDArray[np.bool_]:
 
 
 def _near(cells: _SideCells, tolerance: float) -> tuple[Indices, Indices]:
-    """Return pairs of cells, the first of the lower number, whose centres are in one place."""
+    """Return pairs of cells whose centres coincide, the cell of the lower number first."""
     reach, centre = cells.reach(tolerance), cells.flat.mean(axis=1)
     place = elementary.product(centre, _DIRECTION[: centre.shape[1]])
     row = np.argsort(place, kind="stable")
@@ -188,13 +188,13 @@ class _Group:
     orientation: tuple[int, ...]
 
     def rank(self, cells: _SideCells) -> tuple[bool, int, int, int]:
-        """Return what decides between groups that claim the same cells: a block is joined to itself first."""
+        """Return the rank among groups that claim the same cells: first those that join a block to itself."""
         a, b = self.own[0], self.donor[0]
         return bool(cells.block[a] != cells.block[b]), -len(self.own), int(a), int(b)
 
 
 def _groups(cells: _SideCells, own: Indices, donor: Indices, tolerance: float) -> Iterator[_Group]:
-    """Yield the pairs whose corners are the same, by sides, orientation and offset."""
+    """Yield the pairs with the same corners, grouped by sides, orientation and offset."""
     reach = cells.reach(tolerance)
     near = np.minimum(reach[own], reach[donor])
     directions, turns = cells.place.shape[1], np.array(list(AROUND.values()))
@@ -220,7 +220,7 @@ def _groups(cells: _SideCells, own: Indices, donor: Indices, tolerance: float) -
 
 
 def _rectangles(cells: _SideCells, group: _Group, open_: NDArray[np.bool_]) -> Iterator[Indices]:
-    """Yield the pairs of a group that make a rectangle each, of those that are `open_`."""
+    """Yield the pairs of a group that are still `open_`, one rectangle of them at a time."""
     if not open_.any():
         return
     place = cells.place[group.own]
@@ -232,7 +232,7 @@ def _rectangles(cells: _SideCells, group: _Group, open_: NDArray[np.bool_]) -> I
 
 
 def _connection(cells: _SideCells, group: _Group, part: Indices) -> Connection:
-    """Return the connection of pairs of cells, the side that comes first in `PLACES` of a block as own."""
+    """Return the connection of pairs of cells; its own side is the first by block and `PLACES`."""
     ends = []
     for numbers in (group.own[part], group.donor[part]):
         place = cells.place[numbers]
@@ -245,10 +245,10 @@ def _connection(cells: _SideCells, group: _Group, part: Indices) -> Connection:
 
 
 def rounding(values: Floats) -> Callable[[Floats], Floats]:
-    """Return the function from magnitudes (n,) to the last unit (n,) of coordinates like `values` (m,).
+    """Return the function from magnitudes (n,) to the unit (n,) of the last digit of such `values` (m,).
 
-    It is estimated from their digits. Files have numbers in single precision, with so many digits, or with so
-    many decimals: the same point of two blocks, computed twice and rounded then, differs by a unit of the
+    The unit is estimated from the digits of `values`: files have single precision, a fixed number of digits,
+    or of decimals. The same point of two blocks, computed twice and then rounded, differs by one unit of the
     last digit, which next to walls can be a large part of a cell.
 
     >>> unit = rounding(np.array([0.123457, 12.345679, 3.0]))  # written by %.6f

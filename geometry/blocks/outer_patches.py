@@ -1,11 +1,11 @@
-"""The outer boundary of a grid of blocks: the patch of each boundary cell, and the ranges of patches.
+"""The outer boundary of a multi-block grid: the patch of each boundary cell, and the ranges of patches.
 
 ::
 
     side of a block       owners of its cells         patches that cover it
     +--+--+--+--+--+
-    |     |joined  |      0  0 -2 -2 -2     0 0 . . .     the first from cell 0 to 2 and 0 to 1,
-    |wall +--+--+--+      0  0 -1 -1 -1     0 0 1 1 1     then one called by its side
+    |     |joined  |      0  0 -2 -2 -2     0 0 . . .     the first on cells 0 and 1 of both rows,
+    |wall +--+--+--+      0  0 -1 -1 -1     0 0 1 1 1     then one with the name of the side
     +--+--+--+--+--+
 """
 
@@ -20,20 +20,20 @@ from meshonet.geometry.blocks.block import PLACES, Range, face_counts
 from meshonet.geometry.blocks.patches import Patch
 
 JOINED, UNNAMED = -2, -1
-"""Owners of cells that are joined to others, and of those that no patch has."""
+"""Owner of cells that are connected to others, and of cells without a patch."""
 
 
 def listed_sides(counts: tuple[int, ...]) -> tuple[Side, ...]:
-    """Return the sides of a block with `counts` nodes, in the order in which its patches are listed."""
+    """Return the sides of a block with `counts` nodes per direction, in the order of its patches."""
     return SIDES if len(counts) == 2 else (*SIDES, *tuple(PLACES)[4:])
 
 
 def owners_of(
     patches: Sequence[Patch], counts: tuple[int, ...], inside: Iterable[tuple[Side, Range]], side: Side
 ) -> NDArray[np.intp]:
-    """Return which of a block's `patches` has each cell (n,) or (n, m) at a side; where several, the last.
+    """Return the index in `patches` of the patch of each cell (n,) or (n, m) at a side; the last of several.
 
-    `inside` are sides and ranges that are connected, whose cells are `JOINED`.
+    Cells in the connected sides and ranges `inside` are `JOINED`, cells without a patch `UNNAMED`.
     """
     nodes = face_counts(counts, side)
     owners = np.full([n - 1 for n in nodes], UNNAMED, dtype=np.intp)
@@ -52,10 +52,10 @@ def outer_patches(
     inside: Iterable[tuple[Side, Range]],
     block: int = 0,
 ) -> list[Patch]:
-    """Return the outer boundary of block number `block`, each cell at it in one of its `patches`.
+    """Return patches that cover the outer boundary of block number `block`, each boundary cell once.
 
-    Where patches overlap the later one counts; cells without one are called by their side. `counts` are the
-    nodes along each direction, `inside` the sides and ranges that are connected.
+    Where `patches` overlap the later one counts; cells without one get a patch with the name of their side.
+    `counts` are the numbers of nodes along each direction, `inside` the connected sides and ranges.
     """
     own = [patch for patch in patches if patch.block == block]
     inside = list(inside)
@@ -68,7 +68,7 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Yield owner and nodes of rectangles that cover the cells (n,) or (n, m), but for joined ones."""
+    """Yield owner and node range of rectangles that cover the cells (n,) or (n, m), except joined ones."""
     cells = owners.reshape(len(owners), -1)
     left = cells != JOINED
     while left.any():
@@ -82,7 +82,7 @@ def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
 
 
 def _run(flags: NDArray[np.bool_]) -> int:
-    """Return how many `flags` are set before the first that is not."""
+    """Return how many of the first `flags` are set, up to the first that is not."""
     return len(flags) if flags.all() else int(np.argmin(flags))
 
 

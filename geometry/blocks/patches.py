@@ -22,11 +22,11 @@ _SIGNS: tuple[tuple[Kind, str], ...] = (
     ("periodic", "periodic"),
     ("interface", "interface"), ("interface", "wake"),
 )  # fmt: skip
-"""Kinds of boundary, and what names of them have in them; the first that fits counts."""
+"""Kinds of boundary, and words in the names of their patches; the first that matches counts."""
 
 
 def kind_of(name: str) -> Kind:
-    """Return the kind of boundary that the name of a patch tells of.
+    """Return the kind of boundary that the name of a patch suggests.
 
     >>> kind_of("lower wall"), kind_of("slot 3")
     ('wall', 'other')
@@ -40,11 +40,11 @@ def kind_of(name: str) -> Kind:
 
 @dataclass(frozen=True)
 class Patch:
-    """Nodes ``start`` to ``stop``, both included, of one side of a block, under a name.
+    """Nodes ``start`` to ``stop``, both included, of one side of a block, with a name.
 
-    South and north count nodes along i, west and east along j; `across` is the first and last node along the
-    second direction of a side of a block of three, None all of it. The kind of boundary is derived from the
-    name unless set.
+    South and north count nodes along i, west and east along j. On a side of a volume, which has two
+    directions, `across` is the first and the last node along the second; None means all. The kind of boundary
+    is derived from the name unless it is set.
     """
 
     name: str
@@ -61,11 +61,11 @@ class Patch:
 
     @property
     def place(self) -> tuple[int, int]:
-        """Direction that its side is an end of, and which end (`meshonet.geometry.blocks.block.PLACES`)."""
+        """The direction normal to its side, and the end of it (`meshonet.geometry.blocks.block.PLACES`)."""
         return PLACES[self.side]
 
     def range(self, counts: tuple[int, ...]) -> Range:
-        """Return its nodes along each direction of a side with `counts` nodes."""
+        """Return the range of its nodes along each direction of its side, in a block with `counts` nodes."""
         along: Range = ((self.start, self.stop),)
         return along if len(counts) == 1 else (*along, self.across or (0, counts[1] - 1))
 
@@ -73,8 +73,8 @@ class Patch:
 def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tuple[Patch, ...]:
     """Return the default patches of a block of `topology`.
 
-    ``quad`` has its four sides, ``o`` a wall and a far field (west and east are the seam), ``c`` a wake of
-    `wake` cells on both sides of a wall, and a far field around them.
+    ``quad`` has its four sides; ``o`` a wall and a far field (west and east are the seam); ``c`` a wall
+    between two stretches of `wake` cells, and a far field around them.
     """
     i, j = ni - 1, nj - 1
     if topology == "quad":
@@ -93,9 +93,9 @@ def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tupl
 
 
 def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -> None:
-    """Raise InputError for a patch without a name, of an unknown block or side, or that leaves its side.
+    """Raise InputError for a patch without a name, of an unknown block or side, or past the end of its side.
 
-    `counts` are the nodes of every block along each direction.
+    `counts` are the numbers of nodes of each block along its directions.
     """
     for patch in patches:
         what, exists = f"patch {patch.name!r}", 0 <= patch.block < len(counts)

@@ -1,4 +1,4 @@
-"""The edges of a boundary with other node counts, spaced as they were."""
+"""The edges of a boundary resampled to other node counts, with the same node distribution."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -17,10 +17,10 @@ _ACROSS: tuple[Side, Side] = ("west", "east")
 
 
 def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
-    """Return `m` nodes (m, 2), at least 2, on the curve through `nodes` (n, 2), spaced by the same law.
+    """Return `m` nodes (m, 2), at least 2, on the curve through `nodes` (n, 2), distributed like these.
 
-    Arc length as a function of the place along the edge, 0 to 1, is kept; corners of the curve stay nodes as
-    far as `m` suffices; the end nodes, the same of a closed edge, are kept bitwise.
+    Arc length as a function of index / (n - 1) is preserved. Corners of the curve stay nodes as far as `m`
+    suffices; the end nodes are kept bitwise.
 
     >>> resample_edge(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), 5, closed=False)[:, 0].tolist()
     [0.0, 0.5, 1.0, 1.5, 2.0]
@@ -43,9 +43,10 @@ def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
 def resample_edges(
     edges: Mapping[Side, Floats], ni: int, nj: int, *, closed: bool, wake: int
 ) -> dict[Side, Floats]:
-    """Return the four `edges` of a block with ni nodes along xi and nj along eta.
+    """Return the four `edges` of a block resampled to ni nodes along xi and nj along eta.
 
-    The `wake` cells at each end of south, whose nodes are the same, get their share of the cells.
+    The two wakes, of `wake` cells at each end of south, share their nodes; they keep their fraction of the
+    cells.
 
     Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """
@@ -61,7 +62,7 @@ def resample_edges(
 
 
 def _marks(had: int, ni: int, wake: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Return the ends of wake, wall and wake, or of the whole side, among `had` nodes and among `ni`."""
+    """Return the end indices of wake, wall and wake, or of the whole side, among `had` and `ni` nodes."""
     if not wake:
         return (0, had - 1), (0, ni - 1)
     cells = max(round(wake * (ni - 1) / (had - 1)), 1)
@@ -71,7 +72,7 @@ def _marks(had: int, ni: int, wake: int) -> tuple[tuple[int, ...], tuple[int, ..
 
 
 def _in_pieces(side: Floats, ends: tuple[int, ...], places: tuple[int, ...], closed: bool) -> Floats:
-    """Return the nodes of `side`, each stretch between two `ends` resampled to lie between two `places`."""
+    """Return `side` resampled in pieces: the nodes between two `ends` come to lie between two `places`."""
     pieces = [
         resample_edge(side[a : b + 1], q - p + 1, closed=closed)
         for (a, b), (p, q) in zip(pairwise(ends), pairwise(places), strict=True)
@@ -82,7 +83,7 @@ def _in_pieces(side: Floats, ends: tuple[int, ...], places: tuple[int, ...], clo
 def resample_patches(
     patches: tuple[Patch, ...], had: tuple[int, int], has: tuple[int, int], wake: int
 ) -> tuple[Patch, ...]:
-    """Return the patches of a boundary whose counts of nodes along xi and eta change from `had` to `has`."""
+    """Return the patches of a boundary whose node counts along xi and eta change from `had` to `has`."""
     along_xi, along_eta = _marks(had[0], has[0], wake), _marks(had[1], has[1], 0)
 
     def moved(patch: Patch) -> Patch:

@@ -1,10 +1,10 @@
-r"""Planar grids turned about an axis in their plane: wedges, sectors and whole turns.
+r"""Planar grids revolved about an axis in their plane: wedges, sectors and full revolutions.
 
 ::
 
-         y ^     .------.           Planes of nodes stand at angles about the axis; the first is `bottom` and
-           |    / grid /|           the last `top`. Nodes on the axis stay there: a side on it becomes a line,
-           |   '------' |           the patch ``axis``. A wedge is one cell thick, half of it on each side of
+         y ^     .------.           Planes of nodes are at angles about the axis; the first is `bottom`, the
+           |    / grid /|           last `top`. Nodes on the axis stay there: a side on it collapses to a
+           |   '------' |           line, the patch ``axis``. A wedge is one cell thick, half on each side of
      axis -+----------------> x     the plane of the grid; a sector begins in that plane.
 """
 
@@ -34,13 +34,13 @@ AXIS = "axis"
 """Patch of sides that lie on the axis."""
 FLOWS: tuple[End, End] = (("inlet", "inlet"), ("outlet", "outlet"))
 """Ends of a sector that is flown through along the turn."""
-_ON_AXIS = 1e-12  # of the size of the grid: nodes nearer to the axis are on it
+_ON_AXIS = 1e-12  # over the size of the grid: nodes nearer to the axis are on it
 _MOST_PLANES = 10_000
 _LEAST_DEG = 1e-3
 
 
 class AxisLine(NamedTuple):
-    """A line in the plane: a point (x, y) on it and its direction."""
+    """A line in the plane: a point (x, y) on it, and its direction."""
 
     x: float = 0.0
     y: float = 0.0
@@ -53,16 +53,17 @@ X_AXIS = AxisLine()
 
 @dataclass(frozen=True)
 class Revolution:
-    """How a planar grid is turned about an axis.
+    """How a planar grid is revolved about an axis.
 
     Parameters
     ----------
     degrees : float
         Angle from the first plane to the last, up to 360.
     planes : int, optional
-        Planes of nodes, one more than cells; None: 2 up to `WEDGE_DEG`, then cells of up to `CELL_DEG`.
+        Number of planes of nodes, one more than cells. None: 2 up to `WEDGE_DEG`, else cells up to
+        `CELL_DEG`.
     axis : AxisLine, optional
-        In the plane of the grid; the x axis.
+        Axis in the plane of the grid; by default the x axis.
 
     Raises
     ------
@@ -87,32 +88,32 @@ class Revolution:
 
     @property
     def closed(self) -> bool:
-        """Whether it is a whole turn, whose last plane is the first."""
+        """Whether it is a full revolution, in which the last plane is the first."""
         return self.degrees == 360.0
 
     @property
     def count(self) -> int:
-        """Planes of nodes."""
+        """Number of planes of nodes."""
         if self.planes is not None:
             return self.planes
         return 2 if self.degrees <= WEDGE_DEG else math.ceil(self.degrees / CELL_DEG - 1e-9) + 1
 
     @property
     def wedge(self) -> bool:
-        """Whether it is a wedge: one cell, thin enough."""
+        """Whether it is a wedge: a single cell, and thin enough."""
         return self.count == 2 and self.degrees <= WEDGE_DEG
 
     @property
     def angles(self) -> Floats:
-        """Angles (planes,) in radians."""
+        """Angles (planes,) of the planes, in radians."""
         part = np.linspace(0.0, 1.0, self.count) - (0.5 if self.wedge else 0.0)
         return np.asarray(math.radians(self.degrees) * part)
 
 
 def revolution(degrees: float | None, planes: int | None, axis: AxisLine | None) -> Revolution | None:
-    """Return how something is turned about an axis, None without an angle.
+    """Return the revolution with these settings; None without an angle.
 
-    Raises InputError: an axis without an angle; as `Revolution`.
+    Raises InputError: an axis without an angle; the errors of `Revolution`.
     """
     if degrees is None:
         if axis is not None:
@@ -122,7 +123,7 @@ def revolution(degrees: float | None, planes: int | None, axis: AxisLine | None)
 
 
 class AxisFrame(NamedTuple):
-    """The axis as a point, its direction, and the direction (2,) from it to the grid."""
+    """A point of the axis, its direction, and the direction (2,) from it to the grid."""
 
     point: Floats
     along: Floats
@@ -131,14 +132,14 @@ class AxisFrame(NamedTuple):
     """Distance from the axis at which nodes are on it."""
 
     def places(self, nodes: Floats, angles: Floats) -> Floats:
-        """Return nodes (..., 3) of the plane (..., 2) at `angles`, which broadcast with them."""
+        """Return nodes (..., 3): planar ones (..., 2) rotated by `angles`, which broadcast with them."""
         s, r = (((nodes - self.point) * way).sum(axis=-1) for way in (self.along, self.away))
         r = np.where(np.abs(r) <= self.slack, 0.0, r)
         flat = self.point + self.along * s[..., None] + self.away * (r * cos(angles))[..., None]
         return np.concatenate([flat, (r * sin(angles))[..., None]], axis=-1)
 
     def motion(self, angle: float) -> Motion:
-        """Return the turn by an angle in radians."""
+        """Return the rotation by an angle in radians."""
         along, away = np.append(self.along, 0.0), np.append(self.away, 0.0)
         up, c, s = np.array([0.0, 0.0, 1.0]), math.cos(angle), math.sin(angle)
         turn = (
@@ -153,7 +154,7 @@ class AxisFrame(NamedTuple):
 
 
 def frame_of(points: Floats, axis: AxisLine) -> AxisFrame:
-    """Return the frame of an axis beside `points` (n, 2).
+    """Return the frame of an axis that lies beside `points` (n, 2).
 
     Raises InputError: points on both sides of the axis, or all on it.
     """
@@ -173,10 +174,10 @@ def frame_of(points: Floats, axis: AxisLine) -> AxisFrame:
 
 
 def revolved(grid: Grid, turn: Revolution, ends: tuple[End, End] | None = None) -> Grid:
-    """Return a planar grid turned about an axis.
+    """Return a planar grid revolved about an axis.
 
-    Ends of a wedge are patches ``wedge1`` and ``wedge2``; those of a sector are periodic, or the patches
-    `ends`; a whole turn is connected to itself.
+    The ends of a wedge are the patches ``wedge1`` and ``wedge2``. The ends of a sector are periodic, or the
+    patches `ends`. A full revolution is connected to itself.
 
     Raises InputError: blocks that are not planar, periodic sides, a grid on both sides of the axis.
     """
@@ -197,7 +198,7 @@ def revolved(grid: Grid, turn: Revolution, ends: tuple[End, End] | None = None) 
 
 
 def _turned(plane: Floats, frame: AxisFrame, turn: Revolution) -> Floats:
-    """Return nodes (ni, nj, nk, 3), in planar layout, of a plane (ni, nj, 2)."""
+    """Return nodes (ni, nj, nk, 3), in planar layout, from a plane of nodes (ni, nj, 2)."""
     nodes = frame.places(plane[:, :, None], turn.angles)
     if turn.closed:
         nodes[:, :, -1] = nodes[:, :, 0]
@@ -205,7 +206,7 @@ def _turned(plane: Floats, frame: AxisFrame, turn: Revolution) -> Floats:
 
 
 def _with_axis(grid: Grid, frame: AxisFrame) -> Grid:
-    """Return the grid whose outer patches on the axis are called so."""
+    """Return the grid with its outer patches on the axis renamed ``axis``."""
     patches = []
     for patch in grid.outer_patches():
         line = face_of(grid.blocks[patch.block].nodes, patch.side)[patch.start : patch.stop + 1]
@@ -216,7 +217,7 @@ def _with_axis(grid: Grid, frame: AxisFrame) -> Grid:
 
 
 def _periodic(grid: Grid, motion: Motion) -> Grid:
-    """Return a grid whose bottoms are periodic with its tops."""
+    """Return the grid with each bottom made periodic with its top."""
     joined: list[Connection] = []
     for number, block in enumerate(grid.blocks):
         whole = ((0, block.counts[0] - 1), (0, block.counts[1] - 1))
@@ -226,7 +227,7 @@ def _periodic(grid: Grid, motion: Motion) -> Grid:
 
 
 def bent(nodes: Sequence[Floats], turn: Revolution) -> list[Floats]:
-    """Return volumes (ni, nj, nk, 3) whose z becomes an angle about an axis, of all z together `degrees`.
+    """Return volumes (ni, nj, nk, 3) bent about an axis: z becomes an angle, its whole range `turn.degrees`.
 
     Raises InputError: nodes on both sides of the axis.
     """

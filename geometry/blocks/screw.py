@@ -1,4 +1,4 @@
-"""A rigid motion in space by axis, centre, angle and shift, as flow solvers describe periodic sides."""
+"""A rigid motion in space as axis, centre, angle and shift, as flow solvers describe periodic sides."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import solve
 
 _NEARLY_HALF = 3.1
-"""Angles beyond which the part that is not symmetric is too small to have a direction."""
+"""Angle beyond which the antisymmetric part of a rotation is too small to give the axis."""
 
 
 class Screw(NamedTuple):
-    """A turn by `angle` radians about `axis` (3,), of length 1, through `centre` (3,), then `shift` (3,).
+    """A rotation by `angle` radians about the unit `axis` (3,) through `centre` (3,), then `shift` (3,).
 
-    Without a turn the angle is 0, the axis z and the centre the origin; with one, the shift is along the axis
-    and the centre is the point of the axis nearest to the origin. `angles` (3,) are those of the turn about
-    x, then y, then z.
+    Without a rotation the angle is 0, the axis z and the centre the origin. With one, the shift is along the
+    axis and the centre is the point of the axis nearest to the origin. `angles` (3,) are those of successive
+    rotations about x, y and z.
     """
 
     angle: float
@@ -32,12 +32,10 @@ class Screw(NamedTuple):
 
 
 def screw_of(motion: Motion) -> Screw:
-    """Return a motion, of the plane z = 0 or of space, as a screw.
+    """Return a motion of the plane z = 0 or of space as a screw (Chasles' theorem).
 
-    Its axis points to the positive side of its largest coordinate, and its angle may be negative.
-
-    Chasles' theorem; the axis is the part of the rotation that is not symmetric, or at half a turn the
-    longest column of R + 1.
+    The largest coordinate of the axis is positive; the angle may be negative. The axis comes from the
+    antisymmetric part of the rotation R; at half a turn it is the longest column of R + 1.
     """
     turn, shift = np.eye(3), np.zeros(3)
     shift[: len(motion.shift)] = motion.shift

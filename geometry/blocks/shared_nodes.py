@@ -1,4 +1,4 @@
-"""One number for every node of a grid of blocks, the same where connected sides share it.
+"""Global node numbers of a multi-block grid: nodes that connections join have the same number.
 
 ::
 
@@ -25,16 +25,16 @@ _PASSES = 9
 def shared_nodes(
     counts: Sequence[tuple[int, ...]], connections: Sequence[Connection], *, periodic: bool = False
 ) -> tuple[Indices, ...]:
-    """Return numbers from 0 on for the nodes of blocks with `counts` nodes along their directions.
+    """Return global numbers, from 0, of the nodes of blocks with `counts` nodes along their directions.
 
-    Nodes that connections join, directly or through others, have one number; numbers ascend in the order in
-    which nodes first appear, block after block, the last index fastest. Both sides of a periodic connection
-    have numbers of their own unless `periodic` says that they are one.
+    Nodes that connections join, directly or through others, have one number. Numbers ascend in the order in
+    which nodes first appear, block after block, the last index fastest. The two sides of a periodic
+    connection have separate numbers unless `periodic`.
     """
     ends, numbers = numbered(counts)
     joined = [each.pairs(numbers) for each in connections if periodic or each.transform is None]
     changed = True
-    while changed:  # as often as blocks meet in one node
+    while changed:  # one pass more for each further block that meets at a node
         changed = False
         for own, donor in joined:
             least = np.minimum(own, donor)
@@ -50,7 +50,7 @@ def shared_nodes(
 
 
 def numbered(counts: Sequence[tuple[int, ...]]) -> tuple[Indices, list[Indices]]:
-    """Return where the nodes of each block begin, and end, among all of them, and their numbers."""
+    """Return the offsets of the blocks in a list of all their nodes, and each block's node numbers in it."""
     ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
     numbers = [np.arange(a, b).reshape(n) for a, b, n in zip(ends, ends[1:], counts, strict=False)]
     return ends, numbers
@@ -59,7 +59,7 @@ def numbered(counts: Sequence[tuple[int, ...]]) -> tuple[Indices, list[Indices]]
 def node_table(
     blocks: Sequence[Block], connections: Sequence[Connection]
 ) -> tuple[Floats, tuple[Indices, ...]]:
-    """Return all nodes (n, d) of `blocks`, those that `connections` join once, and their `shared_nodes`."""
+    """Return all nodes (n, d) of `blocks`, joined ones once, and the number of each block's nodes in them."""
     numbers = shared_nodes([block.counts for block in blocks], connections)
     if len(blocks) == 1 and not connections:
         return np.ascontiguousarray(blocks[0].nodes.reshape(-1, blocks[0].nodes.shape[-1])), numbers
@@ -72,7 +72,7 @@ def node_table(
 def places_among(
     pairs: Sequence[tuple[Indices, Indices]],
 ) -> tuple[Indices, list[tuple[Indices, Indices]]]:
-    """Return the distinct numbers in `pairs`, ascending, and the pairs as places (n,) among these."""
+    """Return the distinct numbers in `pairs`, ascending, and the pairs as indices (n,) into these."""
     flat = [nodes.ravel() for pair in pairs for nodes in pair]
     used, where = np.unique(np.concatenate(flat), return_inverse=True)
     parts = np.split(where.ravel(), np.cumsum([len(nodes) for nodes in flat])[:-1])
@@ -80,10 +80,10 @@ def places_among(
 
 
 def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indices:
-    """Return for each of `count` nodes the first that it is joined to, directly or through others."""
+    """Return for each of `count` nodes the lowest that it is joined to, directly or through others."""
     label = np.arange(count)
     changed = True
-    while changed:  # as often as blocks meet in one node
+    while changed:  # one pass more for each further block that meets at a node
         before = label.copy()
         for own, donor in pairs:
             least = np.minimum(label[own], label[donor])
@@ -95,9 +95,10 @@ def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indic
 
 
 def with_equal_nodes(blocks: Sequence[Block], connections: Sequence[Connection]) -> tuple[Block, ...]:
-    """Return `blocks` with the nodes that `connections` join made equal, bitwise.
+    """Return `blocks` with the nodes that `connections` join made bitwise equal.
 
-    Joined nodes become the first of them; those of the second of two periodic sides the first ones moved.
+    Joined nodes take the coordinates of the first of them; the second of two periodic sides is the first
+    moved.
     """
     if not connections:
         return tuple(blocks)
@@ -124,7 +125,7 @@ def with_equal_nodes(blocks: Sequence[Block], connections: Sequence[Connection])
 def _equal(
     nodes: Floats, pairs: Sequence[tuple[Indices, Indices]], connections: Sequence[Connection]
 ) -> Floats:
-    """Return `nodes` (n, d), each as the first of those that it is joined to, directly or through others."""
+    """Return `nodes` (n, d), each equal to the first that it is joined to, directly or through others."""
     fixed = [pair for pair, each in zip(pairs, connections, strict=True) if each.transform is None]
     label = joined_labels(len(nodes), fixed)
     nodes = nodes[label]

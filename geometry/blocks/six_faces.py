@@ -1,9 +1,9 @@
-"""The boundary of a block of volume: six faces that share twelve edges.
+"""The boundary of a volume: six faces that share twelve edges.
 
 ::
 
-    west, east (nj, nk)      i = 0, ni-1          a face runs along the directions of the block
-    south, north (ni, nk)    j = 0, nj-1          that it is no end of, in their order
+    west, east (nj, nk)      i = 0, ni-1          the indices of a face are those of the block
+    south, north (ni, nk)    j = 0, nj-1          other than its own, in the same order
     bottom, top (ni, nj)     k = 0, nk-1
 """
 
@@ -30,18 +30,18 @@ FACES: tuple[Side, ...] = tuple(PLACES)
 
 @dataclass(frozen=True, eq=False)
 class SixFaces:
-    """Nodes of the faces of a volume, in any unit of length; validates itself.
+    """Nodes of the six faces of a volume, in any unit of length; they are checked when this is made.
 
     Parameters
     ----------
     west, east : (nj, nk, 3)
     south, north : (ni, nk, 3)
     bottom, top : (ni, nj, 3)
-    name : of the shape.
-    patches : the names of the sides, of `meshonet.geometry.blocks.grid.Grid`.
-    notes : what was done to the nodes, sentences for users.
+    name : name of the shape.
+    patches : names of the sides, as in `meshonet.geometry.blocks.grid.Grid`.
+    notes : sentences for users that say how nodes were changed.
 
-    Raises InputError: counts that do not go together; nodes of a shared edge that differ in any bit.
+    Raises InputError: node counts that disagree; nodes of a shared edge that are not bitwise equal.
     """
 
     west: Floats
@@ -78,20 +78,20 @@ class SixFaces:
 
     @property
     def counts(self) -> tuple[int, int, int]:
-        """Nodes along each direction."""
+        """Number of nodes along each direction."""
         return self.bottom.shape[0], self.bottom.shape[1], self.west.shape[1]
 
     @property
     def faces(self) -> tuple[Floats, ...]:
-        """The six, in the order of `FACES`."""
+        """The six faces, in the order of `FACES`."""
         return self.west, self.east, self.south, self.north, self.bottom, self.top
 
     def edge(self, side: Side, second: Side) -> Floats:
-        """Return the nodes (n, 3) of a face where it meets a second one, a view."""
+        """Return a view of the nodes (n, 3) of a face on its edge with a second face."""
         return edge_of(getattr(self, side), side, second)
 
     def steps_inwards(self, side: Side, second: Side) -> Floats:
-        """Return the steps (n, 3) of a face from where it meets a second one, along that one's direction."""
+        """Return the steps (n, 3) from the first to the second row of a face at a second, in index order."""
         axis, end = PLACES[second]
         rows = np.moveaxis(getattr(self, side), axis - (axis > PLACES[side][0]), 0)
         return np.asarray(rows[1] - rows[0] if end == 0 else rows[-1] - rows[-2])
@@ -104,7 +104,7 @@ class SixFaces:
         return math.hypot(*(high - low))
 
     def edges_along(self, axis: int) -> list[Floats]:
-        """Return the four edges (n, 3) along a direction.
+        """Return the four block edges (n, 3) along a direction.
 
         They are at the (low, low), (high, low), (low, high) and (high, high) ends of the other two.
         """
@@ -114,13 +114,13 @@ class SixFaces:
         return [self.edge(side, other) for other in second for side in first]
 
     def grid(self, nodes: Floats, provenance: dict[str, object] | None = None) -> Grid:
-        """Return the grid of nodes (ni, nj, nk, 3) inside, with the patches of the faces."""
+        """Return the grid of nodes (ni, nj, nk, 3) between these faces, with their patches."""
         block = Block(nodes, finite=True)
         patches = self.patches or _sides(block.counts)
         return Grid((block,), patches, (), self.name, provenance or {})
 
     def resampled(self, counts: tuple[int, int, int]) -> SixFaces:
-        """Return faces with other counts, by cubic splines through the nodes, spaced by the same laws.
+        """Return the faces with other node counts, by cubic splines, with the same node distributions.
 
         Raises InputError: fewer than 2 nodes along a direction.
         """
@@ -134,9 +134,9 @@ class SixFaces:
         )
 
     def at(self, knots: list[Floats], places: list[Floats]) -> SixFaces:
-        """Return faces at other parameters: nodes are at `knots` along each direction, wanted at `places`.
+        """Return the faces at other parameters: nodes are at `knots` per direction and wanted at `places`.
 
-        Both rise from 0 to 1; corners are kept, and what is at an end of `places` stays on its edge.
+        Both lists increase from 0 to 1. Corners are kept, and nodes of an edge stay on that edge.
         """
         made: dict[Side, Floats] = {}
         for side in FACES:
@@ -150,7 +150,7 @@ class SixFaces:
         return SixFaces(west, east, south, north, bottom, top, self.name, (), self.notes)
 
     def _scaled(self, counts: tuple[int, int, int]) -> tuple[Patch, ...]:
-        """Return the patches where they cover whole sides; none where they do not."""
+        """Return the patches for other node counts if each covers a whole side; otherwise none."""
         whole = len({patch.side for patch in self.patches}) == len(self.patches)
         if not whole:
             return ()
@@ -168,13 +168,13 @@ def edges() -> Iterator[tuple[Side, Side]]:
 
 
 def edge_of(face: Floats, side: Side, second: Side) -> Floats:
-    """Return the nodes (n, 3) of the face at a side where it meets a second one, a view."""
+    """Return a view of the nodes (n, 3) of the face at a side on its edge with a second face."""
     axis, end = PLACES[second]
     return np.asarray(np.moveaxis(face, axis - (axis > PLACES[side][0]), 0)[end])
 
 
 def share_edges(faces: dict[Side, Floats]) -> None:
-    """Give nodes of shared edges the same bits, those of the face that comes first."""
+    """Make shared edges bitwise equal, in place: each takes the nodes of the face that comes first."""
     for side in FACES:
         faces[side] = np.array(faces[side])
     for side, second in edges():
@@ -182,10 +182,10 @@ def share_edges(faces: dict[Side, Floats]) -> None:
 
 
 def place_of(node: Floats) -> str:
-    """Return the text ``x=0.1, y=0.2, z=0.3`` of a node (3,)."""
+    """Return the position of a node (3,) as text, ``x=0.1, y=0.2, z=0.3``."""
     return ", ".join(f"{name}={value:.6g}" for name, value in zip("xyz", node, strict=True))
 
 
 def _sides(counts: tuple[int, ...]) -> tuple[Patch, ...]:
-    """Return the sides of a block with `counts` nodes along its directions as patches of their names."""
+    """Return one patch for each side of a block with `counts` nodes, with the name of the side."""
     return tuple(Patch(side, side, 0, face_counts(counts, side)[0] - 1) for side in PLACES)

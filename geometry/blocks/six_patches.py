@@ -1,4 +1,4 @@
-"""The six faces of a volume: those of a block, or patches in any order put together by position."""
+"""The six faces of a volume: those of a block, or six patches in any order, matched by position."""
 
 from __future__ import annotations
 
@@ -19,17 +19,18 @@ from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.corners import Indices
 
 TOLERANCE = 1e-6
-"""How far apart nodes of a shared edge may be, in the diagonal of the box around all."""
-_NEAR = 0.2  # how far apart corners that belong together may be, in the shortest side of a patch
+"""Largest distance between nodes of a shared edge, over the diagonal of the bounding box."""
+_NEAR = 0.2  # largest distance between matching corners, over the shortest side of a patch
 
 
 def six_faces(grid: Grid) -> SixFaces:
     """Return the boundary of a volume: the outer faces of one block, or six patches in any order.
 
-    Patches are matched by position; where shared edges differ by no more than a millionth of the size, nodes
-    of the second become those of the first, and a note says so.
+    Where shared edges differ by no more than a millionth of the size, the second takes the nodes of the
+    first, and a note says so.
 
-    Raises InputError: neither of both; patches that do not close, with the edge and its gap.
+    Raises InputError: neither one block nor six patches; patches that do not close, with the edge and its
+    gap.
     """
     volumes = [block for block in grid.blocks if len(block.counts) == 3]
     if len(grid.blocks) == 1 and volumes:
@@ -43,17 +44,17 @@ def six_faces(grid: Grid) -> SixFaces:
 
 
 def matched_patches(grid: Grid) -> SixFaces:
-    """Return the faces of the volume that the six patches of `grid` close, each (n, m, 3).
+    """Return the faces of the volume that the six patches of `grid`, each (n, m, 3), enclose.
 
-    Patches in the order west, east, south, north, bottom, top keep their places and directions; of others the
-    first becomes the bottom. The volume is right-handed.
+    Patches in the order west, east, south, north, bottom, top keep their sides and directions; otherwise the
+    first patch becomes the bottom. The volume is right-handed.
 
-    Raises InputError: corners that do not meet in threes; edges of other counts, or farther apart than
-    `TOLERANCE`, with the patches and the place.
+    Raises InputError: corners that do not meet in threes; shared edges with different node counts, or farther
+    apart than `TOLERANCE`, with the patches and the place.
     """
     patches = [block.nodes for block in grid.blocks]
     vertices = _vertices(patches)
-    # each of the first of pairs shares vertices with all but the second
+    # patches 0, 2 and 4 each share no vertex with their opposite patch only
     apart = [[j for j in range(6) if not np.isin(vertices[j], vertices[k]).any()] for k in (0, 2, 4)]
     first = 4 if apart == [[1], [3], [5]] else 0
     faces, order = _arranged(patches, vertices, first, turned=False)
@@ -65,7 +66,7 @@ def matched_patches(grid: Grid) -> SixFaces:
 
 
 def _vertices(patches: list[Floats]) -> Indices:
-    """Return the number of the vertex, 0 to 7, at each corner (6, 2, 2) of the patches.
+    """Return the vertex number, 0 to 7, of each corner (6, 2, 2) of the patches.
 
     Raises InputError: corners do not meet in threes.
     """
@@ -89,9 +90,10 @@ def _vertices(patches: list[Floats]) -> Indices:
 def _arranged(
     patches: list[Floats], vertices: Indices, first: int, *, turned: bool
 ) -> tuple[dict[Side, Floats], dict[Side, int]]:
-    """Return the faces with patch `first` as the bottom, its directions i and j, or `turned` j and i.
+    """Return the faces with patch `first` as the bottom, its directions being i and j, or `turned` j and i.
 
-    Also which patch each is. Raises InputError: the patches share vertices as no volume's do.
+    Also the index of the patch of each face. Raises InputError: patches that share vertices as no volume's
+    do.
     """
     bottom = vertices[first].T if turned else vertices[first]
     lattice = np.empty((2, 2, 2), dtype=np.intp)
@@ -115,7 +117,7 @@ def _arranged(
 
 
 def _above(vertices: Indices, first: int, vertex: int) -> int:
-    """Return the vertex that an edge joins to one of patch `first`, and that is not of that patch."""
+    """Return the vertex outside patch `first` that an edge joins to the given one of its vertices."""
     joined = set()
     for corners in np.delete(vertices, first, axis=0):
         for a, b in np.argwhere(corners == vertex):
@@ -134,7 +136,7 @@ def _turns(nodes: Floats, corners: Indices) -> Iterator[tuple[Floats, NDArray[np
 
 
 def _volume(faces: dict[Side, Floats]) -> float:
-    """Return the volume inside: negative where the directions are left-handed."""
+    """Return the enclosed volume; it is negative if the directions are left-handed."""
     total, centre = 0.0, np.mean([face.mean(axis=(0, 1)) for face in faces.values()], axis=0)
     for side, (axis, end) in PLACES.items():
         x = np.moveaxis(faces[side] - centre, -1, 0)
@@ -144,9 +146,9 @@ def _volume(faces: dict[Side, Floats]) -> float:
 
 
 def _closed(faces: dict[Side, Floats], order: dict[Side, int]) -> tuple[str, ...]:
-    """Make shared edges equal, in place; return a note if that moved nodes.
+    """Make shared edges bitwise equal, in place; return a note if that moved nodes.
 
-    Raises InputError: other counts, or a gap.
+    Raises InputError: different node counts, or a gap.
     """
     size = math.hypot(*np.ptp(np.concatenate([face.reshape(-1, 3) for face in faces.values()]), axis=0))
     widest, where = 0.0, ""

@@ -3,11 +3,11 @@
 ::
 
     fine      o--o--o--o--o--o--o--o--o       nine nodes, eight cells
-    k = 2     o-----o-----o-----o-----o       five of them, which the members of a family share
+    k = 2     o-----o-----o-----o-----o       five of the same nodes, four cells
 
         north                 west                turned: old east becomes south, old west north, old
-    west     east   ->   south    north           south west and old north east; the latter two are
-        south                 east                counted from their other end
+    west     east   ->   south    north           south west and old north east; nodes of the latter
+        south                 east                two are counted from their other end
 """
 
 import math
@@ -33,13 +33,12 @@ _COUNTED_BACK = ("south", "north")
 
 
 def coarser_grid(grid: Grid, k: int) -> Grid:
-    """Return the grid of every `k`-th node along all directions, its patches along.
+    """Return the grid of every `k`-th node along all directions, with its patches.
 
-    Of many blocks, in the plane or in space, every one is made coarser, and connections join what is left of
-    their nodes.
+    In a multi-block grid every block is coarsened, and its connections are kept.
 
-    Raises InputError: `k` does not divide the cells along a direction, or a patch or connection would lose
-    an end, or the outline of a planar grid a corner.
+    Raises InputError: `k` does not divide the number of cells along a direction; or the end of a patch or
+    connection, or a corner of the outline of a planar grid, would be lost.
     """
     for number, block in enumerate(grid.blocks):
         with in_place(f"block {number}" if grid.topology == "blocks" else ""):
@@ -62,7 +61,7 @@ def coarser_grid(grid: Grid, k: int) -> Grid:
 
 
 def coarser_boundary(boundary: Boundary, k: int) -> Boundary:
-    """Return the boundary of every `k`-th node, as `coarser_grid` does of a grid."""
+    """Return the boundary of every `k`-th node, with its patches (see `coarser_grid`)."""
     _check((boundary.ni, boundary.nj), k)
     sides = ((side, 0, getattr(boundary, side), boundary.periodic) for side in SIDES)
     _check_corners(_corners_of(sides), k, math.gcd(boundary.ni - 1, boundary.nj - 1))
@@ -75,7 +74,7 @@ _Corners: TypeAlias = list[tuple[str, int, Floats]]
 
 
 def _corners_of_patches(grid: Grid) -> _Corners:
-    """Return the corners inside patches, in space inside walls; ends of patches are looked after as such."""
+    """Return the corners inside patches, in volumes inside walls; ends of patches are checked separately."""
     if grid.form != "plane":
         walls = (patch for patch in grid.patches if patch.kind == "wall" and grid.form == "volume")
         return [corner for patch in walls for corner in _corners_in_space(grid, patch)]
@@ -106,7 +105,7 @@ def _corners_in_space(grid: Grid, patch: Patch) -> _Corners:
 
 
 def _corners_of(lines: Iterable[tuple[Side, int, Floats, bool]]) -> _Corners:
-    """Return the corners of lines of nodes (n, 2): their sides, first nodes and whether they are closed."""
+    """Return the corners of lines of nodes (n, 2), given as side, first node, nodes, and whether closed."""
     found: _Corners = []
     for side, first, nodes, ring in lines:
         closed = ring and side in _COUNTED_BACK and np.array_equal(nodes[0], nodes[-1])
@@ -116,7 +115,7 @@ def _corners_of(lines: Iterable[tuple[Side, int, Floats, bool]]) -> _Corners:
 
 
 def _check_corners(corners: _Corners, k: int, kept: int) -> None:
-    """Raise InputError for a corner that every `k`-th node leaves out; `kept` divides all counts of cells."""
+    """Raise InputError if a corner is not a `k`-th node; `kept` divides all counts of cells."""
     lost = [each for each in corners if each[1] % k]
     if not lost:
         return
@@ -163,11 +162,11 @@ def _coarser_patches(patches: tuple[Patch, ...], k: int) -> tuple[Patch, ...]:
 
 
 def normalised(grid: Grid) -> Grid:
-    """Return `grid` moved, scaled and, around a body, turned to unit size.
+    """Return `grid` moved and scaled to unit size and, around a body, rotated.
 
-    Of an O or C grid the trailing edge, where xi begins on the body, comes to (1, 0), and the farthest node
-    of the body from it to (0, 0). Of a four-sided grid, of many blocks, or in space, the lower left corner of
-    its box comes to the origin and the longest side of the box becomes 1.
+    In an O or C grid the trailing edge, where xi begins on the body, comes to (1, 0), and the node of the
+    body farthest from it to (0, 0). In any other grid the lower left corner of the bounding box comes to the
+    origin and the longest side of the box becomes 1.
 
     Raises InputError: the body has no length.
     """
@@ -180,7 +179,7 @@ def normalised(grid: Grid) -> Grid:
     square = ax * ax + ay * ay
     if not square > 0:
         raise InputError("the body has no length", "check that its side is the south one")
-    # written out, not as a matrix product: nodes that coincide have to go on doing so bitwise
+    # written out, not a matrix product: coincident nodes must stay bitwise equal
     x, y = grid.x - leading[0], grid.y - leading[1]
     nodes = np.stack([(x * ax + y * ay) / square, (y * ax - x * ay) / square], axis=-1)
     return grid.with_nodes(nodes)
@@ -193,16 +192,16 @@ def _normalised_blocks(grid: Grid) -> Grid:
     connections = []
     for each in grid.connections:
         motion = each.transform
-        if motion:  # of these nodes less `low`, over `size`
+        if motion:  # for nodes minus `low`, divided by `size`
             motion = replace(motion, shift=tuple(((motion(low) - low) / size).tolist()))
         connections.append(replace(each, transform=motion))
-    # periodic sides differ by rounding where both were moved and scaled
+    # both sides of a periodic connection were moved and scaled, and now differ by rounding
     equal = with_equal_nodes(blocks, connections)
     return replace(grid, blocks=equal, connections=tuple(connections))
 
 
 def turned(grid: Grid) -> Grid:
-    """Return `grid` with node (i, j) at (j, ni-1-i), its patches along; of many blocks, each of them.
+    """Return `grid` with node (i, j) at (j, ni-1-i), each block by itself, with its patches.
 
     Raises InputError: an O or C grid, whose xi runs around the body by definition.
     """
@@ -218,7 +217,7 @@ def turned(grid: Grid) -> Grid:
 
 
 def turned_patch(patch: Patch, last: int) -> Patch:
-    """Return a patch of a block whose last node along xi has the number `last`, turned as `turned` does."""
+    """Return a patch rotated as `turned` does; `last` is the index of the last node of its block along xi."""
     side, (start, stop) = _turned_stretch(patch.side, (patch.start, patch.stop), last)
     return replace(patch, side=side, start=start, stop=stop)
 
@@ -233,7 +232,7 @@ def _turned_connection(each: Connection, last: list[int]) -> Connection:
 
 
 def _turned_stretch(side: Side, span: tuple[int, int], last: int) -> tuple[Side, tuple[int, int]]:
-    """Return where a stretch of a side is once its block is turned; `last` is the last node along xi."""
+    """Return the new side and range of a stretch of a side once its block is `turned`; `last` as above."""
     if side in _COUNTED_BACK:
         span = last - span[1], last - span[0]
     return _SIDES[side], span

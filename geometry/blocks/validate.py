@@ -1,12 +1,12 @@
-"""Checks that the edges of a boundary neither cross nor touch: no grid can be made inside those that do.
+"""Checks that the edges of a boundary neither cross nor touch: if they do, it encloses no valid grid.
 
 ::
 
     quad   one closed line: south, east, north, west      o   two: the body, and the far field around it
     c      three: the body, its wake, and west, north and east around both
 
-Lines that meet where they are meant to, a wake and its body for instance, do not cross; nor do opposite
-sides of a quad that are one line, the cut of a grid that goes round.
+Lines may meet where they share a node by construction, such as a body and its wake. Opposite sides of a quad
+may also coincide, as the cut of a grid that goes all the way round.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ if TYPE_CHECKING:
     from meshonet.geometry.blocks.boundary import Boundary
 
 REMEDY = "correct these points: no grid can be made inside edges that cross"
-_MOST = 4096  # crossings looked at: those where lines are joined come among them and do not count
+_MOST = 4096  # crossings examined; those at common ends of lines are among them and do not count
 _SEAM = 1e-6
-"""Opposite sides are one line when they are no farther apart than this, in lengths of their shortest cell."""
+"""Opposite sides coincide up to this distance, over the length of their shortest cell."""
 
 
 def check_edges(boundary: Boundary) -> None:
-    """Raise InputError, with the place, when edges of `boundary` cross or touch, or a body lies outside."""
+    """Raise InputError, with the place, if edges cross or touch, or if a body lies outside its far field."""
     if not boundary.around_body and not find_crossings(boundary.outline(), limit=1):
         return
     lines = _lines(boundary)
     path = np.concatenate(lines)
     joints = (
         np.cumsum(list(map(len, lines[:-1])), dtype=np.intp) - 1
-    )  # segments that only lead to the next line
+    )  # segments that only join one line to the next
     ends = path[np.concatenate([[0], joints, joints + 1, [-1]])]
     crossings = find_crossings(path, closed=False, limit=_MOST)
     for crossing in sorted(crossings, key=attrgetter("first", "second")):
@@ -58,7 +58,7 @@ def _lines(boundary: Boundary) -> list[Floats]:
     south, north, west, east = boundary.south, boundary.north, boundary.west, boundary.east
     if boundary.periodic or _coincide(west, east):
         return [south, north]
-    wake = boundary.wake or max(wake_nodes(south) - 1, 0)  # a quad may have a cut that nobody declared
+    wake = boundary.wake or max(wake_nodes(south) - 1, 0)  # a quad may have a cut that was not declared
     if wake:
         outer = np.concatenate([west, north[1:], east[-2::-1]])
         return [south[wake : len(south) - wake], south[: wake + 1], outer]
@@ -74,7 +74,7 @@ def _coincide(a: Floats, b: Floats) -> bool:
 
 
 def _shares_end(path: Floats, crossing: Crossing, ends: Floats) -> bool:
-    """Return whether two segments have nothing in common but a node that is one of the `ends` of lines."""
+    """Return whether two segments have only a node in common, which is one of the `ends` of lines."""
     (a, b), (c, d) = path[crossing.first : crossing.first + 2], path[crossing.second : crossing.second + 2]
     shared = [(p, q - p, s - p) for p, q in ((a, b), (b, a)) for r, s in ((c, d), (d, c)) if (p == r).all()]
     if len(shared) != 1:
@@ -84,7 +84,7 @@ def _shares_end(path: Floats, crossing: Crossing, ends: Floats) -> bool:
 
 
 def _where(boundary: Boundary, path: Floats, crossing: Crossing) -> str:
-    """Return which edges cross, behind which of their nodes, and where."""
+    """Return as text which edges cross, after which of their nodes, and where."""
     (a, k), (b, m) = (_place(boundary, path[n : n + 2]) for n in (crossing.first, crossing.second))
     at = f"({crossing.x:.6g}, {crossing.y:.6g})"
     if a == b:
@@ -93,11 +93,11 @@ def _where(boundary: Boundary, path: Floats, crossing: Crossing) -> str:
 
 
 def _place(boundary: Boundary, segment: Floats) -> tuple[str, int]:
-    """Return the side that a segment (2, 2) of it lies on, and the number of the node it begins at there."""
+    """Return the side that a segment (2, 2) lies on, and the index of its first node there."""
     for side in SIDES:
         edge = getattr(boundary, side)
         for way in (segment, segment[::-1]):
             begins = (edge[:-1] == way[0]).all(axis=1) & (edge[1:] == way[1]).all(axis=1)
             if begins.any():
                 return side, int(np.argmax(begins))
-    return "the boundary", 0  # lines consist of sides: not reached
+    return "the boundary", 0  # never reached: lines consist of sides

@@ -1,9 +1,9 @@
-r"""How many cells meet at each node of a grid of blocks, and its irregular vertices.
+r"""The valence of each node of a multi-block grid, and its irregular vertices.
 
 ::
 
-    +--+--+     four cells around an inner node and two on the boundary are regular;
-    |  |  |     an irregular inner node, of three or five cells say, is a vertex of blocks
+    +--+--+     inner nodes where four cells meet, and boundary nodes where two meet, are regular;
+    |  |  |     an irregular inner node, of three or five cells for instance, is a corner of blocks
     +--o--+
     |   \  \
     +----+--+
@@ -28,9 +28,9 @@ class Vertices:
 
     Parameters
     ----------
-    numbers : (ni, nj) of each block.
-    valence : (n,) cells that meet at each node.
-    outer : (n,) whether it is on the boundary.
+    numbers : (ni, nj) of each block, the number of each of its nodes.
+    valence : (n,) number of cells that meet at each node.
+    outer : (n,) whether the node is on the boundary.
     """
 
     numbers: tuple[Indices, ...]
@@ -39,16 +39,16 @@ class Vertices:
 
     @cached_property
     def regular(self) -> NDArray[np.bool_]:
-        """(n,) where as many cells meet as inside a block, or on the side of one."""
+        """(n,) whether as many cells meet as inside a block, or as on a side of one."""
         return np.asarray(self.valence == np.where(self.outer, 2, 4))
 
     @cached_property
     def irregular(self) -> Indices:
-        """Inner nodes where other than four cells meet."""
+        """Numbers of the inner nodes where the number of cells is not four."""
         return np.flatnonzero((self.valence != 4) & ~self.outer)
 
     def place(self, node: int) -> tuple[int, int, int]:
-        """Return block, i and j where a node first appears."""
+        """Return block, i and j of the first occurrence of a node."""
         for block, numbers in enumerate(self.numbers):
             places = np.argwhere(numbers == node)
             if len(places):
@@ -57,7 +57,7 @@ class Vertices:
 
 
 def vertices(grid: Grid) -> Vertices:
-    """Return the nodes of a grid of planar blocks."""
+    """Return the nodes, with their valence, of a grid of planar blocks."""
     numbers = shared_nodes([block.counts for block in grid.blocks], grid.connections, periodic=True)
     count = 1 + max(int(number.max()) for number in numbers)
     corners = [
@@ -73,7 +73,7 @@ def vertices(grid: Grid) -> Vertices:
 
 
 def irregular_points(grid: Grid) -> tuple[Floats, Indices]:
-    """Return the irregular inner nodes (n, 2) of a grid and how many cells meet at each (n,)."""
+    """Return the irregular inner nodes (n, 2) of a grid, and their valence (n,)."""
     nodes = vertices(grid)
     places = [nodes.place(int(node)) for node in nodes.irregular]
     points = [grid.blocks[block].nodes[i, j] for block, i, j in places]

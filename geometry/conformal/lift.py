@@ -1,21 +1,22 @@
-"""The conformal lift: from the plane around a body to a periodic strip, and back.
+"""The conformal lift: a conformal map from the plane around a body to a periodic strip, and back.
 
-Winslow's equations keep their form under conformal maps, so an O-grid may be made in whatever plane makes
-it easiest. Three maps in a row take an airfoil's wall to a curve close to a straight line::
+Winslow's equations are invariant under conformal maps, so an O grid may be generated in whatever plane makes
+it easiest. Three successive maps take the wall of an airfoil to a curve close to a straight line::
 
     z  --Joukowski-->  zeta  --corner removal-->  zeta'  --log-->  w = psi + i phi
 
-    z = centre + quarter (zeta + 1/zeta)           opens the slit between the two ends of the body
-    ((v-p)/(v-q))^(1/k) = (v'-P)/(v'-Q)            straightens a corner whose exterior angle is k pi
+    z = centre + quarter (zeta + 1/zeta)           maps a slit between the two ends of the body to a circle
+    ((v-p)/(v-q))^(1/k) = (v'-P)/(v'-Q)            straightens a corner with exterior angle k pi
     zeta' = pole + exp(w)                          unrolls the plane around the body
 
-In the strip the wall is near psi = 0, the far field near psi = T, and phi grows by 2 pi once around.
-The wall is walked counter-clockwise here: callers mirror the clockwise wall of an O-grid (`mirrored`).
+In the strip the wall is near psi = 0, the far field near psi = T, and phi grows by 2 pi once around. Here the
+wall runs counter-clockwise: callers mirror the clockwise wall of an O grid (`mirrored`).
 
-A first node that turns by more than 80 degrees is a sharp trailing edge and an end of the slit. Of other
-walls the nodes within .35 chords of the first that turn most, and more than 15 degrees, are the corners of a
-base, and the slit ends behind it; without them it ends a(1 - sqrt(1 - r/a)) off each tip, r the tip's radius,
-a the half chord: at the foci of an ellipse. The way there is kernels/conformal/lift.c.
+A first node at which the wall turns by more than 80 degrees is a sharp trailing edge, and an end of the slit.
+On other walls the corners of a blunt base are sought: the nodes within 0.35 chords of the first that turn
+most, by more than 15 degrees; the slit ends behind the base. Without corners it ends a(1 - sqrt(1 - r/a))
+inside each tip, with r the tip radius and a the half chord: at the foci of an ellipse. The code is
+kernels/conformal/lift.c.
 
 Theodorsen & Garrick, NACA Report 452 (1933); Karman & Trefftz, Z. Flugtech. Motorluftschiff. 9 (1918) 111.
 """
@@ -36,7 +37,7 @@ SECOND_PRONG = 0.25  # as in kernels/conformal/lift.c
 
 @dataclass(frozen=True)
 class Corner:
-    """One corner removal: p, q before, P, Q after, exterior angle k pi; numbers, or tensors of torch."""
+    """One corner removal: p, q before and P, Q after it, exterior angle k pi; numbers or torch tensors."""
 
     p: Any
     q: Any
@@ -45,17 +46,17 @@ class Corner:
     k: Any
 
     def restore(self, v: Any) -> Any:
-        """Return v for v', an array of numpy or torch."""
+        """Return v for v', a NumPy array or a torch tensor."""
         r = ((v - self.P) / (v - self.Q)) ** self.k
         return (self.q * r - self.p) / (r - 1.0)
 
 
 @dataclass(frozen=True)
 class Lift:
-    """The composed map of one body: `lift_body` makes it.
+    """The composed map of one body, made by `lift_body`.
 
-    `centre` and `quarter` carry the user's position, rotation and size; `phase` is what puts
-    the first wall node at phi = 0. All are numbers, or tensors of torch.
+    `centre` and `quarter` hold the position, rotation and size of the body; `phase` puts the first wall node
+    at phi = 0. All are numbers or torch tensors.
     """
 
     centre: Any
@@ -65,29 +66,29 @@ class Lift:
     phase: Any
 
     def to_plane(self, w: Any, xp: Any = np) -> Any:
-        """Return z for strip points w, any shape, of the module `xp`: numpy or torch."""
+        """Return the points z of strip points w of any shape; `xp` is their module, numpy or torch."""
         zeta = self.pole + functions_of(xp).exp(w + 1j * self.phase)
         for corner in reversed(self.corners):
             zeta = corner.restore(zeta)
         return self.centre + self.quarter * (zeta + 1.0 / zeta)
 
     def to_strip(self, z: Complexes) -> Complexes:
-        """Return w for points z in walking order around and outside the body; phi is continuous along it."""
+        """Return w for points z in order around the body and outside it; phi is continuous along them."""
         return _native.lift_to_strip(self, np.ascontiguousarray(z, complex))
 
 
 def mirrored(nodes: Floats) -> Complexes:
-    """Return x - iy of nodes (..., 2): a clockwise walk turned counter-clockwise."""
+    """Return x - iy of nodes (..., 2): the mirror image, which turns a clockwise curve counter-clockwise."""
     points: Complexes = nodes[..., 0] - 1j * nodes[..., 1]
     return points
 
 
 def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, tuple[int, ...]]:
-    """Return the lift of a body, its wall (n,) in the strip, phi rising from 0, and its trailing corners.
+    """Return the lift of a body, its wall (n,) in the strip, and the indices of its trailing corners.
 
-    `wall` (n,) is counter-clockwise from the trailing edge, first node not repeated. `swap` removes the
-    second corner of a blunt edge first: the two removals do not commute, so a mirrored body is lifted to the
-    mirrored strip when its corners are swapped.
+    `wall` (n,) runs counter-clockwise from the trailing edge, its first node not repeated; phi rises from 0
+    along it. `swap` removes the second corner of a blunt edge first. The two removals do not commute: with
+    swapped corners, a mirrored body is lifted to the mirrored strip.
 
     Raises InputError: fewer than 8 nodes, or a wall that does not wind once around the pole.
     """
@@ -102,10 +103,10 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
 
 
 def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
-    """Return zeta along the wall, changing root where a side of a cambered wall crosses the slit."""
+    """Return zeta along the wall; the root changes where a side of a cambered wall crosses the slit."""
     return _native.lift_follow(np.ascontiguousarray(wall, complex), centre, quarter)
 
 
 def removable(k: float) -> bool:
-    """Return whether a corner of exterior angle k pi is one that is straightened."""
+    """Return whether a corner with exterior angle k pi is straightened."""
     return 0.55 < k < 0.995 or 1.03 < k < 1.9

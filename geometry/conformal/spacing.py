@@ -1,10 +1,10 @@
-"""Wall spacing by the conformal map of the body's outside to the outside of a circle.
+"""Wall node distribution by the conformal map of the outside of a body to the outside of a circle.
 
-Equal steps of the circle's angle give the nodes an elliptic O-grid wants: fine where the body turns, with
-s ~ angle^k near a corner of exterior angle k pi on both of its sides, so that grid lines leave the wall at
-right angles and every corner along its bisector.
+Equal steps of the circle's angle give an elliptic O grid the nodes that it needs: dense where the body turns.
+Near a corner with exterior angle k pi arc length grows like angle^k on both sides, so that grid lines leave
+the wall at right angles, and a corner along its bisector.
 
-Theodorsen's iteration finds the circle's angle t from the lifted wall psi(phi)::
+Theodorsen's iteration finds the circle's angle t from the wall psi(phi) in the strip (see `lift`)::
 
     phi(t) = t - H[psi(phi(t))],   H the conjugation of Fourier series: cos kt -> sin kt
 
@@ -25,27 +25,28 @@ from meshonet.geometry.elementary import cos, exp, power, times
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import first_within
 
-ANGLES = 1024  # points on the circle at which the angle is sought
-ITERATIONS = 40  # of that, at the most
-RELAXATION = 0.7  # part of its change that each makes
-DENSE = 640  # points along the whole wall that stand for the curve
+ANGLES = 1024  # points on the circle at which the angle is computed
+ITERATIONS = 40  # at most
+RELAXATION = 0.7  # under-relaxation factor of the iteration
+DENSE = 640  # points that represent the whole wall
 
 
 def conformal_knots(
     curve: Curve, marks: Floats, count: int, at: NDArray[np.intp] | None = None, steps: tuple[int, ...] = (1,)
 ) -> Floats:
-    """Return arc lengths (count,) on a closed curve at equal steps of its circle's angle.
+    """Return arc lengths (count,) on a closed curve at equal steps of the circle's angle.
 
-    The curve is closed and clockwise, with its arc length 0 at the first node, which is the last again.
-    `marks`, rising arc lengths in (0, length), become nodes, and the angles between are shared out smoothly:
-    nodes `at` (m,), or multiples of the first of the `steps` that the first mark is as far as.
+    The curve is closed and clockwise; arc length 0 is at the first node, which is repeated as the last.
+    `marks` are rising arc lengths in (0, length) that become nodes; the angles between them are divided
+    smoothly. The marks fall on nodes `at` (m,), or on multiples of the first of `steps` for which the first
+    mark is that far.
 
     Raises InputError: the lifted wall is not star-shaped, or the iteration does not settle.
     """
     back = None if at is None else count - 1 - at[::-1]
     clockwise = _one_way(curve, marks, count, at, steps, mirror=False)
     mirrored_wall = _one_way(curve, curve.length - marks[::-1], count, back, steps, mirror=True)
-    # the two differ by the accuracy of the iteration; their mean makes a mirrored body's nodes mirror images
+    # the two directions differ by the iteration error; with their mean a mirrored body gets mirrored nodes
     knots = 0.5 * (clockwise + (curve.length - mirrored_wall[::-1]))
     knots[np.searchsorted(knots, marks - 1e-9 * curve.length)] = marks
     return knots
@@ -60,7 +61,7 @@ def _one_way(
     *,
     mirror: bool,
 ) -> Floats:
-    """Return arc lengths (count,) walking clockwise, or along the mirrored curve walked the other way."""
+    """Return arc lengths (count,), walking clockwise, or counter-clockwise along the mirrored curve."""
     s, u = _dense(curve, marks)
     nodes = curve.at(curve.length - s[:-1]) * np.array([1.0, -1.0]) if mirror else curve.at(s[:-1])
     _, w, _ = lift_body(mirrored(nodes))
@@ -75,7 +76,7 @@ def _one_way(
 def _dense(curve: Curve, marks: Floats) -> tuple[Floats, Floats]:
     """Return rising arc lengths (m,), clustered at both ends of every piece, and their parameter u.
 
-    u counts pieces: on piece k, u = k + v with s = s_k + length (1 - cos pi v)/2.
+    On piece k, u = k + v with s = s_k + length (1 - cos pi v)/2.
     """
     ends = np.concatenate([[0.0], marks, [curve.length]])
     s, u = [], []
@@ -88,7 +89,7 @@ def _dense(curve: Curve, marks: Floats) -> tuple[Floats, Floats]:
 
 
 def _circle_angle(phi: Floats, psi: Floats) -> Floats:
-    """Return the circle's angle t at every wall point, 0 at the first and 2 pi at the last."""
+    """Return the circle's angle t at every wall point, from 0 at the first to 2 pi at the last."""
     t = 2.0 * np.pi * np.arange(ANGLES) / ANGLES
     k = np.fft.rfftfreq(ANGLES, 1.0 / ANGLES)
     conjugate = -1j * exp(-power(k / (ANGLES / 3.0), 8))
@@ -109,7 +110,7 @@ def _circle_angle(phi: Floats, psi: Floats) -> Floats:
 
 
 def _shared_out(marks: Floats, count: int, at: NDArray[np.intp] | None, steps: tuple[int, ...]) -> Floats:
-    """Return rising angles (count,) from 0 to 2 pi, near equal steps, with every mark on a node."""
+    """Return rising angles (count,) from 0 to 2 pi, in nearly equal steps, with every mark on a node."""
     cells = count - 1
     rank = np.arange(len(marks))
     nodes: Floats | NDArray[np.intp]
@@ -128,7 +129,7 @@ def _shared_out(marks: Floats, count: int, at: NDArray[np.intp] | None, steps: t
 
 
 def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
-    """Return arc lengths where the circle's angle is `at`, by way of u: s is analytic in it at corners."""
+    """Return arc lengths where the circle's angle is `at`, through u: s(u) is analytic at corners."""
     where = _monotone(t, u, at, periodic=False)
     k = np.minimum(where.astype(np.intp), round(u[-1]) - 1)
     ends = s[np.searchsorted(u, np.arange(round(u[-1]) + 1.0))]
@@ -140,7 +141,7 @@ def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
 
 
 def _monotone(x: Floats, y: Floats, at: Floats, *, periodic: bool) -> Floats:
-    """Return the monotone cubic through rising (x, y) with its end intervals' slopes, one if `periodic`."""
+    """Return the monotone cubic through rising (x, y) at `at`; if `periodic`, both end slopes are equal."""
     h = np.diff(x)
     rise = np.diff(y) / h
     if periodic:

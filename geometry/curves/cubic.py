@@ -1,4 +1,4 @@
-"""Cubic splines through values at any knots, evaluated at any places: tables of any number of columns."""
+"""Cubic splines through tables of values at any knots."""
 
 import numpy as np
 
@@ -7,11 +7,11 @@ from meshonet.kernels._native import solve_tridiagonal
 
 
 def cubic_spline(values: Floats, knots: Floats, places: Floats) -> Floats:
-    """Return (p, ...) of the spline through `values` (n, ...) at rising `knots` (n,), at `places` (p,).
+    """Return the cubic spline (p, ...) through `values` (n, ...) at rising `knots` (n,), at `places` (p,).
 
-    The third derivative is continuous at the second and the last but one knot; 2 knots make a straight line,
-    3 a parabola. Values at knots are kept to the last bit. de Boor, A Practical Guide to Splines (1978),
-    chapter IV.
+    Not-a-knot: the third derivative is continuous at the second and at the last but one knot. 2 knots give a
+    straight line, 3 a parabola. Values at knots are bitwise kept. de Boor, A Practical Guide to Splines
+    (1978), chapter IV.
 
     >>> knots = np.array([0.0, 1.0, 3.0, 4.0, 6.0])
     >>> float(cubic_spline(knots**3, knots, np.array([2.0]))[0])
@@ -42,7 +42,7 @@ def _bends(values: Floats, knots: Floats) -> Floats:
         bends[:] = right / (3.0 * (h[0] + h[1]))
         return bends
     lower, diagonal, upper = h[:-1].copy(), 2.0 * (h[:-1] + h[1:]), h[1:].copy()
-    # the end bends are those of the lines through the next two
+    # the end values are extrapolated linearly from the next two
     diagonal[0] += h[0] * (1.0 + h[0] / h[1])
     upper[0] -= h[0] ** 2 / h[1]
     diagonal[-1] += h[-1] * (1.0 + h[-1] / h[-2])

@@ -1,4 +1,4 @@
-"""Curves through given points, measured by arc length."""
+"""Smooth curves through given points, parametrised by arc length."""
 
 from collections.abc import Sequence
 
@@ -13,20 +13,21 @@ from meshonet.geometry.polygon.corners import Indices, find_corners
 from meshonet.kernels._native import curve_locate, curve_points, curve_slopes, curve_speeds
 
 _STEPS = 8  # parts of an interval in the table of arc length
-_GAUSS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])  # quadrature of three points in each part
+_GAUSS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])  # three-point quadrature in each part
 _WEIGHTS = np.array([5.0, 8.0, 5.0]) / (18.0 * _STEPS)
 _INNER = ((np.arange(_STEPS)[:, None] + _GAUSS) / _STEPS).ravel()
 _EDGES = np.arange(_STEPS + 1) / _STEPS
 
 
 class Curve:
-    """A smooth curve bitwise through given points, one cubic an interval (`meshonet.geometry.curves.spline`).
+    """A smooth curve bitwise through given points, a cubic per interval (`meshonet.geometry.curves.spline`).
 
     The `points` (n, 2) are in any unit of length, neighbours distinct, at least 2 (closed: 3); a closed curve
-    may repeat its first at the end. At `corners`, indices of points, the tangent may jump; None finds them
-    (`meshonet.geometry.polygon.corners`). Where `straight` (intervals,) is true it follows the chord.
+    may repeat its first at the end. At `corners`, indices of points, the tangent may jump; with None they are
+    detected (`meshonet.geometry.polygon.corners`). Intervals where `straight` (intervals,) is true are
+    straight.
 
-    Raises InputError: too few points, a point that is not finite or equals its neighbour, a corner out of
+    Raises InputError: too few points; a point that is not finite or equals its neighbour; a corner out of
     range.
 
     >>> square = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), closed=True)
@@ -39,13 +40,13 @@ class Curve:
     points: Floats
     """(n, 2) the given points; a closed curve's first is not repeated."""
     length: float
-    """Arc length of all of the curve."""
+    """Arc length of the whole curve."""
     knots: Floats
     """(n,) arc length at each given point."""
     corners: Floats
     """Arc lengths at the corners."""
     corner_index: Indices
-    """Which points the corners are."""
+    """Indices of the points that are corners."""
     straight: NDArray[np.bool_] | None
     """(intervals,) where the curve follows the chord; None is nowhere."""
 
@@ -80,13 +81,13 @@ class Curve:
         self._measure(len(h))
 
     def _measure(self, intervals: int) -> None:
-        """Make the table of arc length, and the slopes of its inverse."""
+        """Tabulate arc length and the slopes of its inverse."""
         inner, speed = np.empty((intervals, len(_INNER))), np.empty((intervals, len(_EDGES)))
         curve_speeds(self._cubic, _INNER, inner)
         curve_speeds(self._cubic, _EDGES, speed)
         pieces = product(inner.reshape(-1, 3), _WEIGHTS)
         self._table: Floats = np.concatenate([[0.0], np.cumsum(pieces)])
-        # dt/ds in units of the piece; at most 3 keeps the inverse monotone
+        # dt/ds in units of a part; at most 3 keeps the inverse monotone
         rate = pieces.reshape(-1, _STEPS) * _STEPS
         self._rate_start = np.minimum(rate / np.maximum(speed[:, :-1], 1e-300), 3.0).ravel()
         self._rate_stop = np.minimum(rate / np.maximum(speed[:, 1:], 1e-300), 3.0).ravel()
@@ -96,9 +97,9 @@ class Curve:
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
-        """Coefficients (4, n, 2) of the cubics; arc lengths and the slopes of their inverse; pieces of each.
+        """Coefficients (4, n, 2) of the cubics, arc lengths, slopes of their inverse, parts per interval.
 
-        For kernels that follow the curve themselves (``kernels/geometry/curve.h``).
+        For kernels that evaluate the curve themselves (``kernels/geometry/curve.h``).
         """
         return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
 
@@ -120,14 +121,14 @@ class Curve:
         return points
 
     def tangent(self, s: Floats) -> Floats:
-        """Return unit tangents (m, 2) at arc lengths `s` (m,); at a corner, of the side that leaves it."""
+        """Return unit tangents (m, 2) at arc lengths `s` (m,); at a corner, of the interval after it."""
         i, t = self._locate(s)
         d = np.empty((len(t), 2))
         curve_slopes(self._cubic, i, t, d)
         return np.asarray(d / np.hypot(d[:, 0], d[:, 1])[:, None])
 
     def polyline(self, places: Floats) -> Floats:
-        """Return points at `places`, 0 to below 1, of each interval, and the end point of an open curve."""
+        """Return the points at parameters `places` in [0, 1) of each interval, and an open curve's end."""
         i = np.arange(self._cubic.shape[1])[:, None]
         t = places[None, :, None]
         a, b, c, d = self._cubic[:, i]

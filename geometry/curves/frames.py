@@ -1,4 +1,4 @@
-"""Frames along a curve in space that do not turn about it.
+"""Rotation-minimising frames along a curve in space.
 
 Double reflection: W. Wang, B. Juettler, D. Zheng, Y. Liu, Computation of rotation minimizing frames, ACM
 Transactions on Graphics 27 (2008) 2; fourth order in the step.
@@ -17,19 +17,19 @@ from meshonet.geometry.elementary import cos, product, sin
 from meshonet.geometry.errors import InputError
 
 STEPS = 4
-"""Steps from one place that a frame is wanted at to the next, unless these are close together."""
+"""Default number of integration steps between neighbouring arc lengths."""
 
 
 def frames_along(
     path: Path, s: Floats, up: Floats | None = None, *, steps: int = STEPS
 ) -> tuple[Floats, Floats]:
-    """Return the x and y axes (n, 3) of sections across a path, at increasing arc lengths `s` (n,) from 0.
+    """Return the x and y axes (n, 3) of cross-sections of a path, at increasing arc lengths `s` (n,) from 0.
 
-    They and the tangent are right-handed. At the start the y axis is as near to `up` as it can be: to z
-    unless given, to y where the path starts along z. Along a closed path the frames turn evenly, by what
-    brings the last one back to the first. There are so many `steps` from a place to the next.
+    x, y and the tangent are right-handed. At the start the y axis is as close as possible to `up`: by default
+    z, or y where the path starts along z. Along a closed path the frames are rotated about the tangent at a
+    constant rate, so that the last coincides with the first. Each interval of `s` takes `steps` steps.
 
-    Raises InputError: `up` along the path.
+    Raises InputError: `up` is parallel to the path.
     """
     fine = np.concatenate([np.linspace(a, b, steps, endpoint=False) for a, b in pairwise(s)])
     fine = np.append(fine, s[-1])
@@ -51,13 +51,13 @@ def frames_along(
 
 
 def turned(y_axes: Floats, tangents: Floats, angle: Floats) -> Floats:
-    """Return y axes (n, 3) turned about tangents (n, 3) by angles (n,) in radians, from x to y."""
+    """Return y axes (n, 3) rotated about tangents (n, 3) by angles (n,) in radians, from x towards y."""
     x_axes = np.cross(y_axes, tangents)
     return cos(angle)[:, None] * y_axes - sin(angle)[:, None] * x_axes
 
 
 def _reflected(points: Floats, tangents: Floats, y: Floats) -> Floats:
-    """Return the axis `y` (3,) carried along by reflections in the two planes between neighbouring places."""
+    """Return the axis `y` (3,) transported from point to point by two reflections each."""
     axes = np.empty_like(points)
     axes[0] = y
     step = np.diff(points, axis=0)
@@ -69,7 +69,7 @@ def _reflected(points: Floats, tangents: Floats, y: Floats) -> Floats:
         y = y - (2.0 * product(step[k], y) / size[k]) * step[k]
         if weight[k] > 0:
             y = y - (2.0 * product(second[k], y) / weight[k]) * second[k]
-        y = y - product(y, tangents[k + 1]) * tangents[k + 1]  # rounding
+        y = y - product(y, tangents[k + 1]) * tangents[k + 1]  # removes rounding errors
         y = y / math.hypot(*y)
         axes[k + 1] = y
     return axes

@@ -1,4 +1,4 @@
-"""Monotone interpolation.
+"""Monotone piecewise cubic interpolation.
 
 Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304.
 """
@@ -9,9 +9,9 @@ from meshonet.geometry.arrays import Floats
 
 
 def inner_slopes(h: Floats, delta: Floats) -> Floats:
-    """Return slopes (n-1, ...) between n intervals of lengths `h` and slopes `delta`.
+    """Return slopes (n-1, ...) at the inner points of n intervals of lengths `h` and slopes `delta`.
 
-    They are weighted harmonic means, 0 where these differ in sign: cubics with these slopes do not overshoot.
+    They are weighted harmonic means of `delta`, 0 where its sign changes, so that cubics do not overshoot.
     """
     w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -20,9 +20,9 @@ def inner_slopes(h: Floats, delta: Floats) -> Floats:
 
 
 def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = False) -> Floats:
-    """Return what goes through `values` (n, ...) at increasing `x` (n,), at `at` (m,) within these.
+    """Return at places `at` (m,) the interpolant through `values` (n, ...) at increasing `x` (n,).
 
-    Cubics that overshoot in no interval, flat where values stop rising or falling; or straight lines. The
+    It is piecewise cubic, monotone in each interval and flat at extrema; with `linear`, piecewise linear. The
     slopes at the ends are those of parabolas through three points, limited.
     """
     h = np.diff(x)
@@ -31,7 +31,7 @@ def monotone_cubic(x: Floats, values: Floats, at: Floats, *, linear: bool = Fals
     t = ((at - x[i]) / h[i]).reshape(along)
     low, high = values[i], values[i + 1]
     if linear:
-        return np.asarray((1.0 - t) * low + t * high)  # bitwise both ends
+        return np.asarray((1.0 - t) * low + t * high)  # bitwise exact at both ends
     step = h.reshape(along)
     slope = _slopes(step, np.diff(values, axis=0) / step)
     a, b, rise = step[i] * slope[i], step[i] * slope[i + 1], high - low

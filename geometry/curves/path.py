@@ -1,7 +1,7 @@
-"""Curves in space along which a section is swept: smooth ones through points, or lines and arcs.
+"""Curves in space along which a section is swept: splines through points, or lines and arcs.
 
-A path is its arc length, and at any place its point, its unit tangent and its curvature, the vector towards
-the centre of the circle that fits it there, 1/radius long.
+At each arc length a path has a point, a unit tangent and a curvature vector, which points to the centre of
+curvature and has length 1/radius.
 """
 
 from __future__ import annotations
@@ -34,20 +34,20 @@ class Path(Protocol):
     closed: bool
 
     def at(self, s: Floats) -> PathPoints:
-        """Return the places at arc lengths `s` (n,), 0 to the length."""
+        """Return points, tangents and curvature at arc lengths `s` (n,), 0 to the length."""
         ...
 
 
-_GAUSS, _WEIGHTS = gauss_legendre(5)  # of speed, in each part of an interval
-_PARTS = 16  # of an interval in the table of arc length
+_GAUSS, _WEIGHTS = gauss_legendre(5)  # quadrature of the speed in each part of an interval
+_PARTS = 16  # parts of an interval in the table of arc length
 
 
 class SplinePath:
-    """The cubic spline through `points` (n, 3), its curvature continuous.
+    """The cubic spline through `points` (n, 3), with continuous curvature.
 
-    A closed one repeats its first point. It is parametrised by the lengths of its chords; at the ends of an
-    open one the last intervals are parabolas. Raises InputError: fewer than two points (closed: four with the
-    repeated one), a point twice in a row, values that are not finite.
+    A closed one repeats its first point. The parameter is cumulative chord length; the last intervals of an
+    open one are parabolas. Raises InputError: fewer than two points (closed: four with the repeated one),
+    equal neighbouring points, values that are not finite.
 
     >>> round(SplinePath(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]])).length, 9)
     3.0
@@ -76,7 +76,7 @@ class SplinePath:
         self.length = float(self._table[-1])
 
     def at(self, s: Floats) -> PathPoints:
-        """Return the places at arc lengths `s` (n,), 0 to the length."""
+        """Return points, tangents and curvature at arc lengths `s` (n,), 0 to the length."""
         i, t = self._locate(np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length))
         a, b, c, d = self._cubic[:, i]
         u = t[:, None]
@@ -89,7 +89,7 @@ class SplinePath:
         return PathPoints(points, tangents, bend / speed**2)
 
     def _locate(self, s: Floats) -> tuple[np.ndarray[tuple[int], np.dtype[np.intp]], Floats]:
-        """Return the interval and the parameter in it at arc lengths: by table and Newton's method."""
+        """Return the interval and the parameter in it at arc lengths, by table and Newton's method."""
         count = len(self._table) - 1
         k = np.clip(np.searchsorted(self._table, s, side="right") - 1, 0, count - 1)
         i, low = k // _PARTS, (k % _PARTS) / _PARTS
@@ -112,12 +112,12 @@ class SplinePath:
 
 @dataclass(frozen=True)
 class Bend:
-    """A piece of a path: straight, or an arc of a circle.
+    """A piece of a path: a straight segment or a circular arc.
 
     Parameters
     ----------
-    length : along the piece.
-    radius : of the arc; 0 is a straight line.
+    length : length of the piece.
+    radius : radius of the arc; 0 stands for a straight segment.
     towards : direction (3,) from the path to the centre of the arc.
     """
 
@@ -127,10 +127,10 @@ class Bend:
 
 
 class PiecedPath:
-    """Lines and arcs one behind the other, without kinks, from `start` (3,) in a `direction` (3,).
+    """Lines and arcs joined without kinks, from `start` (3,) in a `direction` (3,).
 
-    The `towards` of an arc is made perpendicular to the path where the arc begins. Raises InputError: no
-    piece; a length or radius that is not positive; a direction towards which a path cannot bend.
+    The `towards` of an arc is projected perpendicular to the path where the arc begins. Raises InputError: no
+    piece; a length or radius that is not positive; a `towards` parallel to the path.
     """
 
     def __init__(self, pieces: tuple[Bend, ...], start: Floats, direction: Floats) -> None:
@@ -158,7 +158,7 @@ class PiecedPath:
         self._start, self._tangent, self._normal = np.array(starts), np.array(tangents), np.array(normals)
 
     def at(self, s: Floats) -> PathPoints:
-        """Return the places at arc lengths `s` (n,), 0 to the length; at joints of the piece behind."""
+        """Return points, tangents and curvature at arc lengths `s` (n,); at joints, of the piece after."""
         s = np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length)
         k = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._radius) - 1)
         places = [np.empty((len(s), 3)) for _ in range(3)]

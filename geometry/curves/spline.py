@@ -1,12 +1,12 @@
-"""Tangents of a spline through points: twice continuous where the points allow, limited where they do not.
+"""Tangents of a spline through points: twice continuously differentiable where possible, otherwise limited.
 
-A cubic spline overshoots next to a short interval or an unmarked kink: there the tangent at a point is kept
-between the directions of the chords before and after it. Where two points close together make a step, turning
-one way and back, even such a tangent makes a wide bulge in the long interval beside them: there it is kept
-near the long chord.
+A cubic spline overshoots next to a short interval or an unmarked kink: the tangent at a point there is kept
+between the directions of the chords before and after it. Where two points close together form a step, which
+turns one way and back, even such a tangent causes a wide bulge in the long interval next to them: there it is
+kept close to the direction of the long chord.
 
-Slopes are derivatives by chord length, so that they are near 1 in size; every interval has one at its start
-and one at its end, which differ from the neighbours' at corners only.
+Slopes are derivatives by chord length, so their magnitude is near 1. Every interval has one at its start and
+one at its end; those of neighbouring intervals differ only at corners.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ from meshonet.geometry.polygon.corners import Indices, angle_between, turning
 from meshonet.kernels._native import solve_tridiagonal
 
 SLACK = 0.25
-"""How far a tangent may leave the angle between its two chords, as a part of the turns around it."""
+"""How far a tangent may leave the angle between its two chords, as a fraction of nearby turns."""
 LEAST_SLACK = np.radians(0.5)  # where chords hardly turn
 LONGEST = 2.0
 """Largest size of a slope: a longer one makes a loop or a cusp."""
@@ -27,9 +27,9 @@ LONGEST = 2.0
 def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, 2) at the start and at the end of each interval.
 
-    Between `corners`, indices of points (n, 2), the curve is the cubic spline whose tangent and curvature are
-    continuous, with a parabola in the intervals next to a corner; overshoots are then removed (`limited`). A
-    closed curve does not repeat its first point.
+    Between `corners`, indices of points (n, 2), the curve is the cubic spline with continuous tangent and
+    curvature, parabolic in the intervals next to a corner; overshoots are then removed (`limited`). A closed
+    curve does not repeat its first point.
     """
     if closed and corners.size == 0:
         slope = periodic_slopes(*_chords(points, closed=True))
@@ -47,14 +47,15 @@ def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Fl
 
 
 def cubics(start: Floats, chord: Floats, first: Floats, last: Floats) -> Floats:
-    """Return the coefficients (4, n, d) of cubics in t from 0 to 1, whose slopes are `first` and `last`."""
+    """Return the coefficients (4, n, d) of cubics in t, 0 to 1, with end slopes `first` and `last`."""
     return np.stack([start, first, 3 * chord - 2 * first - last, first + last - 2 * chord])
 
 
 def checked_points(points: Floats, what: str, point: str, dimension: int, *, closed: bool = False) -> Floats:
-    """Return the points (n, d) of `what`, each called `point` with its number; a `closed` one's first once.
+    """Return the points (n, d) of a curve as an array; of a `closed` one without a repeated first point.
 
-    Raises InputError: too few of them, one that is not finite or equals its neighbour.
+    `what` and `point` are the words for the curve and a point in messages. Raises InputError: too few points,
+    one that is not finite or equals its neighbour.
     """
     nodes = np.array(points, dtype=np.float64)
     if nodes.ndim != 2 or nodes.shape[1] != dimension:
@@ -82,12 +83,12 @@ def _chords(points: Floats, *, closed: bool) -> tuple[Floats, Floats]:
 
 
 def open_slopes(chord: Floats, h: Floats, stops: Indices) -> tuple[Floats, Floats]:
-    """Return slopes at both ends of each interval of an open curve, a spline of its own between two `stops`.
+    """Return slopes at both ends of each interval of an open curve, with a separate spline between `stops`.
 
-    `chord` (intervals, d) goes from point to point, `h` is how long each is. One tridiagonal system for all:
-    a stop, the index of a point, the first and the last among them, has two unknowns, one for each side,
-    whose rows do not touch each other. End condition: a parabola over the last interval,
-    m_0 + m_1 = 2 delta_0.
+    `chord` (intervals, d) are the vectors between points and `h` their lengths; `stops` are indices of
+    points, the first and the last among them. All splines are solved as one tridiagonal system: a stop has
+    two unknowns, one for each side, and their rows are not coupled. End condition: the last interval is a
+    parabola, m_0 + m_1 = 2 delta_0.
     """
     delta = chord / h[:, None]
     doubled = np.zeros(len(h) + 1, dtype=np.intp)
@@ -96,7 +97,7 @@ def open_slopes(chord: Floats, h: Floats, stops: Indices) -> tuple[Floats, Float
     n = len(h) + len(stops) - 1
     lower, diagonal, upper, right = np.zeros(n), np.ones(n), np.zeros(n), np.empty((n, chord.shape[1]))
     begin, end = first[stops[:-1]], first[stops[1:] - 1] + 1
-    alone = np.diff(stops) == 1  # a single interval between corners is a straight line
+    alone = np.diff(stops) == 1  # a single interval between corners is straight
     upper[begin], lower[end] = np.where(alone, 0.0, 1.0), np.where(alone, 0.0, 1.0)
     right[begin] = np.where(alone, 1.0, 2.0)[:, None] * delta[stops[:-1]]
     right[end] = np.where(alone, 1.0, 2.0)[:, None] * delta[stops[1:] - 1]
@@ -111,9 +112,9 @@ def open_slopes(chord: Floats, h: Floats, stops: Indices) -> tuple[Floats, Float
 
 
 def periodic_slopes(chord: Floats, h: Floats) -> Floats:
-    """Return slopes (n, d) of the periodic spline over chords (n, d) of lengths `h`, at the start of each.
+    """Return slopes (n, d) of the periodic spline at the start of each of the chords (n, d) of lengths `h`.
 
-    By Sherman and Morrison's formula.
+    By the Sherman-Morrison formula.
     """
     delta = chord / h[:, None]
     before = np.roll(h, 1)
@@ -133,13 +134,14 @@ def periodic_slopes(chord: Floats, h: Floats) -> Floats:
 def limited(
     points: Floats, start: Floats, stop: Floats, *, closed: bool, corners: Indices
 ) -> tuple[Floats, Floats]:
-    """Return slopes (intervals, 2) at the start and at the end of each interval, within their limits.
+    """Return the slopes (intervals, 2) at the start and at the end of each interval, limited.
 
-    Beside a corner, one of the points (n, 2) where the tangent may jump, there is one chord only: the tangent
-    may turn from it by as much as the polygon does at the other end of the interval.
+    At a corner, a point of (n, 2) where the tangent may jump, an interval has no chord on its other side:
+    there the tangent may turn from the interval's chord by as much as the polygon turns at the interval's
+    other end.
     """
     n = len(points)
-    chord = np.roll(points, -1, axis=0) - points  # an open curve's last is not used
+    chord = np.roll(points, -1, axis=0) - points  # the last of an open curve is not used
     turn = turning(points, closed=closed)
     free = np.ones(n, dtype=bool)
     free[corners] = False
@@ -164,10 +166,11 @@ def limited(
 
 
 def _ranges(turn: Floats, length: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return least and largest angle (n,) of the tangents from the chords before their points, and the slack.
+    """Return least and largest angles (n,) of tangents from the chords before their points, and the slack.
 
-    Between the two chords, give or take the slack. Where one of the intervals is a step, its ends turning
-    opposite ways, the tangent leaves the other, outer chord by less the shorter the step is beside it.
+    They lie between the two chords, within the slack. Where one of the intervals is a step (its ends turn in
+    opposite directions), the shorter the step is relative to the other interval, the less the tangent may
+    leave the chord of that interval.
     """
     step_after = turn * np.roll(turn, -1) < 0
     step_before = np.roll(step_after, 1)
@@ -186,8 +189,8 @@ def _ranges(turn: Floats, length: Floats) -> tuple[Floats, Floats, Floats]:
 def _edges_kept_open(start: Floats, stop: Floats, chord: Floats, corners: Indices) -> tuple[Floats, Floats]:
     """Return slopes that follow the chords at sharp edges where the two sides would otherwise cross.
 
-    Behind a corner of more than 120 degrees lies a wedge; the tangents are to leave at least a quarter of
-    the angle that the chords enclose.
+    A corner that turns by more than 120 degrees is the tip of a wedge; the angle between its tangents is at
+    least a quarter of that between its chords.
     """
     before, after = chord[corners - 1], chord[corners]
     angle, kept = angle_between(before, after), angle_between(stop[corners - 1], start[corners])
@@ -202,7 +205,7 @@ def _edges_kept_open(start: Floats, stop: Floats, chord: Floats, corners: Indice
 
 
 def _turned(slope: Floats, chord: Floats, least: Floats, most: Floats) -> Floats:
-    """Return slopes (n, 2), angles from the chord within `least` and `most`, no longer than `LONGEST`."""
+    """Return slopes (n, 2) at angles from the chord between `least` and `most`, at most `LONGEST` long."""
     angle = angle_between(chord, slope)
     size = np.hypot(slope[:, 0], slope[:, 1])
     wrong = np.flatnonzero((angle < least) | (angle > most) | (size > LONGEST))

@@ -1,4 +1,4 @@
-"""Whether the loops of a domain bound a region: they neither cross nor touch, and lie where they should."""
+"""Whether the loops of a domain bound a region: none crosses or touches another, and holes are inside."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from meshonet.geometry.polygon.area import check_extent, contains, polygon_area
 from meshonet.geometry.polygon.self_intersection import Crossing, shared_point, sweep_spans
 from meshonet.kernels._native import crossing_segments
 
-_BUDGET = 2_000_000_000  # comparisons, some seconds; a body needs as many as it has points
-_ROOM = 64  # pairs beyond those that meet since they follow each other
+_BUDGET = 2_000_000_000  # comparisons, some seconds; one body needs about as many as it has points
+_ROOM = 64  # pairs in addition to those that meet because they are consecutive
 _NO_AREA = 1e-14
-"""Width by the extent of a loop below which it is a line."""
+"""Width over the extent of a loop below which it has no area."""
 _SAME = 1e-13
-"""Distance by the extent of the domain below which two points are the same."""
+"""Distance over the extent of the domain below which two points are the same."""
 
 
 def check_domain(domain: Domain) -> None:
-    """Raise InputError when the polygons of the loops do not bound a region, with the place.
+    """Raise InputError, with the place, if the polygons of the loops do not bound a region.
 
-    Looked for in this order: points that repeat, a loop that is a line, a loop that crosses or touches
-    itself or another or runs the wrong way round, a hole outside of the outer loop or inside of another.
-    Polygons through the points are looked at, also where the loop is a spline.
+    Checked in this order: repeated points; a loop without area; a loop that crosses or touches itself or
+    another, or runs the wrong way round; a hole outside of the outer loop or inside of another hole. Loops
+    that are splines are checked as the polygons through their points.
     """
     check_extent(domain.extent)
     for number, loop in enumerate(domain.loops):
@@ -42,7 +42,7 @@ def check_domain(domain: Domain) -> None:
 
 
 def describe(domain: Domain, number: int) -> str:
-    """Return the number and the names of a loop, for a message.
+    """Return the number and the names of a loop as text, for messages.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> describe(Domain.of_polygons([square]), 0)
@@ -76,11 +76,11 @@ def _check_points(domain: Domain, number: int, loop: Loop) -> None:
 
 
 def _first_crossing(domain: Domain) -> Crossing | None:
-    """Return the first two segments that meet, counted through all loops and their repeated first points."""
+    """Return the first two segments that meet, numbered through all loops, each closed by its first point."""
     rings = [np.concatenate([loop.curve.points, loop.curve.points[:1]]) for loop in domain.loops]
     p, last = np.concatenate(rings), np.cumsum([len(ring) for ring in rings]) - 1
     low, top = sweep_spans(p, np.roll(p, -1, axis=0))
-    low[last], top[last] = np.inf, -np.inf  # from a loop to the next: compared with nothing
+    low[last], top[last] = np.inf, -np.inf  # the links between loops meet nothing
     pairs, _ = crossing_segments(p, np.argsort(low, kind="stable"), low, top, _ROOM + len(rings), _BUDGET)
     first = {int(end) - 1: int(end) - len(ring) + 1 for end, ring in zip(last, rings, strict=True)}
     real = [(i, j) for i, j in pairs if first.get(j) != i or _turns_back(p[j], p[i], p[i + 1])]
@@ -120,7 +120,7 @@ def _raise_crossing(domain: Domain, crossing: Crossing) -> None:
 
 
 def _check_nesting(domain: Domain) -> None:
-    """Raise where a loop, none of which meet, has its first point in the wrong place."""
+    """Raise InputError for a loop on the wrong side of another, by its first point; none of them meet."""
     starts = np.array([loop.curve.points[0] for loop in domain.loops])
     for number, loop in enumerate(domain.loops):
         inside = contains(loop.curve.points, starts)

@@ -25,16 +25,16 @@ class Periodic:
 
 @dataclass(frozen=True, eq=False)
 class Domain:
-    """A region of the plane; whether loops cross or touch is looked at by `meshonet.geometry.domain.check`.
+    """A region of the plane, bounded by loops (checked by `meshonet.geometry.domain.check`).
 
     Parameters
     ----------
     loops : tuple of Loop
-        The outer one first; the domain is on the left of each.
+        The outer loop, then the holes; the domain is on the left of each.
     name : str, optional
-        What the input called it.
+        Name of the shape in the input.
     notes : tuple of str, optional
-        What a reader passed over in its file, sentences for users.
+        Sentences for users on what a reader skipped in the file.
     periodic : Periodic, optional
         Two stretches of the outer loop that are periodic.
 
@@ -57,18 +57,17 @@ class Domain:
     def of_polygons(
         cls, polygons: Sequence[Floats], name: str = "", names: Sequence[str | Sequence[str]] = ()
     ) -> Domain:
-        """Return the domain inside the first polygon (n, 2) and outside the others, either way round.
+        """Return the domain inside the first polygon (n, 2) and outside the others, of either orientation.
 
         Parameters
         ----------
         polygons : sequence of array (n, 2)
-            Points along each; corners are where it turns by more than 30 degrees.
+            Points of each polygon; it has corners where it turns by more than 30 degrees.
         name : str, optional
-            Of the domain.
+            Name of the domain.
         names : sequence, optional
-            For each polygon what its boundary is called: a name, or a list of one for each stretch from a
-            corner to the next, in the order of its points, from its first corner on. Without them it is
-            ``outer``, ``body``, ``body2`` ...
+            The boundary names of each polygon: one, or a list of one per stretch between corners, in
+            the order of its points, starting at its first corner. Default: ``outer``, ``body``, ``body2`` ...
 
         Returns
         -------
@@ -78,7 +77,7 @@ class Domain:
         Raises
         ------
         InputError
-            Names for another number of polygons, or of stretches.
+            The number of names differs from that of polygons, or of stretches.
 
         Examples
         --------
@@ -99,17 +98,17 @@ class Domain:
 
     @cached_property
     def area(self) -> float:
-        """Area inside the polygons through the points of the loops."""
+        """Area of the domain, with the polygons through the points of the loops."""
         return float(sum(polygon_area(loop.curve.points) for loop in self.loops))
 
     @cached_property
     def extent(self) -> float:
-        """Larger side of the box around the domain."""
+        """Larger side of the bounding box of the domain."""
         return extent_of(self.loops[0].curve.points)
 
 
 def _named(polygons: Sequence[Floats], names: Sequence[str | Sequence[str]]) -> tuple[Loop, ...]:
-    """Return the loops along polygons whose boundaries are called so."""
+    """Return the loops along polygons, with the given boundary names."""
     if len(names) != len(polygons):
         raise InputError(f"names of {len(names)} polygons, and {len(polygons)} polygons", "name each of them")
     called = [(own,) if isinstance(own, str) else tuple(own) for own in names]

@@ -1,4 +1,4 @@
-"""How much room a domain leaves in front of its walls."""
+"""The free distance in front of the walls of a domain."""
 
 from __future__ import annotations
 
@@ -13,31 +13,33 @@ from meshonet.geometry.domain.loop import Loop
 IN_FRONT = 0.6
 """Cosine of the angle to the normal up to which a wall counts as being in front: 53 degrees."""
 _BEYOND = 1.0 + 1e-9
-"""Times a limit: what is on it but for rounding is not beyond it."""
+"""Factor on a limit, so that a value equal to it except for rounding does not exceed it."""
 _SAME = 1e-9
-"""Distance over the extent of the walls up to which a point of a wall is the place itself, and no gap."""
-_SAMPLES = 2000  # of all walls together
-_ROWS = 256  # places compared with all walls at a time, which bounds the memory
+"""Distance over the extent of the walls up to which a wall point is the point itself, and no gap."""
+_SAMPLES = 2000  # points on all walls together
+_ROWS = 256  # points compared with all walls at a time, which bounds the memory
 
 
 def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
-    """Return the distance (n,) from places of a loop to the nearest wall in front of them, infinite for none.
+    """Return the distance (n,) from points of a loop to the nearest wall in front, infinite without one.
 
-    A wall is in front within `IN_FRONT` of the inward normal, the other side of the same loop too.
+    The points are at arc lengths `arcs` (n,). A wall, which may be part of the same loop, is in front if the
+    cosine of its direction to the inward normal exceeds `IN_FRONT`.
     """
     return gaps_in_front(wall_points(domain.loops), loop.at(arcs), loop.tangent(arcs))
 
 
 def wall_points(loops: Sequence[Loop]) -> Floats:
-    """Return points (m, 2) on loops, `_SAMPLES` in all and some on every loop."""
+    """Return points (m, 2) on all loops, about `_SAMPLES` in total and at least 32 on each."""
     total = sum(each.length for each in loops)
     return np.concatenate([each.sample(max(32, round(_SAMPLES * each.length / total))) for each in loops])
 
 
 def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:
-    """Return the distance (n,) from points (n, 2) to the nearest of `walls` (m, 2) in front, to their left.
+    """Return the distance (n,) from `points` (n, 2) to the nearest of the wall points (m, 2) in front.
 
-    `along` (n, 2) are unit directions; in front is within `IN_FRONT` of their normals.
+    `along` (n, 2) are unit directions, whose normals point to their left. A wall point is in front if the
+    cosine of its direction to the normal exceeds `IN_FRONT`.
     """
     gaps, same = np.empty(len(points)), _SAME * extent_of(walls)
     for start in range(0, len(points), _ROWS):

@@ -1,4 +1,4 @@
-"""Sizes along a closed curve that change gradually."""
+"""Cell sizes along a closed curve that change gradually."""
 
 import numpy as np
 
@@ -6,9 +6,9 @@ from meshonet.geometry.arrays import Floats
 
 
 def graded(sizes: Floats, arcs: Floats, length: float, slope: float) -> Floats:
-    """Return sizes (n,), no larger than given, that grow by at most `slope` times the arc length between.
+    """Return the largest sizes (n,), at most those given, with slope at most `slope` in arc length.
 
-    `arcs` (n,) ascend along a closed curve of `length`.
+    The sizes are given at ascending `arcs` (n,) along a closed curve of `length`.
 
     >>> graded(np.array([1.0, 9.0, 9.0, 9.0]), np.array([0.0, 1.0, 2.0, 3.0]), 4.0, 1.0).tolist()
     [1.0, 2.0, 3.0, 2.0]

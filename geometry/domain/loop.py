@@ -1,4 +1,4 @@
-"""A closed curve that bounds a domain, with its corners and the names of its stretches."""
+"""A closed curve that bounds a domain, with its corners and boundary names."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class Loop:
 
     Parameters
     ----------
-    curve : closed; its `points` (n, 2) are those of the input, places on it are arc lengths from the first.
+    curve : closed; its `points` (n, 2) are those of the input. Arc lengths are measured from the first point.
         A polygon is followed exactly (``Curve(..., straight=...)``), an airfoil is a spline between corners.
-    corners : indices of the points that are corners, ascending. A grid has a node at each.
-    names : one for the whole loop, or one for each stretch from a corner to the next.
+    corners : ascending indices of the points that are corners. A grid has a node at each.
+    names : one name for the whole loop, or one for each stretch between corners.
 
-    Raises InputError: a corner that is no point, names for another number of stretches.
+    Raises InputError: a corner index that is out of range; the wrong number of names.
     """
 
     curve: Curve
@@ -49,7 +49,7 @@ class Loop:
     def of_polygon(
         cls, points: Floats, corners: tuple[int, ...] | None = None, names: tuple[str, ...] = ("outer",)
     ) -> Loop:
-        """Return the loop along a polygon (n, 2), the domain on its left; corners are found unless given."""
+        """Return the loop along a polygon (n, 2), the domain on its left; None for `corners` detects them."""
         curve = Curve(points, closed=True, corners=(), straight=np.ones(len(points), dtype=bool))
         if corners is None:
             corners = tuple(
@@ -69,25 +69,25 @@ class Loop:
 
     @cached_property
     def corner_angles(self) -> Floats:
-        """Angles (c,) of the domain at the corners, in degrees, 0 to 360: 90 is convex, 270 re-entrant."""
+        """Interior angles (c,) of the domain at the corners, in degrees, 0 to 360; re-entrant above 180."""
         turn = np.degrees(turning(self.curve.points, closed=True))
         return np.asarray(180.0 - turn[list(self.corners)])
 
     @cached_property
     def corner_cells(self) -> NDArray[np.intp]:
-        """Cells (c,) that should meet at each corner: its angle in right angles, 1 to 4."""
+        """Number of cells (c,) that should meet at each corner, 1 to 4: about one per 90 degrees."""
         return np.clip(np.round(self.corner_angles / 90.0), 1, 4).astype(np.intp)
 
     def at(self, arc: Floats) -> Floats:
-        """Return the points (m, 2) at arc lengths (m,), which wrap around."""
+        """Return the points (m, 2) at arc lengths (m,), taken modulo the length."""
         return self.curve.at(np.mod(arc, self.length))
 
     def tangent(self, arc: Floats) -> Floats:
-        """Return unit tangents (m, 2) at arc lengths (m,), of the side ahead at corners."""
+        """Return unit tangents (m, 2) at arc lengths (m,); at corners, of the stretch after the corner."""
         return self.curve.tangent(np.mod(arc, self.length))
 
     def name_at(self, arc: float) -> str:
-        """Return the name of the stretch that an arc length lies in."""
+        """Return the name of the stretch that contains an arc length."""
         if len(self.names) == 1:
             return self.names[0]
         stretch = int(np.searchsorted(self.corner_arcs, arc % self.length, side="right")) - 1

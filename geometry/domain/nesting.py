@@ -1,4 +1,4 @@
-"""Which of several closed curves lies in which: outer loops, and the holes in each."""
+"""Nesting of closed curves: which are outer loops, and which are holes in each."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from meshonet.geometry.polygon.area import contains, polygon_area
 
 
 def nested(polygons: Sequence[Floats]) -> list[tuple[int, list[int]]]:
-    """Return the number of each outer polygon with those of the holes in it, in the order given.
+    """Return (index of an outer polygon, indices of its holes) for each outer polygon, in the order given.
 
-    A polygon in a hole is an outer one again. What crosses or touches counts as it lies at its first points.
+    A polygon inside a hole is an outer one again. Of polygons that cross or touch, the first points decide.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> nested([square + 1.0, 4.0 * square, square + 2.5])
@@ -42,6 +42,6 @@ def nested(polygons: Sequence[Floats]) -> list[tuple[int, list[int]]]:
 
 
 def _inside(polygon: Floats, around: Floats) -> bool:
-    """Say whether most of three points of a polygon lie inside another."""
+    """Return whether most of three points of a polygon lie inside another polygon."""
     places = np.linspace(0, len(polygon), 3, endpoint=False).astype(int)
     return int(contains(around, polygon[places]).sum()) >= 2

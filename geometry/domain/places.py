@@ -1,7 +1,7 @@
-"""Places on a loop by its corners, so that they mean the same on another loop with as many.
+"""Places on a loop relative to its corners, which carry over to other loops with as many corners.
 
-A place is the number of a corner and, behind the point, the part of the arc length to the next one; on a loop
-without corners it is the part of its length from the first point.
+The integer part of a place is the number of a corner, the fractional part the fraction of arc length to the
+next corner. On a loop without corners a place is the fraction of its length from the first point.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from meshonet.geometry.polygon.corners import Indices
 
 
 def place_at(loop: Loop, arc: Floats) -> Floats:
-    """Return the places (n,) of arc lengths (n,); a corner's is a whole number, exactly."""
+    """Return the places (n,) of arc lengths (n,); those of corners are exact integers."""
     arc = np.mod(arc, loop.length)
     if not loop.corners:
         return np.asarray(arc / loop.length)
@@ -23,7 +23,7 @@ def place_at(loop: Loop, arc: Floats) -> Floats:
 
 
 def arc_at(loop: Loop, place: Floats) -> Floats:
-    """Return the arc lengths (n,), from 0 to below the length, of places (n,)."""
+    """Return the arc lengths (n,), in [0, length), of places (n,)."""
     if not loop.corners:
         return np.asarray(np.mod(place, 1.0) * loop.length)
     begins, lengths = _stretches(loop)
@@ -33,7 +33,7 @@ def arc_at(loop: Loop, place: Floats) -> Floats:
 
 
 def cells_at(loop: Loop, place: Floats) -> Indices:
-    """Return how many cells should meet at places (n,) that are corners, 0 at others."""
+    """Return how many cells should meet at places (n,): 0 except at corners."""
     number = np.floor(place).astype(np.intp)
     if not loop.corners:
         return np.zeros(len(place), dtype=np.intp)
@@ -41,6 +41,6 @@ def cells_at(loop: Loop, place: Floats) -> Indices:
 
 
 def _stretches(loop: Loop) -> tuple[Floats, Floats]:
-    """Return where the stretches between corners begin, and how long they are."""
+    """Return the arc lengths at which the stretches between corners begin, and their lengths."""
     begins = loop.corner_arcs
     return begins, np.diff(begins, append=begins[0] + loop.length)

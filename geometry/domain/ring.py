@@ -1,4 +1,4 @@
-"""Loops out of rings of points as files have them: either way round, some points repeated."""
+"""Loops from closed polygons as files contain them: of either orientation, some points repeated."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ def ring_loop(
 
     Parameters
     ----------
-    points : (n, 2), either way round; repeated neighbours are left out.
-    hole : whether the domain is outside.
-    corners : indices of the points that are corners; None finds them by their turning.
-    names : one, or one for each stretch from a corner to the next, in the order of `corners`.
-    places : where each point stands in its source, for messages.
+    points : (n, 2), of either orientation; repeated neighbours are removed.
+    hole : whether the domain is outside the polygon.
+    corners : indices of the points that are corners; None detects them by their turning angles.
+    names : one name, or one for each stretch between corners, in the order of `corners`.
+    places : position of each point in its source, for messages.
 
-    Raises InputError: fewer than three points, no area, a ring that crosses or touches itself, corners that
-    are no points, names for another number of stretches.
+    Raises InputError: fewer than three points, no area, a polygon that crosses or touches itself, corner
+    indices out of range, the wrong number of names.
     """
     points, number, places = _distinct(points, places)
     check_extent(extent_of(points))
@@ -50,7 +50,7 @@ def ring_loop(
     labels = _labels(names, len(chosen), detected=corners is None)
     order = np.argsort(chosen, kind="stable")
     chosen, labels = [chosen[k] for k in order], [labels[k] for k in order] if len(labels) > 1 else labels
-    if (area > 0) == hole:  # turned round from the same first point
+    if (area > 0) == hole:  # reversed, with the same first point
         n, ends = len(points), chosen[1:] + chosen[:1]
         points = np.roll(points[::-1], 1, axis=0)
         places = (*places[:1], *places[:0:-1])
@@ -61,7 +61,7 @@ def ring_loop(
 
 
 def _distinct(points: Floats, places: Sequence[str]) -> tuple[Floats, Indices, tuple[str, ...]]:
-    """Return the points without repeated neighbours, the number that each of the given ones has, places."""
+    """Return the points without repeated neighbours, the new index of each given point, and the places."""
     keep = np.append(True, (np.diff(points, axis=0) != 0).any(axis=1))[: len(points)]
     number = np.cumsum(keep) - 1
     kept = points[keep]

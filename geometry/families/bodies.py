@@ -1,7 +1,7 @@
-"""Random bodies in far fields, to train and test operators on O grids around shapes other than airfoils.
+"""Random bodies in far fields, to train and test operators on O grids around non-airfoil shapes.
 
-Ellipses, polygons, rounded ones, stars, rounded rectangles and bullets, anywhere inside circles, ellipses,
-rectangles, polygons and rounded rectangles 1.6 to 25 times their size, turned by any angle.
+Ellipses, polygons, rounded polygons, stars, rounded rectangles and bullets, at random positions and angles
+within circles, ellipses, rectangles, polygons and rounded rectangles 1.6 to 25 times their size.
 """
 
 import math
@@ -29,14 +29,14 @@ BEND = np.radians(25.0)
 
 
 class BodyCurve(NamedTuple):
-    """A closed curve counter-clockwise around 0, its first point not repeated, and its corners' indices."""
+    """A closed curve, counter-clockwise around 0, first point not repeated; indices of its corners."""
 
     points: Complexes
     corners: tuple[int, ...] = ()
 
 
 def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
-    """Return a random O boundary: a simple body around its centroid, its far field at least a gap away."""
+    """Return a random O boundary: a simple body with centroid 0, and a far field some distance away."""
     while True:
         body, far = _body(rng), _far(rng)
         placed = _placed_within(body, far, rng)
@@ -44,7 +44,7 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
             continue
         far = BodyCurve(far.points - placed, far.corners)
         if not np.all(np.diff(np.unwrap(angle(far.points))) > 0.0):
-            continue  # the far field is seen whole from the body
+            continue  # every point of the far field must be visible from the body
         laws = _law(rng), _law(rng) if rng.random() < 0.3 else _even
         start, twist = rng.random() * 2 * np.pi, rng.normal(0.0, 0.12) if rng.random() < 0.4 else 0.0
         turn = exp(2j * np.pi * rng.random())
@@ -60,7 +60,7 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
 
 
 def _placed_within(body: BodyCurve, far: BodyCurve, rng: np.random.Generator) -> complex | None:
-    """Return a place for the body inside `far`, or None when it does not fit there."""
+    """Return a position for the body inside `far`, or None if it does not fit."""
     if find_crossing(pairs_of(body.points)) is not None or not contains(pairs_of(body.points), np.zeros(2)):
         return None
     where = complex(0.75 * rng.random() * far.points[rng.integers(len(far.points))])
@@ -77,7 +77,7 @@ def _even(q: Floats) -> Floats:
 
 
 def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
-    """Return a rising map of [0, 1] to itself that says where nodes lie: even, or denser here and there."""
+    """Return a random node distribution: a rising map of [0, 1] to itself, uniform or locally clustered."""
     if rng.random() < 0.5:
         return _even
     k = np.arange(1, 4)
@@ -87,14 +87,14 @@ def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
 
 
 def _facing(ring: Complexes, direction: float) -> int:
-    """Return the index of the outermost point of a ring in a `direction` (radians) as seen from 0."""
+    """Return the index of the outermost point of a closed curve in a `direction` (radians) from 0."""
     off = np.abs(angle(times(ring, exp(-1j * direction))))
     near = np.flatnonzero(off < off.min() + 2 * np.pi / len(ring))
     return int(near[np.argmax(modulus(ring[near]))])
 
 
 def _nodes(ring: BodyCurve, first: int, law: Callable[[Floats], Floats], n: int) -> Complexes:
-    """Return n nodes clockwise from the point `first`, which ends them too, with the corners among them."""
+    """Return n nodes clockwise from the point `first`, where they also end; corners are among them."""
     m = len(ring.points)
     points = np.roll(ring.points, -first)[::-1]
     points = np.concatenate([points[-1:], points])  # clockwise, closed
@@ -107,7 +107,7 @@ def _nodes(ring: BodyCurve, first: int, law: Callable[[Floats], Floats], n: int)
 
 
 def _body(rng: np.random.Generator) -> BodyCurve:
-    """Return a body whose centroid is 0 and whose mean radius is 1."""
+    """Return a body with its centroid at 0 and mean radius 1."""
     kinds = _ellipse, _polygon, _rounded, _star, _superellipse, _bullet
     ring = kinds[rng.choice(len(kinds), p=(0.22, 0.24, 0.14, 0.16, 0.14, 0.1))](rng)
     z = ring.points
@@ -125,7 +125,7 @@ def _far(rng: np.random.Generator) -> BodyCurve:
 
 
 def _stretched(z: Complexes, most: float, rng: np.random.Generator) -> Complexes:
-    """Return a curve lengthened along an axis, up to `most` times, a third of the time not at all."""
+    """Return the curve stretched along one axis by up to `most`; one in three is left as it is."""
     ratio = math.exp(rng.uniform(0.0, 0.5 * math.log(most))) if rng.random() < 2 / 3 else 1.0
     return times(z.real * ratio + 1j * z.imag / ratio, exp(2j * np.pi * rng.random()))
 
@@ -153,7 +153,7 @@ def _star(rng: np.random.Generator) -> BodyCurve:
 
 
 def _bullet(rng: np.random.Generator) -> BodyCurve:
-    """Return an arc of a circle closed by straight pieces: a D, or a bullet with a flat base."""
+    """Return a circular arc closed by straight pieces: a D, or a bullet with a flat base."""
     reach = rng.uniform(0.35, 0.6) * np.pi
     arc = exp(1j * np.linspace(-reach, reach, 60))
     length = rng.uniform(0.0, 1.6) if rng.random() < 0.6 else 0.0
@@ -180,7 +180,7 @@ def _polygon(rng: np.random.Generator) -> BodyCurve:
 
 
 def _rounded(rng: np.random.Generator) -> BodyCurve:
-    """Return a polygon whose corners are cut again and again (Chaikin, CGIP 3 (1974) 346)."""
+    """Return a polygon with corners cut repeatedly (Chaikin, CGIP 3 (1974) 346)."""
     ring = _polygon(rng)
     z, share = ring.points[list(ring.corners)], rng.uniform(0.06, 0.25)
     for k in range(6):
@@ -192,7 +192,7 @@ def _rounded(rng: np.random.Generator) -> BodyCurve:
 
 
 def _through(corners: Complexes) -> BodyCurve:
-    """Return a ring through `corners` (k,), its own corners those that turn by more than `BEND`."""
+    """Return a closed curve through points (k,); those that turn by more than `BEND` are its corners."""
     edges = np.roll(corners, -1) - corners
     share = np.maximum(np.round(FINE * modulus(edges) / modulus(edges).sum()).astype(int), 1)
     z = np.concatenate([a + e * np.arange(n) / n for a, e, n in zip(corners, edges, share, strict=True)])
@@ -213,5 +213,5 @@ def arc_lengths(z: Complexes) -> Floats:
 
 
 def at_lengths(z: Complexes, length: Floats, at: Floats) -> Complexes:
-    """Return points (m,) of a polygon (n,), whose points lie at `length`, at arc lengths `at` (m,)."""
+    """Return points (m,) at arc lengths `at` (m,) of a polygon (n,) with arc lengths `length` (n,)."""
     return np.interp(at, length, z.real) + 1j * np.interp(at, length, z.imag)

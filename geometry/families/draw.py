@@ -16,7 +16,7 @@ from meshonet.geometry.families.split import split
 from meshonet.geometry.spacing.sampling import Sampling
 
 NODES = 101
-"""Nodes along xi and eta when nobody says, as in the paper."""
+"""Default number of nodes along xi and eta, as in the paper."""
 
 RANDOM = {"procedural": "procedural", "four-sided": "four_sided", "bodies": "bodies"}
 """Modules in `meshonet.geometry.families` of shapes that have no parameter, by the family's name."""
@@ -24,7 +24,7 @@ RANDOM = {"procedural": "procedural", "four-sided": "four_sided", "bodies": "bod
 
 @dataclass(frozen=True)
 class Draw:
-    """One member of a family, not made yet; `seed` and `index` alone make its random numbers."""
+    """One member of a family, not generated yet; `seed` and `index` alone determine its random numbers."""
 
     kind: str
     family: Family | None
@@ -37,12 +37,12 @@ class Draw:
 
     @property
     def name(self) -> str:
-        """Family and number."""
+        """Family name and index."""
         return f"{self.kind}-{self.index}"
 
     @property
     def parameter(self) -> float:
-        """Of the family's member."""
+        """The parameter of this member of the family."""
         rng = np.random.default_rng([self.seed, self.index])
         return self.low + (self.high - self.low) * float(rng.random())
 
@@ -60,7 +60,7 @@ class Draw:
 
 @dataclass(frozen=True)
 class Draws(Sequence[Draw]):
-    """Members of a family, of which none takes memory: `length` like `first`, and the split of each."""
+    """A lazy sequence of `length` members like `first`, which takes no memory for each, and their splits."""
 
     first: Draw
     length: int
@@ -83,12 +83,12 @@ class Draws(Sequence[Draw]):
 def draws(
     name: str, count: int = 1, spread: str | None = None, seed: int = 0, way: str | None = None
 ) -> Draws:
-    """Return `count` members of the family `name`, whose boundaries are not made yet.
+    """Return `count` members of the family `name`, whose boundaries are generated when they are asked for.
 
-    `spread` is ``A:B``, the range of the parameter, or None for that of the family, `seed` that of all random
-    numbers, `way` how members are split into those to train on and those to test on, or None for neither.
+    `spread` is ``A:B``, the range of the parameter; None means the family's own. `seed` is that of all random
+    numbers. `way` is how members are split into training and test sets (`split`); None means no split.
 
-    Raises InputError: no such family, a range that is none or leaves the family's, members that cannot be
+    Raises InputError: an unknown family, an invalid range or one beyond the family's, members that cannot be
     split.
     """
     if name not in (*FAMILIES, *RANDOM):

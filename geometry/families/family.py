@@ -1,6 +1,6 @@
-"""The paper's six families of shapes, each varied by one number.
+"""The six families of shapes of the paper (Xiao et al., arXiv 2501.11937), each with one parameter.
 
-A new one is a function and its row in `FAMILIES`; corners of the shapes lie on nodes.
+A new family is a function and a row in `FAMILIES`; corners of the shapes lie on nodes.
 """
 
 import math
@@ -21,11 +21,11 @@ Corners = list[tuple[float, float]]
 
 @dataclass(frozen=True)
 class Family:
-    """A shape with one parameter, which is drawn from `low` to `high` by default."""
+    """A family of shapes with one parameter, drawn from `low` to `high` by default."""
 
     name: str
     parameter: str
-    """What the number is, with its unit."""
+    """What the parameter is, with its unit."""
     low: float
     high: float
     least: float
@@ -38,9 +38,9 @@ class Family:
     """Extrapolation goes from high values of the parameter to low ones."""
 
     def boundary(self, parameter: float, ni: int, nj: int) -> Boundary:
-        """Return the member at `parameter` with ni by nj nodes, called after both.
+        """Return the member with the given parameter and ni by nj nodes, named after family and parameter.
 
-        Raises InputError: the parameter is out of `least` to `most`, or too few nodes for the corners.
+        Raises InputError: a parameter outside of `least` to `most`, or too few nodes for the corners.
         """
         if not self.least <= parameter <= self.most:
             what = f"{self.name} with {self.parameter} {parameter:g}"
@@ -49,7 +49,7 @@ class Family:
 
 
 def family(name: str) -> Family:
-    """Return the family of a name, or raise InputError.
+    """Return the family called `name`; raise InputError if there is none.
 
     >>> family("arch").boundary(0.25, 41, 21).north[20].tolist()
     [0.5, 1.25]
@@ -60,9 +60,9 @@ def family(name: str) -> Family:
 
 
 def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
-    """Return n nodes (n, 2) along straight pieces, in nearly equal steps, every corner bitwise a node.
+    """Return n nodes (n, 2) along straight pieces, in nearly equal steps; every corner is bitwise a node.
 
-    With `like`, as many corners, each lies on the node where that polyline has it.
+    If `like` is given, a polyline with as many corners, each corner gets the same node index as in `like`.
 
     >>> polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], 5).tolist()
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]
@@ -77,9 +77,9 @@ def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
 
 
 def arch(height: float, ni: int, nj: int) -> Boundary:
-    """Case 1: return the unit square under an arch, y = 1 + h sin(pi x); a negative height hangs down.
+    """Case 1: return the unit square with an arch as its top, y = 1 + h sin(pi x); h may be negative.
 
-    Nodes at equal steps of x on top and bottom.
+    Nodes are at equal steps of x on top and bottom.
     """
     x = np.linspace(0.0, 1.0, ni)
     top = np.stack([x, 1.0 + height * sin(np.pi * x)], axis=1)
@@ -88,7 +88,7 @@ def arch(height: float, ni: int, nj: int) -> Boundary:
 
 
 def hexagon(angle: float, ni: int, nj: int) -> Boundary:
-    """Case 2: return a hexagon whose top and bottom are kinked, both by `angle` degrees.
+    """Case 2: return a hexagon: a square with a kink of `angle` degrees in its top and in its bottom.
 
     ::
 
@@ -116,8 +116,8 @@ def wrench(opening: float, ni: int, nj: int) -> Boundary:
         |     |________|     |    those at the bottom of the jaw turn by 270 degrees inside the domain, where
         '--------------------'    elliptic grids fold
 
-    The kinks lie on the same nodes whatever the opening, those of nearly equal steps at 0.3: the boundary's
-    nodes move smoothly with it, and what is learnt from some openings holds for those between.
+    The kinks lie on the same nodes for every opening, those that nearly equal steps give at 0.3. The boundary
+    nodes thus depend smoothly on the opening, as interpolation between training cases requires.
     """
     south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(_jaw(opening), ni, like=_jaw(0.3))
     return _upright(south, north, nj, f"wrench-{opening:.6g}")
@@ -146,8 +146,8 @@ def semicircle(centre: float, ni: int, nj: int) -> Boundary:
 
 
 def airfoil(ratio: float, ni: int, nj: int) -> Boundary:
-    """Case 5: return NACA 00xx, `ratio` chords thick, its edge closed, in a circle of 15 chords."""
-    # only here: the other families do not need them
+    """Case 5: return NACA 00xx, `ratio` chords thick, trailing edge closed, in a circle of 15 chords."""
+    # imported here since the other families do not need them
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
     from meshonet.geometry.shapes.airfoil.naca import POINTS, thickness
     from meshonet.geometry.spacing.sampling import Sampling
@@ -160,9 +160,9 @@ def airfoil(ratio: float, ni: int, nj: int) -> Boundary:
 
 
 def hole(height: float, ni: int, nj: int) -> Boundary:
-    """Case 6: return a plate, 2 by 2 around (0, 0), with a round hole of radius 0.35 at y = `height`.
+    """Case 6: return a plate, 2 by 2 around (0, 0), with a circular hole of radius 0.35 at y = `height`.
 
-    Clockwise from the hole's rightmost place.
+    Nodes run clockwise from the rightmost point of the hole.
     """
     ring = far_circle(np.array([0.0, height]), 0.35, ni, 0.0)
     plate = polyline([(1.0, height), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, height)], ni)
@@ -171,7 +171,7 @@ def hole(height: float, ni: int, nj: int) -> Boundary:
 
 
 def _upright(south: Floats, north: Floats, nj: int, name: str) -> Boundary:
-    """Return the boundary between bottom and top whose sides stand straight up."""
+    """Return the boundary between a bottom and a top joined by straight vertical sides."""
     west, east = (polyline([tuple(south[k]), tuple(north[k])], nj) for k in (0, -1))
     return Boundary(south, north, west, east, name=name)
 

@@ -1,8 +1,8 @@
-"""Random four-sided domains, to train and test operators on.
+"""Random four-sided domains, to train and test operators.
 
-Between moved corners run sides that are straight, wavy, bowed, kinked, bumped or bulged by an arc of a
-circle; some domains are drawn out to a tail, bent around a centre or warped as a whole. Nodes are spaced
-evenly or clustered.
+The four corners are displaced at random; the sides between them are straight, wavy, bowed, kinked, bumped or
+circular arcs. Some domains taper to a tail, are bent around a centre, or are warped as a whole. Node
+distributions are uniform or clustered.
 """
 
 import math
@@ -25,15 +25,15 @@ CHECKED = 65
 LEAST, MOST = np.radians(3.0), np.radians(178.0)
 """Angles of the four corners."""
 
-LEAST_AREA = 0.05  # of the unit square's: an outline of less is drawn again
+LEAST_AREA = 0.05  # in units of the unit square: a smaller outline is drawn again
 
-CORNERS = np.array([0.0, 1.0, 1.0 + 1.0j, 1.0j])  # of the square whose sides are deflected
+CORNERS = np.array([0.0, 1.0, 1.0 + 1.0j, 1.0j])  # corners of the square whose sides are deflected
 ENDS = ((0, 1), (3, 2), (0, 3), (1, 2))
 """Corners where south, north, west and east begin and end."""
 
 
 def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
-    """Return a random quad boundary of a simple outline, its corners open by 3 to 178 degrees."""
+    """Return a random quad boundary with a simple outline and corner angles from 3 to 178 degrees."""
     while True:
         sides = _sides(rng)
         laws = [_law(rng) for _ in sides]
@@ -47,10 +47,10 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
 
 
 def _sides(rng: np.random.Generator) -> list[Complexes]:
-    """Return south, north, west and east, (FINE,) each."""
+    """Return the sides south, north, west and east, `FINE` points (FINE,) each."""
     spread = rng.choice([0.13, 0.2], p=[0.6, 0.4])
     corners = CORNERS + rng.normal(0, spread, 4) + 1j * rng.normal(0, spread, 4)
-    if rng.random() < 0.35:  # to a tail
+    if rng.random() < 0.35:  # tapers to a tail
         pulled = rng.integers(4)
         corners[pulled] += rng.uniform(0.3, 1.2) * (CORNERS[pulled] - CORNERS.mean())
     stretch = math.exp(0.5 * rng.uniform(-0.9, 0.9))
@@ -67,7 +67,7 @@ def _sides(rng: np.random.Generator) -> list[Complexes]:
 
 
 def _side(a: complex, b: complex, swing: float, rng: np.random.Generator) -> Complexes:
-    """Return a curve from `a` to `b`, one or two deflections off the straight line, scaled by `swing`."""
+    """Return a curve from `a` to `b`: a straight line with one or two deflections, scaled by `swing`."""
     t = np.linspace(0.0, 1.0, FINE)
     kinds = rng.choice(len(DEFLECTIONS), size=rng.choice([1, 2], p=[2 / 3, 1 / 3]), replace=False, p=SHARES)
     height = sum(DEFLECTIONS[kind](t, rng) for kind in kinds)
@@ -101,7 +101,7 @@ def _bump(t: Floats, rng: np.random.Generator) -> Floats:
 
 
 def _arc(t: Floats, rng: np.random.Generator) -> Floats:
-    """Return part of an ellipse that meets the side at right angles."""
+    """Return a part of an ellipse that meets the side at right angles."""
     at, radius = rng.uniform(0.3, 0.7), rng.uniform(0.1, 0.28)
     rise = np.sqrt(np.maximum(1.0 - ((t - at) / radius) ** 2, 0.0))
     return np.asarray(1.5 * radius * rng.uniform(-0.6, 0.6) * rise)
@@ -110,11 +110,11 @@ def _arc(t: Floats, rng: np.random.Generator) -> Floats:
 DEFLECTIONS: tuple[Callable[[Floats, np.random.Generator], Floats], ...] = (
     _straight, _wave, _parabola, _kinks, _bump, _arc,
 )  # fmt: skip
-SHARES = (0.12, 0.26, 0.16, 0.2, 0.16, 0.1)  # how often each of these is drawn
+SHARES = (0.12, 0.26, 0.16, 0.2, 0.16, 0.1)  # probabilities of these deflections
 
 
 def _bent(sides: list[Complexes], rng: np.random.Generator) -> list[Complexes]:
-    """Return the sides with the x axis bent to an arc of .3 to 3.6 radians."""
+    """Return the sides with the x axis bent into an arc of 0.3 to 3.6 radians."""
     every = np.concatenate(sides)
     length, height = np.ptp(every.real), np.ptp(every.imag)
     radius = max(length / rng.uniform(0.3, 3.6), height * rng.uniform(0.6, 1.5))
@@ -128,7 +128,7 @@ def _bent(sides: list[Complexes], rng: np.random.Generator) -> list[Complexes]:
 
 
 def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
-    """Return a map of [0, 1] to itself that says where nodes lie: mostly even, else clustered."""
+    """Return a node distribution, a rising map of [0, 1] to itself: mostly uniform, otherwise clustered."""
     draw = rng.random()
     if draw < 0.25:
         shift = rng.uniform(-0.12, 0.12)

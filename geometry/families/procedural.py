@@ -1,8 +1,8 @@
-"""Random airfoils with random wall spacing, to train and test operators on.
+"""Random airfoils with random wall spacing, to train and test operators.
 
-Three generators between them reach from thin reflexed plates to thick, strongly cambered and blunt sections:
-NACA four-digit formulas, class-shape transformation (CST) with Bernstein polynomials, and Karman-Trefftz
-maps of a circle. Nothing here is taken from a collection of real airfoils.
+Three generators together cover shapes from thin reflexed plates to thick, strongly cambered and blunt
+sections: NACA four-digit formulas, class-shape transformation (CST) with Bernstein polynomials, and
+Karman-Trefftz maps of a circle. No data of real airfoils are used.
 
 Kulfan, J. Aircraft 45 (2008) 142 (CST); Milne-Thomson, Theoretical Aerodynamics (1966) 7.32 (Karman-Trefftz).
 """
@@ -24,14 +24,14 @@ from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.laws import Spacing
 from meshonet.geometry.spacing.sampling import Sampling
 
-POINTS = 120  # a surface
-ORDER = 6  # of the Bernstein polynomials
+POINTS = 120  # points per surface
+ORDER = 6  # order of the Bernstein polynomials
 
 
 def boundary(rng: np.random.Generator, ni: int, nj: int, spacing: Spacing | None = None) -> Boundary:
     """Return a random airfoil's O boundary: random section, wall spacing and far field (4 to 60 chords).
 
-    With `spacing` every wall has that law.
+    `spacing`, if given, is used for every wall.
     """
     while True:
         settings: dict[str, Any] = {"spacing": spacing} if spacing else {}
@@ -41,12 +41,12 @@ def boundary(rng: np.random.Generator, ni: int, nj: int, spacing: Spacing | None
             settings = settings or _spacing(rng)
             edges = airfoil.boundary(Sampling(ni, nj, "o", far_field=far_field, **settings))
         except InputError:
-            continue  # a section that crosses itself, or cells that do not fit it: draw another
+            continue  # the section crosses itself, or the cells do not fit it: draw another
         return _turned(edges, float(rng.normal(0.0, 0.08))) if rng.random() < 0.5 else edges
 
 
 def _turned(edges: Boundary, around: float) -> Boundary:
-    """Return the boundary with its far field turned by `around` (radians): a sheared grid."""
+    """Return the boundary with its far field rotated by `around` (radians), which shears the grid."""
     middle = 0.5 * (edges.north.min(axis=0) + edges.north.max(axis=0))
     c, s = math.cos(around), math.sin(around)
     north = middle + product(edges.north - middle, [[c, s], [-s, c]])
@@ -56,7 +56,7 @@ def _turned(edges: Boundary, around: float) -> Boundary:
 
 
 def _spacing(rng: np.random.Generator) -> dict[str, Any]:
-    """Return settings of `Sampling`: every law, and random steps at the two edges."""
+    """Return random settings of `Sampling`: a spacing, and cell sizes at both edges."""
     draw = rng.random()
     for share, law in ((0.3, "conformal"), (0.45, "cosine"), (0.52, "uniform"), (0.6, "curvature")):
         if draw < share:
@@ -69,7 +69,7 @@ def _spacing(rng: np.random.Generator) -> dict[str, Any]:
 
 
 def _section(rng: np.random.Generator) -> Floats:
-    """Return (n, 2) points from the trailing edge over the upper side and back, at times noisy or sparse."""
+    """Return points (n, 2) from the trailing edge over the upper side and back, sometimes noisy or sparse."""
     for _ in range(100):
         draw = rng.random()
         points = _naca(rng) if draw < 0.25 else _cst(rng) if draw < 0.8 else _karman_trefftz(rng)
@@ -130,7 +130,7 @@ def _karman_trefftz(rng: np.random.Generator) -> Floats:
 
 
 def _as_found(rng: np.random.Generator, points: Floats) -> Floats:
-    """Return fewer points, with noise of the size that digitised sections have."""
+    """Return fewer points, with noise of the magnitude that digitised sections have."""
     n, keep = len(points), int(rng.integers(25, 90))
     q = np.linspace(0, 1, keep)
     even, ends = q * (n - 1), sin(np.pi * q) ** 2 * 0.5 * (n - 1)

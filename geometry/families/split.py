@@ -1,4 +1,4 @@
-"""Which members of a family an operator is trained on, and which it is tested on.
+"""Which members of a family are for training an operator, and which for testing it.
 
 ::
 
@@ -19,7 +19,7 @@ from meshonet.geometry.errors import InputError
 Way = Literal["interpolation", "extrapolation", "random"]
 WAYS: tuple[str, ...] = get_args(Way)
 SHARE = 1 / 6
-"""Of the members that are tested: 6 of 36 in the authors' settings."""
+"""Fraction of test members: 6 of 36 in the settings of the paper's authors."""
 
 
 def split(
@@ -27,12 +27,10 @@ def split(
 ) -> tuple[str, ...]:
     """Return ``train`` or ``test`` for each member, by its parameter, in one of `WAYS`.
 
-    Of the `share` that are tested at least one is, and at least two are trained on. `low` extrapolates to low
-    values of the parameter.
+    `share` is the fraction of test members; there is at least one, and at least two are for training. With
+    `low`, extrapolation is towards low values of the parameter. A random split ignores the parameters.
 
-    A random split does without parameters.
-
-    Raises InputError: an unknown way, fewer than three members, or no different parameters where they count.
+    Raises InputError: an unknown way; fewer than three members; equal parameters, unless the split is random.
 
     >>> split([0.3, 0.1, 0.2], "extrapolation")
     ('test', 'train', 'train')

@@ -1,4 +1,4 @@
-"""A single block that closes around a body, as an O grid has it: south the body, west joined to east."""
+"""Index directions of a single block that closes around a body, as in an O grid: south is the body."""
 
 from dataclasses import replace
 
@@ -8,14 +8,14 @@ from meshonet.geometry.layout.layout import Layout
 
 
 def around_body(layout: Layout) -> Layout:
-    """Return a layout of one ring-shaped block with i around the hole, j away from it; others unchanged.
+    """Return the layout of one ring-shaped block with i around the hole and j away from it; others unchanged.
 
-    The block stays right-handed: i runs clockwise.
+    The block stays right-handed, so i runs clockwise.
     """
     if len(layout.blocks) != 1:
         return layout
     block = layout.blocks[0]
-    if np.array_equal(block[:, 0], block[:, -1]):  # a ring along j
+    if np.array_equal(block[:, 0], block[:, -1]):  # the ring closes along j
         block = np.swapaxes(block, 0, 1)[:, ::-1]
     if not np.array_equal(block[0], block[-1]):
         return layout

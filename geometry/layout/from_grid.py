@@ -1,7 +1,7 @@
-"""A layout out of a grid of blocks: shared nodes, and the domain that its outer sides bound.
+"""The layout of a multi-block grid: shared nodes, and the domain bounded by its outer sides.
 
-The loops of the domain run through the grid's own boundary nodes, along splines between corners: where the
-boundary turns, where it changes its name, and where other than two cells meet.
+The loops of the domain are splines through the grid's own boundary nodes. They have corners where the
+boundary turns, where its name changes, and where the number of cells that meet is not two.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ from meshonet.geometry.polygon.corners import Indices, find_corners
 def layout_of(grid: Grid) -> Layout:
     """Return the layout with the blocks of a planar grid, its nodes and patches.
 
-    Raises InputError: a block that is not in the plane or left-handed; outer sides that are no closed loops;
-    blocks that overlap; sides that are periodic by a rotation.
+    Raises InputError: a block that is not planar or is left-handed; outer sides that do not form closed
+    loops; overlapping blocks; sides that are periodic by a rotation.
     """
     planar(grid)
     nodes, numbers = node_table(grid.blocks, grid.connections)
@@ -49,21 +49,21 @@ def layout_of(grid: Grid) -> Layout:
 
 
 def with_nodes(grid: Grid, layout: Layout) -> Grid:
-    """Return `grid` with the nodes of a layout of it, moved."""
+    """Return `grid` with the moved nodes of `layout`, which was made from it."""
     nodes = layout.mesh.nodes
     return replace(grid, blocks=tuple(Block(nodes[block]) for block in layout.blocks))
 
 
 @dataclass(frozen=True)
 class _Ring:
-    """A closed boundary: its nodes, the domain on their left, and the name of the edge that leaves each."""
+    """A closed boundary, the domain on the left of its nodes, and the name of the edge after each node."""
 
     nodes: Indices
     names: tuple[str, ...]
 
 
 def _boundary(grid: Grid, numbers: tuple[Indices, ...]) -> dict[int, tuple[int, str]]:
-    """Return for each boundary node the next one, the domain on the left, and the name of that edge."""
+    """Return for each boundary node its successor, with the domain on the left, and the name of that edge."""
     after: dict[int, tuple[int, str]] = {}
     named = {(p.name, p.block, p.side) for p in grid.patches}
     for patch in [*grid.outer_patches(), *_periodic_sides(grid)]:
@@ -78,7 +78,7 @@ def _boundary(grid: Grid, numbers: tuple[Indices, ...]) -> dict[int, tuple[int, 
 
 
 def _periodic_sides(grid: Grid) -> list[Patch]:
-    """Return both sides of periodic connections, by their names or as ``periodic1`` and ``periodic2``."""
+    """Return both sides of periodic connections, with their own names or ``periodic1`` and ``periodic2``."""
     sides = []
     for each in grid.connections:
         for k, number in enumerate((each.block, each.donor) if each.transform else ()):
@@ -90,7 +90,7 @@ def _periodic_sides(grid: Grid) -> list[Patch]:
 
 
 def _rings(after: dict[int, tuple[int, str]], nodes: Floats) -> list[_Ring]:
-    """Return the closed boundaries, the one around the largest area first."""
+    """Return the closed boundaries, starting with the one that encloses the largest area."""
     rings, left = [], dict(after)
     while left:
         start = min(left)
@@ -132,9 +132,9 @@ def _places(rings: list[_Ring], loops: tuple[Loop, ...], valence: Indices, count
 
 
 def _pairs(grid: Grid, numbers: tuple[Indices, ...]) -> tuple[Floats, Indices, Indices]:
-    """Return the shift of periodic sides, the nodes (n,) it moves and those (n,) it moves them to.
+    """Return the shift of periodic sides, and the node numbers (n,) that it moves, and to which (n,).
 
-    Raises InputError: sides that turn, or are shifted in more than one way.
+    Raises InputError: sides periodic by a rotation, or by more than one shift.
     """
     shift = np.zeros(2)
     first: list[Indices] = []
@@ -172,7 +172,7 @@ def _period(
 
 
 def _stretch(ring: _Ring, loop: Loop, nodes: Indices) -> tuple[float, float]:
-    """Return the arc lengths at which the run of `nodes` along the loop begins and ends."""
+    """Return the arc lengths at which a run of `nodes` along the loop begins and ends."""
     among = np.isin(ring.nodes, nodes)
     begins = np.flatnonzero(among & ~np.roll(among, 1))
     ends = np.flatnonzero(among & ~np.roll(among, -1))

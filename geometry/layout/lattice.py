@@ -1,4 +1,4 @@
-"""Quadrilaterals of lattices of nodes."""
+"""The quadrilaterals of structured arrays of nodes."""
 
 from collections.abc import Sequence
 
@@ -14,10 +14,10 @@ def ring_of(nodes: AnyArray) -> AnyArray:
 
 
 def corner_jacobians(corners: Floats) -> Floats:
-    """Return the Jacobians (m, 4) at the corners (m, 4, 2) of quadrilaterals in the plane."""
+    """Return the Jacobians (m, 4) at the corners (m, 4, 2) of planar quadrilaterals."""
     return cross2(np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners)
 
 
 def lattice_quads(blocks: Sequence[Indices]) -> Indices:
-    """Return the quads (m, 4), counter-clockwise, of blocks (ni, nj) of node numbers, j fastest in each."""
+    """Return the quads (m, 4), counter-clockwise, of blocks (ni, nj) of node numbers; j varies fastest."""
     return np.concatenate([ring_of(block).reshape(4, -1).T for block in blocks])

@@ -1,13 +1,13 @@
-"""A layout: the blocks of a quad mesh, and how many cells they want.
+"""A layout: the blocks of a quad mesh, coarse or with the final number of cells.
 
-A block is a lattice of node numbers, so that orientation is in the array and neighbours share numbers:
+A block is an array of node numbers: its indices give the orientation, and neighbours share numbers.
 
 ::
 
     block[i, j] = node        sides: south block[:, 0], north block[:, -1], west block[0], east block[-1]
 
-A coarse layout says which blocks there are and roughly where; `meshonet.solvers.blocking` refines and
-optimises it. A fine one, as many cells as wanted, is a grid that shares its nodes.
+A coarse layout defines the blocks and their approximate position; `meshonet.solvers.blocking` refines and
+optimises it. A fine layout, with the final number of cells, is a grid whose blocks share nodes.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ class Layout:
     mesh : QuadMesh
         Nodes and their places on the boundary.
     blocks : tuple of array
-        Lattices of node numbers, right-handed; each quad of the mesh is in one of them.
+        Right-handed arrays of node numbers; each quad of the mesh is in exactly one of them.
     layers : dict, optional
-        By number of a block, how many rows of cells from its south side are layers at a wall whose heights
-        are given, so that no optimisation moves them.
+        For the number of a block, how many rows of cells from its south side are layers at a wall. Their
+        heights are prescribed, so no optimisation moves them.
     fronts : tuple of int, optional
-        Numbers of the loops that are no walls but the fronts of layers around them, which come later.
+        Numbers of the loops that are not walls but fronts of layers, which are added later.
     """
 
     mesh: QuadMesh
@@ -47,11 +47,11 @@ class Layout:
 
     @cached_property
     def vertices(self) -> Indices:
-        """(v,) nodes that are corners of blocks, ascending."""
+        """(v,) ascending numbers of the nodes that are corners of blocks."""
         corners = [block[[0, -1, -1, 0], [0, 0, -1, -1]] for block in self.blocks]
         return np.asarray(distinct(np.concatenate(corners)))
 
     @property
     def cells(self) -> int:
-        """Cells of all blocks."""
+        """Number of cells in all blocks."""
         return int(sum((len(block) - 1) * (block.shape[1] - 1) for block in self.blocks))

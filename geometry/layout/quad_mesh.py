@@ -1,6 +1,6 @@
-"""Quadrilaterals over one table of nodes: what a decomposition works on.
+"""Quadrilaterals over one table of nodes: the mesh that block decompositions work on.
 
-Unlike blocks, quads share their nodes: an interface node or a singular vertex is one unknown.
+Unlike blocks, quads share their nodes: a node of an interface or a singular vertex is one unknown.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from meshonet.kernels._native import connect_quads
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """Where nodes lie on the boundary of a domain; arrays of one number a node."""
+    """Positions of nodes on the boundary of a domain; each array has one entry per node."""
 
     loop: Indices
     """Number of the loop, -1 inside."""
@@ -32,12 +32,12 @@ class Places:
 
     @classmethod
     def inside(cls, count: int) -> Places:
-        """Return the places of `count` nodes inside."""
+        """Return the places of `count` interior nodes."""
         none = np.full(count, -1, dtype=np.intp)
         return cls(none, np.zeros(count), np.zeros(count, dtype=np.intp), none.copy())
 
     def take(self, nodes: Indices) -> Places:
-        """Return the places of some nodes; partners are not kept."""
+        """Return the places of the given nodes, without their partners."""
         cleared = np.full(len(nodes), -1, dtype=np.intp)
         return Places(self.loop[nodes], self.arc[nodes], self.cells[nodes], cleared)
 
@@ -48,10 +48,10 @@ class QuadMesh:
 
     Parameters
     ----------
-    domain : the wall nodes lie on its loops.
-    nodes : (n, 2).
-    quads : (m, 4) nodes of each cell, counter-clockwise.
-    places : of the nodes on the boundary.
+    domain : its loops carry the boundary nodes.
+    nodes : (n, 2) coordinates.
+    quads : (m, 4) node numbers of each cell, counter-clockwise.
+    places : positions of the boundary nodes on the loops.
     """
 
     domain: Domain
@@ -65,64 +65,64 @@ class QuadMesh:
 
     @property
     def edges(self) -> Indices:
-        """(e, 2) nodes of each edge, the lower first; edges ascend."""
+        """(e, 2) node numbers of each edge, the lower first, in ascending order."""
         return self._sides[2]
 
     def edges_between(self, first: Indices, second: Indices) -> Indices:
-        """Return the numbers of the edges that join pairs of nodes, two arrays of one shape."""
+        """Return the numbers of the edges between pairs of nodes, given as two arrays of one shape."""
         low, high, n = np.minimum(first, second), np.maximum(first, second), len(self.nodes)
         return np.asarray(np.searchsorted(self.edges[:, 0] * n + self.edges[:, 1], low * n + high))
 
     @property
     def edge_of(self) -> Indices:
-        """(m, 4) edge from each node of a quad to its next."""
+        """(m, 4) number of the edge from each node of a quad to its next node."""
         return self._sides[0]
 
     @property
     def twin(self) -> Indices:
-        """(m, 4) for each of these edges 4 times the quad across it, plus which of its edges; -1 at walls."""
+        """(m, 4) for each of these edges: 4 q + k if it is edge k of quad q across it; -1 at walls."""
         return self._sides[1]
 
     @property
     def manifold(self) -> bool:
-        """Whether no edge has more than two quads, or two that turn opposite ways."""
+        """Whether every edge has at most two quads, which traverse it in opposite directions."""
         return self._sides[3]
 
     @cached_property
     def on_wall(self) -> NDArray[np.bool_]:
-        """(e,) edges of one quad only."""
+        """(e,) whether an edge belongs to one quad only."""
         return np.bincount(self.edge_of.ravel(), minlength=len(self.edges)) == 1
 
     @cached_property
     def wall_nodes(self) -> NDArray[np.bool_]:
-        """(n,) nodes on the boundary."""
+        """(n,) whether a node is on the boundary."""
         on = np.zeros(len(self.nodes), dtype=bool)
         on[self.edges[self.on_wall].ravel()] = True
         return on
 
     @cached_property
     def valence(self) -> Indices:
-        """(n,) quads around each node."""
+        """(n,) number of quads at each node."""
         return np.bincount(self.quads.ravel(), minlength=len(self.nodes))
 
     @cached_property
     def irregular(self) -> NDArray[np.bool_]:
-        """(n,) nodes where other than four quads meet, or on the boundary other than two."""
+        """(n,) whether the number of quads at a node is not four, or on the boundary not two."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
     def aspects(self, lengths: Floats) -> Floats:
-        """Return the ratios (m,) of sides 1-2 and 0-3 to 0-1 and 3-2, were edges of `lengths` (e,)."""
+        """Return aspect ratios (m,): geometric mean of sides 1-2, 3-0 over 0-1, 2-3, of `lengths` (e,)."""
         sides = lengths[self.edge_of]
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
 
     def with_nodes(self, nodes: Floats, arc: Floats | None = None) -> QuadMesh:
-        """Return the same quads with nodes (n, 2), and boundary nodes at arc lengths (n,), moved."""
+        """Return the same quads with nodes (n, 2) and, if given, boundary arc lengths (n,) replaced."""
         places = self.places if arc is None else replace(self.places, arc=arc)
         return self.with_places(nodes, places)
 
     def with_places(self, nodes: Floats, places: Places) -> QuadMesh:
-        """Return the same quads with other nodes (n, 2) and places on the boundary."""
+        """Return the same quads with nodes (n, 2) and their places on the boundary replaced."""
         moved = replace(self, nodes=nodes, places=places)
-        known = ("_sides", "on_wall", "wall_nodes", "valence", "irregular")  # quads alone say these
+        known = ("_sides", "on_wall", "wall_nodes", "valence", "irregular")  # these depend on the quads alone
         moved.__dict__.update({name: self.__dict__[name] for name in known if name in self.__dict__})
         return moved

@@ -1,4 +1,4 @@
-"""Connections of sides of blocks that share nodes of one table: whole sides first, then parts of them."""
+"""Connections of sides of blocks that share node numbers: first whole sides, then parts of sides."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Line: TypeAlias = tuple[int, Side, Indices]
 
 
 def shared(lines: list[Line]) -> tuple[list[Connection], list[Line]]:
-    """Return the connections of lines with the same nodes, and the lines that are alone."""
+    """Return the connections of lines with the same nodes, and the lines that match no other."""
     waiting: dict[tuple[int, ...], Line] = {}
     connections = []
     for line in lines:
@@ -28,7 +28,7 @@ def shared(lines: list[Line]) -> tuple[list[Connection], list[Line]]:
 
 
 def key_of(nodes: Indices) -> tuple[int, ...]:
-    """Return the nodes of a line, the same whichever way it runs."""
+    """Return a key of a line's nodes that does not depend on their direction."""
     line = tuple(nodes.tolist())
     return min(line, line[::-1])
 
@@ -36,9 +36,9 @@ def key_of(nodes: Indices) -> tuple[int, ...]:
 def connection_of(
     own: Line, donor: Line, transform: Motion | None = None, at: tuple[int, int] = (0, 0)
 ) -> Connection:
-    """Return the connection of two sides with the same nodes, whichever way they run.
+    """Return the connection of two sides with the same nodes, in either direction.
 
-    Of parts of sides, `at` says with which nodes they begin.
+    For parts of sides, `at` is the index of the first node of each part in its side.
     """
     (block, side, nodes), (other, other_side, others) = own, donor
     begin, end = (((first, first + len(nodes) - 1),) for first in at)
@@ -47,9 +47,9 @@ def connection_of(
 
 
 def shared_in_part(lines: list[Line]) -> tuple[list[Connection], list[tuple[Line, int]]]:
-    """Return the connections of parts of lines, and the parts that are alone with their first nodes.
+    """Return the connections of parts of lines, and the remaining parts with the index of their first node.
 
-    A side that meets those of several other blocks, or itself, shares the nodes of a part of it with each.
+    A side next to several other blocks, or to itself, shares a part of its nodes with each.
     """
     places: dict[tuple[int, ...], list[tuple[int, int]]] = {}
     for number, (_, _, nodes) in enumerate(lines):

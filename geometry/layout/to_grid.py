@@ -1,7 +1,7 @@
 """From a fine layout, whose blocks share nodes, to a grid, whose blocks are connected.
 
-Shared edges become connections of bitwise equal nodes, periodic pairs of edges connections with a motion,
-and what is left patches, named by the loops of the domain.
+Shared edges become connections with bitwise equal nodes, periodic pairs of edges connections with a motion,
+and the other edges become patches with the names of the domain's loops.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _SIDES: tuple[Side, ...] = ("south", "north", "west", "east")
 def to_grid(layout: Layout, name: str = "") -> Grid:
     """Return the grid of a layout's blocks.
 
-    Raises InputError: from `Grid`, for a layout whose blocks do not share what they should.
+    Raises InputError (from `Grid`): a layout whose neighbouring blocks do not share nodes.
     """
     domain = layout.mesh.domain
     nodes = _with_partners(layout)
@@ -54,7 +54,7 @@ def to_grid(layout: Layout, name: str = "") -> Grid:
 
 
 def _with_partners(layout: Layout) -> Floats:
-    """Return the nodes, those with a partner exactly where the period takes it."""
+    """Return the nodes, with periodic partners moved to be an exact shift of each other."""
     nodes, partner, domain = layout.mesh.nodes, layout.mesh.places.partner, layout.mesh.domain
     moved = partner >= 0
     if not moved.any() or domain.periodic is None:
@@ -65,7 +65,7 @@ def _with_partners(layout: Layout) -> Floats:
 
 
 def _periodic(layout: Layout, lines: list[Line]) -> tuple[list[tuple[Line, Line]], list[Line]]:
-    """Return pairs of lines of which the second is the first moved, and the lines that are in none."""
+    """Return pairs of lines that are periodic, and the lines that are not."""
     partner = layout.mesh.places.partner
     if not (partner >= 0).any():
         return [], lines
@@ -80,7 +80,7 @@ def _periodic(layout: Layout, lines: list[Line]) -> tuple[list[tuple[Line, Line]
 
 
 def _patches(layout: Layout, line: Line, start: int) -> list[Patch]:
-    """Return the patches of a wall from node `start` of a side on, cut where its name changes."""
+    """Return the patches of a wall from node `start` of a side on, split where its name changes."""
     block, side, nodes = line
     places, domain = layout.mesh.places, layout.mesh.domain
     number, arcs = int(places.loop[nodes[0]]), places.arc[nodes]

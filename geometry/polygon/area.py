@@ -1,4 +1,4 @@
-"""The area of a polygon, what lies in it, and the sizes whose areas can be computed."""
+"""Signed area of a polygon, points inside it, and the range of extents whose area can be computed."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,19 +15,19 @@ def polygon_area(points: Floats) -> float:
     >>> polygon_area(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]]))
     2.0
     """
-    x, y = (points - points[0]).T  # the first point, now 0, closes it with nothing
+    x, y = (points - points[0]).T  # with the first point at 0 the closing edge contributes nothing
     return float(0.5 * (product(x[:-1], y[1:]) - product(x[1:], y[:-1])))
 
 
 def check_extent(extent: float) -> None:
-    """Raise InputError when the size of a shape is 0, or too large or small for its area to be computed."""
+    """Raise InputError if the extent of a shape is 0, or too large or small to compute its area."""
     if not 1e-60 < extent < 1e60:
         what = "no extent" if extent == 0 else f"an extent of {extent:.3g}"
         raise InputError(f"the points have {what}", "give coordinates in a unit that suits the shape")
 
 
 def contains(polygon: Floats, points: Floats) -> NDArray[np.bool_]:
-    """Say whether points (..., 2) lie inside a polygon (n, 2), by the crossings of rays to the right."""
+    """Return whether points (..., 2) lie inside a polygon (n, 2), by the crossings of rays to the right."""
     x, y = polygon[:, 0] - points[..., 0, None], polygon[:, 1] - points[..., 1, None]
     u, v = np.roll(x, -1, axis=-1), np.roll(y, -1, axis=-1)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""Where a polygon turns, and which of its points are corners."""
+"""Turning angles of a polygon, and which of its points are corners."""
 
 import math
 from typing import TypeAlias
@@ -20,14 +20,14 @@ ALWAYS = np.radians(75.0)
 HAIRPIN = np.radians(100.0)
 """A turn that may be the round end of a thin body with few points (`SHARP` beside small turns)."""
 WIDENS = 0.75
-"""A body widens behind an oblique base at this part or more of its first rate, behind a nose at half."""
+"""Behind an oblique base a body widens at this fraction or more of its first rate, behind a nose at half."""
 ALONE = np.radians(50.0)  # turning beside a corner below which a sharp one may be a coarsely given round end
 FEW = 12
-"""A closed polygon of at most so many points is meant as one."""
+"""A closed polygon of at most this many points is taken as a polygon, not as samples of a curve."""
 
 
 def angle_between(a: Floats, b: Floats) -> Floats:
-    """Return the angles (...) in radians from vectors `a` to `b`, in the plane (..., 2) left positive."""
+    """Return the angles (...) in radians from vectors `a` to `b`; in the plane (..., 2) left is positive."""
     if a.shape[-1] == 3:
         return np.asarray(arctan2(norms(np.cross(a, b)), (a * b).sum(axis=-1)))
     return np.asarray(arctan2(cross2(a, b), a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]))
@@ -36,7 +36,7 @@ def angle_between(a: Floats, b: Floats) -> Floats:
 def turning(points: Floats, *, closed: bool = False) -> Floats:
     """Return the angle (n,) in radians by which a polygon (n, 2) turns at each point.
 
-    Left is positive; the ends of an open polygon turn by 0.
+    Left turns are positive; it is 0 at the ends of an open polygon.
     """
     ring = np.concatenate([points[-1:], points, points[:1]]) if closed else points
     step = ring[1:] - ring[:-1]
@@ -45,15 +45,16 @@ def turning(points: Floats, *, closed: bool = False) -> Floats:
 
 
 def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Indices:
-    """Return the indices of the points that are corners, in order.
+    """Return the ascending indices of the points that are corners.
 
-    A corner turns sharply while the points beside it do not: by more than `KINK` and five times as much
-    as each of them, or more than `SHARP` and twice as much, or more than `ALWAYS`; or two side by side more
-    than `SHARP` and five times as much as the points beyond them. Left out is the round end of a thin body
-    given by few points, which turns by up to 155 degrees at one of them: there the thickness grows like the
-    square root of the distance, at an edge like the distance (`growth_exponent`). The two ends of an oblique
-    base, one of which turns as much, are both corners (`_oblique_bases`). A closed polygon of at most `few`
-    points (n, 2) is taken for one, not for samples of a round body.
+    A corner turns sharply while its neighbours do not: by more than `KINK` and five times as much as each
+    neighbour, or more than `SHARP` and twice as much, or more than `ALWAYS`; or it is one of two adjacent
+    points that turn by more than `SHARP` and five times as much as the points beyond them. The round end of a
+    thin body given by few points also turns by up to 155 degrees at one point, but is no corner: the
+    thickness behind it grows like the square root of the distance, behind an edge linearly
+    (`growth_exponent`). The two ends of an oblique base, one of which turns as much, are both corners
+    (`_oblique_bases`). All points of a closed polygon (n, 2) of at most `few` points may be corners: it is
+    not taken for samples of a round body.
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:
@@ -68,7 +69,7 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
         | (angle > SHARP) & (polygon | (angle > 2 * beside))
         | (angle > ALWAYS)
     )
-    if closed:  # two side by side, as at a base, with little turning beyond them
+    if closed:  # two adjacent points, as at a base, with little turning beyond them
         ahead, after = np.roll(angle, -1), np.roll(angle, -2)
         pair = (np.minimum(angle, ahead) > SHARP) & (np.roll(angle, 1) < 0.2 * angle) & (after < 0.2 * ahead)
         sharp |= pair | np.roll(pair, 1)
@@ -85,10 +86,10 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
 
 
 def _oblique_bases(points: Floats, angle: Floats) -> NDArray[np.bool_]:
-    """Say of each point (n,) of a closed polygon whether it is one of the two ends of an oblique base.
+    """Return for each point (n,) of a closed polygon whether it is one of the two ends of an oblique base.
 
     One end turns by more than `HAIRPIN`, the next by more than `KINK`, both five times as much as the points
-    beyond them. Points beside a round end may turn like that too, but there the widening slows down behind.
+    beyond them. So may points next to a round end, but there the thickness grows ever more slowly behind it.
     """
     ahead, before, after = np.roll(angle, -1), np.roll(angle, 1), np.roll(angle, -2)
     pair = (np.maximum(angle, ahead) > HAIRPIN) & (np.minimum(angle, ahead) > KINK)
@@ -99,9 +100,9 @@ def _oblique_bases(points: Floats, angle: Floats) -> NDArray[np.bool_]:
 
 
 def _widens_on(points: Floats, k: int) -> bool:
-    """Say whether a body widens behind points k and k + 1 at the rate at which it widens up to the next two.
+    """Return whether a body widens behind points k and k + 1 as fast as before up to the next two points.
 
-    Widths are measured across the way to the third two; behind a nose they grow like the root of it.
+    Widths are measured across the direction to the third two; behind a nose they grow like its square root.
     """
     n = len(points)
     if n < 7:
@@ -118,8 +119,8 @@ def _widens_on(points: Floats, k: int) -> bool:
 def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
     """Return p where the thickness behind point k of a polygon (n, 2) grows like distance to the power p.
 
-    About 1/2 behind a round end, 1 behind a wedge, more behind a cusp; measured between the first and the
-    second points on both sides. Infinity where an open polygon has too few points beside k.
+    p is about 1/2 behind a round end, 1 behind a wedge, more behind a cusp. It is measured between the first
+    and the second points on both sides, and infinite if an open polygon has too few points next to k.
     """
     n = len(points)
     if n < 5 or (not closed and not 2 <= k < n - 2):

@@ -1,4 +1,4 @@
-"""Mirror images of closed walls: whether a body is its own, and which of the two it is otherwise."""
+"""Mirror symmetry of closed walls: whether a body is symmetric and, if not, which mirror image it is."""
 
 from typing import TypeAlias
 
@@ -10,21 +10,21 @@ from meshonet.geometry.elementary import modulus
 Axis: TypeAlias = tuple[complex, complex]
 """A straight line: a point of it, and its direction squared (a unit complex number)."""
 
-EQUAL = 1e-10  # of the wall's reach: nodes closer than this are mirror images
+EQUAL = 1e-10  # in units of the wall's extent: nodes closer than this are mirror images
 
 
 def farthest(wall: Complexes) -> tuple[int, int]:
-    """Return the first and the last of the nodes that are farthest from node 0, rounding aside."""
+    """Return the first and the last of the nodes that are farthest from node 0, to rounding."""
     reach = modulus(wall - wall[0])
     ends = np.flatnonzero(reach > (1.0 - 1e-12) * reach.max())
     return int(ends[0]), int(ends[-1])
 
 
 def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
-    """Return 1 or -1 for two walls (n,) and the opposite for their mirror images; 0 when they are their own.
+    """Return 1 or -1 for two walls (n,), the opposite for their mirror images, and 0 if they are symmetric.
 
     Node i of the mirror image is the image of node n - i. The axis runs from the first node to the middle of
-    the farthest; the node that misses its partner's image most decides, far wall after wall.
+    the farthest nodes. The node farthest from its partner's image decides, first on `wall`, then on `far`.
     """
     a, b = farthest(wall)
     along = 0.5 * (wall[a] + wall[b]) - wall[0]

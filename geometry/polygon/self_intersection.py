@@ -13,9 +13,9 @@ from meshonet.kernels._native import crossing_segments
 
 _BUDGET = 50_000_000  # comparisons, a quarter of a second, before an index tree replaces the sweep
 _SWEEP = np.array([0.846, 0.533])
-"""Direction of the sweep. Along an axis, every segment of a straight side across it would meet all others."""
-_ROUNDING = 1e-15  # of products with it, relative
-_CHUNK = 256  # segments queried at once, so that the crossings of a tangle do not fill the memory
+"""Direction of the sweep. Along an axis, all segments of a straight side normal to it would overlap."""
+_ROUNDING = 1e-15  # relative, of products with it
+_CHUNK = 256  # segments queried at a time, so that the crossings of a tangle do not fill the memory
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Crossing:
 
 
 def find_crossing(points: Floats, *, closed: bool = True) -> Crossing | None:
-    """Return the first place where a polygon (n, 2) crosses or touches itself, or None when it is simple.
+    """Return the first crossing or contact of a polygon (n, 2) with itself, or None if it is simple.
 
     >>> find_crossing(np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]))
     Crossing(first=0, second=2, x=0.5, y=0.5)
@@ -39,7 +39,7 @@ def find_crossing(points: Floats, *, closed: bool = True) -> Crossing | None:
 
 
 def check_outline(points: Floats, places: Sequence[str] = ()) -> None:
-    """Raise InputError when a closed polygon (n, 2), its points at `places` of a source, crosses itself."""
+    """Raise InputError if a closed polygon (n, 2) crosses itself; `places` locate its points in a source."""
     crossing = find_crossing(points)
     if crossing is not None:
         first, second = (
@@ -53,11 +53,11 @@ def check_outline(points: Floats, places: Sequence[str] = ()) -> None:
 
 
 def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> list[Crossing]:
-    """Return places where segments of a polygon (n, 2) that are not neighbours meet, `limit` at the most.
+    """Return up to `limit` crossings or contacts of segments of a polygon (n, 2) that are not neighbours.
 
-    A segment that runs back along its neighbour counts too; a closed polygon does not repeat its first point.
-    The segments are sorted along a direction and only those that overlap along it are compared, about n
-    comparisons for a body; a shape made to defeat this is searched with shapely's tree.
+    A segment that runs back along its neighbour also counts. A closed polygon does not repeat its first
+    point. Segments are sorted along a direction, and only those that overlap along it are compared: about n
+    comparisons for a body. A polygon with too many overlaps is searched with a spatial index tree (shapely).
     """
     p = np.ascontiguousarray(points, dtype=np.float64)
     end = np.roll(p, -1, axis=0) if closed else p[1:]
@@ -69,7 +69,7 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
 
 
 def sweep_spans(p: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """Return where (m,) the segments from `p` to `end` start and stop along the sweep, rounded outwards."""
+    """Return start and end (m,) of the segments from `p` to `end` along the sweep, rounded outwards."""
     along, along_end = product(p[: len(end)], _SWEEP), product(end, _SWEEP)
     low, top = np.minimum(along, along_end), np.maximum(along, along_end)
     top += _ROUNDING * max(
@@ -96,7 +96,7 @@ def _pairs_by_tree(p: Floats, end: Floats, closed: bool, limit: int) -> list[tup
 
 
 def shared_point(p: Floats, end: Floats, i: int, j: int) -> tuple[float, float]:
-    """Return where segments i and j meet; of collinear ones, a point that both contain."""
+    """Return a point common to segments i and j; they may be collinear."""
     a, b, c, d = p[i], end[i], p[j], end[j]
     r, s, w = b - a, d - c, c - a
     across = r[0] * s[1] - r[1] * s[0]

@@ -1,4 +1,4 @@
-"""Figures of a grid of many blocks beside the metrics of its cells, the angles of corners among them."""
+"""Figures of a multi-block grid other than cell metrics, among them the deviation of corner angles."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -18,10 +18,11 @@ from meshonet.geometry.summary import Quality
 
 @dataclass(frozen=True)
 class Deviation:
-    """Degrees: the mean over all corners, and the 99th percentile over the worst corner of each cell.
+    """Deviation of corner angles from 90 degrees: mean over all corners, 99th percentile over cells.
 
-    `max` is that of cell `at`, (block, i, j) or (block, i, j, k). A corner of a volume has three angles, of
-    which the worst counts. `p99` is None where percentiles were not computed.
+    The percentile is that of the worst corner of each cell; `p99` is None if percentiles were not computed.
+    `max` is at cell `at`, (block, i, j) or (block, i, j, k). Of the three angles at a corner of a volume the
+    worst counts.
     """
 
     mean: float
@@ -34,8 +35,8 @@ class Deviation:
 class BlockCounts:
     """Blocks and irregular vertices of a grid.
 
-    `sizes` are the nodes of each block, `irregular` the inner vertices (block, i, j) where other than four
-    cells meet, each with the cells that meet there; None in volumes.
+    `sizes` are the numbers of nodes of each block along its directions. `irregular` are the inner nodes
+    (block, i, j) where other than four cells meet, each with the number of cells; None in volumes.
     """
 
     sizes: tuple[tuple[int, ...], ...]
@@ -44,7 +45,7 @@ class BlockCounts:
 
 @dataclass(frozen=True)
 class BlockFigures(BlockCounts):
-    """Counts, angles and lines of a grid of blocks; `nodes` are those of all blocks without doubles."""
+    """Counts, angles and grid lines of a multi-block grid; `nodes` counts shared nodes once."""
 
     nodes: int
     interfaces: int
@@ -52,7 +53,7 @@ class BlockFigures(BlockCounts):
     lines: Lines
 
     def as_dict(self) -> dict[str, Any]:
-        """Return it as what JSON can hold."""
+        """Return the figures as a dict that JSON can hold."""
         facts: dict[str, Any] = {
             "blocks": len(self.sizes),
             "interfaces": self.interfaces,
@@ -73,9 +74,9 @@ LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")
 
 
 def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
-    """Return the figures of a grid of blocks; of volumes, their `quality` is measured unless it is known.
+    """Return the figures of a multi-block grid; of volumes, `quality` is measured unless it is given.
 
-    Lines of volumes have percentiles where their quality has.
+    Lines of volumes have percentiles if `quality` has.
     """
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
@@ -93,7 +94,7 @@ def block_figures(grid: Grid, quality: Quality | None = None) -> BlockFigures:
 
 
 def block_counts(grid: Grid, nodes: Vertices | None = None) -> BlockCounts:
-    """Return the blocks and irregular vertices of a grid; its vertices are `nodes`, found unless given."""
+    """Return the blocks and irregular vertices of a grid; `nodes` are its vertices, found unless given."""
     sizes = tuple(block.counts for block in grid.blocks)
     if grid.form == "volume":
         return BlockCounts(sizes, None)
@@ -103,7 +104,7 @@ def block_counts(grid: Grid, nodes: Vertices | None = None) -> BlockCounts:
 
 
 def extreme_dict(extreme: Extreme | None) -> dict[str, Any] | None:
-    """Return an extreme as what JSON can hold."""
+    """Return an extreme as a dict that JSON can hold."""
     if extreme is None:
         return None
     facts = {"max": extreme.max, "mean": extreme.mean, "at": list(extreme.at)}
@@ -111,7 +112,7 @@ def extreme_dict(extreme: Extreme | None) -> dict[str, Any] | None:
 
 
 def deviation(grid: Grid) -> Deviation:
-    """Return the deviation of the corners of all blocks of two directions; in the plane it is up to 270."""
+    """Return the deviation of all corners of 2-D blocks from 90 degrees; in the plane it is up to 270."""
     every = [corner_deviations(block.nodes) for block in grid.blocks]
     worst = [corners.max(axis=0) for corners in every]
     block = int(np.argmax([cells.max() for cells in worst]))
@@ -126,14 +127,14 @@ def deviation(grid: Grid) -> Deviation:
 
 
 def solid_deviation(quality: Quality) -> Deviation:
-    """Return the deviation of the corners of volumes out of their metrics."""
-    worst = quality["skewness"]  # of 90 degrees
+    """Return the deviation of the corners of volumes, from their metrics."""
+    worst = quality["skewness"]  # deviation over 90 degrees
     p99 = None if worst.p99 is None else 90.0 * worst.p99
     return Deviation(quality["deviation"].mean, p99, 90.0 * worst.max, worst.worst)
 
 
 def corner_deviations(nodes: Floats) -> Floats:
-    """Return the deviations (4, ni-1, nj-1) of the corners of the cells of `nodes` (ni, nj, 2 or 3)."""
+    """Return the deviations (4, ni-1, nj-1) in degrees of the cell corners of `nodes` (ni, nj, 2 or 3)."""
     ring = ring_of(nodes)
     ahead = np.roll(ring, -1, axis=0) - ring
     angle = angle_between(ahead, -np.roll(ahead, 1, axis=0))

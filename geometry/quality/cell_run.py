@@ -1,4 +1,4 @@
-"""One run of the compiled metrics over all cells of a planar block."""
+"""One pass of the compiled metrics over all cells of a planar block."""
 
 from typing import NamedTuple
 
@@ -19,7 +19,7 @@ NONE = slice(0)
 
 
 class CellRun(NamedTuple):
-    """Min, mean and max (metrics, 3), where min and max are (metrics, 2, 2), and kept values."""
+    """Result of a pass: min, mean, max (metrics, 3), cells of min and max (metrics, 2, 2), kept values."""
 
     table: Floats
     where: NDArray[np.int64]
@@ -27,9 +27,10 @@ class CellRun(NamedTuple):
 
 
 def run_over(x: Floats, y: Floats, kept: slice = NONE, *, periodic: bool = False, wake: int = 0) -> CellRun:
-    """Run over the cells of the planes x, y (ni, nj); values (n, ni-1, nj-1) of the metrics `kept` are kept.
+    """Compute the metrics of nodes x, y (ni, nj); for metrics `kept`, return the values (n, ni-1, nj-1) too.
 
-    Of a `periodic` block column ni-1 is column 0; the first `wake` cells at south are beside the last ones.
+    In a `periodic` block i = ni-1 and i = 0 coincide; the first `wake` cells of south are neighbours of its
+    last.
     """
     metrics = len(QUAD_METRICS)
     table, where = np.empty((metrics, 3)), np.empty((metrics, 2, 2), dtype=np.int64)

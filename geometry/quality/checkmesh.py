@@ -1,26 +1,26 @@
-"""OpenFOAM's checkMesh measures: non-orthogonality, skewness of faces, aspect ratio.
+"""The measures of OpenFOAM's checkMesh: non-orthogonality, skewness of faces, aspect ratio.
 
-Here of a grid in the plane as one that is a cell thick; of volumes see
+A planar grid is treated as one layer of cells of constant thickness; for volumes see
 `meshonet.geometry.quality.checkmesh_solid`.
 
 ::
 
-    own  o-----.-- nei      d: from the centre of the owner to that of the neighbour
-               |            S: normal of the face, its length the face's
-               f            f: the face's centre
+    own  o-----.-- nei      d: from the centre of the owner cell to that of the neighbour
+               |            S: normal of the face, with the length of the face
+               f            f: centre of the face
 
 ===================  =======================================================================================
-non_orthogonality    angle between d and S, degrees, of every face inside (90 and more is an error there); its
-                     mean is the angle of the mean cosine
-face_skewness        distance from f to where d crosses the face's plane, over the larger of 0.2 abs(d) and
-                     the face's reach from f in that direction; at the outer boundary d is the way from the
-                     owner's centre square to the face, and counts 0.4
-box_ratio            sum of abs(Sx) over the faces of a cell against that of abs(Sy), the larger over the
-                     smaller: its aspect ratio for cells along the axes
+non_orthogonality    angle between d and S, degrees, of every inner face (90 and more is an error there); its
+                     mean is the angle whose cosine is the mean cosine
+face_skewness        distance from f to where d crosses the plane of the face, over the larger of 0.2 abs(d)
+                     and the distance from f to the face's end in that direction; at the outer boundary d is
+                     the normal from the owner's centre to the face, with factor 0.4
+box_ratio            sum of abs(Sx) over the faces of a cell compared with that of abs(Sy), the larger over
+                     the smaller: the aspect ratio of a cell whose edges are along the axes
 ===================  =======================================================================================
 
-Faces on the seam of an O grid, on the wake of a C grid and between blocks are inside, as they are in a mesh
-whose nodes were merged. Source: OpenFOAM, src/OpenFOAM/meshes/primitiveMesh/primitiveMeshCheck/
+Faces on the seam of an O grid, on the wake of a C grid and between blocks are inner faces, as in a mesh with
+merged nodes. Source: OpenFOAM, src/OpenFOAM/meshes/primitiveMesh/primitiveMeshCheck/
 primitiveMeshTools.C and primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
 """
 
@@ -50,9 +50,9 @@ Values: TypeAlias = tuple[tuple[int, ...], Floats | None, Floats]
 
 @dataclass(frozen=True)
 class FaceMeasures:
-    """Largest measures of the faces, each with the cell (i, j) of its face; None if there are no such faces.
+    """Statistics of each measure, with the cell (i, j) of the largest; None if there are no such faces.
 
-    In a grid of many blocks cells are (block, i, j), in volumes (block, i, j, k).
+    Cells are (block, i, j) in a multi-block grid, and (block, i, j, k) in volumes.
     """
 
     non_orthogonality: Extreme | None
@@ -63,7 +63,7 @@ class FaceMeasures:
 def faces(grid: Grid) -> FaceMeasures:
     """Return the measures of the faces of `grid`.
 
-    Raises InputError: a surface, which has no faces between cells of volume.
+    Raises InputError: a surface, whose cells have no faces.
     """
     if grid.form == "volume":
         return _of_volume(grid)
@@ -87,7 +87,7 @@ def _of_volume(grid: Grid) -> FaceMeasures:
 
 
 def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
-    """Return the cells (block, i, j) with a face beyond a non-orthogonality, in degrees, or a skewness."""
+    """Return the cells (block, i, j) with a face beyond `angle` (non-orthogonality, degrees) or `skew`."""
     cells: list[tuple[int, int, int]] = []
     for (block, i, j), angles, skews in _of_blocks(grid):
         where = skews > skew if angles is None else (angles > angle) | (skews > skew)
@@ -96,7 +96,7 @@ def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, 
 
 
 def _of_blocks(grid: Grid) -> Iterator[Values]:
-    """Yield the faces of many blocks in the plane."""
+    """Yield the measures of the faces of several planar blocks."""
     for number, block in enumerate(grid.blocks):
         yield from _within(block.nodes, (number,))
     yield from _across(grid)
@@ -119,7 +119,7 @@ def _summed(faces: Iterable[Values], box_ratios: Iterable[tuple[tuple[int, ...],
 
 
 def _inside(grid: Grid) -> Iterator[Values]:
-    """Yield the faces inside the only block."""
+    """Yield the measures of the inner faces of a single block."""
     yield from _within(beyond_seam(grid), (), grid.nodes)
     wake = grid.wake
     if wake:
@@ -128,7 +128,7 @@ def _inside(grid: Grid) -> Iterator[Values]:
 
 
 def _within(nodes: Floats, at: tuple[int, ...], once: Floats | None = None) -> Iterator[Values]:
-    """Yield the faces inside block `at`: those across xi of `nodes`, those across eta of `once` if given."""
+    """Yield inner faces of block `at`: across xi those of `nodes`, across eta those of `once` if given."""
     for i, block in strips(nodes, 2):
         centre = centroids(block)
         yield (*at, i, 0), *_between(centre[:-1], centre[1:], block[1:-1, :-1], block[1:-1, 1:])
@@ -138,7 +138,7 @@ def _within(nodes: Floats, at: tuple[int, ...], once: Floats | None = None) -> I
 
 
 def _across(grid: Grid) -> Iterator[Values]:
-    """Yield the faces on the connections of blocks, which are those of cells of the first one."""
+    """Yield the faces on connections; each belongs to a cell of the connection's own side."""
     for each in grid.connections:
         own, donor = across(grid, each, 2)
         axis, end = PLACES[each.side]
@@ -153,7 +153,7 @@ def _across(grid: Grid) -> Iterator[Values]:
 
 
 def _outside(grid: Grid) -> Iterator[Values]:
-    """Yield the faces of the outer boundary of the only block."""
+    """Yield the faces on the outer boundary of a single block."""
     nodes, wake = grid.nodes, grid.wake
     body = nodes[wake : grid.ni - wake]
     yield (wake, 0), None, _at_boundary(centroids(body[:, :2]), body[:-1, :1], body[1:, :1])
@@ -164,7 +164,7 @@ def _outside(grid: Grid) -> Iterator[Values]:
 
 
 def _outer(grid: Grid) -> Iterator[Values]:
-    """Yield the faces of the outer boundary of many blocks."""
+    """Yield the faces on the outer boundary of several blocks."""
     for patch in grid.outer_patches():
         rows = rows_at(grid, patch, 2)
         skew = _at_boundary(centroids(rows.swapaxes(0, 1))[:, 0], rows[0, :-1], rows[0, 1:])
@@ -173,7 +173,7 @@ def _outer(grid: Grid) -> Iterator[Values]:
 
 
 def centroids(nodes: Floats) -> Floats:
-    """Return the centroids (ni-1, nj-1, 2) of the cells of `nodes` (ni, nj, 2), by two triangles each."""
+    """Return the centroids (ni-1, nj-1, 2) of the cells of `nodes` (ni, nj, 2), from two triangles each."""
     a = nodes[:-1, :-1]
     b, c, d = nodes[1:, :-1] - a, nodes[1:, 1:] - a, nodes[:-1, 1:] - a
     first, second = cross2(b, c), cross2(c, d)
@@ -183,7 +183,7 @@ def centroids(nodes: Floats) -> Floats:
 
 
 def _between(own: Floats, neighbour: Floats, a: Floats, b: Floats) -> tuple[Floats, Floats]:
-    """Return angle and skewness of faces from `a` to `b`; (b - a) turned right points to the `other` side."""
+    """Return angle and skewness of faces from `a` to `b`; (b - a) turned right points to `neighbour`."""
     edge, way = b - a, neighbour - own
     square = -cross2(edge, way)  # abs(S) abs(d) cos: the normal is the edge turned right
     angle = np.degrees(arctan2(np.abs(_dot(edge, way)), square))
@@ -194,7 +194,7 @@ def _between(own: Floats, neighbour: Floats, a: Floats, b: Floats) -> tuple[Floa
 
 
 def _at_boundary(own: Floats, a: Floats, b: Floats) -> Floats:
-    """Return the skewness of boundary faces from `a` to `b` of cells with their centres at `own`."""
+    """Return the skewness of boundary faces from `a` to `b`, of cells with centres `own`."""
     edge, middle = b - a, 0.5 * (a + b) - own
     length = np.hypot(edge[..., 0], edge[..., 1])
     unit = edge / np.maximum(length, np.finfo(float).tiny)[..., None]
@@ -203,7 +203,7 @@ def _at_boundary(own: Floats, a: Floats, b: Floats) -> Floats:
 
 
 def _face_skewness(off: Floats, edge: Floats, least: Floats) -> Floats:
-    """Return abs(off) over the larger of `least` and half the face's extent along it."""
+    """Return abs(off) over the larger of `least` and half the face's extent in the direction of `off`."""
     size = np.hypot(off[..., 0], off[..., 1])
     tiny = np.finfo(float).tiny
     reach = 0.5 * np.abs(_dot(off, edge)) / np.maximum(size, tiny)

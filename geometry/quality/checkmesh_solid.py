@@ -1,15 +1,14 @@
-"""OpenFOAM's checkMesh measures of volumes: non-orthogonality, skewness of faces, aspect ratio.
+"""The measures of OpenFOAM's checkMesh for volumes: non-orthogonality, skewness of faces, aspect ratio.
 
-Faces and cells are those of its mesh: a face's area vector and centre come from triangles around the mean of
-its corners, a cell's centre and volume from pyramids over its faces. Definitions of the measures are those of
-`meshonet.geometry.quality.checkmesh`, but that
+Faces and cells are those of OpenFOAM: the area vector and the centre of a face come from triangles around the
+mean of its corners, the centre and the volume of a cell from pyramids over its faces. The measures are
+defined in `meshonet.geometry.quality.checkmesh`, except that
 
-- a face's reach is the farthest of its corners in the direction of what is off;
-- the aspect ratio of a cell is the greatest of sum abs(S) along x, y and z over the least, or, if that is
-more,
-  sum abs(S) of all over 6 V^(2/3).
+- the extent of a face is that of its farthest corner in the direction of the offset; - the aspect ratio of a
+cell is the larger of two values: the greatest over the least of the sums of abs(S) along
+  x, y and z; and the sum of all three over 6 V^(2/3).
 
-Faces on connections are inside. Source: OpenFOAM,
+Faces on connections are inner faces. Source: OpenFOAM,
 src/OpenFOAM/meshes/primitiveMesh/primitiveMeshFaceCentresAndAreas.C, primitiveMeshCellCentresAndVols.C and
 primitiveMeshCheck/primitiveMeshTools.C.
 """
@@ -33,7 +32,7 @@ _TINY = 1e-300  # in place of 0 in divisors
 
 
 class SolidFaceMeasures(NamedTuple):
-    """Place (block, i, j, k) of the first of faces (n, m), their angles, None at the boundary, skewness."""
+    """Place (block, i, j, k) of the first of faces (n, m), their angles (None at the boundary), skewness."""
 
     place: tuple[int, ...]
     axis: int
@@ -50,7 +49,7 @@ class Cells:
 
 
 def solid_faces(grid: Grid, cells: Sequence[Cells]) -> Iterator[SolidFaceMeasures]:
-    """Yield the measures of the faces of blocks of volume with those `cells`, a layer at a time."""
+    """Yield the measures of the faces of volumes, layer by layer; `cells` are those of each block."""
     for number, (block, own) in enumerate(zip(grid.blocks, cells, strict=True)):
         nodes = np.moveaxis(block.nodes, -1, 0)
         for axis in range(3):
@@ -88,7 +87,7 @@ def _across(grid: Grid, cells: Sequence[Cells]) -> Iterator[SolidFaceMeasures]:
 
 
 def cells_of(nodes: Floats) -> Cells:
-    """Return the cells of a block of nodes (ni, nj, nk, 3)."""
+    """Return centres and aspect ratios of the cells of nodes (ni, nj, nk, 3)."""
     planes = np.moveaxis(nodes, -1, 0)
     shape = [count - 1 for count in nodes.shape[:3]]
     centres, aspect = np.empty((3, *shape)), np.empty(shape)
@@ -126,7 +125,7 @@ def _cells(pairs: Sequence[Sequence[Sequence[Floats]]]) -> tuple[Floats, Floats]
 
 
 def _turn(axis: int) -> int:
-    """Return the sign with which the two other directions, in their order, span a normal along an axis."""
+    """Return the sign of the normal along an axis that the two other directions, in their order, span."""
     return -1 if axis == 1 else 1
 
 
@@ -137,7 +136,7 @@ def _layer(nodes: Floats, turn: int = 1) -> tuple[Floats, Floats]:
 
 
 def _faces(ring: Sequence[Floats], turn: int) -> tuple[Floats, Floats]:
-    """Return centres and area vectors (3, n, m) of faces with those four corners, in order."""
+    """Return centres and area vectors (3, n, m) of faces, given their four corners in order."""
     middle = 0.25 * (ring[0] + ring[1] + ring[2] + ring[3])
     spokes = [corner - middle for corner in ring]
     area, moment, total = np.zeros_like(middle), np.zeros_like(middle), np.zeros(middle.shape[1:])
@@ -151,7 +150,7 @@ def _faces(ring: Sequence[Floats], turn: int) -> tuple[Floats, Floats]:
 
 
 def _between(nodes: Floats, own: Floats, neighbour: Floats, turn: int) -> tuple[Floats, Floats]:
-    """Return angle and skewness of the faces of a layer (3, n, m) between cells with those centres."""
+    """Return angle and skewness of the faces of a layer (3, n, m), given the cell centres on both sides."""
     centre, area = _layer(nodes, turn)
     way = neighbour - own
     along = _dot(area, way)
@@ -172,7 +171,7 @@ def _at_boundary(nodes: Floats, own: Floats) -> Floats:
 
 
 def _face_skewness(off: Floats, nodes: Floats, centre: Floats, least: Floats) -> Floats:
-    """Return abs(off) over the larger of `least` and the face's reach from its centre along it."""
+    """Return abs(off) over the larger of `least` and the face's extent from its centre along `off`."""
     size = np.sqrt(_dot(off, off))
     unit = off / np.maximum(size, _TINY)
     reach = least
@@ -194,7 +193,7 @@ def _cross(u: Floats, v: Floats) -> Floats:
 
 
 def cell_at(grid: Grid, block: int, side: Side, first: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the cell (block, i, j, ...) at a side, with the index or indices `first` along it."""
+    """Return the cell (block, i, j, ...) at a side, given its index or indices `first` along the side."""
     axis, end = PLACES[side]
     return _place(block, axis, 0 if end == 0 else grid.blocks[block].counts[axis] - 2, first)
 

@@ -1,4 +1,4 @@
-"""How far two grids of the same size are apart."""
+"""Distances between the nodes of two grids of the same size."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 NEAR = 0.1
-"""Part of the rows that counts as near the wall."""
+"""Fraction of the rows that counts as near the wall."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Difference:
 
 
 def compare(grid: Grid, reference: Grid) -> Difference:
-    """Return how far the nodes of `grid` are from those of `reference`.
+    """Return the distances between the nodes of `grid` and those of `reference`.
 
     Raises InputError: their node counts differ.
     """
@@ -44,13 +44,13 @@ def compare(grid: Grid, reference: Grid) -> Difference:
     else:
         near = [away[0][:, : max(1, round(NEAR * grid.nj))].ravel()]
         outer = [away[0][:, 0], away[0][:, -1]]
-        if not grid.periodic:  # the cut of an O grid is no boundary
+        if not grid.periodic:  # the seam of an O grid is no boundary
             outer += [away[0][0], away[0][-1]]
     worst = int(np.argmax([distances.max() for distances in away]))
     at = tuple(int(k) for k in np.unravel_index(int(away[worst].argmax()), away[worst].shape))
     nodes = np.concatenate([b.nodes.reshape(-1, b.nodes.shape[-1]) for b in reference.blocks])
     spread = _root_mean_square(norms(nodes - nodes.mean(axis=0)))
-    extent = max(spread, float(np.finfo(float).tiny))  # all nodes in one place
+    extent = max(spread, float(np.finfo(float).tiny))  # all nodes may coincide
     every = np.concatenate([distances.ravel() for distances in away])
     return Difference(
         max=float(every.max()),
@@ -78,7 +78,7 @@ def _check_sizes(grid: Grid, reference: Grid, *, many: bool) -> None:
 
 
 def _beside(values: Floats, patch: Patch, part: float) -> Floats:
-    """Return the values (n,) of nodes at a patch and in that part of all rows beside it, one at least."""
+    """Return the values (n,) at a patch and in a fraction `part` of all rows next to it, at least one."""
     axis, end = patch.place
     rows = np.moveaxis(values, axis, 0)[:: -1 if end else 1]
     spans = patch.range(rows.shape[1:])

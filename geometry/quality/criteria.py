@@ -1,4 +1,4 @@
-"""What a user accepts of a grid: gates, and the limits of profiles."""
+"""What a user requires of a grid: gates, and the limits of profiles."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Criteria:
-    """Gates, and names of profiles; what is false asks for nothing.
+    """Gates and names of profiles; false if there are none.
 
     Parameters
     ----------
     gates : tuple of Gate, optional
         Conditions under which a grid fails.
     profiles : tuple of str, optional
-        Of `meshonet.geometry.quality.profiles.PROFILES`.
+        Names in `meshonet.geometry.quality.profiles.PROFILES`.
     """
 
     gates: tuple[Gate, ...] = ()
@@ -31,7 +31,7 @@ class Criteria:
 
     @property
     def percentiles(self) -> bool:
-        """Whether a gate looks at a percentile, which `judge` must then be given."""
+        """Whether a gate needs a percentile, which the quality given to `judge` must then have."""
         if not self.gates:
             return False
         from meshonet.geometry.quality.gates import need_percentiles
@@ -41,7 +41,7 @@ class Criteria:
     def judge(self, grid: Grid, quality: Quality) -> Judgement:
         """Return the judgement of a grid of this `quality`.
 
-        Raises InputError: a gate names a figure that these cells do not have.
+        Raises InputError: a gate names a figure that this grid does not have.
         """
         from meshonet.geometry.quality.figures import Figures
         from meshonet.geometry.quality.profiles import profile_report

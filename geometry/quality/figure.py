@@ -1,4 +1,4 @@
-"""A figure of a grid with its place, and the names of those that gates and profiles judge."""
+"""A scalar figure of a grid with its place, and the names of the figures that gates and profiles judge."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -22,12 +22,12 @@ FIGURES: Mapping[str, str] = MappingProxyType({
     "growth_across": "growth across sides of blocks",
     "bend_across": "bend across sides of blocks, degrees",
 })  # fmt: skip
-"""Figures beside metrics and counts: a name, and what it takes."""
+"""Names of the figures other than metrics and counts, with a description of each."""
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure, its node or cell (i, j) or (block, i, j[, k]), and the direction of the line, where known."""
+    """A figure, its node or cell (i, j) or (block, i, j[, k]), and its grid line's direction, if known."""
 
     value: float
     at: tuple[int, ...] | None = None
@@ -35,7 +35,7 @@ class Figure:
 
     @property
     def where(self) -> str:
-        """Direction and place for people, empty where neither is known.
+        """Direction and place as text for users, empty if neither is known.
 
         >>> Figure(1.4, (12, 0), "xi").where, Figure(3.0).where
         (' along xi at i=12, j=0', '')

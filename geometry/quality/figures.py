@@ -1,4 +1,4 @@
-"""The figures of a grid by name, as gates and profiles judge them, with their places."""
+"""The figures of a grid by name, with their places, as gates and profiles judge them."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ _SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Figures:
-    """The figures of a grid by name, each group of them measured when it is first asked for."""
+    """The figures of a grid by name; each group is measured when it is first asked for."""
 
     grid: Grid
     quality: Quality
@@ -31,29 +31,29 @@ class Figures:
 
     @cached_property
     def faces(self) -> FaceMeasures:
-        """What checkMesh says of its faces."""
+        """The measures of checkMesh."""
         return faces(self.grid)
 
     @cached_property
     def growth(self) -> Growth:
-        """How fast its cells grow."""
+        """Growth ratios of neighbouring cells."""
         return self.blocks.lines.growth if self.grid.topology == "blocks" else growth(self.grid)
 
     @cached_property
     def blocks(self) -> BlockFigures:
-        """Its blocks, their vertices and how lines run through them."""
+        """Blocks, irregular vertices, corner angles, and grid lines through the blocks."""
         return block_figures(self.grid, self.quality)
 
     @cached_property
     def wall_rows(self) -> tuple[WallRow, ...]:
-        """The cells at its walls."""
+        """First cells and angles at the walls."""
         by_wall = self.blocks.lines.by_wall if self.walls and self.grid.topology == "blocks" else {}
         return wall_rows(self.grid, self.walls, by_wall)
 
     def __call__(self, name: str, statistic: str = "max") -> Figure | None:
-        """Return figure `name`, of a metric its `statistic`; None where this grid has none.
+        """Return the figure `name`, for a metric its `statistic`; None if this grid has none.
 
-        Raises InputError: faces of a surface.
+        Raises InputError: a checkMesh measure of a surface.
         """
         if name in COUNTS:
             count = getattr(self.quality, name)
@@ -82,7 +82,7 @@ class Figures:
         if name == "irregular":
             return None if blocks.irregular is None else Figure(float(len(blocks.irregular)))
         if name in ("growth_across", "bend_across"):
-            # no line runs across any side: steps are equal there, and nothing turns
+            # no line runs across any side: steps are equal there, and there is no bend
             return _figure(getattr(blocks.lines, name)) or Figure(1.0 if name == "growth_across" else 0.0)
         value = blocks.deviation.mean if name == "deviation_mean" else blocks.deviation.p99
         return None if value is None else Figure(value)

@@ -1,4 +1,4 @@
-"""Gates: conditions on the quality of a grid that a user does not accept."""
+"""Gates: conditions on grid quality that must not hold, chosen by the user."""
 
 import operator
 import re
@@ -22,7 +22,7 @@ _GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASC
 
 @dataclass(frozen=True)
 class Gate:
-    """A condition that a grid must not fulfil, from a user's ``METRIC[.STATISTIC] OPERATOR VALUE``."""
+    """A condition that a grid must not meet, from a user's ``METRIC[.STATISTIC] OPERATOR VALUE``."""
 
     text: str
     metric: str
@@ -34,7 +34,7 @@ class Gate:
     """In the metric's unit."""
 
     def figure(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> Figure:
-        """Return what the gate looks at, of `figures` or of `more`.
+        """Return the figure that the gate judges, from `figures` or from `more`.
 
         Raises InputError: a figure that this grid does not have.
         """
@@ -46,7 +46,7 @@ class Gate:
         return figure
 
     def broken(self, figures: "Figures", more: Mapping[str, Figure] = NO_MORE) -> str | None:
-        """Return a line for the user if the `figure` is beyond the limit, else None.
+        """Return a message if the `figure` is beyond the limit, else None.
 
         Raises InputError: a figure that this grid does not have.
         """
@@ -56,13 +56,14 @@ class Gate:
         return f"{self._what} is {figure.value:.6g}{figure.where}, and {{fail_on}} '{self.text}'"
 
     def in_short(self, figure: Figure) -> str:
-        """Return a figure beyond the limit and the limit: ``max_angle.max 178.2 > 170``."""
+        """Return the figure and the limit that it is beyond as text: ``max_angle.max 178.2 > 170``."""
         return in_short(self._what, figure, self.compare, self.limit)
 
     def replaces(self, figure: str, compare: str) -> bool:
-        """Say whether the gate limits what a check of `figure` does, which has a limit of this sense too.
+        """Return whether the gate takes the place of a check of `figure` with a limit in this direction.
 
-        Of metrics that is the greatest cell, or the least: a gate on a mean is beside such a check.
+        It must judge the same figure; of a metric, its greatest or least cell. A gate on a mean is an
+        additional one.
         """
         return (self.metric, self.compare[0], self.statistic) == (figure, compare[0], end_of(compare))
 
@@ -72,17 +73,17 @@ class Gate:
 
 
 def beyond(value: float, compare: str, limit: float) -> bool:
-    """Say whether a figure is beyond a limit; what is not a number is."""
+    """Return whether a figure is beyond a limit; NaN always is."""
     return bool(COMPARE[compare](value, limit)) or value != value
 
 
 def end_of(compare: str) -> str:
-    """Return which end of a metric a limit is for, ``max`` or ``min``."""
+    """Return which extreme of a metric a limit is for, ``max`` or ``min``."""
     return "max" if compare in (">", ">=") else "min"
 
 
 def in_short(name: str, figure: Figure, compare: str, limit: float) -> str:
-    """Return a figure beyond a limit; of growth and bend with direction and place, which no table has.
+    """Return a figure and its limit as text, for growth and bend with direction and place, which tables lack.
 
     >>> in_short("growth", Figure(1.417, (12, 0), "xi"), ">", 1.3)
     'growth 1.417 > 1.3 along xi at i=12, j=0'
@@ -92,16 +93,16 @@ def in_short(name: str, figure: Figure, compare: str, limit: float) -> str:
 
 @dataclass(frozen=True)
 class Judgement:
-    """What came of gates and profile for one grid.
+    """The outcome of gates and profiles for one grid.
 
     Parameters
     ----------
     problems : tuple of str
-        A line for each gate, and each check of the profile, that failed.
+        A line for each gate, and each check of a profile, that failed.
     beyond : tuple of str
-        The same in short, warnings of the profile among them: ``max_angle 178.2 > 170``.
+        The same in short, including the warnings of profiles: ``max_angle 178.2 > 170``.
     replaced : tuple of str
-        Limits of gates that are in place of the profile's: ``box_ratio > 4000``.
+        Limits of gates that replace those of profiles: ``box_ratio > 4000``.
     """
 
     problems: tuple[str, ...] = ()
@@ -110,14 +111,14 @@ class Judgement:
 
     @property
     def verdict(self) -> Literal["pass", "warn", "fail"]:
-        """The worst that any gate or check says."""
+        """The worst outcome of any gate or check."""
         return "fail" if self.problems else "warn" if self.beyond else "pass"
 
 
 def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
-    """Return the gate that `text` describes; `more` are figures beside `FIGURES`, without statistics too.
+    """Return the gate that `text` describes; `more` are names of figures allowed besides `FIGURES`.
 
-    Without a statistic, ``>`` looks at the greatest cell and ``<`` at the least.
+    If a metric has no statistic, ``>`` judges its greatest cell and ``<`` its least.
 
     Raises InputError: `text` is no gate, or names an unknown metric or statistic.
 
@@ -147,10 +148,10 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
 
 
 def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[Gate, ...]:
-    """Return the gates of all `texts`, which may name figures of `more` too."""
+    """Return the gates of all `texts`; `more` are names of figures allowed besides `FIGURES`."""
     return tuple(parse_gate(text, more) for text in texts or ())
 
 
 def need_percentiles(gates: Iterable[Gate]) -> bool:
-    """Say whether a gate looks at a percentile, which costs a sort of all cells."""
+    """Return whether a gate needs a percentile, which takes a sort of all cells."""
     return any(gate.statistic in ("p01", "p99") for gate in gates)

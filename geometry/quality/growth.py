@@ -1,7 +1,7 @@
 """Growth ratios of neighbouring cells along grid lines.
 
-The growth at a node is the ratio of the two steps of a grid line that meet there, the larger over the
-smaller: 1 for equal steps. Lines run on over the seam of an O grid and over the wake of a C grid.
+The growth at a node is the ratio of the two edges of a grid line that meet there, the larger over the
+smaller: 1 for equal edges. Lines continue across the seam of an O grid and the wake of a C grid.
 """
 
 from collections.abc import Iterator, Sequence
@@ -21,15 +21,15 @@ ROWS = 128
 DIRECTIONS = ("xi", "eta", "zeta")
 
 LARGE = 1e30
-"""Growth beside a step of no length."""
+"""Growth at an edge of zero length."""
 
 
 @dataclass(frozen=True)
 class Extreme:
-    """Greatest and mean value of something over a grid, and the node or cell (i, j) of the greatest.
+    """Greatest and mean value of a quantity over a grid, and the node or cell (i, j) of the greatest.
 
-    In a grid of many blocks the place is (block, i, j), in a volume (block, i, j, k); there is the 99th
-    percentile too. `along` is the direction of the line with the greatest, one of `DIRECTIONS`.
+    The place is (block, i, j) in a multi-block grid and (block, i, j, k) in a volume; these also have the
+    99th percentile. `along` is the direction of the grid line with the greatest value, one of `DIRECTIONS`.
     """
 
     max: float
@@ -41,21 +41,21 @@ class Extreme:
 
 @dataclass(frozen=True)
 class Growth:
-    """Growth along the families of grid lines; None where a line has one step only, zeta in volumes alone."""
+    """Growth along each direction; None where a line has a single edge. Only volumes have zeta."""
 
     xi: Extreme | None
     eta: Extreme | None
     zeta: Extreme | None = None
 
     def families(self) -> dict[str, Extreme]:
-        """Return what there is by the names of the directions."""
+        """Return the values that are not None by the names of their directions."""
         return {name: extreme for name, extreme in vars(self).items() if extreme}
 
 
 class Tally:
-    """Extreme of values that come part by part; with their percentile when they are `kept`.
+    """Accumulates the extreme of values given part by part; with `kept` also their percentile.
 
-    Kept values may be in single precision.
+    Values are kept as they are given, possibly in single precision.
     """
 
     def __init__(self, *, kept: bool = False) -> None:
@@ -65,7 +65,7 @@ class Tally:
         self._values: list[Floats | Singles] | None = [] if kept else None
 
     def add(self, place: tuple[int, ...], values: Floats, along: str | None = None) -> None:
-        """Add values (m, n) or (m, n, l) of the nodes or cells from `place` on, (i, j) say."""
+        """Add values (m, n) or (m, n, l) of nodes or cells, the first at `place`, for example (i, j)."""
         if values.size == 0:
             return
         here = np.unravel_index(int(values.argmax()), values.shape)
@@ -82,7 +82,7 @@ class Tally:
         along: str | None,
         values: Sequence[Floats | Singles],
     ) -> None:
-        """Add `count` `values`, the greatest of them and their sum, the greatest at node or cell `at`."""
+        """Add `count` values by their greatest, at node or cell `at`, and their sum `total`."""
         if high > self._max:
             self._max, self._at, self._along = high, at, along
         self._total += total
@@ -91,14 +91,14 @@ class Tally:
             self._values += [part.ravel() for part in values]
 
     def add_all(self, other: "Tally") -> None:
-        """Add what another one holds, its values where both keep them."""
+        """Add the values of another tally; percentiles need the kept values of both."""
         if other._count:
             values = other._values or ()
             self.add_summed(other._max, other._total, other._count, other._at, other._along, values)
 
     @property
     def extreme(self) -> Extreme | None:
-        """The extreme of all values so far, None when there were none."""
+        """The extreme of all values so far, None if there were none."""
         if not self._count:
             return None
         p99 = None if self._values is None else percentiles_of(np.concatenate(self._values), (99,))[0]
@@ -106,7 +106,7 @@ class Tally:
 
 
 def growth(grid: Grid) -> Growth:
-    """Return the growth of the steps of `grid` along xi and eta."""
+    """Return the growth ratios of `grid` along xi and eta."""
     xi, eta = Tally(), Tally()
     for i, block in strips(beyond_seam(grid), 2):
         xi.add((i + 1, 0), ratios(block), "xi")
@@ -117,12 +117,12 @@ def growth(grid: Grid) -> Growth:
 
 
 def beyond_seam(grid: Grid) -> Floats:
-    """Return the nodes (ni + 1, nj, 2) of an O grid, column 1 repeated at its end; others unchanged."""
+    """Return the nodes (ni + 1, nj, 2) of an O grid, with column 1 repeated at its end; others unchanged."""
     return np.concatenate([grid.nodes, grid.nodes[1:2]]) if grid.periodic else grid.nodes
 
 
 def across_wake(grid: Grid) -> Floats:
-    """Return the nodes (wake nodes, 3, 2) of a C grid across its wake, which is in the middle; else none."""
+    """Return nodes (n, 3, 2) across the wake of a C grid, wake nodes in the middle; n is 0 for others."""
     nodes = grid.wake + 1 if grid.wake else 0
     below = grid.nodes[::-1][:nodes, 1]
     return np.stack([below, grid.nodes[:nodes, 0], grid.nodes[:nodes, 1]], axis=1)
@@ -135,7 +135,7 @@ def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
 
 
 def ratios(nodes: Floats) -> Floats:
-    """Return the growth (m-2, ...) along the first axis of `nodes` (m, ..., d)."""
+    """Return the growth ratios (m-2, ...) along the first axis of `nodes` (m, ..., d)."""
     length = norms(np.diff(nodes, axis=0))
     before, after = length[:-1], length[1:]
     small = np.minimum(before, after)

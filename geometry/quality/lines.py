@@ -1,8 +1,9 @@
-"""Growth and bending of grid lines, also across connections.
+"""Growth and bend of grid lines, also across connections.
 
-The growth at a node is that of `meshonet.geometry.quality.growth`; the bend is the angle in degrees by which
-a line turns there, 0 where it is straight. Across a side both are taken at its nodes, but for irregular ones,
-through which no line runs; across a face of a volume at the nodes inside it, whose edges may be irregular.
+For the growth at a node see `meshonet.geometry.quality.growth`. The bend is the angle in degrees by which a
+grid line turns at a node, 0 where it is straight. Across a side both are taken at its nodes except irregular
+ones, through which no line continues; across a face of a volume at its inner nodes only, since its edges may
+be irregular.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -24,11 +25,11 @@ from meshonet.kernels import _native
 
 @dataclass(frozen=True)
 class Lines:
-    """Growth and bend at the nodes of the lines, the greatest at (block, i, j); None without any.
+    """Growth and bend at the nodes of grid lines, the greatest at (block, i, j); None if there are none.
 
-    `growth` is that along both directions of blocks, those across a side with the direction that ends there;
-    `leaving` is the growth along the lines that leave walls, through all blocks that they run through;
-    `by_wall` that of each wall, by name.
+    `growth` is that along each direction of the blocks; across a side it counts for the direction that ends
+    there. `leaving` is the growth along the lines that start at walls, through all blocks that they cross,
+    and `by_wall` the same for each wall, by name.
     """
 
     growth: Growth
@@ -42,7 +43,7 @@ class Lines:
 
 @dataclass(frozen=True)
 class BlockLines:
-    """Growth and bend of the lines along a direction of a block, inside it or across a side."""
+    """Growth and bend of the lines along a direction of a block, inside the block or across a side of it."""
 
     block: int
     axis: int
@@ -52,14 +53,14 @@ class BlockLines:
 
 
 def lines(grid: Grid, nodes: Vertices) -> Lines:
-    """Return growth and bend of the lines of planar blocks or surface patches with vertices `nodes`."""
+    """Return growth and bend of the lines of planar blocks or surface patches; `nodes` are their vertices."""
     return lines_of(grid, [*_inside(grid), *_across(grid, nodes)])
 
 
 def lines_of(grid: Grid, parts: list[BlockLines], *, along: bool = True, places: bool = True) -> Lines:
     """Return growth and bend of the lines of blocks in `parts`.
 
-    With percentiles `along` directions and walls, and at `places`, inside blocks and across sides.
+    `along` adds percentiles along directions and walls, `places` percentiles inside blocks and across sides.
     """
     family = {(m.block, m.axis): k for k, members in enumerate(families(grid)) for m in members}
     walls = [(patch.name, family[patch.block, patch.place[0]]) for patch in grid.walls()]
@@ -94,7 +95,7 @@ def _of(tallies: Iterable[Tally], *, kept: bool) -> Extreme | None:
 def part_of_values(
     place: tuple[int, ...], axis: int, inside: bool, values: Iterable[Floats], *, kept: bool = True
 ) -> BlockLines:
-    """Return the part with growth and bend (m, n[, l]) of the nodes from `place`, (block, i, j[, k]), on."""
+    """Return growth and bend (m, n[, l]) of nodes, the first at `place`, (block, i, j[, k]), as a part."""
     tallies = Tally(kept=kept), Tally(kept=kept)
     for tally, each in zip(tallies, values, strict=True):
         tally.add(place, each, DIRECTIONS[axis])
@@ -110,7 +111,7 @@ def _inside(grid: Grid) -> Iterator[BlockLines]:
 
 
 def _across(grid: Grid, nodes: Vertices) -> Iterator[BlockLines]:
-    """Yield the lines across each connection, an unbroken stretch of regular nodes at a time."""
+    """Yield the lines across each connection, one unbroken stretch of regular nodes at a time."""
     for each in grid.connections:
         own, donor = across(grid, each, 2)
         line = np.stack([own[1], own[0], donor[1]])
@@ -134,9 +135,9 @@ def bends(nodes: Floats) -> Floats:
 
 
 def solid_lines(grid: Grid, *, percentiles: bool = True) -> Lines:
-    """Return growth and bend of the lines of blocks of volume.
+    """Return growth and bend of the lines of volumes.
 
-    The `percentiles`, inside blocks and across faces, are of values in single precision.
+    The `percentiles`, inside blocks and across faces, are computed in single precision.
     """
     parts = [*_solid_inside(grid, percentiles), *_solid_across(grid, percentiles)]
     return lines_of(grid, parts, along=False, places=percentiles)

@@ -1,8 +1,8 @@
-"""How good a grid is: folded cells, and the metrics of `meshonet.geometry.quality.metrics` summarised.
+"""Grid quality: folded cells, and statistics of the metrics in `meshonet.geometry.quality.metrics`.
 
-A cell is folded when any of its four corner Jacobians is not positive; a grid is valid when none is. Cells of
-volumes have eight (`meshonet.geometry.quality.volumes`); those of surface patches are measured against their
-own normals (`meshonet.geometry.quality.surfaces`).
+A cell is folded if any of its four corner Jacobians is not positive; a grid is valid if no cell is. Cells of
+volumes have eight corners (`meshonet.geometry.quality.volumes`); cells of surface patches are measured
+relative to their own normals (`meshonet.geometry.quality.surfaces`).
 """
 
 from collections.abc import Sequence
@@ -23,9 +23,9 @@ from meshonet.kernels import _native
 
 
 def count_folded(nodes: Floats) -> int:
-    """Return how many cells of `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3) are folded.
+    """Return the number of folded cells of `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3).
 
-    Fastest, and free of copies, in the planar layout of `meshonet.geometry.arrays`.
+    Fastest, and without copies, in the planar layout of `meshonet.geometry.arrays`.
     """
     form = form_of(nodes)
     if form == "volume":
@@ -39,12 +39,12 @@ def count_folded(nodes: Floats) -> int:
 
 
 def count_folded_in(grid: Grid) -> int:
-    """Return how many cells of all blocks of `grid` are folded (`count_folded`)."""
+    """Return the number of folded cells in all blocks of `grid` (`count_folded`)."""
     return sum(count_folded(block.nodes) for block in grid.blocks)
 
 
 def folded_cells(nodes: Floats) -> NDArray[np.int64]:
-    """Return the indices of the folded cells of `nodes`, in their order.
+    """Return the indices of the folded cells of `nodes`, in ascending order.
 
     They are (n, 2), i and j, for nodes (ni, nj, 2) or (ni, nj, 3), and (n, 3) for (ni, nj, nk, 3).
     """
@@ -61,9 +61,9 @@ def folded_cells(nodes: Floats) -> NDArray[np.int64]:
 
 
 def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return the folded cells of `nodes`, as `count_folded` takes them, the worst first.
+    """Return the folded cells of `nodes` (of any shape that `count_folded` takes), the worst first.
 
-    They are `limit` at the most, the least scaled Jacobian first.
+    At most `limit` cells, in ascending order of the scaled Jacobian.
     """
     form = form_of(nodes)
     if form == "volume":
@@ -85,7 +85,7 @@ def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
 
 
 def worst_cells_of(grid: Grid, limit: int = 10) -> list[BadCell]:
-    """Return the folded cells of the blocks of `grid`, `limit` at the most, block after block."""
+    """Return at most `limit` folded cells of the blocks of `grid`, block after block."""
     if grid.topology != "blocks":
         return worst_cells(grid.nodes, limit)
     blocks = enumerate(grid.blocks)
@@ -97,8 +97,8 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     """Return the quality of `grid`; neighbours across the seam of ``o`` and the wake of ``c`` count.
 
     The 1st and 99th `percentiles` of every metric, by linear interpolation between cells, take four times as
-    long as the rest. All cells of several blocks count together, as do volumes and surface patches; cells
-    across connections are neighbours.
+    long as the rest. The cells of all blocks are measured as one grid; cells across connections are
+    neighbours.
     """
     quality = _compiled(grid, percentiles)
     more = [metric for metric in metrics_of(grid) if metric.cells]
@@ -116,7 +116,7 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
 
 
 def _compiled(grid: Grid, percentiles: bool) -> Quality:
-    """Return the folded cells and the metrics of the compiled kernels."""
+    """Return the folded cells, and the metrics computed by the compiled kernels."""
     if grid.form == "volume":
         from meshonet.geometry.quality.volumes import measure_volumes
 
@@ -144,7 +144,7 @@ def _run(grid: Grid, kept: slice) -> CellRun:
 
 
 def angles(nodes: Floats) -> tuple[float, float]:
-    """Return the largest and the mean of the cells' largest included angles, in degrees; 360 when folded."""
+    """Return the maximum and the mean of the cells' largest included angles, in degrees; 360 when folded."""
     if count_folded(nodes):
         return 360.0, 360.0
     table, _ = _angle_table(nodes)
@@ -152,20 +152,20 @@ def angles(nodes: Floats) -> tuple[float, float]:
 
 
 def widest_cell(nodes: Floats) -> tuple[int, int]:
-    """Return the cell (i, j) of `nodes` (ni, nj, 2) with the largest included angle, the first of them."""
+    """Return the first cell (i, j) of `nodes` (ni, nj, 2) with the largest included angle."""
     _, where = _angle_table(nodes)
     return int(where[1, 0]), int(where[1, 1])
 
 
 def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
-    """Return min, mean, max of the cells' largest angles and the places of min and max, without a `Grid`."""
+    """Return min, mean, max of the cells' largest angles, and the cells of min and max, without a `Grid`."""
     x, y = _planes(nodes)
     run, k = run_over(x, y), NAMES.index("max_angle")
     return run.table[k], run.where[k]
 
 
 def per_cell(grid: Grid, name: str) -> Floats:
-    """Return the metric `name` of every cell, (ni-1, nj-1); raise InputError when there is none."""
+    """Return the metric `name` of every cell, (ni-1, nj-1); raise InputError for an unknown metric."""
     metric = metric_of(grid, name)
     if metric.cells:
         return metric.cells(grid.nodes)
@@ -174,9 +174,9 @@ def per_cell(grid: Grid, name: str) -> Floats:
 
 
 def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
-    """Return the metric `name` of every cell, (ni-1, nj-1) or (ni-1, nj-1, nk-1) for each block.
+    """Return for each block the metric `name` of every cell, (ni-1, nj-1) or (ni-1, nj-1, nk-1).
 
-    Raises InputError: no such metric of these cells.
+    Raises InputError: a metric that these cells do not have.
     """
     metric = metric_of(grid, name)
     if metric.cells:

@@ -1,6 +1,6 @@
-"""The metrics of a grid of many blocks, or of surface patches: all cells as one grid's.
+"""The metrics of a multi-block grid, or of surface patches, whose cells are measured as one grid.
 
-Neighbours across connections are neighbours.
+Cells across connections are neighbours.
 """
 
 from collections.abc import Sequence
@@ -21,9 +21,9 @@ _TINY, _LARGE = 1e-300, 1e30
 
 
 def measure_blocks(grid: Grid, folded: int, *, percentiles: bool = False) -> Quality:
-    """Return the quality of all cells of planar blocks or surface patches, `folded` of them folded.
+    """Return the quality of all cells of planar blocks or surface patches, of which `folded` are folded.
 
-    Worst cells are (block, i, j).
+    The places of worst cells are (block, i, j).
     """
     values = metrics_of_blocks(grid)
     metrics = {
@@ -45,7 +45,7 @@ def metrics_of_blocks(grid: Grid) -> list[Floats]:
 
 
 def _area_ratios_across(grid: Grid, ratios: Sequence[Floats]) -> None:
-    """Raise the area ratios (ni-1, nj-1) of cells beside connections to those with the cells beyond."""
+    """Raise the area ratios (ni-1, nj-1) of cells at connections to those with the cells across, in place."""
     for each in grid.connections:
         own, donor = (areas(rows)[0] for rows in across(grid, each, 2))
         large, small = np.maximum(own, donor), np.maximum(np.minimum(own, donor), _TINY)
@@ -57,7 +57,7 @@ def _area_ratios_across(grid: Grid, ratios: Sequence[Floats]) -> None:
 
 
 def summary_of(metric: Metric, blocks: Sequence[Floats], percentiles: bool) -> Summary:
-    """Return the summary of a metric from its values (ni-1, nj-1[, nk-1]) in the cells of each block."""
+    """Return the statistics of a metric from its values (ni-1, nj-1[, nk-1]) in the cells of each block."""
     ends = [cells.min() if metric.worst == "min" else -cells.max() for cells in blocks]
     block = int(np.argmin(ends))
     cells = blocks[block]

@@ -1,9 +1,9 @@
-"""The quality metrics of a cell: a new one is a line in `METRICS`.
+"""The quality metrics of a cell. To add one, add a line to `METRICS`.
 
-A cell has its corners at nodes a = (i, j), b = (i+1, j), c = (i+1, j+1), d = (i, j+1). Where Verdict has a
-metric, this is Verdict's definition for a quadrilateral that lies in the plane; a cell whose corners run
-clockwise has no orientation there and is folded here. An edge of no length has no direction: such a cell
-counts as having angles of 0 and 180 degrees and a scaled Jacobian of 0.
+A cell has its corners at nodes a = (i, j), b = (i+1, j), c = (i+1, j+1), d = (i, j+1). Metrics that Verdict
+also has are defined as there for a planar quadrilateral, except that Verdict ignores orientation: here a cell
+whose corners run clockwise is folded. An edge of zero length has no direction: such a cell counts as having
+angles of 0 and 180 degrees and a scaled Jacobian of 0.
 
 ==================  ========================================================================================
 max_angle           greatest included angle, degrees; 360 minus the greatest angle between two edges when a
@@ -16,33 +16,34 @@ aspect_ratio        longest edge times perimeter over four areas; (r + 1)/2 for 
                     (Verdict: aspect ratio)
 orthogonality       angle between the two families of grid lines at the centre of the cell, 0 to 90 degrees
                     (Verdict: the arc cosine of skew)
-area_ratio          greatest ratio, larger over smaller, of the areas of a cell and of one beside it in i or
-                    j, across the seam of an ``o`` grid and the wake of a ``c`` grid too
+area_ratio          greatest ratio, larger over smaller, of the areas of a cell and of a neighbour in i or j,
+                    also across the seam of an ``o`` grid and the wake of a ``c`` grid
 ==================  ========================================================================================
 
-A cell of a surface patch is measured as such a quadrilateral in space, against its own normal at its centre.
+A cell of a surface patch is measured as such a quadrilateral in space, relative to its own normal at its
+centre.
 
 A cell of a volume has three edges u, v, w at each of its 8 corners, in the direction of their indices, and
-the corner Jacobian u . (v x w). A corner at which an edge has no length, at a pole for instance, is left out.
+the corner Jacobian u . (v x w). A corner with an edge of zero length, as at a pole, is left out.
 
 ==================  ========================================================================================
 max_angle           greatest of the 24 angles between two edges at a corner, degrees
-min_angle           least of them
+min_angle           least of these angles, degrees
 skewness            max((max_angle - 90)/90, (90 - min_angle)/90) (Verdict: equiangle skew, faces without a
                     reflex angle)
-deviation           greatest deviation of the three angles at a corner from 90 degrees, its mean over the
+deviation           greatest deviation of the three angles at a corner from 90 degrees, averaged over the
                     corners
-scaled_jacobian     least over the corners, and the centre with the principal axes, of the Jacobian over the
-                    lengths of its three vectors (Verdict: scaled Jacobian)
-jacobian_ratio      least corner Jacobian over the greatest magnitude of them (Verdict: nodal Jacobian ratio;
-                    the quality that pyHyp prints)
-bezier_ratio        least of the 27 Bezier coefficients of the Jacobian over the greatest magnitude of a
-                    corner Jacobian: where it is positive so is the Jacobian everywhere in the cell
+scaled_jacobian     least, over the corners and the centre, of the Jacobian over the product of the lengths of
+                    its three vectors, at the centre the principal axes (Verdict: scaled Jacobian)
+jacobian_ratio      least corner Jacobian over the greatest absolute value of a corner Jacobian (Verdict:
+                    nodal Jacobian ratio; the quality that pyHyp prints)
+bezier_ratio        least of the 27 Bezier coefficients of the Jacobian over the greatest absolute value of a
+                    corner Jacobian: if it is positive, so is the Jacobian everywhere in the cell
 aspect_ratio        longest over shortest principal axis (Verdict: maximum edge ratio)
 orthogonality       least angle between the three families of grid lines at the centre of the cell, 0 to 90
                     degrees (Verdict: the arc cosine of skew)
-volume_ratio        greatest ratio, larger over smaller, of the volumes of a cell and of one beside it in i,
-                    j or k, across connections too; the volume is that of the trilinear cell (Verdict:
+volume_ratio        greatest ratio, larger over smaller, of the volumes of a cell and of a neighbour in i, j
+                    or k, also across connections; the volume is that of the trilinear cell (Verdict:
                     volume)
 ==================  ========================================================================================
 
@@ -63,7 +64,7 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class Metric:
-    """A quality metric; `worst` says which of its ends is the bad one."""
+    """A quality metric; `worst` is the extreme that is bad, ``min`` or ``max``."""
 
     name: str
     unit: str
@@ -111,12 +112,12 @@ ALL_NAMES = tuple(dict.fromkeys((*NAMES, *SOLID_NAMES, *map(_NAME, METRICS))))
 
 
 def metrics_of(grid: Grid) -> tuple[Metric, ...]:
-    """Return the metrics that cells of `grid` have: of quadrilaterals or of volumes, and of both."""
+    """Return the metrics of the cells of `grid`: those of quadrilaterals or of volumes."""
     return (*(SOLID_METRICS if grid.form == "volume" else QUAD_METRICS), *METRICS)
 
 
 def metric_of(grid: Grid, name: str) -> Metric:
-    """Return the metric called `name`; raise InputError when cells of `grid` have none of that name."""
+    """Return the metric called `name`; raise InputError if cells of `grid` have none of that name."""
     metrics = metrics_of(grid)
     for metric in metrics:
         if metric.name == name:

@@ -1,13 +1,13 @@
-"""Thresholds of quality that others use: what OpenFOAM, Pointwise, Verdict and boundary layers ask for.
+"""Quality thresholds of others: OpenFOAM, Pointwise, Verdict, and guidelines for boundary layers.
 
 =========  =================================================================================================
-openfoam   checkMesh: folded cells, non-orthogonality (warns beyond 70 degrees, an error from 90), skewness at
-           most 4; its aspect ratio, which boundary layers often exceed, warns beyond 1000
+openfoam   checkMesh: no folded cells; non-orthogonality, a warning above 70 degrees and an error from 90;
+           skewness up to 4; aspect ratio, a warning above 1000, which boundary layers often exceed
 pointwise  equiangle skewness: good below 0.8, acceptable below 0.9
-verdict    scaled Jacobian from 0.3 to 1; the largest angle to 135 and the least from 45 degrees warn
-viscous    Drag Prediction Workshop guidelines: growth away from walls below 1.25; at least 2 equal cells at
-           the wall and a far field at 100 chords, or it warns; angles from 18 degrees (ICEM practice), or it
-           warns
+verdict    scaled Jacobian from 0.3 to 1; a warning for angles above 135 or below 45 degrees
+viscous    Drag Prediction Workshop guidelines: growth away from walls below 1.25; warnings for fewer than 2
+           equal cells at the wall, for a far field nearer than 100 chords and for angles below 18 degrees
+           (ICEM practice)
 =========  =================================================================================================
 
 All of them fail a grid with folded cells. Sources: OpenFOAM primitiveMeshCheck.C; Pointwise user manual,
@@ -30,7 +30,7 @@ Verdict = Literal["pass", "warn", "fail", "none"]
 
 @dataclass(frozen=True)
 class Limit:
-    """A condition that a figure must not fulfil, and what follows when it does."""
+    """A condition that a figure must not meet, and the outcome if it does."""
 
     level: Level
     compare: str
@@ -48,9 +48,9 @@ class Check:
 
 @dataclass(frozen=True)
 class CheckResult:
-    """The outcome of a check: the figure (None: this grid has none) and the verdict.
+    """The outcome of a check: the figure (None if this grid has none) and the verdict.
 
-    `profile` is where the check is from, `gated` whether a user's gates replace its limits.
+    `profile` is the profile that the check belongs to; `gated`: a user's gates replace its limits.
     """
 
     check: Check
@@ -60,30 +60,30 @@ class CheckResult:
 
     @property
     def value(self) -> float | None:
-        """The figure's value."""
+        """The value of the figure."""
         return self.figure.value if self.figure else None
 
     @property
     def at(self) -> tuple[int, ...] | None:
-        """Its node or cell."""
+        """The node or cell of the figure."""
         return self.figure.at if self.figure else None
 
     @property
     def verdict(self) -> Verdict:
-        """The worst that a limit says."""
+        """The worst outcome of its limits."""
         if self.figure is None:
             return "none"
         return self.worst.level if self.worst else "pass"
 
     @property
     def worst(self) -> Limit | None:
-        """The limit that the figure is beyond, the one that fails it where it is beyond several."""
+        """The limit that the figure exceeds; of several, one that fails it."""
         limits = self.check.limits if self.figure else ()
         broken = [x for x in limits if self.figure and beyond(self.figure.value, x.compare, x.value)]
         return max(broken, key=lambda limit: limit.level == "fail", default=None)
 
     def under(self, gates: Sequence[Gate]) -> "CheckResult":
-        """Return the outcome with the limits of those `gates` that look at the same figure."""
+        """Return the outcome with the limits of those `gates` that judge the same figure."""
         compare = self.check.limits[0].compare
         own = [gate for gate in gates if gate.replaces(self.check.figure, compare)]
         limits = tuple(Limit("fail", gate.compare, gate.limit) for gate in own)
@@ -94,27 +94,27 @@ class CheckResult:
 
 @dataclass(frozen=True)
 class ProfileReport:
-    """The results of the checks of profiles on one grid."""
+    """The results of the checks of one or more profiles on one grid."""
 
     names: tuple[str, ...]
     results: tuple[CheckResult, ...]
 
     @property
     def name(self) -> str:
-        """The profiles."""
+        """The names of the profiles."""
         return ", ".join(self.names)
 
     @property
     def passed(self) -> bool:
-        """Whether no check failed; warnings pass."""
+        """Whether no check failed; warnings do not count."""
         return all(result.verdict != "fail" for result in self.results)
 
     def under(self, gates: Sequence[Gate]) -> "ProfileReport":
-        """Return it with the limits of `gates` in place of those that profiles have for the same figures."""
+        """Return the report with the limits of `gates` in place of the profiles' for the same figures."""
         return replace(self, results=_once(result.under(gates) for result in self.results))
 
     def replaced(self) -> list[str]:
-        """Return the limits of gates that are in place of a profile's: ``box_ratio > 4000``."""
+        """Return the limits of gates that replace those of a profile: ``box_ratio > 4000``."""
         return [
             f"{result.check.figure} {limit.compare} {limit.value:g}"
             for result in self.results
@@ -123,7 +123,7 @@ class ProfileReport:
         ]
 
     def beyond(self) -> list[str]:
-        """Return in short which limits are exceeded, those that warn too: ``face_skewness 5.2 > 4``."""
+        """Return in short the limits that are exceeded, warnings included: ``face_skewness 5.2 > 4``."""
         return [
             in_short(result.check.figure, result.figure, limit.compare, limit.value)
             for result in self.results
@@ -131,7 +131,7 @@ class ProfileReport:
         ]
 
     def failures(self) -> list[str]:
-        """Return a line for each check that failed; what a gate limits is told by the gate."""
+        """Return a line for each check that failed, except those that gates replace."""
         return [
             f"profile {result.profile}: {result.check.figure} is {result.value:.6g}{result.figure.where}, "
             "and it must "
@@ -144,7 +144,7 @@ class ProfileReport:
 
 
 def _once(results: Iterable[CheckResult]) -> tuple[CheckResult, ...]:
-    """Return the results without checks that are there already: all profiles count folded cells."""
+    """Return the results without repeated checks: all profiles count folded cells."""
     checks: dict[Check, CheckResult] = {}
     for result in results:
         checks.setdefault(result.check, result)
@@ -181,7 +181,7 @@ PROFILES: dict[str, tuple[Check, ...]] = {
 
 
 def profile_report(figures: Figures, *profiles: str) -> ProfileReport:
-    """Return the results of all `profiles` for a grid; raise InputError unless they are of `PROFILES`."""
+    """Return the results of all `profiles` for a grid; raise InputError if one is not in `PROFILES`."""
     for profile in profiles:
         if profile not in PROFILES:
             known = "use one of " + ", ".join(PROFILES)

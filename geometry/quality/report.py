@@ -1,4 +1,4 @@
-"""Everything that is measured of a grid: its metrics, its walls, a profile, its distance from another."""
+"""All that is measured of a grid: metrics, walls, profiles, and the distance from a reference grid."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -24,7 +24,7 @@ COMPARED = (
 
 @dataclass(frozen=True)
 class Comparison:
-    """How far a grid is from a reference, and how its angles compare with its."""
+    """Distances between the nodes of a grid and a reference, and the ratios of their largest angles."""
 
     difference: Difference
     folded: int
@@ -33,7 +33,7 @@ class Comparison:
     mean_angle_ratio: float
 
     def figures(self) -> dict[str, float]:
-        """Return the figures by the names of `COMPARED`."""
+        """Return the figures by their names in `COMPARED`."""
         d = self.difference
         ratios = (self.folded, self.max_angle_ratio, self.mean_angle_ratio)
         return dict(zip(COMPARED, (d.relative_l2, d.near_wall, d.max, d.boundary, *ratios), strict=True))
@@ -41,27 +41,27 @@ class Comparison:
 
 @dataclass(frozen=True, eq=False)
 class QualityReport:
-    """What was measured of a grid: with a profile and a reference, its verdicts and the comparison too.
+    """The measurements of a grid, with the verdicts of profiles and the comparison if asked for.
 
     ``report.quality.folded`` is the number of folded cells, ``report.quality["max_angle"].max`` a metric
-    (with min, mean, p01, p99 and the worst cell), ``report.figures.wall_rows`` the first cells and their
-    angles, ``report.figures.growth`` the growth along xi and eta, ``report.profile.passed`` the verdict of a
-    profile. ``report.as_dict()`` has all of it, as ``meshonet quality --json`` prints it.
+    (with min, mean, p01, p99 and the worst cell), ``report.figures.wall_rows`` the heights and angles of the
+    first cells, ``report.figures.growth`` the growth along xi and eta, and ``report.profile.passed`` the
+    verdict of a profile. ``report.as_dict()`` has all of them, as ``meshonet quality --json`` prints them.
 
     Parameters
     ----------
     grid : Grid
-        What was measured.
+        The grid that was measured.
     quality : Quality
-        Every metric, with percentiles.
+        Statistics of every metric, with percentiles.
     worst : tuple of BadCell
-        Folded cells, ten at the most.
+        Folded cells, at most ten.
     figures : Figures
-        Walls and growth.
+        Figures of walls, growth and blocks.
     profile : ProfileReport, optional
         The verdicts of profiles.
     comparison : Comparison, optional
-        How far it is from a reference.
+        The comparison with a reference grid.
     """
 
     grid: Grid
@@ -81,17 +81,17 @@ class QualityReport:
         return f"<QualityReport: {', '.join(parts)}>"
 
     def under(self, gates: Sequence[Gate]) -> "QualityReport":
-        """Return it with the limits of `gates` in place of those of its profiles for the same figures."""
+        """Return the report with the limits of `gates` in place of its profiles' for the same figures."""
         return replace(self, profile=self.profile.under(gates)) if self.profile else self
 
     def broken(self, gates: Sequence[Gate]) -> list[str]:
-        """Return a line for each gate, and each check of the profiles, that is not met."""
+        """Return a line for each gate, and each check of the profiles, that failed."""
         more = self._compared()
         lines = [line for gate in gates if (line := gate.broken(self.figures, more))]
         return lines + (self.profile.under(gates).failures() if self.profile else [])
 
     def judgement(self, gates: Sequence[Gate]) -> Judgement:
-        """Return what comes of the gates and of the profiles."""
+        """Return the outcome of the gates and of the profiles."""
         beyond = [gate.in_short(figure) for gate, figure, broken in self.judged(gates) if broken]
         profile = self.profile.under(gates) if self.profile else None
         beyond += profile.beyond() if profile else []
@@ -99,19 +99,19 @@ class QualityReport:
         return Judgement(tuple(self.broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced))
 
     def judged(self, gates: Sequence[Gate]) -> list[tuple[Gate, Figure, bool]]:
-        """Return for each gate the figure that it looks at, and whether that is beyond its limit."""
+        """Return for each gate the figure that it judges, and whether this is beyond the limit."""
         more = self._compared()
         figures = [gate.figure(self.figures, more) for gate in gates]
         pairs = zip(gates, figures, strict=True)
         return [(gate, figure, beyond(figure.value, gate.compare, gate.limit)) for gate, figure in pairs]
 
     def _compared(self) -> dict[str, Figure]:
-        """Return the figures of the comparison."""
+        """Return the figures of the comparison by name."""
         values = self.comparison.figures() if self.comparison else {}
         return {name: Figure(value) for name, value in values.items()}
 
     def as_dict(self) -> dict[str, Any]:
-        """Return it as what JSON can hold."""
+        """Return the report as a dict that JSON can hold."""
         grid, growth = self.grid, self.figures.growth
         many = grid.topology == "blocks"
         facts: dict[str, Any] = {
@@ -156,7 +156,7 @@ def quality_report(
 
 
 def quality_dict(quality: Quality) -> dict[str, Any]:
-    """Return the metrics as what JSON can hold; percentiles are left out when they were not computed."""
+    """Return the metrics as a dict that JSON can hold, with percentiles if they were computed."""
     facts: dict[str, Any] = {"cells": quality.cells, **_folded(quality)}
     for name, summary in quality.metrics.items():
         row: dict[str, Any] = {"min": summary.min, "mean": summary.mean, "max": summary.max}
@@ -167,7 +167,7 @@ def quality_dict(quality: Quality) -> dict[str, Any]:
 
 
 def _folded(quality: Quality) -> dict[str, int]:
-    """Return how many cells are folded, of volumes by both tests."""
+    """Return the number of folded cells, in volumes by both tests."""
     more = {} if quality.bezier_folded is None else {"bezier_folded": quality.bezier_folded}
     return {"folded": quality.folded, **more}
 

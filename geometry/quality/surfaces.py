@@ -1,13 +1,13 @@
-r"""Metrics of surface patches in space: quadrilaterals, each measured against its own normal at its centre.
+r"""Metrics of surface patches in space: quadrilaterals, each measured relative to its normal at its centre.
 
 ::
 
-        d ----- c        the normal is (c + b - a - d) x (c + d - a - b), the crossing of the two families of
-       /       /         grid lines at the centre; the Jacobian of a corner is the part of u x v along it
-      a ----- b
+        d ----- c        the normal is (c + b - a - d) x (c + d - a - b), the cross product of the directions
+       /       /         of the two families of grid lines at the centre; the Jacobian of a corner is the
+      a ----- b          component of u x v along it, with u and v the edges at the corner
 
-So a cell does not change with the side of the surface it is looked at from. A corner at which an edge has no
-length, at a pole for instance, is left out. Definitions: `meshonet.geometry.quality.metrics`.
+The metrics do not depend on the side from which the surface is seen. A corner with an edge of zero length, as
+at a pole, is left out. Definitions: `meshonet.geometry.quality.metrics`.
 """
 
 from collections.abc import Iterable, Sequence
@@ -21,13 +21,13 @@ from meshonet.geometry.errors import BadCell
 from meshonet.geometry.layout.lattice import ring_of
 from meshonet.geometry.quality.metrics import NAMES
 
-_TINY, _LARGE = 1e-300, 1e30  # in place of 0 in divisors; the most a ratio is, as in the compiled metrics
+_TINY, _LARGE = 1e-300, 1e30  # in place of 0 in divisors; upper bound of ratios, as in the compiled metrics
 
 
 def quad_metrics(nodes: Floats) -> Floats:
-    """Return the metrics of `NAMES` of the cells of `nodes` (ni, nj, 3), (metrics, ni-1, nj-1).
+    """Return the metrics `NAMES` (metrics, ni-1, nj-1) of the cells of `nodes` (ni, nj, 3).
 
-    `area_ratio` is that with the cells beside in the patch.
+    `area_ratio` compares neighbours within the patch.
     """
     ring = ring_of(nodes)
     edges = np.roll(ring, -1, axis=0) - ring
@@ -41,7 +41,7 @@ def quad_metrics(nodes: Floats) -> Floats:
     narrowest = angle.min(axis=0)
     along, across = edges[0] - edges[2], edges[1] - edges[3]
     normal = np.cross(along, across)
-    area = 0.25 * norms(normal)  # as Verdict's for a flat cell
+    area = 0.25 * norms(normal)  # as Verdict's for a planar cell
     size = np.maximum(norms(along) * norms(across), _TINY)
     crossing = np.degrees(arccos(np.clip(np.abs((along * across).sum(axis=-1)) / size, 0.0, 1.0)))
     aspect = lengths.max(axis=0) * lengths.sum(axis=0) / np.maximum(4.0 * area, _TINY)
@@ -58,12 +58,12 @@ def quad_metrics(nodes: Floats) -> Floats:
 
 
 def folded_quads(nodes: Floats) -> NDArray[np.int64]:
-    """Return (n, 2) indices of the cells of `nodes` (ni, nj, 3) with a corner turned against the cell."""
+    """Return indices (n, 2) of the cells of `nodes` (ni, nj, 3) with a Jacobian that is not positive."""
     return np.argwhere(~(_scaled_jacobians(ring_of(nodes)).min(axis=0) > 0)).astype(np.int64)
 
 
 def worst_quads(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return the folded cells of `nodes` (ni, nj, 3), `limit` at the most, least scaled Jacobian first."""
+    """Return at most `limit` folded cells of `nodes` (ni, nj, 3), the least scaled Jacobian first."""
     ring = ring_of(nodes)
     least, centre = _scaled_jacobians(ring).min(axis=0), ring.mean(axis=0)
     places = folded_quads(nodes)
@@ -72,13 +72,13 @@ def worst_quads(nodes: Floats, limit: int = 10) -> list[BadCell]:
 
 
 def bad_cell(place: Iterable[int], centre: Iterable[float]) -> BadCell:
-    """Return the folded cell (i, j) or (i, j, k) with its centre (2 or 3,)."""
+    """Return the folded cell with indices (i, j) or (i, j, k) and its centre (2 or 3,)."""
     (i, j, *k), (x, y, *z) = map(int, place), map(float, centre)
     return BadCell(i, j, x, y, k=k[0] if k else None, z=z[0] if z else None)
 
 
 def areas(rows: Floats) -> Floats:
-    """Return the areas (m-1, n-1) of the cells of a patch in the plane or in space, nodes (m, n, 2 or 3)."""
+    """Return the areas (m-1, n-1) of the cells of nodes (m, n, 2 or 3), in the plane or in space."""
     first, second = rows[1:, 1:] - rows[:-1, :-1], rows[1:, :-1] - rows[:-1, 1:]
     if rows.shape[-1] == 2:
         return 0.5 * np.abs(cross2(first, second))
@@ -86,7 +86,7 @@ def areas(rows: Floats) -> Floats:
 
 
 def _scaled_jacobians(ring: Floats) -> Floats:
-    """Return the scaled Jacobians (4, ni-1, nj-1) of the corners of cells, 1 where there is no corner."""
+    """Return the scaled Jacobians (4, ni-1, nj-1) of cell corners, 1 where an edge has zero length."""
     edges = np.roll(ring, -1, axis=0) - ring
     before = np.roll(edges, 1, axis=0)
     normal = np.cross(edges[0] - edges[2], edges[1] - edges[3])

@@ -1,11 +1,11 @@
-"""What checks and gates say of a grid, in the words of JSON and of tables."""
+"""The wording of verdicts and places, in JSON and in tables."""
 
 VERDICTS = ("pass", "warn", "fail", "error")
 """From best to worst; an error means that there is no grid to judge."""
 
 
 def verdict_word(verdict: str) -> str:
-    """Return a verdict for people: the word of JSON, that of a failure in capitals.
+    """Return a verdict for users: the word of JSON, a failure in capitals.
 
     >>> verdict_word("warn"), verdict_word("fail")
     ('warn', 'FAIL')
@@ -14,7 +14,7 @@ def verdict_word(verdict: str) -> str:
 
 
 def named(at: tuple[int, ...]) -> str:
-    """Return the place (i, j), (block, i, j) or (block, i, j, k) of a node or cell in words.
+    """Return the place (i, j), (block, i, j) or (block, i, j, k) of a node or cell as text.
 
     >>> named((3, 0, 7)), named((0, 1, 2, 3))
     ('block=3, i=0, j=7', 'block=0, i=1, j=2, k=3')

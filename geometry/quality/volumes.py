@@ -1,9 +1,9 @@
 """Folded cells and metrics of volumes: blocks of nodes (ni, nj, nk, 3).
 
-A cell is folded when any of its eight corner Jacobians is not positive. Where all 27 Bezier coefficients of
-its Jacobian are positive, that is positive everywhere in the cell (`meshonet.geometry.quality.metrics`);
-corners at which an edge has no length are left out of both tests. Kernels work with
-`meshonet.geometry.threads.threads_for` threads, results are the same to the bit for any number.
+A cell is folded if any of its eight corner Jacobians is not positive. If all 27 Bezier coefficients of its
+Jacobian are positive, the Jacobian is positive everywhere in the cell (`meshonet.geometry.quality.metrics`).
+Both tests leave out corners with an edge of zero length. Kernels use `meshonet.geometry.threads.threads_for`
+threads; results are bitwise the same for any number.
 """
 
 from collections.abc import Callable, Sequence
@@ -25,18 +25,18 @@ from meshonet.geometry.threads import threads_for
 from meshonet.kernels import _native
 
 CORNERS, BEZIER = 0, 1
-"""Tests that cells have to pass."""
+"""Tests for folded cells, by corner Jacobians or Bezier coefficients."""
 _MOST = 1 << 16
-"""Folded cells that are looked at for the worst."""
+"""Largest number of folded cells among which the worst are sought."""
 
 
 def count_folded_solids(nodes: Floats, test: int = CORNERS) -> int:
-    """Return how many cells of `nodes` (ni, nj, nk, 3) do not pass a test, `CORNERS` or `BEZIER`."""
+    """Return the number of cells of `nodes` (ni, nj, nk, 3) that fail a test, `CORNERS` or `BEZIER`."""
     return int(_folded_rows(as_planar(nodes), test).sum())
 
 
 def folded_solids(nodes: Floats, test: int = CORNERS) -> NDArray[np.int64]:
-    """Return (n, 3) indices (i, j, k) of the cells of `nodes` (ni, nj, nk, 3) that do not pass, in order."""
+    """Return indices (n, 3) of the cells of `nodes` (ni, nj, nk, 3) that fail a test, in ascending order."""
     nodes = as_planar(nodes)
     rows = _folded_rows(nodes, test)
     places = np.empty((int(rows.sum()), 3), dtype=np.int64)
@@ -52,9 +52,9 @@ def _folded_rows(nodes: Floats, test: int) -> NDArray[np.int64]:
 
 
 def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[BadCell]:
-    """Return cells of `nodes` (ni, nj, nk, 3) that do not pass a test, least scaled Jacobian first.
+    """Return the cells of `nodes` (ni, nj, nk, 3) that fail a test, the least scaled Jacobian first.
 
-    `limit` of them at most, with their centres.
+    At most `limit` cells, with their centres.
     """
     i, j, k = folded_solids(nodes, test)[:_MOST].T
     points = {(a, b, c): nodes[i + a, j + b, k + c] for a in (0, 1) for b in (0, 1) for c in (0, 1)}
@@ -77,7 +77,7 @@ def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[Ba
 
 
 def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
-    """Return the quality of all cells of blocks of volume; worst cells are (block, i, j, k)."""
+    """Return the quality of all cells of volumes; the places of worst cells are (block, i, j, k)."""
     volumes = padded_volumes(grid)
     sizes = [int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks]
     cells = sum(sizes)
@@ -103,7 +103,7 @@ def measure_volumes(grid: Grid, *, percentiles: bool = False) -> Quality:
 
 
 def solid_metric(grid: Grid, name: str) -> list[Floats]:
-    """Return the metric `name` of every cell, (ni-1, nj-1, nk-1) for each block of volume."""
+    """Return for each volume block the metric `name` of every cell, (ni-1, nj-1, nk-1)."""
     return _metric(grid, padded_volumes(grid), SOLID_NAMES.index(name))
 
 
@@ -113,9 +113,9 @@ def _metric(grid: Grid, volumes: Sequence[Floats], k: int) -> list[Floats]:
 
 
 def padded_volumes(grid: Grid) -> list[Floats]:
-    """Return the volumes (ni+1, nj+1, nk+1) of the cells of each block, with a layer of cells around.
+    """Return for each block the cell volumes (ni+1, nj+1, nk+1), with one layer of cells added around it.
 
-    The layer has the cells beyond connections, and elsewhere the block's own again.
+    The layer has the volumes of the cells across connections, and elsewhere repeats those of the block.
     """
     padded = []
     for block in grid.blocks:
@@ -143,7 +143,7 @@ def padded_volumes(grid: Grid) -> list[Floats]:
 
 
 class _BlockRun(NamedTuple):
-    """What one run over a block leaves, for each metric: ends, sum, place of the ends (2, 3), kept values."""
+    """Result of a pass over a block, per metric: extremes, sum, cells of extremes (2, 3), kept values."""
 
     low: Floats
     total: Floats
@@ -153,7 +153,7 @@ class _BlockRun(NamedTuple):
 
 
 def _run_over(block: Block, volumes: Floats, kept: slice) -> _BlockRun:
-    """Run over the cells of a block; values (n, ni-1, nj-1, nk-1) of the metrics `kept` are kept."""
+    """Compute the metrics of a block; for metrics `kept`, return the values (n, ni-1, nj-1, nk-1) too."""
     chunks, metrics = _native.solids_chunks(block.nodes), len(SOLID_METRICS)
     summary, where = np.empty((chunks, metrics, 3)), np.empty((chunks, metrics, 2, 3), dtype=np.int64)
     first, last, _ = kept.indices(metrics)

@@ -1,4 +1,4 @@
-"""The cells at a wall: how high the first ones are, and at what angle the grid lines leave it."""
+"""The cells at a wall: first-cell heights, and the angles at which grid lines leave the wall."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.quality.growth import Extreme
 
 DEPTH = 33
-"""Nodes along a line that are looked at."""
+"""Number of nodes along a line that are examined."""
 
 NO_GROWTH: Mapping[str, Extreme] = MappingProxyType({})
 
@@ -24,7 +24,7 @@ SAME = 0.01
 
 @dataclass(frozen=True)
 class Spread:
-    """Least, mean and greatest of something."""
+    """Minimum, mean and maximum of a quantity, and possibly its 95th percentile."""
 
     min: float
     mean: float
@@ -35,11 +35,11 @@ class Spread:
 
 @dataclass(frozen=True)
 class WallRow:
-    """The row of cells at one named stretch of wall; of many blocks, at all stretches of that name."""
+    """The cells at a named stretch of wall; in a multi-block grid, at all stretches of that name."""
 
     name: str
     side: str | None
-    """None where a name is on several sides."""
+    """The side of the block; None if the name is on several sides."""
     height: Spread
     """Distance from each wall node to the next node of the line that leaves it, in the grid's unit."""
     off_square: Spread
@@ -51,20 +51,20 @@ class WallRow:
     equal_cells: int
     """Cells from the wall on as high as the first, within 1 %, where they are fewest; 32 at the most."""
     growth: Extreme | None = None
-    """Growth along the lines that leave it, through all blocks that they run through, of many blocks."""
+    """In multi-block grids, growth along the lines that start at the wall, through all blocks."""
 
 
 def wall_row(grid: Grid, patch: Patch) -> WallRow:
-    """Return the figures of the cells at `patch` of the boundary of `grid`."""
+    """Return the figures of the cells at the wall `patch` of `grid`."""
     return _row(patch.name, patch.side, [_wall_part(grid, patch)])
 
 
 def wall_rows(
     grid: Grid, walls: Sequence[Patch], growth: Mapping[str, Extreme] = NO_GROWTH
 ) -> tuple[WallRow, ...]:
-    """Return the figures of the cells at `walls` of the boundary of `grid`, in many blocks by name.
+    """Return the figures of the cells at the `walls` of `grid`, in a multi-block grid one for each name.
 
-    `growth` is that along the lines that leave them.
+    `growth` is that along the lines that leave the walls, by name of the wall.
     """
     if grid.topology != "blocks":
         return tuple(wall_row(grid, wall) for wall in walls)
@@ -81,7 +81,7 @@ def wall_rows(
 
 @dataclass(frozen=True)
 class _WallPart:
-    """Heights and angles at one stretch of wall, and the fewest equal cells on a line."""
+    """Heights and angles at one stretch of wall, and the least number of equal cells on a line."""
 
     heights: Floats
     off: Floats
@@ -103,7 +103,7 @@ def _wall_part(grid: Grid, patch: Patch) -> _WallPart:
 
 
 def _off_normal(wall: Floats, away: Floats) -> list[Floats]:
-    """Return how far edges (n, m, 3) off a wall of a volume are from the normals at its cells' corners."""
+    """Return the angles between edges (n, m, 3) off a wall and the normals at its cells' corners."""
     along, across = np.diff(wall, axis=0), np.diff(wall, axis=1)
     off = []
     for a in (0, 1):
@@ -122,7 +122,7 @@ def _row(name: str, side: str | None, parts: Sequence[_WallPart], *, percentile:
 
 
 def _off_square(along: Floats, away: Floats) -> Floats:
-    """Return how far the angles between two families of vectors (n, d) are from 90 degrees."""
+    """Return the deviations from 90 degrees of the angles between two families of vectors (n, d)."""
     sine = norms(np.cross(along, away)) if along.shape[1] == 3 else np.abs(cross2(along, away))
     return np.degrees(arctan2(np.abs((along * away).sum(axis=1)), sine))
 

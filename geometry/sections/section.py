@@ -2,11 +2,11 @@
 
 ::
 
-      y ^                                    chord     length that the section is scaled to
-        |      .--------.____                twist     nose up, about a place in chords from the leading edge
-        |   LE (     +       ---- TE         x, y      of the leading edge before the twist
-        |      '--------'''''
-        +---------------------> x            z         of the section's plane, along the span
+     y ^                                    chord     length that the section is scaled to
+       |      .--------.____                twist     nose up, about a point in chords from the leading edge
+       |   LE (     +       ---- TE         x, y      position of the leading edge before the twist
+       |      '--------'''''
+       +---------------------> x            z         position of the section's plane, along the span
 """
 
 from __future__ import annotations
@@ -29,22 +29,22 @@ QUARTER = (0.25, 0.0)
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """An outline and where it stands.
+    """An outline with its size and position.
 
     Parameters
     ----------
     shape : Airfoil or Outline
         An airfoil, or a closed curve, in any unit.
     chord : float
-        Length of the section in the unit of the whole.
+        Length that the section is scaled to, in the unit of the stack.
     z : float
-        Of the section's plane.
+        Position of the section's plane.
     x, y : float, optional
-        Place of its leading edge before the twist.
+        Position of its leading edge before the twist.
     twist : float, optional
-        Degrees, nose up.
+        Twist angle in degrees, nose up.
     about : tuple of 2 float, optional
-        Place that it is twisted about, in chords from the leading edge along x and y.
+        Centre of the twist, in chords from the leading edge along x and y.
 
     Raises
     ------
@@ -70,9 +70,10 @@ class Section:
 
     @property
     def frame(self) -> tuple[Floats, float]:
-        """Leading edge (2,) and length of the shape in its file, which become the origin and 1.
+        """Leading edge (2,) and length of the shape as given; scaling takes them to the origin and 1.
 
-        A section that was drawn from about 0 to 1, as airfoil files are, is taken as it is; none is turned.
+        A section given with its leading edge at about 0 and length about 1, like most airfoil files, is not
+        scaled. Sections are never rotated here.
         """
         if isinstance(self.shape, Airfoil):
             nose, length = self.shape.leading_edge, self.shape.unit
@@ -84,21 +85,21 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Chord, twist in radians, x, y and both of `about` (6,), which are interpolated in z."""
+        """Chord, twist in radians, x, y and both of `about` as (6,), which are interpolated in z."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 
 class Fade(NamedTuple):
-    """How much nodes take part in scale and twist: `weight` (n,), 1 is fully; others have the `chord`."""
+    """Weight (n,) of twist and scale at nodes: 1 is full, 0 means no twist, and scale by `chord`."""
 
     weight: Floats
     chord: float
 
 
 def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
-    """Return nodes (..., n, 2) of unit sections scaled, twisted and moved by placements (..., 6).
+    """Return nodes (..., n, 2) of unit sections, scaled, twisted and moved by placements (..., 6).
 
-    See `Section.placement`; leading axes broadcast.
+    For placements see `Section.placement`; leading axes broadcast.
     """
     chord, twist, x, y, about_x, about_y = (placement[..., k, None] for k in range(6))
     if fade is not None:

@@ -1,4 +1,4 @@
-"""Sections one behind the other along z, and what lies between them."""
+"""Sections stacked along z, and the interpolation between them."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ BETWEEN: tuple[Between, ...] = get_args(Between)
 
 @dataclass(frozen=True, eq=False)
 class Stack:
-    """At least two sections in order of z.
+    """At least two sections with increasing z.
 
     Parameters
     ----------
     sections : tuple of Section
-        Sections from the root on.
+        Sections, from the root on.
     kind : {'wing', 'blade', 'duct'}, optional
-        ``wing`` has a tip behind its last section, ``blade`` two end walls, ``duct`` is flown through.
+        A ``wing`` has a tip at its last section, a ``blade`` ends at two walls, a ``duct`` has internal flow.
     tip : {'round', 'flat', 'open'}, optional
-        Of a wing: ``round``, ``flat``, or ``open``, which has none.
+        Tip of a wing; ``open`` means none.
     between : {'linear', 'smooth'}, optional
-        What lies between sections: ``linear``, or ``smooth``, cubics in z that do not overshoot.
+        Interpolation between sections: ``linear``, or ``smooth`` by cubics in z that do not overshoot.
     tip_spacing : float, optional
         Length of the last cells along the span of a wing, in chords of the last section.
     le_spacing, te_spacing : float, optional
         Length of the cells at leading and trailing edges, in chords of each section.
     name : str, optional
-        What the input called it.
+        Name of the stack in the input.
 
     Raises
     ------
@@ -79,7 +79,7 @@ class Stack:
     def with_tip(self, tip: Tip | None) -> Stack:
         """Return the same stack with another tip; None keeps its own.
 
-        Raises InputError: no wing, or a tip that is not known.
+        Raises InputError: the stack is no wing, or the tip is unknown.
         """
         if tip is None:
             return self
@@ -89,20 +89,20 @@ class Stack:
 
     @property
     def z(self) -> Floats:
-        """(n,) of the sections."""
+        """(n,) z of the sections."""
         return np.array([section.z for section in self.sections])
 
     @property
     def chord(self) -> float:
-        """The longest chord."""
+        """The greatest chord."""
         return max(section.chord for section in self.sections)
 
     def lofted(self, unit: Floats, z: Floats, weight: Floats | None = None) -> Floats:
-        """Return nodes (m, n, 3) at the heights `z` (m,) from those of the sections, `unit` (sections, n, 2).
+        """Return nodes (m, n, 3) at the heights `z` (m,), from those of the sections, (sections, n, 2).
 
-        Shape, chord, twist and place are interpolated each by itself, so that sections between two that are
-        twisted apart are as long as these. Nodes of no `weight` (n,) are not twisted, and are as far apart as
-        in a section of the longest chord.
+        Shape, chord, twist and position are interpolated separately, so that a section between two that are
+        twisted relative to each other is not shortened. Nodes with `weight` (n,) 0 are not twisted, and are
+        scaled by the greatest chord.
         """
         fade = None if weight is None else Fade(weight, self.chord)
         placements = np.stack([section.placement for section in self.sections])
@@ -111,6 +111,6 @@ class Stack:
         return np.concatenate([planes, heights], axis=-1)
 
     def between_sections(self, values: Floats, z: Floats) -> Floats:
-        """Return `values` (sections, ...) of the sections interpolated at the heights `z` (m,)."""
+        """Return `values` (sections, ...) interpolated at the heights `z` (m,)."""
         straight = self.between == "linear" or len(self.sections) == 2
         return monotone_cubic(self.z, values, z, linear=straight)

@@ -1,4 +1,4 @@
-"""A body within a far field that the input draws too."""
+"""A body within a far-field curve that is part of the input."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 
 
 class Annulus:
-    """A body and the closed, clockwise curve around it."""
+    """A body and the closed, clockwise curve of its far field."""
 
     topology: Topology = "o"
 
@@ -24,9 +24,9 @@ class Annulus:
         self.body, self.outer, self.name = body, outer, name
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the O boundary: the body sampled as by itself, the outer curve in place of its circle.
+        """Return the O boundary: the body sampled as usual, with the given curve in place of a circle.
 
-        Raises InputError: another topology, or a setting that the body has no use for.
+        Raises InputError: another topology, or a setting that does not apply to the body.
         """
         if sampling.topology not in ("auto", "o"):
             raise InputError("a body in a far field makes an O grid", "use {topology} o", source=self.name)
@@ -36,7 +36,7 @@ class Annulus:
         return replace(boundary, north=north, west=cut, east=cut)
 
     def _around(self, circle: Floats) -> Floats:
-        """Return nodes (n, 2) of the outer curve in about equal steps, from where the circle begins."""
+        """Return nodes (n, 2) of the outer curve in nearly equal steps, from where the circle begins."""
         middle = 0.5 * (circle.max(axis=0) + circle.min(axis=0))
         wanted = (circle[0] - middle) / np.hypot(*(circle[0] - middle))
         arcs = np.linspace(0.0, self.outer.length, 2049)[:-1]

@@ -1,4 +1,4 @@
-"""Several shapes as one domain: bodies in a far field, or in the one that encloses the others."""
+"""Several shapes as one domain: bodies in a far field, or within the shape that encloses the others."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ FARFIELD = "farfield"
 def assembled(
     shapes: Sequence[Shape], names: Sequence[str], sampling: Sampling, name: str = ""
 ) -> DomainShape:
-    """Return the domain that shapes make together, each called by its name.
+    """Return the domain that shapes form together, with a name for each.
 
-    Airfoils keep their smooth curve, other shapes are followed as polygons. Without a shape that encloses all
-    others they lie in a circle whose radius is that of `sampling`, in extents of all of them.
+    Airfoils keep their smooth curve, other shapes become polygons. Unless one shape encloses all others, the
+    far field is a circle with the radius of `sampling`, in units of their common extent.
 
-    Raises InputError: shapes that are no closed curves; a far field that has no use.
+    Raises InputError: shapes that are not closed curves; a far field that does not apply.
     """
     bodies = list(
         chain(*(_bodies(shape, label, sampling) for shape, label in zip(shapes, names, strict=True)))
@@ -68,9 +68,9 @@ def assembled(
 
 
 def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:
-    """Return the domain that a shape bounds, or in the far field of which it is a body.
+    """Return the domain inside a shape, or the domain in the far field around it.
 
-    Raises InputError: a shape that is no closed curve, such as a boundary with a wake.
+    Raises InputError: a shape that is not a closed curve, such as a boundary with a wake.
     """
     if isinstance(shape, DomainShape):
         return shape
@@ -85,14 +85,14 @@ def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:
 
 
 def far_loop(middle: Floats, radius: float) -> Loop:
-    """Return the circle around a point (2,), the domain inside."""
+    """Return the circle around a point (2,), with the domain inside."""
     angle = np.linspace(0.0, 2.0 * np.pi, CIRCLE, endpoint=False)
     points = middle + radius * np.stack([cos(angle), sin(angle)], axis=1)
     return Loop(Curve(points, closed=True, corners=()), names=(FARFIELD,))
 
 
 def _bodies(shape: Shape, name: str, sampling: Sampling) -> list[Loop]:
-    """Return the loops of a shape, the domain on either side, called by `name` where it has no names."""
+    """Return the loops of a shape, whichever side the domain is on; `name` is used where it has no names."""
     if isinstance(shape, Airfoil):
         return [_section_loop(shape, name, sampling)]
     if isinstance(shape, Outline):
@@ -116,7 +116,7 @@ def _bodies(shape: Shape, name: str, sampling: Sampling) -> list[Loop]:
 
 
 def _section_loop(airfoil: Airfoil, name: str, sampling: Sampling) -> Loop:
-    """Return the loop along the smooth curve of an airfoil, its edge as `sampling` has it."""
+    """Return the loop along the smooth curve of an airfoil, its trailing edge as `sampling` has it."""
     body = airfoil.normalised() if sampling.normalise else airfoil
     body = body.rounded() if sampling.te == "round" else body.wedged() if sampling.te == "wedge" else body
     curve = body.curve
@@ -126,7 +126,7 @@ def _section_loop(airfoil: Airfoil, name: str, sampling: Sampling) -> Loop:
 
 
 def _edges_loop(boundary: Boundary) -> Loop:
-    """Return the loop of the nodes of a four-sided boundary, its corners those of the block and of names."""
+    """Return the loop of a four-sided boundary's nodes, with corners at those of the block and of patches."""
     ni, nj = boundary.ni - 1, boundary.nj - 1
     names: list[str] = []
     for side in SIDES:
@@ -142,7 +142,7 @@ def _edges_loop(boundary: Boundary) -> Loop:
 
 
 def _facing(loop: Loop, *, hole: bool) -> Loop:
-    """Return a loop with the domain on its left: outside of a hole, inside otherwise."""
+    """Return the loop with the domain on its left: outside of a hole, inside otherwise."""
     if (polygon_area(loop.curve.points) > 0) != hole:
         return loop
     return ring_loop(loop.curve.points, hole=hole, corners=loop.corners, names=loop.names)

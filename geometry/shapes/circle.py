@@ -27,9 +27,9 @@ class Circle(Outline):
 
 
 def circle(designation: str) -> Circle:
-    """Return the circle of a radius as text, such as ``0.5``.
+    """Return the circle with a radius given as text, such as ``0.5``.
 
-    Raises InputError: no number, or none above 0.
+    Raises InputError: not a positive number.
 
     >>> circle("0.5").radius
     0.5

@@ -1,4 +1,4 @@
-"""The shape that a closed line of points is: an airfoil or another outline."""
+"""Choice of the shape of a closed curve of points: an airfoil or another outline."""
 
 from collections.abc import Sequence
 
@@ -13,9 +13,9 @@ from meshonet.geometry.shapes.outline import Outline
 
 
 def closed_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outline | Airfoil:
-    """Return the airfoil or the outline through `points` (n, 2), repeated neighbours left out.
+    """Return the airfoil or the outline through `points` (n, 2), without repeated neighbours.
 
-    `places` says where each point stands in its source, for messages.
+    `places` are the places of the points in their source, for messages.
     """
     keep = np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])
     if len(points) > 1 and np.array_equal(points[0], points[-1]):
@@ -29,7 +29,7 @@ def closed_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outli
 
 
 def _ends_in_one_edge(points: Floats) -> bool:
-    """Say whether a curve (n, 2) is slender, one corner or the two of a base at one end of its length."""
+    """Return whether a curve (n, 2) is slender, with one corner, or the two of a base, at one end."""
     if len(points) < 10:
         return False
     turn = np.abs(turning(points, closed=True))

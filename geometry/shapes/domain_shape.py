@@ -1,11 +1,11 @@
-"""A domain of the plane as a shape: many blocks, or one where its sides allow that.
+"""A planar domain as a shape: of many blocks, or of one if its sides allow that.
 
 =============================================  =====================================================
-domain                                         made by itself as
+domain                                         by default made as
 =============================================  =====================================================
 four convex corners, all others kinks          one four-sided block
 a hole in a smooth loop, far away              one O block
-any other                                      blocks that are found
+any other                                      several blocks, found by a decomposition
 =============================================  =====================================================
 """
 
@@ -28,22 +28,22 @@ from meshonet.geometry.spacing.sampling import Sampling
 
 FAR = 2.0
 """Distance of a hole from a smooth loop around it, in extents of the hole, from which it is a far field."""
-_SAMPLES = 512  # points of each loop whose distances are looked at
+_SAMPLES = 512  # points of each loop for which distances are computed
 
 
 @dataclass(frozen=True, eq=False)
 class DomainShape:
-    """A domain, and the shape that it is as a single block, if it can be one.
+    """A domain, and how it is made as a single block, if that is possible.
 
     Parameters
     ----------
-    domain : loops and names.
-    many : whether blocks are made of it unless one is asked for.
-    one : makes the shape that it is as one block, in any process; None where it cannot be one.
-    unit : length that Reynolds numbers are based on: the extent of its bodies, or an airfoil's chord.
-    far_field : whether a far field was put around bodies.
-    layout : its blocks, where the input has them.
-    given : the grid of many blocks that it is the domain of, where the input is one.
+    domain : loops and their names.
+    many : whether to make several blocks of it unless a single block is asked for.
+    one : returns its shape as a single block, and can be pickled; None if there is none.
+    unit : reference length of Reynolds numbers: the extent of its bodies, or the chord of an airfoil.
+    far_field : whether a far field was added around bodies.
+    layout : its blocks, if the input has them.
+    given : the multi-block grid that the domain was taken from, if the input is a grid.
     """
 
     domain: Domain
@@ -60,22 +60,22 @@ class DomainShape:
 
     @property
     def name(self) -> str:
-        """What the input called it."""
+        """Name of the shape in the input."""
         return self.domain.name
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a reader passed over in its file."""
+        """Notes on what a reader skipped in the file."""
         return self.domain.notes
 
     def noted(self, *notes: str) -> DomainShape:
-        """Return it with `notes` behind its own."""
+        """Return the shape with `notes` added to its own."""
         return replace(self, domain=replace(self.domain, notes=(*self.notes, *notes)))
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the four edges of the single block that the domain is.
+        """Return the four edges of the domain as a single block.
 
-        Raises InputError: it is none, or what the shape of the one block raises.
+        Raises InputError: it cannot be a single block, or the error of its shape as one.
         """
         if self.one is None:
             remedy = "let infer or solve-pde find its blocks"
@@ -84,12 +84,12 @@ class DomainShape:
 
 
 def itself(shape: Shape) -> Shape:
-    """Return a shape; as a partial function, unlike a lambda, another process can have it."""
+    """Return the shape; unlike a lambda, a partial of this function can be sent to another process."""
     return shape
 
 
 def described(domain: Domain) -> str:
-    """Return what a domain is in a few words.
+    """Return a short description of a domain.
 
     >>> described(Domain.of_polygons([np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])]))
     'a domain of 3 corners'
@@ -101,20 +101,20 @@ def described(domain: Domain) -> str:
 
 
 def loops_extent(loops: tuple[Loop, ...]) -> float:
-    """Return the larger side of the box around loops."""
+    """Return the larger side of the bounding box of loops."""
     points = np.concatenate([loop.curve.points for loop in loops])
     return extent_of(points)
 
 
 def four_sided(domain: Domain) -> bool:
-    """Say whether a domain without holes has four convex corners, and no corner that points inwards."""
+    """Return whether a domain without holes has four convex corners and no re-entrant one."""
     outer = domain.loops[0]
     convex = int((outer.corner_angles < 180.0 - CORNER_DEG).sum())
     return len(domain.loops) == 1 and convex == 4 and not (outer.corner_cells > 2).any()
 
 
 def in_far_field(domain: Domain) -> bool:
-    """Say whether a domain is a hole in a smooth loop that is `FAR` away from it."""
+    """Return whether a domain is one hole in a smooth loop at least `FAR` away from it."""
     if len(domain.loops) != 2 or (domain.loops[0].corner_cells != 2).any():
         return False
     every = (loop.curve.points for loop in domain.loops)

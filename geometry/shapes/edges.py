@@ -1,4 +1,4 @@
-"""Domains whose sides are drawn one by one: four edges that meet, or the two walls of a channel."""
+"""Domains given by separate sides: four edges that meet, or the two walls of a channel."""
 
 from __future__ import annotations
 
@@ -28,28 +28,28 @@ _STRAIGHT = 0.5
 
 
 class DrawnEdge(NamedTuple):
-    """A side: points (n, 2), where each stands in its source, and what it is called, if anything."""
+    """A side: points (n, 2), the place of each in its source, and the name of the side, if any."""
 
     points: Floats
     places: Sequence[str]
     name: str = ""
 
     def reversed(self) -> DrawnEdge:
-        """Return it the other way round."""
+        """Return the side with its points in reverse order."""
         return DrawnEdge(self.points[::-1], self.places[::-1], self.name)
 
     @property
     def is_wall(self) -> bool:
-        """Whether it leads from one place to another, as the wall of a channel does."""
+        """Whether its ends differ, as those of a channel's wall do."""
         length = float(np.hypot(*np.diff(self.points, axis=0).T).sum())
         return float(np.hypot(*(self.points[-1] - self.points[0]))) > _STRAIGHT * length
 
 
 def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) -> DomainShape | Outline:
-    """Return the domain between two walls, of which the first is south; straight lines join their ends.
+    """Return the domain between two walls, the first being south; straight lines join their ends.
 
-    Walls without a name are called ``wall``, and the lines at their first and last points ``inlet`` and
-    ``outlet``. Raises InputError: walls that cross, a point twice in a row.
+    Walls without a name are called ``wall``, the lines at their first and last points ``inlet`` and
+    ``outlet``. Raises InputError: walls that cross, equal neighbouring points.
     """
     south, north = (_checked(wall)._replace(name=wall.name or "wall") for wall in walls)
     a, b, c, d = south.points[0], south.points[-1], north.points[0], north.points[-1]
@@ -65,8 +65,8 @@ def four_edges(
 ) -> Boundary | DomainShape | Outline:
     """Return the domain of four edges, chained end to end from the first, which is south.
 
-    Where opposite edges have equal counts their points are the nodes. Raises InputError: edges that do not
-    meet or cross, a point twice in a row.
+    If opposite edges have equal counts, their points are the nodes. Raises InputError: edges that do not
+    meet, or that cross; equal neighbouring points.
     """
     chain = _directed(_chained([_checked(edge) for edge in edges]))
     counts = [len(edge.points) for edge in chain]
@@ -80,7 +80,7 @@ def four_edges(
 
 
 def _sampled(chain: Sequence[DrawnEdge], name: str, notes: tuple[str, ...]) -> DomainShape | Outline:
-    """Return the domain of a closed chain of four edges, whose nodes are sampled."""
+    """Return the domain of a closed chain of four edges, on which nodes will be sampled."""
     chain = _directed(chain)
     ring = np.concatenate([edge.points[:-1] for edge in chain])
     places = [place for edge in chain for place in edge.places[:-1]]
@@ -112,7 +112,7 @@ def _checked(edge: DrawnEdge) -> DrawnEdge:
 
 
 def _directed(chain: Sequence[DrawnEdge]) -> list[DrawnEdge]:
-    """Return a closed chain counter-clockwise; the first edge stays so, walked the other way if need be."""
+    """Return a closed chain counter-clockwise; the first edge stays first, reversed if necessary."""
     ring = np.concatenate([edge.points[:-1] for edge in chain])
     check_outline(ring, [place for edge in chain for place in edge.places[:-1]])
     if polygon_area(ring) >= 0:
@@ -121,7 +121,7 @@ def _directed(chain: Sequence[DrawnEdge]) -> list[DrawnEdge]:
 
 
 def _chained(edges: Sequence[DrawnEdge]) -> list[DrawnEdge]:
-    """Return four edges in an order and directions in which each begins where the last one ends."""
+    """Return four edges in order and directed so that each begins where the previous one ends."""
     reach = _JOIN * extent_of(np.concatenate([edge.points for edge in edges]))
     chain, left = [edges[0]], [way for edge in edges[1:] for way in (edge, edge.reversed())]
     while left:

@@ -13,7 +13,7 @@ from meshonet.geometry.errors import InputError
 
 
 def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:
-    """Return n nodes (n, 2) clockwise on a circle from `start` (radians), the first repeated bitwise."""
+    """Return nodes (n, 2) clockwise on a circle from angle `start` (radians), the first repeated bitwise."""
     angle = start - np.linspace(0.0, 2 * np.pi, n)
     nodes = centre + radius * np.stack([cos(angle), sin(angle)], axis=1)
     nodes[-1] = nodes[0]
@@ -21,7 +21,7 @@ def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:
 
 
 def straight(a: Floats, b: Floats, n: int) -> Floats:
-    """Return n nodes (n, 2) in equal steps from a (2,) to b (2,), both ends bitwise."""
+    """Return n equally spaced nodes (n, 2) from a (2,) to b (2,), both ends bitwise."""
     t = np.linspace(0.0, 1.0, n)[:, None]
     nodes = (1 - t) * a + t * b
     nodes[0], nodes[-1] = a, b
@@ -33,7 +33,7 @@ TURNED = 10.0
 
 
 def _start(wall: Floats, behind: float) -> tuple[float, str]:
-    """Return the angle of the first far-field node, in a body's map where its wall's is, and a note."""
+    """Return the angle of the first far-field node, where the map takes the first wall node, and a note."""
     from meshonet.geometry.conformal.lift import lift_body, mirrored  # which domains of blocks do not need
 
     try:
@@ -60,11 +60,11 @@ def o_boundary(
 ) -> Boundary:
     """Return the O boundary of a closed wall (ni, 2), clockwise, first node repeated, within a circle.
 
-    The far field runs clockwise at equal angles from where `wall[0]` is carried by the body's conformal map,
-    which for a symmetric body is straight behind it: a grid in between is then not sheared. Unless `turned`,
-    for marches that bring their own, it begins in the direction of the first node. West and east are the
-    straight cut from there to the wall. `curve`, `name`, `chord` and `notes` are those of `Boundary`; a turn
-    of more than `TURNED` is noted.
+    Far-field nodes run clockwise at equal angles. The first is where the body's conformal map takes
+    `wall[0]`, so that the grid is not sheared; for a symmetric body that is straight behind it. Unless
+    `turned`, for marching methods with a far field of their own, it is in the direction of `wall[0]`. West
+    and east are the straight cut from there to the wall. `curve`, `name`, `chord` and `notes` are those of
+    `Boundary`; a rotation of more than `TURNED` is noted.
     """
     middle = np.asarray(centre, dtype=np.float64)
     start, note = math.atan2(wall[0, 1] - middle[1], wall[0, 0] - middle[0]), ""

@@ -1,4 +1,4 @@
-"""Names carried over from the edges of a file to the patches of the boundary sampled from them."""
+"""Names of edges in a file, transferred to the patches of the boundary that is sampled from them."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,13 +12,13 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 
-_BLOCK = 1 << 22  # distances worked out at a time
+_BLOCK = 1 << 22  # distances computed at a time
 
 
 class Labelled:
-    """A shape whose curve consists of straight `edges` (n, 2, 2) with names (n,), which become patches.
+    """A shape of straight `edges` (n, 2, 2) with names (n,), from which the names of patches follow.
 
-    Edges without one have an empty name.
+    An edge without a name has an empty one.
     """
 
     def __init__(self, shape: Shape, edges: Floats, names: Sequence[str]) -> None:
@@ -26,11 +26,11 @@ class Labelled:
 
     @property
     def name(self) -> str:
-        """What the input called it."""
+        """Name of the shape in the input."""
         return self.shape.name
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the boundary of the shape, each cell of it called as the edge nearest to its middle."""
+        """Return the boundary of the shape; each cell has the name of the edge nearest to its middle."""
         boundary = self.shape.boundary(sampling)
         sides: tuple[Side, ...] = ("south", "north") if boundary.around_body else SIDES
         patches = []
@@ -43,7 +43,7 @@ class Labelled:
         return replace(boundary, patches=tuple(patches))
 
     def _nearest(self, points: Floats) -> list[tuple[int, float]]:
-        """Return the nearest edge to each of `points` (m, 2), and its distance."""
+        """Return the index and the distance of the edge nearest to each of `points` (m, 2)."""
         nearest: list[tuple[int, float]] = []
         start, along = self._edges[:, 0], self._edges[:, 1] - self._edges[:, 0]
         square = np.maximum((along**2).sum(axis=1), 1e-300)
@@ -58,7 +58,7 @@ class Labelled:
 
 
 def runs(side: Side, names: Sequence[str]) -> list[Patch]:
-    """Return the patches of a side whose cells are called `names`; those without one are called by the side.
+    """Return the patches of a side whose cells have these `names`; a cell without one takes that of the side.
 
     >>> runs("south", ["wall", "wall", "slot"])
     [Patch(name='wall', side='south', start=0, stop=2), Patch(name='slot', side='south', start=2, stop=3)]

@@ -1,12 +1,12 @@
-"""A closed curve that is no airfoil: the outline of a four-sided domain, or a body in a far field.
+"""A closed curve that is not an airfoil: the outline of a four-sided domain, or a body in a far field.
 
 ::
 
-      D ---- north ---> C         quad: south is the edge that lies lowest, or starts at the first corner
-      ^                 ^         asked for; the others follow counter-clockwise.
+      D ---- north ---> C         quad: south is the lowest edge, or starts at the first of the given corners;
+      ^                 ^         the others follow counter-clockwise.
      west              east
-      |                 |         o: the nodes run clockwise from the rightmost place of the body, and the
-      A ---- south ---> B         far field is a circle around the middle of its box.
+      |                 |         o: the nodes run clockwise from the body's rightmost point; the far field
+      A ---- south ---> B         is a circle around the middle of its bounding box.
 """
 
 from collections.abc import Sequence
@@ -25,21 +25,21 @@ from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
-_LEAST_TURN = np.radians(30.0)  # a corner that turns less does not count as one of the four of a domain
+_LEAST_TURN = np.radians(30.0)  # least turn of the four corners of a domain
 
 
 class Outline:
     """A closed curve through points.
 
-    The `points` (n, 2), at least 3, are in any unit and either way round; the first may be repeated at the
-    end. `corners` are the four of a quad domain, when the input says so, south-west first; `places` (n,) say
-    where each point stands in its source, for messages.
+    The `points` (n, 2), at least 3, are in any unit and of either orientation; the first may be repeated at
+    the end. `corners` are the four of a quad domain, if given, south-west first. `places` (n,) are the places
+    of the points in their source, for messages.
 
     Raises InputError: too few points, repeated ones, an outline that crosses itself or has no area.
     """
 
     far_field_unit = "extents of the body"
-    """What the distance of a far field is measured in."""
+    """Unit of the far-field distance."""
     notes: tuple[str, ...] = ()
     """What a reader passed over in its file, for those who sample it."""
 
@@ -57,7 +57,7 @@ class Outline:
         if corners is not None:
             self.curve = Curve(p, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners)))
         area, extent = polygon_area(p), extent_of(p)
-        if not _on_a_line(p, extent):  # such points run back on themselves, which says less
+        if not _on_a_line(p, extent):  # such points run back on themselves, a less helpful message
             check_outline(p, places)
         if abs(area) < 1e-9 * extent**2:
             raise InputError("the outline has no area", "give the points around a domain or a body")
@@ -65,17 +65,17 @@ class Outline:
 
     @property
     def topology(self) -> Topology:
-        """What ``auto`` means for it: ``quad`` with four or more corners that point outwards, else ``o``."""
+        """Topology that ``auto`` stands for: ``quad`` with four or more convex corners, else ``o``."""
         return "quad" if self.corners is not None or len(self._sharp()) >= 4 else "o"
 
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the four edges of the domain, or the O boundary around the body.
 
-        Spacing is by arc length on each edge (around all of the body): ``uniform`` and ``auto`` in equal
-        steps, ``cosine``, ``tanh`` with end steps a quarter of the mean, ``curvature``; around a smooth body
+        Spacing is by arc length on each edge (or around the body): ``uniform`` and ``auto`` in equal steps,
+        ``cosine``, ``tanh`` with end steps of a quarter of the mean, ``curvature``. Around a smooth body
         ``auto`` is ``conformal`` (`meshonet.geometry.conformal.spacing`). Corners of the curve are nodes.
 
-        Raises InputError: a topology or spacing that does not fit, corners that are no points of the outline.
+        Raises InputError: a topology or spacing that does not apply; corner indices out of range.
         """
         topology = self.topology if sampling.topology == "auto" else sampling.topology
         if sampling.corners is not None and sampling.topology == "auto":
@@ -114,7 +114,7 @@ class Outline:
         return self._quad(sampling) if quad else self._body(sampling)
 
     def _sharp(self) -> Indices:
-        """Return the corners that point outwards, in order along the curve."""
+        """Return the convex corners, in order along the curve."""
         turn = turning(self.curve.points, closed=True) * (1.0 if self._left else -1.0)
         index = self.curve.corner_index
         return np.asarray(index[turn[index] > _LEAST_TURN])
@@ -136,7 +136,7 @@ class Outline:
         return Boundary(south, north[::-1], west[::-1], east, topology="quad", name=self.name, sampled=True)
 
     def _ordered_corners(self, chosen: tuple[int, int, int, int]) -> tuple[int, ...]:
-        """Return the corners asked for, counter-clockwise from the first."""
+        """Return the given corners, counter-clockwise from the first."""
         n = len(self.curve.points)
         for corner in chosen:
             if not 0 <= corner < n:
@@ -150,10 +150,10 @@ class Outline:
         return tuple(ordered if self._left else [ordered[0], *ordered[:0:-1]])
 
     def _sharpest_corners(self) -> tuple[int, ...]:
-        """Return the four sharpest corners, counter-clockwise, the lowest edge between the first two.
+        """Return the four sharpest corners, counter-clockwise; the lowest edge is between the first two.
 
-        Of equally sharp ones (to a degree) those nearest the corners of the box count; where there are not
-        four, those places of a round outline that reach farthest into the corners of the box.
+        Of equally sharp ones (to a degree) those nearest to the corners of the bounding box are taken. With
+        fewer than four, they are the points of the outline closest to the corners of the box.
         """
         p = self.curve.points
         middle, half = 0.5 * (p.max(axis=0) + p.min(axis=0)), 0.5 * np.maximum(np.ptp(p, axis=0), 1e-300)
@@ -190,7 +190,7 @@ class Outline:
         return o_boundary(wall, nj, box.mean(axis=0), radius, curve, self.name, extent, notes=notes)
 
     def clockwise(self) -> Curve:
-        """Return the curve clockwise from the rightmost place, the middle of a straight right side."""
+        """Return the curve clockwise from its rightmost point, or the middle of a straight right side."""
         order = np.arange(len(self.curve.points))[:: -1 if self._left else 1]
         p, corner = self.curve.points[order], np.isin(order, self.curve.corner_index)
         right = p[:, 0] >= p[:, 0].max() - 1e-9 * np.ptp(p[:, 0])
@@ -206,7 +206,7 @@ class Outline:
         return Curve(p, closed=True, corners=np.flatnonzero(corner))
 
     def _around(self, curve: Curve, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:
-        """Return the arc lengths (ni,) of the nodes around a body, and a note of another spacing."""
+        """Return the arc lengths (ni,) of the nodes around a body, and a note if the spacing was changed."""
         notes: tuple[str, ...] = ()
         step = sampling.refined
         if sampling.spacing == "conformal" or (sampling.spacing == "auto" and curve.corners.size == 0):

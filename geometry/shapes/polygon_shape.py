@@ -24,7 +24,7 @@ from meshonet.geometry.shapes.shape import Shape
 
 @dataclass(frozen=True)
 class PolygonRing:
-    """A closed line of a file: points (n, 2), corners (None: found), names (none: default) and places."""
+    """A closed polygon of a file: points (n, 2), corners (None: detected), names (empty: default), places."""
 
     points: Floats
     corners: Sequence[int] | None = None
@@ -35,7 +35,7 @@ class PolygonRing:
 def polygon_shape(rings: Sequence[PolygonRing], name: str = "", notes: tuple[str, ...] = ()) -> DomainShape:
     """Return the domain inside the first of the `rings` and outside of the others.
 
-    Raises InputError: as `ring_loop`; its place says which ring, where there are several.
+    Raises InputError: as `ring_loop`; with several rings, its place says which.
     """
     loops = []
     for number, ring in enumerate(rings):
@@ -57,7 +57,7 @@ def polygon_shape(rings: Sequence[PolygonRing], name: str = "", notes: tuple[str
 
 
 def domain_or_body(shape: Outline | Airfoil) -> Shape:
-    """Return a closed line unchanged, or the domain inside it if it has corners, but not four."""
+    """Return a closed curve unchanged, or the domain inside it if it has corners, but not four."""
     if isinstance(shape, Airfoil) or shape.topology != "quad":
         return shape
     points = shape.curve.points
@@ -91,7 +91,7 @@ def _annulus(domain: Domain, *, named: bool) -> Shape:
 
 
 def _labelled(shape: Shape, loops: Sequence[Loop]) -> Shape:
-    """Return a shape whose patches are called as the loops that it follows."""
+    """Return a shape whose patches have the names of the loops that it follows."""
     ends, names = [], []
     for loop in loops:
         points = loop.curve.points

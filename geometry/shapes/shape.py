@@ -1,4 +1,4 @@
-"""What a geometry file holds before it is sampled."""
+"""What a geometry file contains before nodes are sampled on it."""
 
 from dataclasses import replace
 from typing import Protocol
@@ -13,7 +13,7 @@ class Shape(Protocol):
 
     @property
     def name(self) -> str:
-        """What the input called it."""
+        """Name of the shape in the input."""
         ...
 
     def boundary(self, sampling: Sampling) -> Boundary:
@@ -22,12 +22,12 @@ class Shape(Protocol):
 
 
 def edges_of(shape: Shape, sampling: Sampling) -> Boundary:
-    """Return the boundary of `shape`, looked through before anything is made of it, with the notes of both.
+    """Return the boundary of `shape`, checked before any grid is made, with the notes of both.
 
-    Raises InputError: what `shape` raises; edges that cross or touch, a body outside its far field.
+    Raises InputError: the errors of `shape`; edges that cross or touch; a body outside its far field.
     """
     if isinstance(shape, Boundary):
-        check_edges(shape)  # first as given, for the numbers of the user's own nodes
+        check_edges(shape)  # first as given, so that messages have the user's own node numbers
     boundary = shape.boundary(sampling)
     if boundary is not shape:
         check_edges(boundary)

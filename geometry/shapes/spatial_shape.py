@@ -1,4 +1,4 @@
-"""What a file in space holds, blocks or patches of surface, before a method makes a volume of it."""
+"""The content of a file in three dimensions, before a method makes a volume grid of it."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from meshonet.geometry.spacing.sampling import Sampling
 class SpatialShape:
     """A grid whose nodes have three coordinates: blocks (ni, nj, nk, 3), or surface patches (ni, nj, 3).
 
-    Marching takes patches as a wall; six patches that enclose a volume, or the outer faces of a block, are
-    the boundary of what the other methods fill; several blocks are smoothed across their connections.
+    Marching takes patches as its wall. Other methods fill the volume that six patches, or the outer faces of
+    a block, enclose; several blocks are smoothed across their connections.
     """
 
     grid: Grid
 
     @property
     def name(self) -> str:
-        """What the input called it."""
+        """Name of the shape in the input."""
         return self.grid.name
 
     @property
@@ -31,11 +31,11 @@ class SpatialShape:
         return all(len(block.counts) == 2 for block in self.grid.blocks)
 
     def boundary(self, sampling: Sampling) -> Boundary:  # noqa: ARG002 - as all shapes have it
-        """Raise InputError: a shape in space has no four edges."""
+        """Raise InputError: a three-dimensional shape has no four edges."""
         problem = "its nodes have three coordinates and the boundary of a plane grid is asked for"
         raise InputError(problem, "use a command that makes volumes: tfi, solve-pde or infer")
 
 
 def in_space(grid: Grid) -> bool:
-    """Say whether the nodes of a grid have three coordinates."""
+    """Return whether the nodes of a grid have three coordinates."""
     return grid.form != "plane"

@@ -2,12 +2,12 @@ r"""C boundaries: the cut behind a sharp trailing edge, and the far field around
 
 ::
 
-       .---------- north ----------+        south runs along the wake to the trailing edge, clockwise
-     /                             | east   around the wall, and back along the wake: one array used both
-    |      ___                     |        ways, so that its nodes coincide bitwise. West and east are the
-    |    <_____>-- - - wake - - - -+        outlet, straight; the far field is half a circle around the
-    |                              | west   middle of the body and a straight line on each side of the wake.
-     \                             |
+      .---------- north ----------+        south runs along the wake to the trailing edge, clockwise around
+    /                             | east   the wall, and back along the wake: both parts of the wake are one
+   |      ___                     |        array, so that their nodes coincide bitwise. West and east are the
+   |    <_____>-- - - wake - - - -+        straight outlet; the far field is a half circle around the middle
+   |                              | west   of the body, and a straight line on each side of the wake.
+    \                             |
        '---------------------------+
 """
 
@@ -30,21 +30,21 @@ from meshonet.geometry.spacing.tanh_law import TanhLaw
 C_EDGE = 1.6
 """Cell at the trailing edge of a C grid: this over the nodes along xi, in chords. With smaller ones the rest
 grows by more than 15 % each at 250 nodes."""
-_GROWTH = 1.135  # growth of wake cells that is enough, and below which cells are better spent on the wall
-_SHARES = 0.2, 0.23  # smallest and largest part of all cells that one side of the wake takes by itself
+_GROWTH = 1.135  # sufficient growth ratio of wake cells, below which the wall has better use for the nodes
+_SHARES = 0.2, 0.23  # smallest and largest fraction of all cells on one side of the wake, by default
 _RAMP = 3.0  # cells of a wake over which growth sets in: the lines that leave its first ones converge
-_LATE = 0.05  # part by which cells at the outlet grow faster than on average, and those at the edge slower
+_LATE = 0.05  # fraction by which growth is faster at the outlet than on average, and slower at the edge
 _STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
-_LEAST_WALL = 5  # nodes of a wall, its trailing edge counted twice
+_LEAST_WALL = 5  # fewest nodes of a wall, with its trailing edge counted twice
 
 
 def cells_of_wake(ni: int, nodes_wanted: int | None, first: float, length: float) -> int:
     """Return the cells of the wake of a C grid with `ni` nodes along xi, both sides of the wake included.
 
-    `nodes_wanted` include the trailing edge; None is for cells that grow from `first` by 13 %, and are 20 to
-    23 % of all.
+    `nodes_wanted` include the trailing edge; with None, cells grow from `first` by 13 %, and are 20 to 23 %
+    of all cells.
 
-    Raises InputError: no room for the wall.
+    Raises InputError: too few nodes are left for the wall.
     """
     if nodes_wanted is not None:
         cells = nodes_wanted - 1
@@ -60,7 +60,7 @@ def cells_of_wake(ni: int, nodes_wanted: int | None, first: float, length: float
 
 
 def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
-    """Return the unit direction (2,) in which a wake ends: along x, or the chord where that is steeper."""
+    """Return the unit direction (2,) in which a wake ends: x, or the chord if that is too steep."""
     chord = np.asarray(trailing_edge - leading_edge)
     if abs(chord[1]) <= abs(chord[0]):
         return np.array([math.copysign(1.0, chord[0]), 0.0])
@@ -69,10 +69,10 @@ def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class WakeLine:
-    """The line that a wake follows: from a trailing edge along the bisector of its wedge, then the axis.
+    """The line of a wake: from a trailing edge along the bisector of its wedge, turning into the axis.
 
-    In coordinates x along the axis and y to its left, y = tan(b) l (1 - exp(-x/l)), with b the angle of the
-    bisector (at most 34°) and l the relaxation length.
+    In coordinates x along the axis and y to its left, y = tan(b) l (1 - exp(-x/l)), with the angle b of the
+    bisector (at most 34°) and the relaxation length l.
     """
 
     begin: Floats
@@ -87,7 +87,7 @@ class WakeLine:
 
     @classmethod
     def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> WakeLine:
-        """Return the wake behind a closed wall (n, 2) which begins and ends at its sharp trailing edge."""
+        """Return the wake behind a closed wall (n, 2) that begins and ends at its sharp trailing edge."""
         upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
         along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
         angle = math.atan2(axis[0] * along[1] - axis[1] * along[0], product(axis, along))
@@ -95,7 +95,7 @@ class WakeLine:
         return cls(wall[0], axis, slope, chord, length)
 
     def nodes(self, first: float, cells: int) -> Floats:
-        """Return nodes (cells + 1, 2) from the trailing edge on, growing from `first` (`growing`)."""
+        """Return nodes (cells + 1, 2) from the trailing edge on; the first cell is `first` (`growing`)."""
         x = growing(first / math.hypot(1.0, self.slope), self.length, cells)
         x *= self.length / x[-1]
         y = -self.slope * self.relaxation * expm1(-x / self.relaxation)
@@ -105,9 +105,11 @@ class WakeLine:
 
 
 def growing(first: float, length: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) in units of `first`, of growing cells that fill `length`.
+    """Return distances (cells + 1,) in units of `first`, from 0 to `length`, of growing cells.
 
-    The logarithm of a cell's size grows by g (1 - exp(-k/m)) (1 + b (2k/n - 1)) at cell k of n.
+    From cell k of n to the next, the logarithm of the size increases by
+
+        g (1 - exp(-k/m)) (1 + b (2k/n - 1))
     """
     if first * cells >= length or cells < 2:
         return np.arange(cells + 1.0)
@@ -141,7 +143,7 @@ def c_boundary(
     """Return the C boundary of a closed wall (n, 2) and the wake (m, 2) from its edge to the outlet.
 
     The wall runs clockwise from the sharp trailing edge, which is repeated at the end. `centre` and `radius`
-    are those of the half circle in front, `axis` (2,) is the unit direction of the wake's far end; for
+    are those of the half circle in front; `axis` (2,) is the unit direction in which the wake ends. For
     `curve`, `name`, `chord` and `notes` see `Boundary`.
 
     Raises InputError: the wake leaves the far field, or crosses the wall.
@@ -156,7 +158,7 @@ def c_boundary(
 
 
 def c_far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, behind: float) -> Floats:
-    """Return the far field (body + 2 wake + 1, 2), in equal steps in front, evenly changing ones behind."""
+    """Return far-field nodes (body + 2 wake + 1, 2): equal steps in front, gradually changing ones behind."""
     normal = np.array([-axis[1], axis[0]])
     angle = np.linspace(-0.5 * np.pi, -1.5 * np.pi, body + 1)
     front = centre + radius * (cos(angle)[:, None] * axis + sin(angle)[:, None] * normal)

@@ -1,4 +1,4 @@
-"""Nodes along a stretch of a curve by a spacing law, with the curve's corners on nodes."""
+"""Nodes along a stretch of a curve by a given spacing, with the curve's corners on nodes."""
 
 from itertools import pairwise
 
@@ -27,9 +27,9 @@ def stretch_arcs(
 ) -> Floats:
     """Return arc lengths (cells + 1,) on a closed curve from `begin` to `end`, all the way round when equal.
 
-    They run along the curve's own direction, or against it unless `forward`. ``tanh`` has end cells a quarter
-    of the mean; laws that need more than a curve are equal steps. Corners are on multiples of `step` nodes
-    where there is room.
+    They run in the direction of the curve, or against it unless `forward`. ``tanh`` has end cells of a
+    quarter of the mean; spacings that depend on more than the curve become equal steps. Corners are on
+    multiples of `step` nodes if there are enough.
     """
     sign = 1.0 if forward else -1.0
     length = (sign * (end - begin)) % curve.length or curve.length
@@ -53,7 +53,7 @@ def stretch_arcs(
 
 
 def first_within(steps: tuple[int, ...], most: float) -> int:
-    """Return the first of the falling `steps` that is at most `most`, or the last of them.
+    """Return the first of the descending `steps` that is at most `most`, or the last of them.
 
     >>> first_within((8, 4, 2, 1), 5.0), first_within((8,), 5.0)
     (4, 8)
@@ -62,12 +62,12 @@ def first_within(steps: tuple[int, ...], most: float) -> int:
 
 
 def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), step: int = 1) -> Floats:
-    """Return increasing distances (n,) moved along so that every corner (m,) is one of them.
+    """Return increasing distances (n,), shifted so that every corner (m,) is one of them.
 
-    The nearest goes to each corner, of every `step`-th ones where these have room for all; the first, the
-    last and the `fixed` ones stay; the others are shared out.
+    Each corner gets the nearest node, of every `step`-th one if these suffice. The first, the last and the
+    `fixed` nodes stay; the others are shifted proportionally.
 
-    Raises InputError: more corners than nodes to put on them.
+    Raises InputError: more corners than nodes.
     """
     if corners.size == 0:
         return distance
@@ -90,9 +90,9 @@ def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = (), s
 
 
 def _nearest(place: Floats, stays: list[int], step: int) -> NDArray[np.intp] | None:
-    """Return the nodes (m,) for corners at places (m,) of the index: multiples of `step` nearest to them.
+    """Return the nodes (m,) nearest to corners at fractional indices (m,), among multiples of `step`.
 
-    They differ from each other and from those that stay; None where there are too few.
+    They differ from each other and from those that stay; None if there are too few.
     """
     node = np.rint(place / step).astype(np.intp)
     for low, high in pairwise(stays):

@@ -1,4 +1,4 @@
-"""The height of the first cell at walls, as requests have it: given, or by its y+."""
+"""The first-cell height at walls as a request gives it: directly, or by its y+."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True, kw_only=True)
 class FirstCell:
-    """Height of the first cell at walls: the fields that requests share.
+    """First-cell height at walls: fields that several requests share.
 
     Parameters
     ----------
     first_cell : float, optional
-        The height, in the unit of the request.
+        First-cell height, in the unit of the request.
     y_plus, reynolds : float, optional
-        The same height by its y+, converted for a flat plate; the Reynolds number is that of a length of 1.
+        First-cell height as y+, converted by flat-plate friction; the Reynolds number is for a length of 1.
     chord_fraction : float, optional
-        Where along this length the y+ is converted to a height, 0 to 1.
+        Position along this length at which y+ is converted, 0 to 1.
     """
 
     first_cell: float | None = None
@@ -29,11 +29,11 @@ class FirstCell:
 
     @property
     def at_walls(self) -> bool:
-        """Whether cells at walls have a height."""
+        """Whether a first-cell height is given."""
         return self.first_cell is not None or self.y_plus is not None
 
     def check_first_cell(self) -> None:
-        """Raise InputError for a height out of its range, or for fields that need or exclude each other."""
+        """Raise InputError for a height out of range, or for fields that need or exclude each other."""
         if self.first_cell is not None and self.y_plus is not None:
             problem = "{first_cell} and {y_plus} both say how high the first cell is"
             raise InputError(problem, "give one of them")
@@ -44,10 +44,10 @@ class FirstCell:
             raise InputError("{chord_fraction} without {y_plus}", "give {y_plus} and {reynolds} as well")
         if self.first_cell is not None:
             check_height(self.first_cell, "first_cell")
-        self.height()  # which says what is out of range
+        self.height()  # raises for values out of range
 
     def height(self, unit: float = 1.0) -> float | None:
-        """Return the height, that of a y+ where the length of its Reynolds number is `unit`."""
+        """Return the first-cell height; `unit` is the reference length of the Reynolds number."""
         if self.y_plus is None or self.reynolds is None:
             return self.first_cell
         from meshonet.geometry.spacing.y_plus import first_cell
@@ -55,13 +55,13 @@ class FirstCell:
         return first_cell(self.y_plus, self.reynolds, self.chord_fraction) * unit
 
     def height_note(self, where: str, unit: float = 1.0, in_unit: str = "") -> str:
-        """Return where the height of a y+ comes from; `where` names the length of the Reynolds number."""
+        """Return how a height follows from y+, as text; `where` names the reference length."""
         from meshonet.geometry.spacing.y_plus import height_note
 
         return height_note(self.y_plus, self.reynolds, where, f"{self.height(unit) or 0.0:.6g}{in_unit}")
 
 
 def check_height(height: float, parameter: str) -> None:
-    """Raise InputError when a height is not positive, or not finite."""
+    """Raise InputError if a height is not positive, or not finite."""
     if not 0 < height < math.inf:
         raise InputError(f"a first cell of {height:g}", "give a positive height", parameter=parameter)

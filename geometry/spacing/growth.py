@@ -1,4 +1,4 @@
-"""Cells that grow by a constant ratio from a wall outwards."""
+"""Cells that grow by a constant ratio away from a wall."""
 
 import math
 
@@ -9,22 +9,22 @@ from meshonet.geometry.elementary import exp, power, product
 from meshonet.geometry.errors import InputError
 
 LARGEST = 10.0
-"""A ratio beyond this between neighbouring cells is refused."""
+"""Largest growth ratio that is accepted."""
 
 
 def check_growth(growth: float | None, most: float = LARGEST) -> None:
-    """Raise InputError for a ratio of neighbouring cells that is not above 1, or above `most`."""
+    """Raise InputError for a growth ratio that is not above 1, or above `most`."""
     if growth is not None and not 1.0 < growth <= most:
         remedy = f"give the ratio of neighbouring cells, such as 1.15, at most {most:g}"
         raise InputError(f"a growth of {growth:g}", remedy, parameter="growth")
 
 
 def growth_ratio(first: float, length: float, cells: int) -> float:
-    """Return the ratio g >= 1 of neighbouring cells with which `cells` of them fill `length`.
+    """Return the growth ratio g >= 1 with which `cells` cells, the first of size `first`, fill `length`.
 
     first (gⁿ - 1)/(g - 1) = length
 
-    Raises InputError: equal cells of this size are too long already, or the ratio is above `LARGEST`.
+    Raises InputError: equal cells of this size are already too long, or the ratio is above `LARGEST`.
 
     >>> growth_ratio(1.0, 7.0, 3)
     2.0
@@ -40,8 +40,8 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
         raise InputError(f"{problem} {LARGEST:g} each", "use more rows or a larger wall spacing")
     if cells == 1 or wanted <= cells:
         return 1.0
-    rate = min(math.log(wanted) / (cells - 1), most)  # where the last cell alone is as long: above the root
-    for _ in range(100):  # Newton's method on ln of the sum, which is convex
+    rate = min(math.log(wanted) / (cells - 1), most)  # the last cell alone is as long: above the root
+    for _ in range(100):  # Newton's method on the logarithm of the sum, which is convex
         total = _sum(rate, cells)
         slope = cells / -math.expm1(-rate * cells) + 1.0 / math.expm1(-rate)
         change = math.log(total / wanted) / slope
@@ -52,7 +52,7 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
 
 
 def cells_for_growth(first: float, length: float, ratio: float) -> int:
-    """Return the fewest cells that, from `first` on, reach `length` without growing by more than `ratio`.
+    """Return the least number of cells that, from `first` on, fill `length` with growth at most `ratio`.
 
     >>> cells_for_growth(1.0, 7.0, 2.0), cells_for_growth(1.0, 7.1, 2.0), cells_for_growth(1.0, 7.0, 1.0)
     (3, 4, 7)
@@ -63,9 +63,9 @@ def cells_for_growth(first: float, length: float, ratio: float) -> int:
 
 
 def growing_steps(first: float, length: float, cells: int, constant: int = 1) -> Floats:
-    """Return `cells` sizes (cells,) from `first` on that grow by `growth_ratio` and add up to `length`.
+    """Return sizes (cells,) from `first` on that grow by `growth_ratio` and add up to `length`.
 
-    The first `constant` ones are equal; the ratio is that of the others.
+    The first `constant` sizes are equal; the others grow.
 
     >>> growing_steps(1.0, 9.0, 5, 3).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]
@@ -76,9 +76,9 @@ def growing_steps(first: float, length: float, cells: int, constant: int = 1) ->
 
 
 def growth_rate(place: Floats, first: float, length: float, rate: float) -> float:
-    """Return g with which cells of sizes first exp(g place), `place` (n,) rising from 0, fill `length`.
+    """Return g for which cells of sizes first exp(g place), with `place` (n,) rising from 0, fill `length`.
 
-    By Newton's method from a `rate` above it: their sum is convex in g.
+    By Newton's method from a `rate` above g: their sum is convex in g.
     """
     for _ in range(100):
         sizes = first * exp(rate * place)

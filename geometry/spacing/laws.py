@@ -1,7 +1,7 @@
-"""Spacing laws: where the nodes of a stretch of curve go, from 0 to 1.
+"""Spacings, functions that place nodes along a curve: from index / (n - 1) to relative arc length, 0 to 1.
 
-A new law is a line in `LAWS`: its name is then accepted wherever spacings are, also by ``--spacing``. The
-help of the command line reads this module, which therefore loads no NumPy: a law's function does.
+To add one, add a line to `LAWS`: its name is then accepted by ``--spacing`` and wherever spacings are. The
+help of the command line reads this module, so it does not load NumPy; the function of a spacing does.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Spacing: TypeAlias = str
 
 @dataclass(frozen=True)
 class Law:
-    """A spacing law."""
+    """A spacing."""
 
     place: Callable[[Floats], Floats] | None = None
     """s(q), both 0 to 1; None for a law that depends on the curve or on the cells at its ends."""
@@ -35,8 +35,8 @@ def _cosine(q: Floats) -> Floats:
 
 
 LAWS: dict[str, Law] = {
-    "auto": Law(sets_ends=True),  # conformal where there is such a map, else tanh or uniform
-    "conformal": Law(),  # equal angles of the circle that the body is an image of
+    "auto": Law(sets_ends=True),  # conformal if there is such a map, else tanh or uniform
+    "conformal": Law(),  # equal angles on the circle that the body is mapped to
     "uniform": Law(lambda q: q),
     "cosine": Law(_cosine, sets_ends=True),
     "tanh": Law(sets_ends=True),

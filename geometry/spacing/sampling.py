@@ -11,59 +11,59 @@ from meshonet.geometry.spacing.laws import SPACINGS, Spacing
 TrailingEdge: TypeAlias = Literal["auto", "exact", "round", "wedge"]
 TRAILING_EDGES: tuple[TrailingEdge, ...] = get_args(TrailingEdge)
 
-DEFAULT_NI = 200  # nodes where none are asked for
+DEFAULT_NI = 200  # default node counts
 DEFAULT_NJ = 100
-DEFAULT_FAR_FIELD = 15.0  # chords
+DEFAULT_FAR_FIELD = 15.0  # in chords
 MULTIPLES = (8, 4, 2, 1)
 """Steps of nodes one of which corners of airfoils stand on, the largest that cells suffice for and that
 divides them, so that grids can be coarsened by it."""
-MOST_NODES = 100_000  # along a direction: more are taken for a slip of the pen
+MOST_NODES = 100_000  # per direction: more is taken for a typing error
 
 
 @dataclass(frozen=True)
 class Sampling:
-    """How a shape becomes edges of nodes; validates itself.
+    """How a shape becomes edges of nodes; values are checked when this is made.
 
     Parameters
     ----------
     ni, nj : int, optional
-        Nodes along xi (around the body) and eta (away from it); None means what the shape has, and for a
+        Number of nodes along xi (around the body) and eta (away from it); None keeps the shape's, for a
         curve `DEFAULT_NI` and `DEFAULT_NJ`.
     nk : int, optional
-        Nodes of a volume along zeta; None for grids in the plane, and for what a volume has.
+        Number of nodes of a volume along zeta; None keeps that of the volume. None for planar grids.
     topology : {'auto', 'quad', 'o', 'c'}, optional
         ``auto`` lets the shape choose.
     spacing : str, optional
-        Law of the nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies (``tanh``
-        where a cell is asked for), and ``uniform`` elsewhere.
+        Distribution of the nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies
+        (``tanh`` if a cell size is given), and ``uniform`` elsewhere.
     le_spacing, te_spacing : float, optional
-        Wall cell at the leading and at the trailing edge, in chords.
+        Wall cell size at the leading and at the trailing edge, in chords.
     far_field : float, optional
-        Radius of the outer boundary, its least distance from the middle of the body, in chords or, around
-        other bodies, in their largest extent; None is `DEFAULT_FAR_FIELD`, and all that shapes without one
-        take. Off a surface in space the distance to march, in its unit.
+        Least distance of the outer boundary from the middle of the body, in chords or, for other bodies, in
+        their largest extent; None is `DEFAULT_FAR_FIELD`. Shapes without a far field accept only None. For
+        marching from a surface in space, the distance to march, in its unit.
     corners : tuple of 4 int, optional
-        The points, counted from 0, that become the corners of a quad domain.
+        Indices, from 0, of the points that become the corners of a quad domain.
     te : {'auto', 'exact', 'round', 'wedge'}, optional
-        Blunt trailing edges of airfoils as they are (``exact``), with their corners rounded (``round``) or
-        closed by a wedge behind them (``wedge``); ``auto`` is ``wedge`` for a C boundary of one block, which
-        needs a sharp edge, and ``exact`` otherwise: C grids with layers keep a base.
+        Blunt trailing edges of airfoils: unchanged (``exact``), with rounded corners (``round``) or closed by
+        a wedge behind them (``wedge``). ``auto`` is ``wedge`` for a C boundary of one block, which needs a
+        sharp edge, and ``exact`` otherwise: C grids with layers keep a base.
     wake : float, optional
-        Length of a C boundary's wake in chords; None is as long as the far field is away.
+        Length of the wake of a C boundary in chords; None is the distance of the far field.
     wake_nodes : int, optional
-        Nodes of it, the trailing edge included; None derives it from the cell at the edge.
+        Number of wake nodes, the trailing edge included; None derives it from the cell size at the edge.
     base_nodes : int, optional
-        Nodes of a blunt base, both corners included, odd around a body in an O grid; None follows from the
-        cells beside it and its width.
+        Number of nodes on a blunt base, both corners included, odd on a body in an O grid; None derives it
+        from the cells next to the base and its width.
     smooth : float, optional
-        Replace the points of an airfoil by those of smoothing splines that stay within so many chords of
-        them, corners kept; needs SciPy.
+        Replace the points of an airfoil by those of smoothing splines that deviate by at
+        most this many chords; corners are kept. Needs SciPy.
     refined : int, optional
-        Corners stand on nodes that are multiples of it, as a grid that is to be coarsened by it needs them.
+        Corners are on nodes whose index is a multiple of this, so that the grid can be coarsened by it.
     viscous : bool, optional
-        The cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
+        Cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
     normalise : bool, optional
-        Put the leading edge at (0, 0) and the trailing edge at (1, 0).
+        Move the leading edge to (0, 0) and the trailing edge to (1, 0).
 
     Raises
     ------
@@ -118,7 +118,7 @@ class Sampling:
             raise InputError(problem, "give four point indices")
 
     def corner_steps(self, cells: int) -> tuple[int, ...]:
-        """Return steps of nodes, one of which corners stand on along a wall of so many `cells`, best first.
+        """Return steps of node indices, best first; corners lie on multiples of one of them.
 
         >>> Sampling().corner_steps(404), Sampling().corner_steps(398), Sampling(refined=8).corner_steps(400)
         ((4, 2, 1), (2, 1), (8,))
@@ -131,7 +131,7 @@ class Sampling:
     def radius(self) -> float:
         """Radius of the far field in chords.
 
-        Raises InputError: it is not outside of a body of one chord.
+        Raises InputError: it does not enclose a body with a chord of 1.
         """
         radius = DEFAULT_FAR_FIELD if self.far_field is None else self.far_field
         if not 1.0 < radius <= 1e6:

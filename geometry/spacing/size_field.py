@@ -1,4 +1,4 @@
-"""Cell sizes that follow the shape: small at edges and where the curve turns, growing slowly in between."""
+"""Cell sizes that follow the shape: small at edges and where the curve turns, with slow growth in between."""
 
 import math
 from collections.abc import Callable
@@ -14,15 +14,15 @@ GROWTH = math.log(1.10)
 """Largest growth of cells along the wall: 10 % from one to the next."""
 HURRY = 1.3
 """Factor on the growth where nodes are few, before only curvature and nose are resolved more coarsely."""
-_SCARCE = 5.0  # coarsening of curvature and nose beyond which cells grow faster again
-_RAMP = 3.0  # cells over which growth sets in behind a trailing edge whose step is asked for
-_EDGE = 0.025  # part of the wall at either end where curvature sets no cell below the step of the edge
+_SCARCE = 5.0  # coarsening of curvature and nose beyond which growth is increased again
+_RAMP = 3.0  # cells over which growth sets in behind a trailing edge with a prescribed size
+_EDGE = 0.025  # fraction of the wall at either end where curvature asks for no cell below the edge's size
 TURN = math.radians(3.0)
-"""How much of the curve's turning one cell may take."""
-_WINDOW = 2e-3  # chords over which curvature is averaged, against noise of the last digit of the points
-_SAMPLES = 1600  # places on the curve at which sizes are known, about
+"""Largest turning angle of the curve along one cell."""
+_WINDOW = 2e-3  # chords over which curvature is averaged, against noise in the last digit of the points
+_SAMPLES = 1600  # approximate number of points on the curve at which sizes are computed
 _SCARCEST = math.log(64.0)  # logarithm of the largest coarsening of curvature and leading edge
-_REACH = 8.0  # cells over which the sizes are adjusted to meet a prescribed step
+_REACH = 8.0  # cells over which the sizes are adjusted to meet a prescribed size
 
 
 def arcs_by_curvature(
@@ -36,18 +36,19 @@ def arcs_by_curvature(
     hurried: bool = True,
     at_edge: float = 0.0,
 ) -> Floats:
-    """Return arc lengths (cells + 1,) from one end of the trailing edge round the nose to the other.
+    """Return arc lengths (cells + 1,) from one end of the trailing edge around the nose to the other.
 
-    The cell size h is a smooth minimum of four, 1/h⁴ = Σ 1/hₖ⁴: the steps at the trailing and the leading
-    edge, each growing with the distance from it; `TURN` over the curvature, with growth limited alike; and a
-    largest cell, such that the integral of ds/h is the number of cells. When the cells are too few for the
-    first three, those of curvature and of the leading edge become larger, and growth is up to `HURRY` times
-    as fast (with `hurried`, as for C grids, whose wake takes half of the nodes); when that does not suffice,
-    all sizes are scaled up.
+    The cell size h is a smooth minimum of four sizes, 1/h⁴ = Σ 1/hₖ⁴: those at the trailing and at the
+    leading edge, each growing with the distance from it; `TURN` over the curvature, with the same limit of
+    growth; and a largest size, such that the integral of ds/h is the number of cells. If cells are too few
+    for the first three, those of curvature and of the leading edge are increased, and growth is up to `HURRY`
+    times as fast (with `hurried`, as for C grids, whose wake takes half of the nodes). If that does not
+    suffice, all sizes are scaled up.
 
-    `stations` are the arc lengths of the lower end, of the nose and of the upper end, `steps` the cells at
-    the trailing and at the leading edge, `exact` whether these are to be met, to 0.5 % where the adjustment
-    suffices. From the trailing edge cells grow by exp(`at_edge`) each, where that is more than elsewhere.
+    `stations` are the arc lengths of the lower end, the nose and the upper end; `steps` the cell sizes at the
+    trailing and at the leading edge; `exact` whether these are prescribed, within 0.5 % if the adjustment
+    suffices. From the trailing edge cells grow by the factor exp(`at_edge`) each, if that is more than
+    elsewhere.
     """
     lower, nose, upper = stations
     s = _samples(stations, steps)
@@ -72,9 +73,9 @@ def arcs_by_curvature(
 
 
 def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) along a closed curve from `begin` on, following curvature alone.
+    """Return distances (cells + 1,) along a closed curve from `begin`, by curvature alone.
 
-    `way` is the length to go, negative against the curve's direction.
+    `way` is the length to cover, negative against the direction of the curve.
     """
     s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
     bend = _bend(curve, begin + np.sign(way) * s, curve.length)
@@ -83,7 +84,7 @@ def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -
 
 
 def _placed(s: Floats, density: Floats, cells: int) -> Floats:
-    """Return cells + 1 places from the first to the last of s, cells of equal integrals of the density."""
+    """Return cells + 1 arc lengths from the first to the last of s, with equal integrals of the density."""
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
     places = monotone_cubic(count * (cells / count[-1]), s, np.arange(cells + 1.0))
     places[0], places[-1] = s[0], s[-1]
@@ -91,7 +92,7 @@ def _placed(s: Floats, density: Floats, cells: int) -> Floats:
 
 
 def _samples(stations: tuple[float, float, float], steps: tuple[float, float]) -> Floats:
-    """Return arc lengths from the lower to the upper end, close together where the steps are small."""
+    """Return arc lengths from the lower to the upper end, dense where the cell sizes are small."""
     lower, nose, upper = stations
     half = 0.5 * (upper - lower)
     te, le = (geomspace(0.1 * step, half, _SAMPLES // 8) for step in steps)
@@ -104,7 +105,7 @@ def _samples(stations: tuple[float, float, float], steps: tuple[float, float]) -
 
 
 def _bend(curve: Curve, s: Floats, chord: float) -> Floats:
-    """Return the absolute curvature at arc lengths s, averaged over `_WINDOW`, at least 0.01 a chord."""
+    """Return the absolute curvature at arc lengths s, averaged over `_WINDOW`, at least 0.01 per chord."""
     low, high = min(s[0], s[-1]), max(s[0], s[-1])
     t = np.linspace(low, high, 2 * _SAMPLES)
     d = curve.tangent(np.clip(t, low + 1e-9 * (high - low), high - 1e-9 * (high - low)))
@@ -115,7 +116,7 @@ def _bend(curve: Curve, s: Floats, chord: float) -> Floats:
 
 
 def _affordable(cells: int, s: Floats, known: Callable[[float], Floats]) -> Floats:
-    """Return `known` (the sum of 1/h⁴ at s) with the least factor, 1 or more, that `cells` suffice for."""
+    """Return `known` (the sum of 1/h⁴ at s) with the least factor, at least 1, for which `cells` suffice."""
     goal, width = math.log(cells), 0.5 * np.diff(s)
 
     def excess(log_factor: float) -> tuple[float, Floats]:
@@ -149,11 +150,11 @@ def _known(
     hurry: float,
     at_edge: float,
 ) -> Floats:
-    """Return the sum of 1/h⁴ over the terms of both edges and of curvature, which alone gives `size`.
+    """Return the sum of 1/h⁴ over both edges and curvature, for which alone the size is `size`.
 
-    `fewer` is the factor by which size and the leading edge's step are larger, `hurry` that by which growth
-    is faster at the most before they are much larger. With `ramp`, growth sets in slowly behind the trailing
-    edge: the lines that leave there converge, and what is beside them does not.
+    `fewer` is the factor on size and on the leading edge's cell, `hurry` the largest factor on growth before
+    these are much larger. With `ramp`, growth sets in slowly behind the trailing edge: the grid lines that
+    leave there converge, unlike those next to them.
     """
     lower, nose, upper = stations
     growth = GROWTH * max(min(fewer, hurry), fewer / _SCARCE)
@@ -177,16 +178,16 @@ def _quartic(h: Floats) -> Floats:
 
 
 def limited_size(s: Floats, size: Floats, growth: float) -> Floats:
-    """Return h(s) = min over s' of size(s') + growth |s - s'|, by one pass each way."""
+    """Return h(s) = min over s' of size(s') + growth |s - s'|, by one forward and one backward pass."""
     size = np.minimum.accumulate(size - growth * s) + growth * s
     return np.asarray(np.minimum.accumulate((size + growth * s)[::-1])[::-1] - growth * s)
 
 
 def _density(s: Floats, known: Floats, relief: Floats, cells: int) -> Floats:
-    """Return 1/h with the largest cell that makes its integral the number of cells."""
+    """Return 1/h with the largest size for which its integral is the number of cells."""
     width, weight = 0.5 * np.diff(s), _quartic(relief)
     share = np.concatenate([width, [0.0]]) + np.concatenate([[0.0], width])
-    more = 0.0  # of the largest cell, 1/h⁴
+    more = 0.0  # 1/h⁴ of the largest size
     for _ in range(60):
         total = (known + more) * weight
         density = np.sqrt(np.sqrt(total))

@@ -1,4 +1,4 @@
-"""Vinokur's stretching between cells of given length at both ends."""
+"""Vinokur's stretching between prescribed cell sizes at both ends."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class TanhLaw:
-    """Vinokur's two-sided stretching s(q), both 0 to 1, from its slopes ds/dq at the two ends.
+    """Vinokur's two-sided stretching s(q), q and s in [0, 1], from its slopes ds/dq at the two ends.
 
     u = 1/2 + tanh(d (q - 1/2)) / (2 tanh(d/2)),  s = u / (a + (1 - a) u),
     a = sqrt(end/start),  sinh(d)/d = 1/sqrt(start end); tan and sin where that is below 1.
@@ -26,7 +26,7 @@ class TanhLaw:
 
     @property
     def stretch(self) -> float:
-        """The d above, positive where tanh holds, negative where tan does, 0 for equal steps."""
+        """The d above: positive if tanh applies, negative if tan does, 0 for equal steps."""
         b = 1.0 / math.sqrt(self.start * self.end)
         if abs(b - 1.0) < 1e-9:
             return 0.0
@@ -44,19 +44,19 @@ class TanhLaw:
         return np.asarray(np.where(np.asarray(q) >= 1.0, 1.0, np.where(np.asarray(q) <= 0.0, 0.0, s)))
 
     def _end_steps(self, low_q: float, high_q: float) -> tuple[float, float]:
-        """Return s at `low_q` and 1 - s at 1 - `high_q`, both small, without loss of digits."""
+        """Return s at `low_q` and 1 - s at 1 - `high_q`, both small, without cancellation."""
         a, d = math.sqrt(self.end / self.start), self.stretch
         low, high = (_small_u(d, q) for q in (low_q, high_q))
         return low / (a + (1.0 - a) * low), a * high / (1.0 - (1.0 - a) * high)
 
     @classmethod
     def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> TanhLaw:
-        """Return the law whose first step of `cells` is `first` and whose last is `last`, to 1e-6 of them.
+        """Return the law with first step `first` and last step `last` of `cells` cells, to a relative 1e-6.
 
-        Cells need not be whole when the last one goes on beyond 1, with `last_part` (1 or 0.5) of it before.
+        `cells` need not be an integer if the last one extends beyond 1, with `last_part` (1 or 0.5) of it
+        before 1.
 
-        Raises InputError: the steps do not fit: they are too large together, or too few nodes lie between
-        them.
+        Raises InputError: the steps are too large together, or there are too few cells between them.
         """
         start, end = first * cells, last * cells
         for _ in range(60):
@@ -73,7 +73,7 @@ class TanhLaw:
 
 
 def _small_u(d: float, q: float) -> float:
-    """Return Vinokur's u at q, for q near 0: 1/2 - tanh(d/2 - d q) / (2 tanh(d/2)) without the difference."""
+    """Return Vinokur's u at q, for q near 0: 1/2 - tanh(d/2 - d q) / (2 tanh(d/2)) without cancellation."""
     if d == 0:
         return q
     if d > 0:

@@ -1,4 +1,4 @@
-"""How high the first cell of a boundary layer must be: friction as on a flat plate."""
+"""First-cell height of a boundary layer, with the skin friction of a flat plate."""
 
 import math
 
@@ -14,11 +14,10 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
     """Return the distance from the wall, in chords, at which y+ has the value `y_plus`.
 
     The skin friction is that of a turbulent boundary layer on a flat plate at the distance x from its leading
-    edge: y+ = y u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3 (`SOURCE`). `reynolds` is that of
-    the chord, `chord_fraction` x in chords.
+    edge: y+ = y u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3 (`SOURCE`). `reynolds` is based on
+    the chord; `chord_fraction` is x in chords.
 
-    Raises InputError: a value out of its range, or so little of the chord that no boundary layer is turbulent
-    there.
+    Raises InputError: a value out of range, or x too small for a turbulent boundary layer.
 
     >>> f"{first_cell(1.0, 6e6):.3g}"
     '4.23e-06'
@@ -38,7 +37,7 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
 
 
 def height_note(y_plus: float | None, reynolds: float | None, where: str, height: str) -> str:
-    """Return the sentence that says where the `height` of a first cell comes from; none without a y+."""
+    """Return a sentence on how the `height` of a first cell was computed from y+; empty without y+."""
     if y_plus is None:
         return ""
     return f"y+ {y_plus:g} at Re {reynolds:g} {where} is {height}: {FORMULA} ({SOURCE})"
@@ -52,11 +51,11 @@ def first_cell_note(
     where: str = "wall node",
     chord: float = 1.0,
 ) -> str:
-    """Return the sentence on the first cells, from `low` to `high`, where `asked` was their height.
+    """Return a sentence on the first-cell heights, from `low` to `high`, compared with `asked`.
 
-    `growth` is the mean ratio of neighbouring cells from the wall on, None where it is not known; `where` a
-    word for the nodes of which this is said. Heights are in the unit of the points, and those asked for are
-    told in chords too where a `chord` is not 1.
+    `growth` is the mean growth ratio away from the wall, None if unknown; `where` is the word for the nodes
+    that the sentence is about. Heights are in the unit of the points; `asked` is also given in chords if a
+    `chord` is not 1.
     """
     size = (
         f"{asked:.6g}"

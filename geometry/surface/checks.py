@@ -1,4 +1,4 @@
-"""Faults of surfaces, each refused in one line that says where."""
+"""Checks of surfaces; a fault raises one line that says where it is."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ _SIDES = ("west", "east", "south", "north")
 
 
 def place_of(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
-    """Return the place of a node as text: its first patch, i, j, x, y, z."""
+    """Return the place of a node as text: the first patch that has it, i, j, x, y, z."""
     for number, lattice in enumerate(lattices):
         at = np.argwhere(lattice == node)
         if len(at):
@@ -25,7 +25,7 @@ def place_of(nodes: Floats, lattices: tuple[Indices, ...], node: int) -> str:
 
 
 def check_quads(nodes: Floats, lattices: tuple[Indices, ...], quads: Indices) -> None:
-    """Raise InputError where an edge of a patch has no length, or a quadrilateral is folded on itself."""
+    """Raise InputError if an edge of a patch has no length, or a quadrilateral is folded onto itself."""
     for number, k in enumerate(lattices):
         for side, line in zip(_SIDES, (k[0], k[-1], k[:, 0], k[:, -1]), strict=True):
             if (line == line[0]).all():
@@ -45,7 +45,7 @@ def check_quads(nodes: Floats, lattices: tuple[Indices, ...], quads: Indices) ->
 
 
 def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indices) -> None:
-    """Raise InputError where an edge belongs to three faces or more; `crowded` are nodes of such edges."""
+    """Raise InputError if an edge belongs to three faces or more; `crowded` are nodes of such edges."""
     if len(crowded):
         owners = [str(n) for n, k in enumerate(lattices) if (k == crowded[0]).any()]
         problem = f"an edge belongs to three faces or more (patches {', '.join(owners)})"
@@ -54,7 +54,7 @@ def check_manifold(nodes: Floats, lattices: tuple[Indices, ...], crowded: Indice
 
 
 def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
-    """Raise InputError where nodes of open `edges` (k, 2) nearly coincide but are not one node."""
+    """Raise InputError if nodes of open `edges` (k, 2) nearly coincide but are different nodes."""
     if not len(edges):
         return
     length = np.sqrt(((nodes[edges[:, 0]] - nodes[edges[:, 1]]) ** 2).sum(axis=1))
@@ -77,7 +77,7 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
 def check_sides(
     nodes: Floats, lattices: tuple[Indices, ...], quads: Indices, twin: Indices, valence: Indices
 ) -> None:
-    """Raise InputError where two sheets touch in a single node, so that its faces are not one ring."""
+    """Raise InputError if two sheets touch in a single node, so that its faces do not form one ring."""
     first, _ = ends_of(quads)
     faces = np.bincount(first, minlength=len(nodes))
     opened = np.bincount(first[twin < 0], minlength=len(nodes))

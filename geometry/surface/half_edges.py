@@ -2,9 +2,9 @@
 
 ::
 
-    d <-- 2 --- c      half-edge 4 q + k goes from corner k of quadrilateral q to the next corner;
-    |           ^      its twin is the same edge as the quadrilateral on the other side goes along it,
-    3     q     1      the other way round where both are turned alike
+    d <-- 2 --- c      half-edge 4 q + k goes from corner k of quadrilateral q to its next corner; its
+    |           ^      twin is the half-edge of the quadrilateral on the other side of the same edge,
+    3     q     1      in the opposite direction if both are oriented alike
     v           |
     a --- 0 --> b
 """
@@ -20,16 +20,17 @@ def ends_of(quads: Indices) -> tuple[Indices, Indices]:
 
 
 def open_sides(quads: Indices, twin: Indices) -> Indices:
-    """Return the corners (k, 4) of the quadrilaterals at open edges, the ends of the edge first."""
+    """Return the corners (k, 4) of the quadrilaterals at open edges, starting with the ends of the edge."""
     opened = np.flatnonzero(twin < 0)
     around = (opened[:, None] % 4 + np.arange(4)) % 4
     return np.asarray(quads[opened[:, None] // 4, around])
 
 
 def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
-    """Return the twin (4 m,) of each half-edge, -1 at open edges, and half-edges of edges of three or more.
+    """Return the twin (4 m,) of each half-edge, -1 at open edges, and the surplus half-edges.
 
-    `nodes` is how many there are; of such an edge the third half-edge is returned, and so on.
+    `nodes` is the number of nodes. Of an edge with more than two half-edges, the third and all others are
+    surplus.
     """
     first, last = ends_of(quads)
     key = np.minimum(first, last) * nodes + np.maximum(first, last)
@@ -44,10 +45,10 @@ def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
 
 
 def rings(quads: Indices, twin: Indices, nodes: int) -> tuple[Indices, Indices]:
-    """Return the neighbours (n, w) in order around each node, -1 behind the last, and their number (n,).
+    """Return the neighbours (n, w) in order around each node, padded with -1, and their number (n,).
 
-    All quadrilaterals are turned alike. The ring of a node at an open edge begins and ends with the
-    neighbours along open edges, and has a neighbour more than there are quadrilaterals; others close.
+    All quadrilaterals are oriented alike. At an open edge the neighbours begin and end with those along open
+    edges, one more than there are quadrilaterals; elsewhere they form a closed ring.
     """
     first, last = ends_of(quads)
     edges = np.arange(len(first))
@@ -63,7 +64,7 @@ def rings(quads: Indices, twin: Indices, nodes: int) -> tuple[Indices, Indices]:
     while len(around):
         table[around, count[around]] = last[at]
         count[around] += 1
-        into = previous[at]  # the edge by which the quadrilateral's other side comes to the node
+        into = previous[at]  # the edge on which the quadrilateral's other side reaches the node
         onward = twin[into]
         ended = around[onward < 0]
         table[ended, count[ended]] = first[into[onward < 0]]

@@ -1,4 +1,4 @@
-"""One table of nodes for patches whose sides meet: edge nodes at the same place are one node."""
+"""One table of nodes for patches whose sides meet: edge nodes in the same position are one node."""
 
 from collections.abc import Sequence
 
@@ -10,15 +10,15 @@ from meshonet.geometry.elementary import product
 from meshonet.geometry.polygon.corners import Indices
 
 TOLERANCE = 1e-8
-"""Part of the size of a surface within which edge nodes are one node."""
+"""Distance, over the size of a surface, within which edge nodes are one node."""
 
 _SLANT = np.array([0.5257311, 0.6513887, 0.5470973])  # along no axis, diagonal or face of a regular solid
 
 
 def near_pairs(points: Floats, distance: float) -> Indices:
-    """Return the pairs (m, 2) of `points` (n, 3) at most so far apart along each axis, lesser index first.
+    """Return the pairs (m, 2) of `points` (n, 3) within `distance` along each axis, the lower index first.
 
-    Points are sorted along a slanted line, on which those far apart seldom meet.
+    Points are sorted along a slanted line, along which distant points seldom have equal positions.
     """
     along = product(points, _SLANT)
     order = np.argsort(along, kind="stable")
@@ -36,10 +36,10 @@ def near_pairs(points: Floats, distance: float) -> Indices:
 
 
 def merged(patches: Sequence[Floats], tolerance: float = TOLERANCE) -> tuple[Floats, tuple[Indices, ...]]:
-    """Return the nodes (n, 3) of `patches` (ni, nj, 3) and the number (ni, nj) of each of their nodes.
+    """Return the nodes (n, 3) of `patches` (ni, nj, 3), and each patch's node numbers (ni, nj) in them.
 
     Edge nodes within `tolerance` times the size of the surface are one node, with the coordinates of the
-    first of them; numbers ascend in the order in which nodes first appear.
+    first. Numbers ascend in the order in which nodes first appear.
     """
     points = np.concatenate([np.ascontiguousarray(patch).reshape(-1, 3) for patch in patches])
     edges = [

@@ -1,4 +1,4 @@
-"""Orientation of surfaces: alike across shared edges, with normals that point out of what they enclose."""
+"""Orientation of surfaces: consistent across shared edges, with outward normals."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -15,11 +15,11 @@ NEARLY_CLOSED = 0.3
 def turned_alike(
     patch: Indices, half_edges: tuple[Indices, Indices], twin: Indices, count: int
 ) -> tuple[list[int], list[int], tuple[int, int] | None]:
-    """Return the component of each of `count` patches, its sign (1 or -1), and patches where that fails.
+    """Return the component of each of `count` patches, its sign (1 or -1), and a pair of patches or None.
 
-    `patch` (4 m,) is the patch of each half-edge, `half_edges` their first and last nodes. Patches of sign -1
-    are to be turned so that all of a component are alike. The third is a pair of patches between which a
-    surface has one side only.
+    `patch` (4 m,) is the patch of each half-edge, `half_edges` are its first and last nodes. Reversing the
+    patches with sign -1 makes all patches of a component consistent. The pair, if any, is one between which
+    that fails: the surface is not orientable.
     """
     first, _ = half_edges
     edges = np.flatnonzero(twin > np.arange(len(twin)))
@@ -50,11 +50,11 @@ def turned_alike(
 
 
 def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | None:
-    """Return 1 if `quads` (m, 4), turned alike, face away from what they enclose, -1 if towards it.
+    """Return 1 if consistently oriented `quads` (m, 4) face outwards, -1 if they face inwards.
 
-    Open edges in planes normal to an axis of `flat` are closed by these. None where the surface encloses
-    nothing: more than `NEARLY_CLOSED` of its area faces one way, or planes normal to two axes would have to
-    close it, which a corner of a room and that of a box do alike.
+    Open edges in planes normal to an axis of `flat` are closed by these planes. None if the surface does not
+    enclose a volume: more than `NEARLY_CLOSED` of its area faces one way, or only planes normal to two axes
+    would close it, as they do both the inside and the outside of a box corner.
     """
     if len(flat) > 1:
         return None

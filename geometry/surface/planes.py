@@ -1,4 +1,4 @@
-"""Planes of symmetry that the open edges of a surface show: normal to an axis, the surface on one side."""
+"""Planes of symmetry, found from open edges of a surface: normal to an axis, with the surface on one side."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from meshonet.geometry.polygon.corners import Indices
 FLAT = 1e-6
 """Part of the size of a surface by which nodes may be off a plane of symmetry."""
 FEWEST = 3
-"""Open edges in a plane, at least, that show it."""
+"""Least number of open edges in a plane of symmetry."""
 
 
 @dataclass(frozen=True)
@@ -25,10 +25,11 @@ class Plane:
 
 
 def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
-    """Return the planes normal to an axis that open edges lie in, with all of the surface on one side.
+    """Return the planes normal to an axis that contain open edges, with the whole surface on one side.
 
-    `sides` (k, 4) are the faces at open edges, the edge's nodes first. A plane has at least `FEWEST` edges
-    that are in no plane of more edges: the blunt edge of a root is straight, but in the plane of the root.
+    `sides` (k, 4) are the faces at open edges, starting with the edge's nodes. At least `FEWEST` edges of a
+    plane are in no plane with more edges: the blunt edge at a wing root is straight, but only the root is a
+    plane.
     """
     if not len(sides):
         return ()
@@ -50,6 +51,6 @@ def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
 
 
 def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
-    """Return which (k,) of the edges of `sides` (k, 4) lie in a plane, to `slack`, but their faces do not."""
+    """Return which (k,) edges of `sides` (k, 4) lie in a plane, to `slack`, while their faces do not."""
     near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
     return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))

@@ -1,9 +1,9 @@
-"""A surface of patches in space over one table of nodes: seams, poles and folds need no special case.
+"""A surface of patches in space with one table of nodes: seams, poles and folds need no special treatment.
 
 ::
 
-    patch 0     patch 1            nodes are numbered once, lattices hold their numbers;
-    +--+--+     +--+--+            quadrilaterals are turned so that i x j faces outwards
+    patch 0     patch 1            nodes are numbered once; each patch has an array of node numbers.
+    +--+--+     +--+--+            Quadrilaterals are oriented so that i x j points outwards.
     |  |  |  +  |  |  |   ->   quads (m, 4), twins across shared edges, open edges
     +--+--+     +--+--+
 """
@@ -34,17 +34,17 @@ from meshonet.geometry.surface.planes import Plane, planes_of
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Patches that share nodes, turned alike.
+    """Patches that share nodes, with consistent orientation.
 
     Parameters
     ----------
-    nodes : (n, 3) the table of nodes, any unit of length.
-    lattices : the number (ni, nj) of each node of each patch; i x j faces outwards.
-    names : of the patches, ``wall`` where a file has none.
+    nodes : (n, 3) the table of nodes, in any unit of length.
+    lattices : the number (ni, nj) of each node of each patch; i x j points outwards.
+    names : of the patches, ``wall`` if a file has none.
     twin : (4 m,) the half-edge across each half-edge of `quads`, -1 at open edges (`half_edges`).
     ring, valence : (n, w) and (n,) neighbours in order around each node (`half_edges.rings`).
-    planes : planes normal to an axis that open edges lie in, with the surface on one side of them.
-    notes : what was changed or taken for granted, a sentence each.
+    planes : planes normal to an axis that contain open edges, with the surface on one side of them.
+    notes : sentences on what was changed or assumed.
     """
 
     nodes: Floats
@@ -58,37 +58,37 @@ class Surface:
 
     @property
     def size(self) -> float:
-        """Its longest extent along an axis."""
+        """Longest extent of the nodes along an axis."""
         return extent_of(self.nodes)
 
     @property
     def quads(self) -> Indices:
-        """(m, 4) nodes of its quadrilaterals, patch after patch, i first, counter-clockwise from outside."""
+        """(m, 4) nodes of quadrilaterals, patch after patch, i first, counter-clockwise from outside."""
         return lattice_quads(self.lattices)
 
     @property
     def open_sides(self) -> Indices:
-        """(k, 4) corners of the quadrilaterals at edges that no other one has, the ends of the edge first."""
+        """(k, 4) corners of the quadrilaterals at open edges, starting with the ends of the edge."""
         return open_sides(self.quads, self.twin)
 
     @property
     def open_edges(self) -> Indices:
-        """(k, 2) nodes of edges that belong to one quadrilateral."""
+        """(k, 2) nodes of open edges, which belong to one quadrilateral only."""
         return self.open_sides[:, :2]
 
     def place(self, node: int) -> str:
-        """Return where a node is: patch, i, j, x, y, z."""
+        """Return the place of a node as text: patch, i, j, x, y, z."""
         return place_of(self.nodes, self.lattices, node)
 
 
 def surface_of(grid: Grid) -> Surface:
-    """Return the surface that the patches (ni, nj, 3) of a grid make together.
+    """Return the surface that the patches (ni, nj, 3) of a grid form together.
 
-    Patches that face the other way are turned round (i reversed), with a note. A closed surface, or one that
-    planes normal to one axis close, faces outwards; any other the way that most of its area does.
+    Patches that face the other way are reversed along i, with a note. A closed surface, or one that planes
+    normal to one axis close, faces outwards; any other faces the way that most of its area does.
 
-    Raises InputError with the place: blocks that are no patches; an edge of no length; an edge of three
-    quadrilaterals; a node where two sheets touch; sides that nearly match; a surface with one side only.
+    Raises InputError with the place: blocks that are not patches; an edge of zero length, or of three
+    quadrilaterals; a node where two sheets touch; sides that nearly match; a surface that is not orientable.
     """
     if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"
@@ -112,7 +112,7 @@ def surface_of(grid: Grid) -> Surface:
 def _turned(
     nodes: Floats, lattices: tuple[Indices, ...], quads: Indices, twin: Indices
 ) -> tuple[tuple[Indices, ...], Indices, tuple[Plane, ...], tuple[str, ...]]:
-    """Return lattices and quadrilaterals turned alike and outwards, planes of open edges, and notes."""
+    """Return lattices and quadrilaterals oriented consistently and outwards, planes of open edges, notes."""
     counts = [(k.shape[0] - 1) * (k.shape[1] - 1) for k in lattices]
     patch = np.repeat(np.arange(len(lattices)), counts)
     component, signs, torn = turned_alike(np.repeat(patch, 4), ends_of(quads), twin, len(lattices))

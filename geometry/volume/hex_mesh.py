@@ -1,4 +1,4 @@
-"""Blocks in space over one table of nodes: interface nodes, singular edges and poles are one node each.
+"""Volume blocks over one table of nodes: a node of an interface, singular edge or pole exists once.
 
 ::
 
@@ -6,10 +6,10 @@
     +--+--+        +--+--+                              -1  0  2  4  6
     |  |  |    +   |  |  |                              -1  1  3  5  7
     +--+--+        +--+--+                              -1 -1 -1 -1 -1
-         east = west                   (one lattice of its nodes and of those one step across connected sides)
+         east = west                   (its node numbers, and those one step across connected sides)
 
-A block is a lattice of node numbers, as in a plane `meshonet.geometry.layout.layout.Layout`. Nodes that lie
-in one place along a whole line of a side, as at the pole of a sphere, are one node.
+A block is an array of node numbers, as in the plane in `meshonet.geometry.layout.layout.Layout`. The nodes of
+a line of a side that all coincide, as at the pole of a sphere, are one node.
 """
 
 from __future__ import annotations
@@ -38,18 +38,18 @@ FaceValues: TypeAlias = Callable[[int, Side], NDArray[Any]]
 _MOST = 0.8
 """Part of the cells of a left-handed block that are negative at least: others are folded."""
 POLE = 1e-12
-"""Part of the size of the grid within which nodes of a line of a side are in one place."""
+"""Distance, over the size of the grid, within which the nodes of a line coincide."""
 
 
 @dataclass(frozen=True, eq=False)
 class HexMesh:
-    """Conforming hexahedra in blocks.
+    """Conforming hexahedra, in blocks.
 
     Parameters
     ----------
-    nodes : (n, 3).
-    blocks : lattices (ni, nj, nk) of node numbers, right-handed.
-    connections : those of the grid that are no periodic ones.
+    nodes : (n, 3) coordinates.
+    blocks : right-handed arrays (ni, nj, nk) of node numbers.
+    connections : those of the grid that are not periodic.
     """
 
     nodes: Floats
@@ -58,12 +58,12 @@ class HexMesh:
 
     @property
     def cells(self) -> int:
-        """Cells of all blocks."""
+        """Number of cells in all blocks."""
         return int(sum(np.prod([n - 1 for n in block.shape]) for block in self.blocks))
 
     @cached_property
     def outer(self) -> Bools:
-        """(n,) whether a node is on a side, or a part of one, that no connection joins to another."""
+        """(n,) whether a node is on a side, or part of one, without a connection."""
         outer = np.zeros(len(self.nodes), dtype=bool)
         for number, block in enumerate(self.blocks):
             for side in PLACES:
@@ -74,7 +74,7 @@ class HexMesh:
         return outer
 
     def free_cells(self, number: int, side: Side) -> Bools:
-        """Say of each cell of a side of a block (n-1, m-1) whether no connection joins it to another."""
+        """Return for each cell (n-1, m-1) of a side of a block whether it has no connection."""
         face = face_of(self.blocks[number], side)
         free = np.ones((face.shape[0] - 1, face.shape[1] - 1), dtype=bool)
         for each in self.connections:
@@ -85,7 +85,7 @@ class HexMesh:
 
     @cached_property
     def beyond(self) -> tuple[Indices, ...]:
-        """The blocks with the nodes one step across connected sides (ni+2, nj+2, nk+2), -1 for none."""
+        """The blocks with the nodes one step across connected sides added (ni+2, nj+2, nk+2); -1 for none."""
         wider = tuple(np.pad(block, 1, constant_values=-1) for block in self.blocks)
 
         def outside(number: int, side: Side) -> Indices:
@@ -100,18 +100,18 @@ class HexMesh:
         return wider
 
     def with_nodes(self, nodes: Floats) -> HexMesh:
-        """Return the mesh with its nodes (n, 3) elsewhere."""
+        """Return the mesh with other coordinates (n, 3)."""
         return replace(self, nodes=nodes)
 
 
 def corners_of(values: AnyArray) -> Iterator[AnyArray]:
-    """Yield views (ni-1, nj-1, nk-1) of what `values` (ni, nj, nk) are at each corner of the cells."""
+    """Yield for each of the eight cell corners a view (ni-1, nj-1, nk-1) of `values` (ni, nj, nk) at it."""
     for corner in np.ndindex(2, 2, 2):
         yield values[tuple(slice(c, c + n - 1) for c, n in zip(corner, values.shape, strict=True))]  # type: ignore[misc]
 
 
 def any_corner(nodes: Bools) -> Bools:
-    """Say of each cell of a block of nodes (ni, nj, nk) whether any of its corners is one of some."""
+    """Return for each cell of a block whether any of its corners is set in `nodes` (ni, nj, nk)."""
     cells = nodes
     for axis in range(3):
         ends = np.moveaxis(cells, axis, 0)
@@ -120,7 +120,7 @@ def any_corner(nodes: Bools) -> Bools:
 
 
 def second_layer(values: AnyArray, side: Side) -> AnyArray:
-    """Return a view of what `values` (ni, nj, nk) are one step inside of a side."""
+    """Return a view of `values` (ni, nj, nk) one step inside of a side."""
     axis, end = PLACES[side]
     return np.moveaxis(values, axis, 0)[1 if end == 0 else -2]
 
@@ -128,7 +128,7 @@ def second_layer(values: AnyArray, side: Side) -> AnyArray:
 def exchange(
     connections: Sequence[Connection], outside: FaceValues, inside: FaceValues
 ) -> None:  # fmt: skip
-    """Fill what is `outside` of both sides of connections with what is `inside` of the other one."""
+    """Copy the values `inside` of each side of the connections to those `outside` of the other side."""
     for each in connections:
         own_out, donor_out = each.nodes(lambda block, side: outside(block, side)[..., None])
         own_in, donor_in = each.nodes(lambda block, side: inside(block, side)[..., None])
@@ -154,7 +154,7 @@ def hex_mesh_of(grid: Grid) -> HexMesh:
 
 
 def _left_handed(nodes: Floats) -> bool:
-    """Say whether a block is one whose volume and most of whose cells are negative."""
+    """Return whether a block has a negative volume, and most of its cells have too."""
     corner = nodes[:-1, :-1, :-1]
     with np.errstate(over="ignore", invalid="ignore"):
         if not signed_volume([nodes[..., axis] for axis in range(3)]) < 0:
@@ -164,7 +164,7 @@ def _left_handed(nodes: Floats) -> bool:
 
 
 def _with_poles(nodes: Floats, numbers: tuple[Indices, ...]) -> tuple[Floats, tuple[Indices, ...]]:
-    """Return nodes and blocks of node numbers, those of lines of sides that are in one place made one."""
+    """Return nodes and blocks of node numbers, with the coinciding nodes of lines of sides made one."""
     near = POLE * extent_of(nodes)
     pairs = [
         pair for number in numbers for side in PLACES for pair in _poles(face_of(number, side), nodes, near)
@@ -178,7 +178,7 @@ def _with_poles(nodes: Floats, numbers: tuple[Indices, ...]) -> tuple[Floats, tu
 
 
 def _poles(face: Indices, nodes: Floats, near: float) -> list[tuple[Indices, Indices]]:
-    """Return pairs of nodes of the lines of a side (n, m) whose nodes are all in one place."""
+    """Return pairs of nodes on lines of a side (n, m) whose nodes all coincide."""
     pairs = []
     for lines in (face, face.T):
         places = nodes[lines]
@@ -190,5 +190,5 @@ def _poles(face: Indices, nodes: Floats, near: float) -> list[tuple[Indices, Ind
 
 
 def with_nodes(grid: Grid, mesh: HexMesh) -> Grid:
-    """Return `grid` with the nodes of a mesh of it, moved; those of connected sides are bitwise equal."""
+    """Return `grid` with the nodes of a mesh made from it; those of connected sides are bitwise equal."""
     return replace(grid, blocks=tuple(Block(mesh.nodes[block]) for block in mesh.blocks))

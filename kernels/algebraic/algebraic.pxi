@@ -32,9 +32,10 @@ cdef TfiEdges four_edges(tuple four, tuple along, tuple across) except *:
 
 
 def tfi(x, y, tuple xs, tuple ys, tuple parameters, int threads=1):
-    """Interpolate into the planes `x` and `y` (ni, nj) between edges south, north, west and east.
+    """Fill the planes `x` and `y` (ni, nj) by transfinite interpolation between edges south, north, west and east.
 
-    Results of all kernels that work with `threads` are the same to the bit for any number of them.
+    `parameters` are the interpolation parameters along the edges. The results of all kernels with `threads` are bitwise
+    the same for any number of threads.
     """
     cdef Written px = fills(x, y.shape), py = fills(y, x.shape)
     cdef ptrdiff_t ni, nj
@@ -46,7 +47,7 @@ def tfi(x, y, tuple xs, tuple ys, tuple parameters, int threads=1):
 
 
 def add_spline_rows(x, first, weights, values, bends, bint rim, int threads=1):
-    """Add to `x` (ni, nj) rows of a spline, `values` and `bends` (m, nj); see ``algebraic/evaluate.h``."""
+    """Add to `x` (ni, nj) rows of a spline with `values` and second derivatives `bends` (m, nj); ``algebraic/evaluate.h``."""
     cdef ptrdiff_t ni, nj, m = len(values)
     ni, nj = x.shape
     cdef Places p = places((first, weights), ni, m)
@@ -78,9 +79,10 @@ cdef void next_grid(const Evaluation *e, Corners *c) noexcept nogil:
 
 def resample(coarse, tuple sides, tuple fine, opened, double near, double far, double reach, nodes, straight=None,
              int threads=1):
-    """Fill the planes `nodes` (batch, 2, ni, nj) from grids `coarse` (batch, 2, m, n) inside `sides`.
+    """Fill the planes `nodes` (batch, 2, ni, nj) by evaluating coarse grids (batch, 2, m, n) between edges `sides`.
 
-    The other arguments are those of ``algebraic/evaluate.h``: `fine` the places of ni nodes in m and of nj in n.
+    `fine` holds the positions of the ni nodes in m and of the nj nodes in n; for the others see
+    ``algebraic/evaluate.h``.
     """
     cdef ptrdiff_t batch = len(nodes), b
     cdef Evaluation e

@@ -27,7 +27,7 @@ cdef Surface surface_of(tuple arrays, ptrdiff_t vertices) except *:
 
 
 def surface_fans(tuple surface, ptrdiff_t vertices):
-    """Return where the corners around each vertex start (vertices + 1,) in a list of all (3 t,), and how many are in it."""
+    """Return the start (vertices + 1,) of each vertex's corners in a list of all (3 t,), that list, and its used length."""
     cdef Surface s = surface_of(surface, vertices)
     start, fan = np.empty(vertices + 1, np.intp), np.empty(3 * s.triangles, np.intp)
     cdef ptrdiff_t *begins = fills_indices(start, (vertices + 1,))
@@ -36,7 +36,7 @@ def surface_fans(tuple surface, ptrdiff_t vertices):
 
 
 def surface_comb(tuple surface, ptrdiff_t vertices, quarters):
-    """Return the quarter-turns (t,) that make frames agree over a spanning tree, and which edges (t, 3) are not in it."""
+    """Return quarter-turns (t,) that make the frames agree over a spanning tree, and the inner edges (t, 3) outside it."""
     cdef Surface s = surface_of(surface, vertices)
     turn, cut = np.empty(s.triangles, np.intp), np.empty((s.triangles, 3), np.uint8)
     cdef unsigned char *cuts = <unsigned char *>numbers(cut, b"B", 1, (s.triangles, 3), True)
@@ -50,7 +50,7 @@ def surface_comb(tuple surface, ptrdiff_t vertices, quarters):
 
 
 def surface_prune(tuple surface, start, fan, keep, cut):
-    """Clear the edges of `cut` (t, 3) that lead nowhere: to a vertex that is not to be kept (vertices,), uint8 both."""
+    """Remove from `cut` (t, 3), in place, edges that dead-end at a vertex not to `keep` (vertices,); both are uint8."""
     cdef Surface s = surface_of(surface, len(keep))
     cdef unsigned char *cuts = <unsigned char *>numbers(cut, b"B", 1, (s.triangles, 3), True)
     cdef const unsigned char *kept = <const unsigned char *>numbers(keep, b"B", 1, (s.vertices,), False)

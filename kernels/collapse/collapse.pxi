@@ -18,7 +18,7 @@ cdef extern from "collapse/topology.h":
 
 
 def connect_quads(quads, ptrdiff_t n):
-    """Return the edge and the twin (m, 4) of each half-edge of quads over n nodes, the ends (e, 2) of each edge, and
+    """Return the edge and the twin (m, 4) of each half-edge of quads over n nodes, the end nodes (e, 2) of each edge, and
     whether the mesh is manifold; see ``collapse/topology.h``."""
     cdef HalfEdges mesh
     cdef ptrdiff_t m = len(quads)
@@ -33,7 +33,7 @@ def connect_quads(quads, ptrdiff_t n):
 
 
 def joined_classes(pairs, ptrdiff_t n):
-    """Return the class (n,), counted from 0 in order, of each of n numbers that `pairs` (k, 2) join, and their count."""
+    """Return the class (n,) of each of n numbers that `pairs` (k, 2) join, numbered by first appearance, and their count."""
     cdef ptrdiff_t k = len(pairs), count
     label, parent = np.empty(n, np.intp), np.empty(n, np.intp)
     cdef const ptrdiff_t *joined = reads_places(pairs, (k, 2), n)
@@ -45,11 +45,11 @@ def joined_classes(pairs, ptrdiff_t n):
 
 
 def split_quads(quads, edge, twin, irregular, marked):
-    """Return the lattices of the blocks, the chord (e,) of each edge and how many chords there are; None for a mesh
-    whose blocks are no rectangles.
+    """Return the node arrays of the blocks, the chord (e,) of each edge and the number of chords.
 
-    `edge` and `twin` are those of `quads`. `irregular` (n,) says where lines begin; `marked` (e,), edges that bound
-    blocks, is filled up.
+    None if some block is not four-sided. `edge` and `twin` are those of `quads`. Block boundaries start at nodes where
+    `irregular` (n,) is set and at edges where `marked` (e,) is; the edges of all block boundaries are added to
+    `marked`.
     """
     cdef HalfEdges mesh
     cdef ptrdiff_t m = len(quads), count, written = -1, chords = 0, n = len(irregular), edges = len(marked)

@@ -76,9 +76,9 @@ cdef int lift_of(maps, BodyLift *lift) except -1:
 
 
 def lift_body(wall, bint swap):
-    """Return centre, quarter, corners (p, q, P, Q, k), pole, phase, strip points, trailing nodes, winding.
+    """Return centre, quarter, corners (p, q, P, Q, k), pole, phase, strip points, trailing nodes and winding number.
 
-    `wall` (n,), n at least 8; the rest as in `geometry.lift.lift_body`.
+    `wall` (n,) has n >= 8 points; the results are those of `geometry.conformal.lift.lift_body`.
     """
     cdef ptrdiff_t n = len(wall)
     cdef ptrdiff_t corners[2]
@@ -103,7 +103,7 @@ def lift_body(wall, bint swap):
 
 
 def lift_to_strip(maps, z):
-    """Return the strip points of `z` (n,) by a `geometry.lift.Lift` of at most two corners."""
+    """Return the strip points of `z` (n,) by a `geometry.conformal.lift.Lift` with at most two corners."""
     cdef BodyLift lift
     cdef ptrdiff_t n = len(z)
     w = np.empty(n, complex)
@@ -114,7 +114,7 @@ def lift_to_strip(maps, z):
 
 
 def lift_follow(wall, centre, quarter):
-    """Return zeta (n,) along a wall (n,)."""
+    """Return zeta (n,) along a wall (n,), as `geometry.conformal.lift.follow`."""
     cdef ptrdiff_t n = len(wall)
     zeta = np.empty(n, complex)
     if n < 2:
@@ -124,9 +124,9 @@ def lift_follow(wall, centre, quarter):
 
 
 def lift_bisect(maps, corner, ahead, behind, w, double start, double limit):
-    """Return the shift of phi with which the line from `w` leaves a corner of the wall at equal angles.
+    """Return the shift of phi with which the grid line from `w` leaves a corner of the wall along its bisector.
 
-    `maps` are a `geometry.lift.Lift`; the other arguments are those of ``conformal/lift.h``.
+    `maps` are a `geometry.conformal.lift.Lift`; for the other arguments see ``conformal/lift.h``.
     """
     cdef BodyLift lift
     cdef LineOff line
@@ -136,7 +136,7 @@ def lift_bisect(maps, corner, ahead, behind, w, double start, double limit):
 
 
 def fourier_columns(modes, gain, unit, columns):
-    """Add Fourier sums' values to `columns`, zeroed; the arguments are those of ``conformal/picard.h``."""
+    """Add the values of Fourier sums to `columns`, zeroed by the caller; for the arguments see ``conformal/picard.h``."""
     cdef ptrdiff_t count = columns.shape[0], width = columns.shape[2], m = modes.shape[0]
     cdef ptrdiff_t highest = modes.shape[1] // 2
     if width % LANES or m > width or count & (count - 1) or count < 2:
@@ -153,9 +153,10 @@ def fourier_columns(modes, gain, unit, columns):
 
 
 def picard_step(c, double height, matrices, eigenvalues, smooth):
-    """Take one step on modes `c` (2, 2 MODES + 1, LEVELS), real and imaginary parts; return the largest change.
+    """Take one Picard step on the `c` (2, 2 MODES + 1, LEVELS), real and imaginary parts; return the largest change.
 
-    `matrices` (4, LEVELS, LEVELS) are those of ``conformal/picard.h``; `smooth` multiplies an update's modes.
+    For `matrices` (4, LEVELS, LEVELS) and `eigenvalues` see ``conformal/picard.h``; `smooth` multiplies the update's
+    modes.
     """
     cdef PicardMatrices m
     cdef double change
@@ -174,10 +175,10 @@ def picard_step(c, double height, matrices, eigenvalues, smooth):
 
 def strip_rows(x, y, order, lift, sums, double sharpness, along, across, matrix, cuts, ptrdiff_t begin, axis,
                int threads=1):
-    """Write levels 1 .. nj - 2 of the rows in `order` to `x` and `y` (n + 1, nj); return whether they are finite.
+    """Fill levels 1 .. nj - 2 of the rows in `order` of `x` and `y` (n + 1, nj); return whether they are all finite.
 
-    `lift` is a `geometry.lift.Lift`, `sums` are a point, how many follow with it, and their columns (Q, 2, width);
-    `axis` is a point and the squared direction of the axis of symmetry, or None; the others as in
+    `lift` is a `geometry.conformal.lift.Lift`. `sums` are a point, the number of points after it, and their columns
+    (Q, 2, width). `axis` is a point and the squared direction of the axis of symmetry, or None. For the others see
     ``conformal/strip_rows.h``.
     """
     cdef StripRows s

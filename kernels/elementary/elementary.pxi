@@ -8,7 +8,7 @@ cdef extern from "elementary/functions.h":
 
 
 def elementary(bytes name, x, out):
-    """Fill `out` with the function `name` of `x`; both are one-dimensional, of one length."""
+    """Fill `out` (n,) with the function `name` of `x` (n,)."""
     cdef Function function = function_named(name)
     cdef ptrdiff_t n = len(x)
     cdef Read px = reads(x, (n,))
@@ -20,7 +20,7 @@ def elementary(bytes name, x, out):
 
 
 def angles_of(y, x, out):
-    """Fill `out` (n,) with the angles of the points `x`, `y` (n,), as atan2."""
+    """Fill `out` (n,) with the angles atan2(`y`, `x`) of points with coordinates (n,)."""
     cdef ptrdiff_t n = len(x)
     cdef Read px = reads(x, (n,)), py = reads(y, (n,))
     cdef Written to = fills(out, (n,))

@@ -23,14 +23,15 @@ cdef extern from "elliptic/multigrid.h":
 
 
 def multigrid_scratch(ptrdiff_t mi, ptrdiff_t mj, int threads=1):
-    """Return the doubles of scratch that so many threads need on a level of mi x mj cells."""
+    """Return the number of doubles of scratch that `threads` threads need on a level of mi x mj cells."""
     return c_multigrid_scratch(mi, mj, threads)
 
 
 cdef class MultigridLevel:
-    """Pointers into the arrays of one level, which are kept alive here: nodes `x`, `y` (mi + 1, mj + 1), changed in place;
-    weights (forward, backward, centred) of the differences along `xi` and `eta`; `scratch` that levels share. A `coarse`
-    one has a right side and a copy of what came down. `threads` work on it, with the same result for any number."""
+    """One level of the multigrid method, whose arrays it keeps alive: nodes `x`, `y` (mi + 1, mj + 1), changed in place;
+    weights (forward, backward, centred) of the differences along `xi` and `eta`; `scratch`, which levels share. A
+    `coarse` level has a right-hand side and a copy of the restricted nodes. Results are the same for any number of
+    `threads`."""
 
     cdef Level level
     cdef list kept
@@ -65,16 +66,16 @@ cdef class MultigridLevel:
         return t
 
     def transfer(self, tuple xi, tuple eta):
-        """Set the weights (right, before, at, after) between this level and the next coarser one."""
+        """Set the weights (right, before, at, after) of the transfer between this level and the next coarser one."""
         self.level.xi_coarse = self.transfers(xi, self.level.mi + 1)
         self.level.eta_coarse = self.transfers(eta, self.level.mj + 1)
 
     def control(self, tuple phi, tuple psi, xi_reach, eta_reach):
-        """Set control functions along xi and along eta.
+        """Set the control functions along xi and along eta.
 
-        Each is a pair (along (terms, ni), across (terms, nj)): the sum of along times across over the terms
-        is the logarithm of the ratio of neighbouring steps. No terms mean no control. `xi_reach` (ni),
-        `eta_reach` (nj): the longer step at each node.
+        Each is a pair (along (terms, ni), across (terms, nj)). The sum over the terms of along times across is the
+        logarithm of the ratio of neighbouring steps; without terms there is no control. `xi_reach` (ni) and `eta_reach`
+        (nj) are the longer of the two steps at each node.
         """
         self.controls = phi, psi, xi_reach, eta_reach
         self.level.phi = self.factors(phi, xi_reach, self.level.mi + 1)
@@ -88,27 +89,27 @@ cdef class MultigridLevel:
         return c
 
     def smooth(self, bint forced, int sweeps=1):
-        """Relax in place: eta lines, then xi lines, two colours each."""
+        """Relax in place by lines along eta, then along xi, each in two colours; `forced` adds the right-hand side."""
         cdef int k
         with nogil:
             for k in range(sweeps):
                 multigrid_smooth(&self.level, forced)
 
     def residual(self, bint forced):
-        """Return the sum of squares of the residual at the nodes solved for."""
+        """Compute the residual at the nodes solved for; return the sum of its squares."""
         cdef double total
         with nogil:
             total = multigrid_residual(&self.level, forced)
         return total
 
     def restrict(self, MultigridLevel coarse, bint forced):
-        """Send nodes and residual down."""
+        """Restrict nodes and residual to the `coarse` level."""
         self.check(coarse)
         with nogil:
             multigrid_restrict(&self.level, &coarse.level, forced)
 
     def correct(self, MultigridLevel coarse):
-        """Add the interpolated coarse x - x0; return its sum of squares on the coarse nodes."""
+        """Add the interpolated coarse correction x - x0; return the sum of its squares on the coarse nodes."""
         cdef double total
         self.check(coarse)
         with nogil:

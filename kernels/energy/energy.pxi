@@ -66,10 +66,10 @@ cdef Weights weights_of(double aspect, double shape, double smoothness, double e
 
 def variational_energy(z, double aspect, double shape, double smoothness, double epsilon, bint periodic, relief,
                        gradient, int threads=1):
-    """Return (value, smallest corner Jacobian) for the planes z (2, ni, nj); fill `gradient` likewise.
+    """Return (functional, smallest corner Jacobian) at the planes z (2, ni, nj); fill `gradient` (2, ni, nj).
 
-    It is zero at fixed nodes: those of the rim, or with `periodic` rows of the first and the last column. The other
-    arguments are the weights of ``energy/variational.h``.
+    The gradient is zero at fixed nodes: all boundary nodes, or if `periodic` those of the first and the last column.
+    For the weights see ``energy/variational.h``.
     """
     cdef ptrdiff_t ni = z.shape[1], nj = z.shape[2]
     cdef Weights weights = weights_of(aspect, shape, smoothness, epsilon, periodic)
@@ -87,7 +87,7 @@ def variational_energy(z, double aspect, double shape, double smoothness, double
 
 
 def newton(z, double aspect, double shape, double smoothness, int most, double won=0.0):
-    """Take steps of Newton's method from the planes z (2, ni, nj) of a valid grid, in place; return how many."""
+    """Take at most `most` Newton steps from the planes z (2, ni, nj) of a valid grid, in place; return their number."""
     cdef ptrdiff_t ni = z.shape[1], nj = z.shape[2]
     cdef Weights weights = weights_of(aspect, shape, smoothness)
     cdef Band band
@@ -111,10 +111,10 @@ cdef float *fills_single(array) except NULL:
 
 
 cdef class Stiffness:
-    """The functional's Hessian at the planes z (2, ni, nj) of a grid of few nodes, fixed at its rim.
+    """The Hessian of the functional at the planes z (2, ni, nj) of a coarse grid with fixed boundary nodes.
 
-    Of it as much is taken as makes it positive. `usable` tells whether that can steer a descent on finer grids; the
-    planes must not be folded.
+    It is modified to be positive definite. `usable` says whether it can precondition descents on finer grids; the
+    planes must have no folded cells.
     """
 
     cdef Space space
@@ -137,7 +137,7 @@ cdef class Stiffness:
 
 
 cdef class Modes:
-    """Even or odd modes of a direction over half of its nodes, (nodes, modes), as products of matrices read them."""
+    """Even or odd modes along a direction on half of its nodes, (nodes, modes), laid out for the matrix product."""
 
     cdef Half half
     cdef object held
@@ -149,11 +149,11 @@ cdef class Modes:
 
 
 cdef class VariationalDescent:
-    """Descents of the functional over nodes of one shape, (ni, nj).
+    """Minimisations of the functional over grids of (ni, nj) nodes.
 
-    `rows` are the modes along xi, even and odd; `columns` those along eta; `scale` (2, modes of xi, modes of eta)
-    what divides by the symbol of the Hessian for moves along xi and along eta, and `rest` what divides the modes
-    that are left out.
+    `rows` are the even and odd modes along xi, `columns` those along eta. The preconditioner divides by `scale` (2,
+    modes of xi, modes of eta), the symbol of the Hessian for displacements along xi and along eta, and by `rest` for
+    the modes that are left out.
     """
 
     cdef Descent state
@@ -181,8 +181,8 @@ cdef class VariationalDescent:
         self.held = (rows, columns, factors, room, small)
 
     def steer(self, Stiffness stiffness, along, across):
-        """Let descents follow `stiffness` in smooth moves: `along` (mi, mi coarse) and `across` (mj, mj coarse) take
-        those of its inner nodes to all."""
+        """Let `stiffness` precondition smooth displacements: `along` (mi, mi coarse) and `across` (mj, mj coarse)
+        interpolate from its inner nodes to all."""
         cdef Space *s = &self.state.space
         if not stiffness.usable:
             raise ValueError("a Hessian that is not positive")
@@ -199,11 +199,11 @@ cdef class VariationalDescent:
 
     def run(self, z, double aspect, double shape, double smoothness, double epsilon, relief, double still,
             double reach, int most, told=None):
-        """Descend from the planes z (2, ni, nj), in place; return (value, smallest Jacobian, iterations).
+        """Minimise from the planes z (2, ni, nj), in place; return (functional, smallest Jacobian, iterations).
 
-        It stops when no node moves by more than `still` of its cells in three iterations on end, or after `most`
-        of them. No node moves by more than `reach` cells in the first. `told` is called with the iterations done, the
-        value and the norm of its gradient, at the start and after each.
+        It stops if no node moves by more than `still` cells in three consecutive iterations, or after `most`
+        iterations. In the first no node moves by more than `reach` cells. `told` is called with the iterations done,
+        the functional and the norm of its gradient, at the start and after each iteration.
         """
         cdef int done = 0, state = GOES_ON
         self.state.z = fills(z, (2, self.state.ni, self.state.nj))
@@ -226,7 +226,7 @@ cdef class VariationalDescent:
 
 
 def _padded(matrix, panel=32):
-    """Return `matrix` (..., n) in single precision with zeros up to whole panels of columns."""
+    """Return `matrix` (..., n) in single precision, with columns of zeros up to a multiple of `panel`."""
     *rows, n = matrix.shape
     result = np.zeros((*rows, (n + panel - 1) // panel * panel), np.float32)
     result[..., :n] = matrix

@@ -42,9 +42,9 @@ cdef int _learn_powers() except -1:
 
 
 def put_rows(out, rows, bytes text, at):
-    """Write `rows` (n, m) to the bytes `out` and return how many were written.
+    """Write `rows` (n, m) as text to the bytes `out`; return the number of bytes written.
 
-    Piece k of `text`, from `at[k]` on, stands before number k; floats have 17 significant digits.
+    Piece k of `text`, from `at[k]` on, precedes number k; numbers have 17 significant digits.
     """
     cdef ptrdiff_t n, m, count, width
     cdef bint whole = rows.dtype.kind == "i"
@@ -77,7 +77,7 @@ cdef extern from "formats/words.h":
 
 
 def count_words(text):
-    """Return how many words of free format there are at the most in the bytes `text`."""
+    """Return an upper bound of the number of words of free format in the bytes `text`."""
     cdef ptrdiff_t n = len(text), count
     cdef const char *of = <const char *>numbers(text, b"b", 1, (n,), False)
     with nogil:
@@ -86,9 +86,9 @@ def count_words(text):
 
 
 def take_numbers(text, out):
-    """Read words of the bytes `text` as numbers to `out` (n,); return how many, and where the next word starts.
+    """Read words of the bytes `text` as numbers into `out` (n,); return their number and where the next word starts.
 
-    It stops when `out` is full, or at a word that is no number or that no shortcut serves.
+    It stops if `out` is full, at a word that is no number, and at a number that needs the slow exact conversion.
     """
     cdef ptrdiff_t n = len(text), room = len(out), stop = 0, count
     cdef const char *of = <const char *>numbers(text, b"b", 1, (n,), False)
@@ -117,10 +117,10 @@ cdef extern from "formats/faces.h":
 
 
 def inner_faces(nodes, beyond, int32_t first, faces, owner, neighbour):
-    """Write the faces whose owner is a cell of a block, in upper-triangular order, and return how many there are.
+    """Write the faces whose owner is a cell of a block, in upper-triangular order; return their number.
 
-    `nodes` (nk+1, nj+1, ni+1) and `beyond`, of west to top, are numbers as faces.h says; `faces` (f, 4), `owner` (f,) and
-    `neighbour` (f,) have room for six faces of the cells of a row more than there are.
+    `nodes` (nk+1, nj+1, ni+1) and `beyond`, one array for each side from west to top, are the numbers that ``faces.h``
+    defines. `faces` (f, 4), `owner` (f,) and `neighbour` (f,) need room for six faces of each cell of one row more.
     """
     cdef cell_block block
     cdef face_lists out

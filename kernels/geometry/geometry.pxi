@@ -37,7 +37,7 @@ cdef extern from "geometry/segments.h":
 
 
 def count_folded(x, y, int threads=1):
-    """Return how many cells of the planes x, y (ni, nj) have a corner Jacobian that is not positive."""
+    """Return the number of cells of the planes x, y (ni, nj) with a corner Jacobian that is not positive."""
     cdef Read px = reads(x, y.shape), py = reads(y, x.shape)
     cdef ptrdiff_t ni, nj, count
     ni, nj = x.shape
@@ -47,7 +47,7 @@ def count_folded(x, y, int threads=1):
 
 
 def folded_cells(x, y):
-    """Return (n, 2) indices of the folded cells of the planes x, y (ni, nj) in order of (i, j)."""
+    """Return indices (n, 2) of the folded cells of the planes x, y (ni, nj), ascending."""
     cdef ptrdiff_t room = count_folded(x, y), ni, nj
     cdef Read px = reads(x, y.shape), py = reads(y, x.shape)
     ni, nj = x.shape
@@ -59,7 +59,7 @@ def folded_cells(x, y):
 
 
 def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t keep, kept, int threads=1):
-    """Run over all cells once; the arguments are those of CellRun in ``geometry/cells.h``."""
+    """Compute the metrics of all cells in one pass; for the arguments see CellRun in ``geometry/cells.h``."""
     cdef CellRun run
     cdef ptrdiff_t ni, nj
     cdef Read px = reads(x, y.shape), py = reads(y, x.shape)
@@ -78,7 +78,7 @@ def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t
 
 
 def curve_locate(s, table, start, stop, ptrdiff_t pieces, bint closed, interval, place):
-    """Fill `interval` and `place` (m,), 0 to 1 in it, of arc lengths `s` (m,); see ``geometry/curve.h``."""
+    """Fill `interval` and `place` (m,), the parameter in it from 0 to 1, for arc lengths `s` (m,); ``geometry/curve.h``."""
     cdef ArcLengths curve
     cdef ptrdiff_t m = len(s), count = len(table) - 1
     curve.table, curve.start, curve.stop = reads(table, (count + 1,)), reads(start, (count,)), reads(stop, (count,))
@@ -90,27 +90,27 @@ def curve_locate(s, table, start, stop, ptrdiff_t pieces, bint closed, interval,
 
 
 def curve_points(cubic, interval, place, end, points):
-    """Fill `points` (m, 2) with the cubics (4, n, 2) at the places; at place 1 it is `end` (2,), bit for bit."""
+    """Fill `points` (m, 2) from the cubics (4, n, 2) at parameters `place` (m,); at parameter 1, bitwise with `end` (2,)."""
     cdef ptrdiff_t n = cubic.shape[1], m = len(place)
     c_curve_points(reads(cubic, (4, n, 2)), n, reads_places(interval, (m,), n), reads(place, (m,)), m, reads(end, (2,)),
                    fills(points, (m, 2)))
 
 
 def curve_slopes(cubic, interval, place, derivatives):
-    """Fill `derivatives` (m, 2) by t at the places."""
+    """Fill `derivatives` (m, 2) with the derivatives by t of the cubics at parameters `place`."""
     cdef ptrdiff_t n = cubic.shape[1], m = len(place)
     c_curve_slopes(reads(cubic, (4, n, 2)), n, reads_places(interval, (m,), n), reads(place, (m,)), m,
                    fills(derivatives, (m, 2)))
 
 
 def curve_speeds(cubic, places, lengths):
-    """Fill `lengths` (n, m) of the derivatives at the same `places` (m,) of every interval."""
+    """Fill `lengths` (n, m) with the norms of the derivatives at parameters `places` (m,) of each of n intervals."""
     cdef ptrdiff_t n = cubic.shape[1], m = len(places)
     c_curve_speeds(reads(cubic, (4, n, 2)), n, reads(places, (m,)), m, fills(lengths, (n, m)))
 
 
 def solve_tridiagonal(lower, diagonal, upper, right):
-    """Solve a tridiagonal system of n rows in place of `right` (n, k); the first `lower` and last `upper` are not read."""
+    """Solve a tridiagonal system of n rows, in place of `right` (n, k); the first `lower` and last `upper` are unused."""
     cdef ptrdiff_t n = len(diagonal), k = right.shape[1]
     ratio = np.empty(n)
     c_tridiagonal_solve(reads(lower, (n,)), reads(diagonal, (n,)), reads(upper, (n,)), fills(right, (n, k)), n, k,
@@ -118,7 +118,7 @@ def solve_tridiagonal(lower, diagonal, upper, right):
 
 
 def crossing_segments(points, order, low, top, ptrdiff_t limit, long long budget):
-    """Return pairs (k, 2) of segments of a polygon that meet, `limit` at the most, and whether all were compared."""
+    """Return pairs (k, 2), at most `limit`, of segments of a polygon that meet, and whether all were compared."""
     cdef ptrdiff_t n = len(points), m = len(order), count
     cdef Read p = reads(points, (n, 2))
     cdef const ptrdiff_t *sorted_by = reads_places(order, (m,), min(m, n))
@@ -137,7 +137,7 @@ cdef extern from "geometry/nearest.h":
 
 
 def nearest_points(places, points):
-    """Return the index (m,) of the nearest of `points` (n >= 1, 2) to each of `places` (m, 2), and squared distances."""
+    """Return for each of `places` (m, 2) the index of the nearest of `points` (n >= 1, 2), and its squared distance."""
     cdef ptrdiff_t m = len(places), n = len(points)
     if n < 1:
         raise ValueError("no points")

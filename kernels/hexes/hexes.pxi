@@ -53,13 +53,13 @@ cdef extern from "hexes/descent.h":
 
 
 cdef class HexDescent:
-    """Descents of the functional over hexahedra that share nodes, as ``descent.h`` has it; moves `nodes` (n, 3).
+    """Minimisations of the functional over hexahedra that share nodes (``descent.h``); `nodes` (n, 3) are moved in place.
 
-    `blocks` (b, 6) are as ``energy.h`` has them, over `tables`: node numbers of places (P,) int32, lengths of edges that
-    are wanted (3, P) float32, reciprocal lengths of cells (3, C), bits of corners left out (C,) and busy rows (R,).
-    `places` are (free nodes, start, place, reciprocal sizes of moves) and `slides` (unknowns, projections). `over` are
-    reciprocal lengths along the directions of one block of which all inner nodes move: it then has a preconditioner of
-    its own.
+    `blocks` (b, 6) are those of ``energy.h``, over `tables`: node numbers of the blocks' nodes (P,) int32, desired edge
+    lengths (3, P) float32, reciprocal cell lengths (3, C), bits of the corners left out (C,) and busy rows (R,).
+    `places` are (free nodes, start, place, reciprocal step sizes) and `slides` (unknowns, projections). `over`, for one
+    block of which all inner nodes move, are reciprocal lengths along its directions: it has a preconditioner of its
+    own.
     """
 
     cdef CHexDescent state
@@ -107,7 +107,7 @@ cdef class HexDescent:
             raise ValueError("a preconditioner of another block")
         d.spectrum.threads = d.threads
         room = np.zeros((4, 3, at)), np.zeros((5, r))
-        room[0][2] = np.nan  # lengths of edges that there are not
+        room[0][2] = np.nan  # lengths of edges that do not exist
         mesh.x = fills(room[0], room[0].shape)
         mesh.g, mesh.lengths, mesh.pulls = mesh.x + 3 * at, mesh.x + 6 * at, mesh.x + 9 * at
         mesh.least = fills(room[1], room[1].shape)
@@ -119,18 +119,18 @@ cdef class HexDescent:
         self.held = (nodes, blocks, tables, places, slides, room, work, small)
 
     def weigh(self, double shape, double smoothness, int power=2, double epsilon=0.0, double size=0.0):
-        """Set the weights of the functional, of which Jacobians are regularised with `epsilon`, and `power` is 1."""
+        """Set the weights of the functional; its Jacobians are regularised with `epsilon`, for which `power` must be 1."""
         cdef HexWeights *w = &self.state.weights
         w.shape, w.smoothness, w.power, w.epsilon, w.size = shape, smoothness, power, epsilon, size
         if power < (1 if epsilon > 0.0 else 0) or power > (1 if epsilon > 0.0 else 2):
             raise ValueError("a functional of another power")
 
     def run(self, double gain, int most, int renewal, double still=float("inf"), double reach=0.25, double farthest=1.0):
-        """Descend; return (value, smallest Jacobian over the volume of its cell, iterations).
+        """Minimise; return (functional, smallest ratio of a Jacobian to the volume of its cell, iterations).
 
-        It ends when two iterations on end gain less than the part `gain` of the value each and move no node by more
-        than `still` of its cell, or after `most`. No node moves by more than `reach` cells in a first step, and
-        `farthest` in any. The preconditioner is made anew every `renewal` iterations.
+        It stops if two consecutive iterations each lower the functional by less than the fraction `gain` and move no
+        node by more than `still` cells, or after `most` iterations. No node moves by more than `reach` cells in a first
+        step, and by more than `farthest` in any. The preconditioner is updated every `renewal` iterations.
         """
         cdef int done = 0, state = GOES_ON
         cdef Steps *steps = &self.state.steps
@@ -157,7 +157,7 @@ cdef class HexDescent:
         return smallest
 
     def evaluate(self, gradient):
-        """Return the value where the nodes are, and the smallest Jacobian; fill `gradient` (3, nodes that move)."""
+        """Return the functional and the smallest Jacobian at the current nodes; fill `gradient` (3, free nodes)."""
         cdef ptrdiff_t k
         cdef Written to = fills(gradient, (3, self.state.count))
         with nogil:

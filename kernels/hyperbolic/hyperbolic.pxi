@@ -13,11 +13,11 @@ cdef extern from "hyperbolic/march.h":
 def hyperbolic_march(x, y, steps, double dissipation, double even, double tolerated, double bend, double implicit,
                      double volume, ptrdiff_t sweeps, ptrdiff_t rise, ends=None, widening=None, ratios=None,
                      int threads=1):
-    """Fill levels 1 on of `x` and `y` (levels + 1, n) from level 0, n >= 3 nodes with the grid to their left.
+    """Fill levels 1 and up of `x` and `y` (levels + 1, n) from level 0, n >= 3 nodes with the grid on their left.
 
-    `steps` (levels) are the distances between levels; the others are those of ``march.h``. Level 0 closes, unless
-    `ends` are two unit directions (2, 2) along which its ends move; then `widening` (n) multiplies the steps next
-    to it. `ratios` (n) multiply the ratios of a step to the one before it.
+    `steps` (levels) are the distances between levels. Level 0 is closed, unless `ends` are two unit directions (2, 2)
+    along which its end nodes move; then `widening` (n) multiplies the steps near it. `ratios` (n) multiply the growth
+    ratios of the steps. The others are described in ``march.h``.
     """
     cdef ptrdiff_t n = x.shape[1], levels = len(x) - 1
     cdef MarchSettings settings = MarchSettings(dissipation, even, tolerated, bend, implicit, volume, sweeps, rise)

@@ -21,7 +21,7 @@ cdef Layers layers_of(ptrdiff_t cells, double first, double last, ptrdiff_t cons
 
 
 def layer_steps(steps, double length, double first, double last, ptrdiff_t constant):
-    """Fill `steps` (cells,) so that they add up to `length`; return the largest ratio, infinite when nothing fits."""
+    """Fill `steps` (cells,) so that they add up to `length`; return their largest ratio, infinite if that is impossible."""
     cdef ptrdiff_t cells = len(steps)
     cdef Layers layers = layers_of(cells, first, last, constant)
     cdef double log_ratio = 0.0
@@ -29,7 +29,7 @@ def layer_steps(steps, double length, double first, double last, ptrdiff_t const
 
 
 def layer_lines(x, y, X, Y, double first, double last, ptrdiff_t constant, int threads=1):
-    """Sample the lines of `x`, `y` (ni, nj) anew at the nodes of `X`, `Y` (ni, NJ); return the largest ratio of cells."""
+    """Resample the grid lines of `x`, `y` (ni, nj) to `X`, `Y` (ni, NJ); return the largest ratio of neighbouring cells."""
     cdef double largest
     cdef ptrdiff_t ni, nj, NJ = X.shape[1]
     ni, nj = x.shape
@@ -47,9 +47,9 @@ def layer_lines(x, y, X, Y, double first, double last, ptrdiff_t constant, int t
 
 
 def redistribute(x, y, first, fade, int threads=1):
-    """Move the inner nodes of the lines i of `x` and `y` (ni, nj >= 3) so that first cells are `first` (ni) high.
+    """Move the inner nodes of `x` and `y` (ni, nj >= 3) along eta lines so that first-cell heights are `first` (ni).
 
-    `fade` (nj) says how much of the relative change of node 1 each node takes part in.
+    `fade` (nj) is the fraction of the relative change of node 1 that is applied to each node.
     """
     cdef ptrdiff_t ni, nj
     ni, nj = x.shape

@@ -50,9 +50,9 @@ cdef Waves waves(tuple tables, ptrdiff_t count) except *:
 
 def winslow_steps(planes, turns, bint harmonic, int steps, double share, double growth, tuple xi, tuple eta,
                   bint around, last):
-    """Take Picard steps towards Winslow's grid: move the `planes` (batch, 2, m, n), fill `last` with the last steps.
+    """Take Picard steps towards the Winslow grid: move the `planes` (batch, 2, m, n), fill `last` with the last steps.
 
-    `turns` (batch, 2, n) are added from one round to the next; the other arguments are those of ``neural/approach.h``.
+    `turns` (batch, 2, n) are added from one round to the next; for the other arguments see ``neural/approach.h``.
     """
     cdef ptrdiff_t batch = len(planes), b
     cdef Approach a
@@ -65,7 +65,7 @@ def winslow_steps(planes, turns, bint harmonic, int steps, double share, double 
     a.xi, a.eta = waves(xi, a.m - (1 if around else 2)), waves(eta, a.n - 2)
     scratch = np.zeros(approach_scratch(&a) + 8)
     cdef Written room = fills(scratch, scratch.shape)
-    room += -(<uintptr_t>room // sizeof(double)) & 7  # from a line of the cache on
+    room += -(<uintptr_t>room // sizeof(double)) & 7  # aligned to a cache line
     with nogil:
         for b in range(batch):
             approach_grid(&a, p + 2 * b * a.m * a.n, turn + 2 * b * a.n, room, step + 2 * b * a.m * a.n)
@@ -85,7 +85,7 @@ cdef void *fills_real(array, bint single, shape) except NULL:
 
 
 cdef class LayerProgram:
-    """Layers on arrays of its own, one after another in one call that holds no lock."""
+    """A recorded sequence of layers with their own arrays, executed in one call that holds no lock."""
 
     cdef Layer layers[MOST_LAYERS]
     cdef int count
@@ -96,9 +96,9 @@ cdef class LayerProgram:
         self.count, self.held = 0, []
 
     def run(self, x, out):
-        """Fill `out` with the last layer's output for the first layer's input `x`, or the first few of a batch.
+        """Fill `out` with the last layer's output for the first layer's input `x`, or only the first samples of a batch.
 
-        Both are of the dtype and, but for the batch, of the shape that the layers were recorded with.
+        Both have the dtype and, except for the batch, the shape that the layers were recorded with.
         """
         if self.count == 0 or (x.dtype, *x.shape[1:]) != self.first or (out.dtype, *out.shape[1:]) != self.last:
             raise ValueError("arrays of other shapes than the layers'")
@@ -152,9 +152,9 @@ cdef int begin(Layer *layer, int kind, x, out, shape) except -1:
 
 
 def convolve(x, w, bias, int size, int stride, add, out, LayerProgram later=None):
-    """Fill `out` (batch, p, q, outputs) with the convolution of `x` (batch, m, n, inputs), which holds its own padding.
+    """Fill `out` (batch, p, q, outputs) with the convolution of `x` (batch, m, n, inputs), which includes its padding.
 
-    Like every layer of ``neural/network.h`` it is recorded in the program `later` when there is one, instead.
+    If the program `later` is given, the layer is recorded in it and not executed; so is every layer of ``network.h``.
     """
     cdef Layer layer
     if size < 1 or stride < 1 or x.shape[1] < size or x.shape[2] < size or out.shape[3] < 1 or x.shape[3] < 1:
@@ -172,10 +172,10 @@ def convolve(x, w, bias, int size, int stride, add, out, LayerProgram later=None
 
 
 def activate(x, out, bint around=False, LayerProgram later=None):
-    """Fill `out` (batch, m + 2, n + 2, channels) with x / (1 + exp(-x)) of `x` (batch, m, n, channels), zeros around.
+    """Fill `out` (batch, m + 2, n + 2, channels) with x / (1 + exp(-x)) of `x` (batch, m, n, channels), padded by zeros.
 
-    With `around` the first and the last of its m + 2 rows are the last and the first of the m. An `out` of the shape
-    of `x` has nothing around.
+    With `around` the rows are periodic: the first and the last of the m + 2 repeat the last and the first of the m. An
+    `out` with the shape of `x` is not padded.
     """
     cdef Layer layer
     cdef int pad = out.shape[1] > x.shape[1]
@@ -185,9 +185,9 @@ def activate(x, out, bint around=False, LayerProgram later=None):
 
 
 def upsample(x, add, out, bint around=False, LayerProgram later=None):
-    """Fill `out` (batch, 2 m - 1, 2 n - 1, channels) with `add` + `x` (batch, m, n, channels) linear between its nodes.
+    """Fill `out` (batch, 2 m - 1, 2 n - 1, channels) with `add` + `x` (batch, m, n, channels), interpolated linearly.
 
-    With `around` it has 2 m rows, the last of them between the last and the first of `x`.
+    With `around` the rows are periodic: there are 2 m, the last of them between the last and the first of `x`.
     """
     cdef Layer layer
     shape = (x.shape[0], 2 * x.shape[1] - (0 if around else 1), 2 * x.shape[2] - 1, x.shape[3])
@@ -197,7 +197,7 @@ def upsample(x, add, out, bint around=False, LayerProgram later=None):
 
 
 def grid_features(planes, steps, out):
-    """Fill `out` (batch, n, n, features) for grids `planes` and their last `steps`, both (batch, 2, n, n)."""
+    """Fill the network inputs `out` (batch, n, n, features) from grids `planes` and last `steps`, both (batch, 2, n, n)."""
     cdef ptrdiff_t batch = len(planes), n = planes.shape[2]
     cdef bint single = is_single(out)
     cdef Read p = reads(planes, (batch, 2, n, n)), s = reads(steps, (batch, 2, n, n))

@@ -56,7 +56,7 @@ cdef extern from "quads/descent.h":
 
 
 def line_neighbours(quads, edge_of, node, edge):
-    """Return the neighbours (e, 4) of edges along grid lines and the number of pairs, as ``topology.h`` has them."""
+    """Return the neighbours (e, 4) of edges along grid lines, and the number of pairs of neighbours; see ``topology.h``."""
     cdef ptrdiff_t m = len(quads), n = len(node), e = len(edge), pairs
     line, room = np.empty((e, NEXT_EDGES), np.intp), np.empty(2 * n + 1 + 4 * m + 2 * e, np.intp)
     cdef const ptrdiff_t *q = reads_places(quads, (m, 4), n)
@@ -71,12 +71,13 @@ def line_neighbours(quads, edge_of, node, edge):
 
 
 cdef class QuadDescent:
-    """Descents of the functional over quads that share nodes, as ``descent.h`` has it; moves `nodes` (n, 2) and `arc` (w,).
+    """Minimisations of the functional over quads that share nodes (``descent.h``); moves `nodes` (n, 2) and `arc` (w,).
 
     `cells` are (quads, aspects (m, 2), areas), `lines` (edges, neighbours, pairs, targets), `eased` (corners (k, 3),
-    parts), the `inner` nodes that move freely, `tied` (pairs, shift), `unknown` and `wall` (n,), `wall_nodes` (nodes, unknowns, arc) sorted
-    by loop, `wall_edges` (edges, round) likewise. Each of `loops` is (cubic, table, start, stop, pieces, end, turned)
-    and the numbers of its first and last nodes and edges. Edges of walls may turn by `allowed`, beyond that with `bent`.
+    parts). `inner` are the nodes that move freely, `tied` is (pairs, shift); `unknown` and `wall` are (n,).
+    `wall_nodes` (nodes, unknowns, arc) and `wall_edges` (edges, round) are sorted by loop. Each of `loops` is (cubic,
+    table, start, stop, pieces, end, turned) and the numbers of its first and last nodes and edges. Wall edges may turn
+    by `allowed`; `bent` weighs what exceeds it.
     """
 
     cdef CQuadDescent state
@@ -146,10 +147,10 @@ cdef class QuadDescent:
         return 0
 
     def run(self, double shape, double smoothness, double epsilon, double size, double gain, int most, bint renew):
-        """Descend; return (value, smallest Jacobian over the area of its cell, iterations).
+        """Minimise; return (functional, smallest ratio of a Jacobian to the area of its cell, iterations).
 
-        It ends when the value falls by less than its part `gain` in each of three iterations, or after `most`. The
-        preconditioner is made anew where the nodes are with `renew`.
+        It stops if the functional falls by less than the fraction `gain` in each of three iterations, or after `most`.
+        With `renew` the preconditioner is first updated to the current nodes.
         """
         cdef int done = 0, state = GOES_ON
         cdef QuadMesh *mesh = &self.state.mesh
@@ -167,7 +168,7 @@ cdef class QuadDescent:
         return steps.value, steps.smallest, done
 
     def evaluate(self, double shape, double smoothness, double epsilon, double size, gradient):
-        """Return the value where the nodes are, and fill `gradient` (unknowns,)."""
+        """Return the functional at the current nodes, and fill `gradient` (unknowns,)."""
         cdef QuadMesh *mesh = &self.state.mesh
         cdef ptrdiff_t k
         cdef Written to = fills(gradient, (self.state.steps.n,))

@@ -35,7 +35,7 @@ cdef int64_t *fills_long(array, tuple shape) except NULL:
 
 
 def solids_folded(nodes, int test, int threads, counts):
-    """Fill counts (ni-1, nj-1) with how many cells of each row do not pass: 0 tests corners, 1 Bezier coefficients."""
+    """Fill counts (ni-1, nj-1) with the cells of each row that fail `test`: 0 for corner, 1 for Bezier Jacobians."""
     cdef SolidNodes block = solid_nodes(nodes)
     cdef int64_t *to = fills_long(counts, (block.ni - 1, block.nj - 1))
     with nogil:
@@ -52,7 +52,7 @@ def solids_places(nodes, int test, counts, places):
 
 
 def solids_volumes(nodes, int threads, volumes):
-    """Fill the inside of volumes (ni+1, nj+1, nk+1) with those of the cells."""
+    """Fill the interior of volumes (ni+1, nj+1, nk+1) with those of the cells."""
     cdef SolidNodes block = solid_nodes(nodes)
     cdef Written to = fills(volumes, (block.ni + 1, block.nj + 1, block.nk + 1))
     with nogil:
@@ -60,13 +60,13 @@ def solids_volumes(nodes, int threads, volumes):
 
 
 def solids_chunks(nodes):
-    """Return how many chunks `solids_run` takes a block in."""
+    """Return the number of chunks in which `solids_run` processes a block."""
     cdef SolidNodes block = solid_nodes(nodes)
     return c_solids_chunks(&block)
 
 
 def solids_run(nodes, volumes, summary, where, ptrdiff_t keep, kept, int threads):
-    """Run over all cells once; the arguments are those of SolidRun in ``solids/solids.h``."""
+    """Compute the metrics of all cells in one pass; for the arguments see SolidRun in ``solids/solids.h``."""
     cdef SolidRun run
     run.nodes = solid_nodes(nodes)
     cdef ptrdiff_t ni = run.nodes.ni, nj = run.nodes.nj, nk = run.nodes.nk, chunks = c_solids_chunks(&run.nodes)
@@ -84,9 +84,9 @@ def solids_run(nodes, volumes, summary, where, ptrdiff_t keep, kept, int threads
 
 
 def solids_lines(nodes, int threads, summary, where, values=None):
-    """Fill summary (ni, 3, 2, 2) and where (ni, 3, 2, 3) with growth and bend along the axes; ``solids/solids.h``.
+    """Fill summary (ni, 3, 2, 2) and where (ni, 3, 2, 3) with growth and bend along each axis; see ``solids/solids.h``.
 
-    `values` (3, 2, ni, nj, nk) takes them all, at nodes between two others of the line.
+    `values` (3, 2, ni, nj, nk) receives those of every inner node of a line.
     """
     cdef SolidNodes block = solid_nodes(nodes)
     cdef Written to = fills(summary, (block.ni, 3, 2, 2))

@@ -38,9 +38,9 @@ cdef int pattern_of(tuple arrays, SparsePattern *pattern) except -1:
 
 
 def sparse_analyse(int n, rows, columns):
-    """Return what later calls need of a symmetric matrix of n rows, and where each entry (m,) is among the distinct ones.
+    """Return the symbolic factorisation of a symmetric matrix of n rows, and the index (m,) of each distinct entry.
 
-    Entries are given in one triangle or the other; those at the same place add up.
+    Each off-diagonal entry is given in one triangle; entries with the same row and column are added.
     """
     cdef ptrdiff_t m = len(rows)
     cdef int failed
@@ -62,7 +62,7 @@ def sparse_analyse(int n, rows, columns):
 
 
 def sparse_factor(tuple pattern, values):
-    """Return rows and numbers of L and the pivots (n,), of the `values` of the distinct entries, and the row that failed, or -1."""
+    """Return the rows and values of L, the pivots (n,), from `values` of the distinct entries; and the row that failed, or -1."""
     cdef SparsePattern a
     cdef ptrdiff_t bad
     pattern_of(pattern, &a)
@@ -78,7 +78,7 @@ def sparse_factor(tuple pattern, values):
 
 
 def sparse_solve(tuple pattern, tuple factor, x):
-    """Solve for the right sides `x` (n, k), in place."""
+    """Solve for the right-hand sides `x` (n, k), in place."""
     cdef SparsePattern a
     pattern_of(pattern, &a)
     cdef ptrdiff_t k = x.shape[1], entries = a.fill[a.n]
@@ -91,7 +91,7 @@ def sparse_solve(tuple pattern, tuple factor, x):
 
 
 def sparse_multiply(tuple pattern, values, x, product):
-    """Fill `product` (n, k) with the matrix of the distinct entries' `values` times `x` (n, k)."""
+    """Fill `product` (n, k) with the matrix, given by `values` of its distinct entries, times `x` (n, k)."""
     cdef SparsePattern a
     pattern_of(pattern, &a)
     cdef ptrdiff_t k = x.shape[1]

@@ -43,8 +43,8 @@ cdef extern from "surfaces/lines.h":
 def surface_march(levels, heights, graph, settings, int threads):
     """Fill `levels` (count + 1, 3, n) from level 0; return how many were made, the steps and the iterations.
 
-    `heights` (count) are the distances of the others from the wall. `graph` has the arrays of ``graph.h``, `settings`
-    the numbers of ``march.h`` in their order.
+    `heights` (count) are the distances of the levels from the wall. `graph` holds the arrays of ``graph.h``, `settings`
+    the numbers of ``march.h``, in their order.
     """
     cdef ptrdiff_t n = levels.shape[2], count = len(heights), ghosts = len(graph.owner), odd = len(graph.odd_nodes)
     cdef ptrdiff_t fixed = len(graph.fixed_nodes), around = len(graph.odd_near), rows = n + ghosts
@@ -72,7 +72,7 @@ def surface_march(levels, heights, graph, settings, int threads):
 
 
 def respace_lines(marched, steps, fade, order, ptrdiff_t sweeps, lines, int threads):
-    """Fill `lines` (3, n, levels) with the nodes of `marched` (levels, 3, n) moved along their lines (``lines.h``)."""
+    """Fill `lines` (3, n, levels) with the nodes of `marched` (levels, 3, n) moved along their lines; see ``lines.h``."""
     cdef ptrdiff_t levels = len(marched), n = marched.shape[2]
     cdef Lines l = Lines(n, levels, reads(marched, (levels, 3, n)), reads(steps, (levels - 1,)),
                          reads(fade, (levels - 1,)), reads_places(order, (n,), n), sweeps, fills(lines, (3, n, levels)))

@@ -49,7 +49,7 @@ cdef extern from "triangulation/walls.h":
 
 
 def wall_gaps(points, normals, piece, beside, corner, double part, double cone, size):
-    """Lower `size` (n,) to `part` of the gap in front of points (n, 2); see ``triangulation/walls.h``."""
+    """Reduce `size` (n,) to the fraction `part` of the gap in front of wall points (n, 2); see ``triangulation/walls.h``."""
     cdef WallPoints wall
     cdef ptrdiff_t n = len(points)
     wall.n, wall.points, wall.normals = n, reads(points, (n, 2)), reads(normals, (n, 2))
@@ -60,14 +60,14 @@ def wall_gaps(points, normals, piece, beside, corner, double part, double cone, 
 
 
 def wall_growth(points, double growth, size):
-    """Lower `size` (n,) at points (n, 2) to the least of size + growth * distance over all of them."""
+    """Reduce `size` (n,) at points (n, 2) to the least of size + growth * distance over all points."""
     cdef ptrdiff_t n = len(points)
     if c_wall_growth(reads(points, (n, 2)), n, growth, fills(size, (n,))):
         raise MemoryError
 
 
 cdef class DelaunayMesh:
-    """Triangulation of points with whole coordinates from 1 to 2^30 - 2; see ``triangulation/mesh.h``."""
+    """Delaunay triangulation of points with integer coordinates from 1 to 2^30 - 2; see ``triangulation/mesh.h``."""
 
     cdef Mesh mesh
 
@@ -88,9 +88,9 @@ cdef class DelaunayMesh:
         return node
 
     def insert(self, places, sizes, order):
-        """Add nodes at `places` (n, 2), with `sizes` (n,), in an `order` (n,) of all; return which (n,) were new places.
+        """Insert nodes at `places` (n, 2) with `sizes` (n,), in the given `order` (n,); return which (n,) were new places.
 
-        Nodes count from 4, behind the corners of the box.
+        Node numbers start at 4, after the corners of the bounding box.
         """
         cdef ptrdiff_t n = len(places), k, v, first = self.mesh.n
         cdef const int64_t *xy = <const int64_t *>numbers(places, b"i", 8, (n, 2), False)
@@ -130,9 +130,9 @@ cdef class DelaunayMesh:
         return result.view(bool)
 
     def force(self, pairs):
-        """Flip edges until these pairs (n, 2) are edges, and make them walls.
+        """Flip edges until these pairs (n, 2) are edges, and mark them as walls.
 
-        Return the ends (n, 2) of the wall that is in the way of each, a node twice, or -1 where it became an edge.
+        Return for each pair the ends (n, 2) of a wall that blocks it, twice the same node that does, or -1 on success.
         """
         cdef ptrdiff_t n = len(pairs), k
         cdef const int32_t *pair = self._pairs(pairs)
@@ -144,13 +144,13 @@ cdef class DelaunayMesh:
         return way
 
     def set_walls(self, pairs, bint wall):
-        """Mark the edges between pairs (n, 2) as walls, or clear them; then flip the others until they are Delaunay."""
+        """Mark the edges between pairs (n, 2) as walls, or unmark them; then flip the others until they are Delaunay."""
         mesh_walls(&self.mesh, self._pairs(pairs), len(pairs), wall)
         if mesh_flip_all(&self.mesh):
             raise MemoryError
 
     def refine(self, walls, double largest, double growth, sources, source_sizes, ptrdiff_t most):
-        """Insert nodes left of the walls (n, 2) until radii are below .75 of the sizes there, or up to `most` nodes."""
+        """Insert nodes left of the walls (n, 2) until circumradii are below 0.75 of the local size, or `most` nodes exist."""
         cdef Sizes sizes
         cdef const int32_t *pair = self._pairs(walls)
         cdef ptrdiff_t n = len(walls)
@@ -165,17 +165,17 @@ cdef class DelaunayMesh:
             raise MemoryError
 
     def smooth(self, ptrdiff_t first, double part):
-        """Move the nodes from `first` on a part of the way to the mean of their neighbours."""
+        """Move the nodes from `first` on by the fraction `part` of the way to the mean of their neighbours."""
         if c_smooth(&self.mesh, max(first, BOX), part):
             raise MemoryError
 
     def shake(self, ptrdiff_t first, double part, uint64_t seed):
-        """Move the nodes from `first` on by chance, up to a part of their size."""
+        """Move the nodes from `first` on at random, by up to the fraction `part` of their size."""
         if c_shake(&self.mesh, max(first, BOX), part, seed):
             raise MemoryError
 
     def nodes(self):
-        """Return the places (n, 2) of the nodes, without the corners of the box, and their sizes (n,)."""
+        """Return the places (n, 2) of the nodes, without the corners of the bounding box, and their sizes (n,)."""
         cdef ptrdiff_t k, n = self.mesh.n - BOX
         places, sizes = np.empty((n, 2), np.int64), np.empty(n)
         cdef int64_t *xy = <int64_t *>numbers(places, b"i", 8, (n, 2), True)
@@ -186,8 +186,8 @@ cdef class DelaunayMesh:
         return places, sizes
 
     def triangles(self):
-        """Return those inside, (t, 3) each: corners, counted without the box, the triangles across edges i to i + 1
-        (-1: none) and the numbers of the edges there."""
+        """Return the inner triangles, (t, 3) each: corners, numbered without the box, the triangles across edges i to i + 1
+        (-1: none) and the numbers of these edges there."""
         cdef ptrdiff_t k, n = 0, m = self.mesh.m
         cdef int i, other
         cdef Triangle *t

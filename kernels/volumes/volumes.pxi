@@ -14,12 +14,13 @@ cdef extern from "volumes/tfi.h":
                                   const Spline3 *spline, int threads) nogil
 
 def tfi_volume(nodes, tuple faces, tuple laws, int threads, spline=None):
-    """Fill the planes `nodes` (3, n1, n2, n3) from six faces.
+    """Fill the planes `nodes` (3, n1, n2, n3) by transfinite interpolation between six faces.
 
-    `faces`: west, east (3, n2, n3), south, north (3, n1, n3), bottom, top (3, n1, n2). `laws`: (4, n) of each
-    direction, from 0 to 1, of its edges at the (low, low), (high, low), (low, high) and (high, high) ends of the other
-    directions. `spline`: coefficients (3, m1, m2, m3) and, of each direction, the first (n,) of four that reach a
-    node; then their weights, (n, 4) of the first two directions and (4, n) of the last. It is added inside.
+    `faces`: west, east (3, n2, n3), south, north (3, n1, n3), bottom, top (3, n1, n2). `laws`: for each direction the
+    node distributions (4, n), from 0 to 1, on its edges at the (low, low), (high, low), (low, high) and (high, high)
+    ends of the other directions. `spline`, added to inner nodes: coefficients (3, m1, m2, m3); for each direction the
+    first (n,) of the four that affect a node; then their weights, (n, 4) of the first two directions and (4, n) of the
+    last.
     """
     cdef ptrdiff_t n1, n2, n3
     cdef Volume volume
@@ -76,7 +77,7 @@ cdef Winslow3 winslow3(x, right, int threads) except *:
 
 
 def winslow_room(tuple counts, int threads):
-    """Return the doubles of scratch that relaxation of (n1, n2, n3) nodes needs."""
+    """Return the number of doubles of scratch that relaxation of (n1, n2, n3) nodes needs."""
     cdef Winslow3 w
     w.n1, w.n2, w.n3 = counts
     w.threads = min(max(threads, 1), 64)
@@ -84,7 +85,7 @@ def winslow_room(tuple counts, int threads):
 
 
 def winslow_smooth(x, right, double factor, int threads, room):
-    """Relax the planes x (3, n1, n2, n3) by lines in three directions, in place; `right` sides of the same shape or None."""
+    """Relax the planes x (3, n1, n2, n3) by lines in three directions, in place; `right` is the right-hand side, or None."""
     cdef Winslow3 w = winslow3(x, right, threads)
     cdef Written work = fills_room(room, c_winslow_room(&w))
     with nogil:
@@ -92,7 +93,7 @@ def winslow_smooth(x, right, double factor, int threads, room):
 
 
 def winslow_residual(x, right, residual, int threads, room):
-    """Fill `residual` (3, n1, n2, n3), `right` less the operator; return the sum of its squares."""
+    """Fill `residual` (3, n1, n2, n3) with `right` minus the operator at x; return the sum of its squares."""
     cdef Winslow3 w = winslow3(x, right, threads)
     cdef Written work = fills_room(room, c_winslow_room(&w)), r = fills(residual, x.shape)
     cdef double total
@@ -102,7 +103,7 @@ def winslow_residual(x, right, residual, int threads, room):
 
 
 def combine_along(source, int axis, first, weights, bint add, int threads, to):
-    """Set or add along `axis` of `to`: the sum over k of weights (m, k) times `source` at first (m,) + k."""
+    """Set or add along `axis` of `to`: the sum over k of weights (m, k) times `source` at index first (m,) + k."""
     cdef ptrdiff_t n = source.shape[axis], m = to.shape[axis], before = 1, after = 1, terms = weights.shape[1]
     for size in source.shape[:axis]:
         before *= size
@@ -123,10 +124,11 @@ cdef extern from "volumes/lines.h":
 
 
 def volume_lines(nodes, int axis, low, high, double reach, int threads):
-    """Move nodes of planes (3, n1, n2, n3) along the lines of direction `axis`, in place.
+    """Move nodes of planes (3, n1, n2, n3) along the grid lines of direction `axis`, in place.
 
-    `low` and `high`, of the shape without that direction, are lengths of first and last steps, 0 where a line stays as
-    it is there; or None. Steps k further on change by exp(-k / `reach`) of it.
+    `low` and `high`, of the shape without that direction, are the lengths of the first and last steps, 0 where a line
+    is unchanged there, or None. The relative change of a step decays as exp(-k / `reach`) with its distance k from the
+    end.
     """
     cdef ptrdiff_t before = 1, after = 1, n = nodes.shape[axis + 1]
     cdef int failed
@@ -160,7 +162,7 @@ cdef extern from "volumes/near_faces.h":
 
 
 def closed_node(tuple walls, tuple ranges, int threads):
-    """Return the number, in order, of the first node in `ranges` that has no place next to `walls`, or -1.
+    """Return the number, in order, of the first node in `ranges` for which no valid place exists next to `walls`, or -1.
 
     `walls`: at most three (nodes (n, m, 3), axis, end), across different axes; `ranges`: first and last (excluded) of
     inner nodes along each direction.

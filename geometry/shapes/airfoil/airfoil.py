@@ -1,4 +1,4 @@
-"""An airfoil: the curve through its points, its edges, and nodes along its wall."""
+"""An airfoil: the curve through its points, its leading and trailing edge, and nodes along its wall."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ if TYPE_CHECKING:
 
 __all__ = ["SHARP_GAP", "Airfoil"]
 
-_WIDEST_WEDGE = 50.0  # largest angle in degrees between surfaces whose edge a C grid takes by itself
+_WIDEST_WEDGE = 50.0  # degrees; a C grid by default needs surfaces that meet at a smaller angle
 
 
 class CrossingError(InputError):
-    """A wall so coarse, where the section is thin, that its polygon crosses itself."""
+    """The polygon of the wall nodes crosses itself: they are too few where the section is thin."""
 
 
 class Airfoil:
-    """A closed section with one trailing and one leading edge.
+    """A closed section with a trailing edge and a leading edge.
 
     ::
 
@@ -52,10 +52,11 @@ class Airfoil:
                '-------------------'''      upper side. The leading edge is the point of the curve that
                   lower  ---->              is farthest from the trailing edge.
 
-    The `points` (n, 2) are in any unit, in either direction, from any start (`clean_section`); `places` (n,)
-    say where each stands in its source, such as ``line 12``, for messages, `notes` what was changed before.
+    The `points` (n, 2) are in any unit, of either orientation, with any start (`clean_section`). `places`
+    (n,) are their places in the source, such as ``line 12``, for messages; `notes` say how they were changed
+    before.
 
-    Raises InputError: the points are no airfoil, or its surfaces cross; says where.
+    Raises InputError, with the place: the points are no airfoil, or its surfaces cross.
     """
 
     curve: Curve
@@ -72,7 +73,7 @@ class Airfoil:
     """The trailing edge is a straight base; a gap below `SHARP_GAP` chords has been closed at its middle."""
 
     far_field_unit = "chords"
-    """What the distance of a far field is measured in."""
+    """Unit of the far-field distance."""
 
     notes: tuple[str, ...]
     """What was changed of the given points: one sentence each."""
@@ -98,16 +99,16 @@ class Airfoil:
 
     @property
     def unit(self) -> float:
-        """What cells at the wall are measured in: the chord, or 1 where that is the nominal chord.
+        """Unit of wall cell sizes: the chord, or 1 if that is the nominal chord.
 
-        From its trailing edge to the point farthest from it a cambered section is longer than the chord it
-        was drawn with: by 8e-5 for NACA 2412. Within 1 % of 1 the unit of the drawing is meant.
+        The distance from the trailing edge to the farthest point of a cambered section exceeds its nominal
+        chord, by 8e-5 for NACA 2412. A chord within 1 % of 1 is taken as nominally 1.
         """
         return 1.0 if abs(self.chord - 1.0) < 0.01 else self.chord
 
     @cached_property
     def wedge(self) -> float:
-        """Angle in degrees between the two surfaces over the last 1 % of the chord."""
+        """Angle in degrees between the surfaces over the last 1 % of the chord."""
         first, _, last = self._arcs
         step = 0.01 * self.chord
         lower, a, b, upper = self.curve.at(np.array([first + step, first, last, last - step]))
@@ -116,7 +117,7 @@ class Airfoil:
 
     @cached_property
     def nose_radius(self) -> float:
-        """Radius of the leading edge: of the parabola as thick as the section 2 % of the chord behind it."""
+        """Radius of the leading edge: of a parabola as thick as the section at 2 % of the chord."""
         _, middle, _ = self._arcs
         axis = (self.trailing_edge - self.leading_edge) / self.chord
         step = np.linspace(0.0, 0.2 * self.chord, 81)
@@ -128,25 +129,25 @@ class Airfoil:
 
     @property
     def outline_notes(self) -> tuple[str, ...]:
-        """What there is to say of the outline: `notes`, an oblique base, a curve far off its points."""
+        """Notes on the outline: `notes`, an oblique base, a curve that deviates much from the polygon."""
         return self.notes + shape_notes(self._section, self.curve, self.chord)
 
     @property
     def stations(self) -> Stations:
-        """Where its base, its sides and its nose are along the curve."""
+        """Arc lengths of the ends of its base and of its nose."""
         from meshonet.geometry.shapes.airfoil.wall_nodes import Stations
 
         return Stations(self.curve, *self._arcs, self.chord, self.nose_radius, self._round)
 
     def normalised(self) -> Airfoil:
-        """Return the same airfoil turned, scaled and moved to have its edges at (0, 0) and (1, 0)."""
+        """Return the airfoil rotated, scaled and moved so that its edges are at (0, 0) and (1, 0)."""
         axis = (self.trailing_edge - self.leading_edge) / self.chord**2
         off = self.curve.points[1 if self.blunt else 0 :] - self.leading_edge
         points = np.stack(along_and_across(off, axis), axis=1)
         return Airfoil(points, self.name, notes=self.notes)
 
     def smoothed(self, tolerance: float) -> Airfoil:
-        """Return the same airfoil on splines within `tolerance` (chords) of its points, corners kept."""
+        """Return the airfoil with its points on smoothing splines within `tolerance` chords; corners stay."""
         from meshonet.geometry.shapes.airfoil.smooth import smooth_ring
 
         ring, most = smooth_ring(self.curve, self.blunt, tolerance * self.chord)
@@ -157,7 +158,7 @@ class Airfoil:
         return body
 
     def rounded(self) -> Airfoil:
-        """Return the same airfoil with the corners of its blunt base rounded off."""
+        """Return the airfoil with the corners of its blunt base rounded."""
         if not self.blunt:
             return self
         from meshonet.geometry.shapes.airfoil.trailing_edge import rounded_base
@@ -170,7 +171,7 @@ class Airfoil:
         return body
 
     def moved_apart(self) -> Airfoil:
-        """Return the same airfoil with surfaces at least 9e-5 chords apart where they all but touch."""
+        """Return the airfoil with its surfaces at least 9e-5 chords apart where they nearly touch."""
         section = self._section.moved_apart()
         return Airfoil(section.points, self.name, notes=(*self.notes, moved_note(self._section, section)))
 
@@ -179,7 +180,7 @@ class Airfoil:
         return self._wall(ni, sampling)[0]
 
     def _wall(self, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:
-        """Return what `wall` does, and a note where ``auto`` spacing is not the usual one."""
+        """Return the nodes of `wall`, and a note if ``auto`` spacing is not the usual one."""
         if sampling.spacing != "auto":
             return self._nodes(ni, sampling), ()
         notes: tuple[str, ...] = ()
@@ -204,12 +205,12 @@ class Airfoil:
         return nodes
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return this wall in a far field: a circle (o), or half of one and a wake behind the body (c).
+        """Return this wall in a far field: a circle (O grid), or a half circle and a wake (C grid).
 
-        ``auto`` is ``o``, unless wall cells are to be thin and the edge is sharp, with surfaces at most
-        50 degrees apart (once it is as `Sampling.te` wants it).
+        ``auto`` topology is ``o``, except for thin wall cells at a sharp edge with surfaces at most 50
+        degrees apart (after the change that `Sampling.te` asks for), where it is ``c``.
 
-        Raises InputError: four-sided topology; a C boundary with a blunt edge; nodes that do not suffice.
+        Raises InputError: four-sided topology; a C boundary with a blunt edge; too few nodes.
         """
         if sampling.topology == "quad":
             raise InputError("topology quad is not made from an airfoil", "use o or c")
@@ -223,7 +224,7 @@ class Airfoil:
             return body.moved_apart()._around(sampling)
 
     def wedged(self) -> Airfoil:
-        """Return the same airfoil with its blunt base closed by a wedge."""
+        """Return the airfoil with its blunt base closed by a wedge."""
         if not self.blunt:
             return self
         from meshonet.geometry.shapes.airfoil.trailing_edge import wedged_base
@@ -261,14 +262,14 @@ class Airfoil:
         return o_boundary(wall, nj, centre, radius, body.curve, self.name, self.unit, turned, notes)
 
     def _base_note(self, wall: Floats) -> tuple[str, ...]:
-        """Return a note where cells of the wall (n, 2) differ much at the corners of the base."""
+        """Return a note if cell sizes along the wall (n, 2) jump at the corners of the base."""
         if not self.blunt:
             return ()
         corner = self.curve.at(np.array([self._arcs[0]]))[0]
         return base_note(wall, corner, 2.0 * self._arcs[0], self.chord)
 
     def _c_boundary(self, sampling: Sampling, original: Airfoil, notes: tuple[str, ...]) -> Boundary:
-        """Return the C boundary around this body, which was `given` once, with its units."""
+        """Return the C boundary around this body, in the units of the `original` airfoil."""
         from meshonet.geometry.shapes.wake import C_EDGE, WakeLine, c_boundary, cells_of_wake, wake_axis
 
         if self.blunt or self._round:

@@ -1,4 +1,4 @@
-"""Notes of blunt bases: what became of them, and where cells on them and beside them are unlike."""
+"""Notes on blunt bases: how they were changed, and where cell sizes jump at their corners."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ UNLIKE = 1.5
 
 
 def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[str, ...]:
-    """Return a note where the wall cells at the lower corner of a base are unlike; the upper one mirrors it.
+    """Return a note if wall cell sizes jump at the lower corner of a base; the upper corner mirrors it.
 
-    `wall` (n, 2) runs from the middle of the base, which is `base` long and ends at `corner` (2,).
+    `wall` (n, 2) runs from the middle of the base, which has length `base` and ends at `corner` (2,).
     """
     k = int(np.argmin(np.hypot(*(wall[: len(wall) // 2] - corner).T)))
     if k == 0:
@@ -37,7 +37,7 @@ def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[
 
 
 def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, asked: TrailingEdge) -> tuple[str, ...]:
-    """Return what became of a base by `te`, or that there is none where one was `asked` to be changed."""
+    """Return a note on how `te` changed a base, or that there is none although a change was `asked` for."""
     base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
     if before.blunt and te == "wedge":
         length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord

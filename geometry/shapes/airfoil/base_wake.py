@@ -1,4 +1,4 @@
-"""What a C grid begins at around a section that keeps its base: wall, base, and wake lines from both corners.
+"""The start of a C grid around a blunt section: wall, base, and wake lines from both corners of the base.
 
 ::
 
@@ -8,9 +8,9 @@
                                   lower  =========================|
                                                   lower wake
 
-Both lines leave along their surfaces and turn into the wake's axis: their middle like the line behind a sharp
-edge (`meshonet.geometry.shapes.wake.WakeLine`), their distance within so short a way that it stays near the
-width of the base.
+Both wake lines start tangential to their surface and turn into the axis of the wake. Their mean follows the
+line behind a sharp edge (`meshonet.geometry.shapes.wake.WakeLine`); their distance stays close to the width
+of the base.
 """
 
 from __future__ import annotations
@@ -36,21 +36,21 @@ from meshonet.kernels._native import layer_steps
 if TYPE_CHECKING:
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
-GROWTH = 1.2  # of cells along wake and base where none is asked for
-_WITHIN = 0.92  # part of the growth beyond 1 that wake and base use: their lines bend, and meet the march's
+GROWTH = 1.2  # growth ratio along wake and base unless given
+_WITHIN = 0.92  # fraction of the growth beyond 1 used along wake and base: the lines bend, which adds growth
 _STEEPEST = math.radians(60.0)  # largest angle at which a wake line leaves its corner
-_LOST = 0.35  # largest part of the base's width by which both lines come nearer or go apart
-_COARSEST = 1.0 / 12.0  # largest cell on a base, in its width
-LEAST_BASE = 4  # cells of a base
-_LEAST_WALL = 24  # cells of a wall
+_LOST = 0.35  # largest change of the distance between both lines, over the width of the base
+_COARSEST = 1.0 / 12.0  # largest cell on a base, over its width
+LEAST_BASE = 4  # fewest cells on a base
+_LEAST_WALL = 24  # fewest cells on a wall
 
 
 @dataclass(frozen=True, eq=False)
 class BaseWake:
-    """Lines of nodes around a section with a base and behind it; see the drawing.
+    """Lines of nodes around and behind a section with a base, as drawn above.
 
-    The `wall` (n, 2) runs clockwise from the lower corner, the `base` (m, 2) from there to the upper one, the
-    wakes (k, 2) from their corners to the outlet; corners are shared bitwise.
+    The `wall` (n, 2) runs clockwise from the lower to the upper corner, the `base` (m, 2) from the lower to
+    the upper corner, and the wakes (k, 2) from their corners to the outlet; corners are bitwise shared.
     """
 
     wall: Floats
@@ -66,12 +66,12 @@ class BaseWake:
 
 
 def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float | None) -> BaseWake:
-    """Return what the C grid of a `body` with a blunt trailing edge begins at.
+    """Return the lines at which the C grid of a `body` with a blunt trailing edge starts.
 
-    First cells off wall and base are `first` high, in the unit of the body, and cells along the base and the
-    wake grow by `growth` at most.
+    `first` is the first-cell height at wall and base, in the unit of the body; `growth` limits the growth
+    ratio along base and wake.
 
-    Raises InputError: counts of nodes that do not suffice.
+    Raises InputError: too few nodes.
     """
     ratio = 1.0 + _WITHIN * ((growth or GROWTH) - 1.0)
     points = body.curve.points
@@ -102,7 +102,7 @@ def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float |
 def _wall(body: Airfoil, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
     """Return the nodes (cells + 1, 2) of the wall, from the lower corner of the base round to the upper one.
 
-    Cells at the corners are as long as those of the wake behind them, and grow by `ratio`.
+    At the corners cells have the length `first` of the first wake cells, and grow by `ratio`.
     """
     if sampling.spacing not in ("auto", "curvature"):
         problem = f"{sampling.spacing} spacing around a base, from which a C grid has two wakes"
@@ -125,7 +125,7 @@ def _base(
     every: tuple[int, ...],
     growth: float | None,
 ) -> Floats:
-    """Return the nodes (m, 2) of the base from its lower corner, growing from `first` at both of them."""
+    """Return the nodes (m, 2) of the base from its lower corner; cells grow from `first` at both corners."""
     a, b = corners
     width = float(np.hypot(*(b - a)))
     fewest = _fewest(width, first, ratio)
@@ -145,7 +145,7 @@ def _base(
 
 
 def _fewest(width: float, first: float, ratio: float) -> int:
-    """Return the fewest cells of a base that grow by at most `ratio`, none larger than `_COARSEST`."""
+    """Return the fewest cells of a base with growth at most `ratio`, none larger than `_COARSEST`."""
     cells = LEAST_BASE
     while True:
         steps = np.empty(cells)
@@ -157,7 +157,7 @@ def _fewest(width: float, first: float, ratio: float) -> int:
 
 
 def end_fractions(ends: Floats, cells: int) -> Floats:
-    """Return places (m, cells + 1) from 0 to 1 with first and last steps `ends` (m,), at most 1/cells."""
+    """Return nodes (m, cells + 1) from 0 to 1 with first and last steps `ends` (m,), at most 1/cells."""
     out = np.zeros((len(ends), cells + 1))
     steps = np.empty(cells)
     for row, end in zip(out, ends.tolist(), strict=True):
@@ -176,7 +176,7 @@ def _wake_cells(
     every: tuple[int, ...],
     growth: float | None,
 ) -> int:
-    """Return the cells of each wake line."""
+    """Return the number of cells of each wake line."""
     if sampling.wake_nodes is not None:
         return sampling.wake_nodes - 1
     cells = cells_for_growth(first, length, ratio) + 6  # growth sets in slowly, and ends a little faster
@@ -186,7 +186,7 @@ def _wake_cells(
 
 
 def _whole(cells: int, steps: tuple[int, ...]) -> int:
-    """Return at least so many cells, a multiple of one of the `steps`."""
+    """Return the least number that is at least `cells` and a multiple of one of the `steps`."""
     step = first_within(steps, 0.25 * cells)
     return -(-cells // step) * step
 
@@ -194,7 +194,7 @@ def _whole(cells: int, steps: tuple[int, ...]) -> int:
 def _lines(
     wall: Floats, axis: Floats, chord: float, length: float, first: float, cells: int
 ) -> tuple[Floats, Floats]:
-    """Return the lower and the upper wake line (cells + 1, 2), both of which end at the outlet."""
+    """Return the lower and the upper wake line (cells + 1, 2), from the base to the outlet."""
     normal = np.array([-axis[1], axis[0]])
     corners, ways = (wall[0], wall[-1]), (wall[0] - wall[1], wall[-1] - wall[-2])
     slopes = []

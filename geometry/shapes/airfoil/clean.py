@@ -1,6 +1,6 @@
-"""From the points of an airfoil file to a clean ring that starts at the trailing edge.
+"""From the points of an airfoil file to a clean closed polygon that starts at the trailing edge.
 
-No point is moved, except that the two ends of a negligible trailing-edge gap become their mean.
+Points are not moved, except that the two ends of a negligible trailing-edge gap are replaced by their mean.
 """
 
 from __future__ import annotations
@@ -20,25 +20,25 @@ SHARP_GAP = 2e-4
 SAME_POINT = 1e-5
 """Points closer than this, in extents, are one: their direction is noise of the last digit."""
 ON_BASE = 5e-5
-"""How far, in chords, a point may lie off the straight base and still be dropped as a point of it."""
+"""Distance, in chords, from the straight base up to which a point is dropped as lying on it."""
 MOST_CORNERS = 12
 """More corners than this, the trailing edge's among them, are noise of the points and count as none."""
-_CORNER = np.radians(35.0)  # turn of a point from which on it is a corner of the trailing edge
-_EDGE = np.radians(120.0)  # turn from which on one corner is a sharp edge by itself
-_REACH = 8  # points from the first and the last among which the corners of a base are sought
+_CORNER = np.radians(35.0)  # least turn of a corner of the trailing edge
+_EDGE = np.radians(120.0)  # least turn of a single corner that is a sharp edge
+_REACH = 8  # number of first and of last points among which the corners of a base are sought
 
 
 @dataclass(frozen=True, eq=False)
 class CleanSection:
-    """A clean ring of points (n, 2), clockwise, closed by its trailing edge.
+    """A clean closed polygon (n, 2), clockwise from the trailing edge.
 
-    A sharp section begins with its trailing edge; a blunt one begins with the lower corner of its base and
-    ends with the upper one, the base being the segment from last to first.
+    A sharp section begins with its trailing edge. A blunt one begins with the lower corner of its base and
+    ends with the upper one; the base is the segment from the last point to the first.
     """
 
     points: Floats
     index: Indices
-    """(n,) which given point each is."""
+    """(n,) index of each point among the given ones."""
     blunt: bool
     gap: float
     """Distance between the two ends of the surfaces, before a sharp edge was closed."""
@@ -48,7 +48,7 @@ class CleanSection:
     """Given points that stood in the wrong order among their neighbours."""
 
     def moved_apart(self) -> CleanSection:
-        """Return the section with surfaces that nearly touch moved apart (`separate_surfaces`)."""
+        """Return the section with nearly touching surfaces moved apart (`separate_surfaces`)."""
         from meshonet.geometry.shapes.airfoil.separate_surfaces import moved_apart
 
         edge = 0.5 * (self.points[0] + self.points[-1]) if self.blunt else self.points[0]
@@ -56,10 +56,10 @@ class CleanSection:
 
 
 def clean_section(points: Floats) -> CleanSection:
-    """Return the section that `points` (n, 2) describe, whichever way they run around it.
+    """Return the section described by `points` (n, 2), of either orientation.
 
-    They are taken to start at the trailing edge unless the other end is clearly the sharper one. Repeated
-    points and points on a straight base are dropped, and neighbours in the wrong order are swapped.
+    They are assumed to start at the trailing edge unless the other end is clearly sharper. Repeated points
+    and points on a straight base are dropped; neighbours in the wrong order are swapped.
 
     Raises InputError: fewer than 4 distinct points, no area, ends too far apart to be a trailing edge.
     """
@@ -86,7 +86,7 @@ def clean_section(points: Floats) -> CleanSection:
 
 
 def _distinct(points: Floats, tolerance: float) -> Indices:
-    """Return indices of points that differ from their neighbour, both ends kept, the same from either end."""
+    """Return indices of points that differ from their neighbours; both ends are kept, in either direction."""
     n = len(points)
     if n < 2:
         return np.arange(n)
@@ -101,10 +101,10 @@ def _distinct(points: Floats, tolerance: float) -> Indices:
 
 
 def _in_order(points: Floats, index: Indices) -> Indices:
-    """Return indices with neighbours swapped where they clearly stand in the wrong order.
+    """Return indices with neighbouring points swapped where they are clearly in the wrong order.
 
-    Swapping them shortens the way by more than their distance: 0 2 1 3 on a line by twice that, the two
-    sides of a thin edge by next to nothing.
+    That is where swapping shortens the polygon by more than their distance. On a line, 0 2 1 3 becomes
+    shorter by twice that; swapping the two sides of a thin edge hardly changes the length.
     """
     order = index.copy()
     for _ in range(50):
@@ -119,7 +119,7 @@ def _in_order(points: Floats, index: Indices) -> Indices:
 
 
 def _thinned(points: Floats, tolerance: float) -> Indices:
-    """Return indices of points farther than `tolerance` from the one kept before."""
+    """Return indices of points farther than `tolerance` from the last point that was kept."""
     step = np.hypot(*np.diff(points, axis=0).T)
     if (step > tolerance).all():
         return np.arange(len(points))
@@ -131,7 +131,7 @@ def _thinned(points: Floats, tolerance: float) -> Indices:
 
 
 def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> CleanSection:
-    """Return the section of a clockwise ring whose points start, or whose gap lies, where the file starts."""
+    """Return the section of a clockwise polygon that starts, or has its gap, where the file starts."""
     seam = 0.5 * (ring[0] + ring[-1]) if open_gap else ring[0]
     nose = int(np.argmax(norms(ring - seam)))
     chord = float(norms(ring[nose] - seam))
@@ -147,7 +147,7 @@ def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> CleanSectio
     elif _starts_at_nose(ring, start, nose, open_gap):
         edge = nose
     elif not open_gap and turn[0] < _CORNER < turn[tail]:
-        edge = tail  # the points start beside their edge, or on its base
+        edge = tail  # the points start next to their edge, or on its base
     else:
         edge = -1
     if edge >= 0:
@@ -157,7 +157,7 @@ def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> CleanSectio
 
 
 def _starts_at_nose(ring: Floats, start: int, far_end: int, open_gap: bool) -> bool:
-    """Say whether the place where the points start is round and the other end is clearly the edge."""
+    """Return whether the points start at a round end, and the other end is clearly the trailing edge."""
     here, there = _sharpness(ring, start, far_end), _sharpness(ring, far_end, start)
     if here[0] >= 0.6:
         return False
@@ -167,7 +167,7 @@ def _starts_at_nose(ring: Floats, start: int, far_end: int, open_gap: bool) -> b
 
 
 def _has_base(ring: Floats, k: int) -> bool:
-    """Say whether two neighbouring points near point k turn by more than 50 degrees each and 130 together."""
+    """Return whether two adjacent points near point k turn by more than 50 degrees each, 130 in total."""
     n = len(ring)
     turn = -turning(ring, closed=True)
     near = np.arange(k - 3, k + 4) % n
@@ -176,7 +176,7 @@ def _has_base(ring: Floats, k: int) -> bool:
 
 
 def _sharpness(ring: Floats, end: int, far_end: int) -> tuple[float, float]:
-    """Return (p, t): from ring[end] on thickness grows like distance to the power p, and is t at 5 % chord.
+    """Return (p, t): behind ring[end] thickness grows like distance to the power p, and is t at 5 % chord.
 
     p is about 0.35 at a round leading edge, 0.85 at a wedge, 1.5 at a cusp, measured between 5 % and 20 %.
     """
@@ -195,7 +195,7 @@ def _sharpness(ring: Floats, end: int, far_end: int) -> tuple[float, float]:
 
 
 def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> CleanSection:
-    """Return the section of a ring that starts at its trailing edge: find out whether that is a base."""
+    """Return the section of a polygon that starts at its trailing edge, which may or may not be a base."""
     gap = float(norms(ring[0] - ring[-1])) if open_gap else 0.0
     if open_gap and gap < SHARP_GAP * chord:
         ring = ring.copy()
@@ -226,7 +226,7 @@ def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> CleanS
 
 
 def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> CleanSection:
-    """Return the section with its corners; a coarsely given round leading edge is none, a sharp one is."""
+    """Return the section with its corners; a sharp leading edge is one, a coarsely given round one is not."""
     edge = 0.5 * (ring[0] + ring[-1]) if blunt else ring[0]
     distance = norms(ring - edge)
     nose = int(np.argmax(distance))
@@ -241,7 +241,7 @@ def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> CleanSect
     corners = set(far.tolist() if len(far) <= MOST_CORNERS else [])
     if turn[nose] > np.radians(60.0) and _sharpness(ring, nose, 0)[0] > 0.7:
         corners.add(nose)
-    for k in (nose - 1, nose):  # a flat front: two corners side by side, and straight on from both
+    for k in (nose - 1, nose):  # a flat nose: two adjacent corners, with straight lines from both
         around = turn[np.arange(k - 1, k + 3) % n]
         if around[1:3].min() > np.radians(70.0) and around[[0, 3]].max() < np.radians(15.0):
             corners |= {k, (k + 1) % n}
@@ -253,7 +253,7 @@ def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> CleanSect
 
 
 def _stretch(start: int, stop: int, n: int) -> Indices:
-    """Return the points of a ring of n from `start` on to `stop`, both included."""
+    """Return the indices from `start` to `stop`, both included, in a closed polygon of n points."""
     return np.arange(start, start + (stop - start) % n + 1) % n
 
 

@@ -5,13 +5,12 @@
     NACA 2412                      NACA 23012                          NACA 23112
          | | '- thickness, %            | |||'- thickness, %                  |
          | '--- its place, tenths       | ||'-- 0 simple mean line            '-- 1 reflexed
-         '----- camber, %               | |'--- place of the camber, 1 to 5 (twentieths)
+         '----- camber, %               | |'--- position of the camber, 1 to 5 (twentieths)
                                         '-'---- design lift coefficient in 3/20
 
-The thickness polynomial leaves a base of 0.0021 times the thickness in percent, in chords per hundred; with
-``-sharp`` behind the digits its last coefficient closes it. Jacobs, Ward and Pinkerton, NACA Report 460
-(1933); Jacobs and Pinkerton, NACA Report 537 (1935); reflexed mean lines as in Ladson and Brooks, NASA TM
-X-3284 (1975).
+The thickness polynomial leaves a base of 0.0021 chords for a thickness of 1 chord; with ``-sharp`` after the
+digits its last coefficient is changed to close it. Jacobs, Ward and Pinkerton, NACA Report 460 (1933); Jacobs
+and Pinkerton, NACA Report 537 (1935); reflexed mean lines as in Ladson and Brooks, NASA TM X-3284 (1975).
 """
 
 import re
@@ -41,9 +40,9 @@ _KNOWN = "use four digits such as 2412 or five such as 23012, with -sharp for a 
 
 
 def naca(designation: str) -> Airfoil:
-    """Return the airfoil of a designation such as ``2412``, ``23012`` or ``0012-sharp``, chord 1.
+    """Return the airfoil of a designation such as ``2412``, ``23012`` or ``0012-sharp``, with chord 1.
 
-    Raises InputError: a designation that stands for no airfoil.
+    Raises InputError: a designation that is not a known airfoil.
 
     >>> naca("2412").name, naca("0012").blunt, naca("0012-sharp").blunt
     ('NACA 2412', True, False)
@@ -57,7 +56,7 @@ def naca(designation: str) -> Airfoil:
 def naca_points(designation: str, n: int = POINTS) -> Floats:
     """Return points (2 n - 1, 2) from the trailing edge over the upper side to the leading edge and back.
 
-    There are `n` a surface, by the cosine law in x.
+    Each surface has `n` points, with cosine spacing in x.
     """
     digits, sharp = _split(designation)
     x = 0.5 - 0.5 * cos(np.linspace(0.0, np.pi, n))
@@ -70,9 +69,10 @@ def naca_points(designation: str, n: int = POINTS) -> Floats:
 
 
 def thickness(x: Floats, ratio: float, *, sharp: bool = False) -> Floats:
-    """Return half the thickness in chords at places x (any shape, 0 to 1) of a section `ratio` thick.
+    """Return the half thickness in chords at x (any shape, 0 to 1) of a section with thickness `ratio` = t.
 
-    y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴), or 0.1036 at the end when sharp.
+    y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴), with 0.1036 in place of 0.1015 if
+    sharp.
     """
     last = -0.1036 if sharp else -0.1015
     inner = 0.2969 * np.sqrt(x) + x * (-0.1260 + x * (-0.3516 + x * (0.2843 + x * last)))
@@ -101,7 +101,7 @@ def _split(designation: str) -> tuple[str, bool]:
 
 
 def _mean_line(digits: str, x: Floats) -> tuple[Floats, Floats]:
-    """Return camber and its slope at x (n,)."""
+    """Return the camber and its slope at x (n,)."""
     if len(digits) == 4:
         m, p = int(digits[0]) / 100, int(digits[1]) / 10
         if m == 0:

@@ -1,4 +1,4 @@
-"""The smooth curve through the points of an airfoil, and the place on it farthest from the trailing edge."""
+"""The smooth curve through the points of an airfoil, and its point farthest from the trailing edge."""
 
 import math
 from collections.abc import Sequence
@@ -19,17 +19,17 @@ _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31
 DEPARTURE, FAR_OFF = 1e-3, 5e-3
 """Distance in chords beyond which the curve counts as another wall than the lines between its points."""
 RIPPLES = 10
-"""Changes of sign from which a section is said to ripple; those that were drawn to be have six at most."""
-_FLAT = 0.1  # curvature, over one chord, below which its sign counts for nothing
-OBLIQUE = 30.0  # degrees off the normal of the chord from which on a base is called oblique
-MOST_BASE = 0.25  # chords; a wider last piece of a surface is none
-_PARTS = 128  # parts into which a stretch is cut to find the place farthest from the trailing edge
+"""Least number of sign changes of the curvature of a section that ripples; designed ones have at most six."""
+_FLAT = 0.1  # curvature times chord below which its sign is ignored
+OBLIQUE = 30.0  # least angle in degrees between a base and the normal of the chord to be called oblique
+MOST_BASE = 0.25  # chords; a longer last segment of a surface is no base
+_PARTS = 128  # parts of a stretch in the search for the point farthest from the trailing edge
 
 
 def section_curve(section: CleanSection, places: Sequence[str]) -> tuple[Curve, list[str]]:
-    """Return the curve through a section's points, straight where it would otherwise cross itself, and notes.
+    """Return the curve through a section's points, and notes; it is straight where it would cross itself.
 
-    Points whose surfaces touch or cross by rounding are moved apart first
+    Surfaces that touch or cross because of rounding are moved apart first
     (`meshonet.geometry.shapes.airfoil.separate_surfaces`).
     """
     notes: list[str] = []
@@ -44,7 +44,7 @@ def section_curve(section: CleanSection, places: Sequence[str]) -> tuple[Curve, 
             raise _crossed(section, crossing, places)
         notes.append(moved_note(before, section))
     points, corners = section.points, section.corners
-    if section.blunt:  # node 0 is the middle of the base
+    if section.blunt:  # point 0 is the middle of the base
         points, corners = np.concatenate([[0.5 * (points[0] + points[-1])], points]), corners + 1
     straight = np.zeros(len(points), dtype=bool)
     for left in reversed(range(8)):
@@ -62,7 +62,7 @@ def section_curve(section: CleanSection, places: Sequence[str]) -> tuple[Curve, 
 
 
 def moved_note(before: CleanSection, section: CleanSection) -> str:
-    """Return a note of how far the surfaces of `section` were moved apart."""
+    """Return a note that says how far the surfaces of `section` were moved apart."""
     off = section.points - before.points
     edge = before.points[0]
     chord = float(np.hypot(*(before.points - edge).T).max())
@@ -86,7 +86,7 @@ def sign_changes(curve: Curve, chord: float) -> int:
 
 
 def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str, ...]:
-    """Return notes of an oblique base, ripples, and a curve that leaves the straight lines of its points."""
+    """Return notes on an oblique base, ripples, and a curve that deviates from its points' polygon."""
     notes = _oblique_base(section, chord)
     count = sign_changes(curve, chord)
     if count >= RIPPLES:
@@ -102,7 +102,7 @@ def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str,
 
 
 def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
-    """Return a note where the base is far from square to the chord; a sharp section may end in one piece."""
+    """Return a note if the base is far from normal to the chord; a sharp section may end in one piece."""
     points, last = section.points, len(section.points) - 1
     others = [(last, "")] if section.blunt else [(1, "lower"), (last, "upper")]
     for other, side in others:
@@ -123,7 +123,7 @@ def _oblique_base(section: CleanSection, chord: float) -> tuple[str, ...]:
 
 
 def departure(curve: Curve) -> float:
-    """Return the largest distance of a curve from the straight lines between its points, in its unit."""
+    """Return the largest distance of a curve from the polygon through its points, in its unit."""
     ends = np.concatenate([curve.points, curve.points[:1]]) if curve.closed else curve.points
     starts, ways = ends[:-1, None], np.diff(ends, axis=0)[:, None]
     inside = curve.polyline(_CUTS)[: len(ways) * len(_CUTS)].reshape(len(ways), len(_CUTS), 2) - starts
@@ -132,7 +132,7 @@ def departure(curve: Curve) -> float:
 
 
 def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -> InputError:
-    """Return the error for surfaces that cross, naming the place and the points on both sides of it."""
+    """Return the error for surfaces that cross, with the place and the points around it."""
     n = len(section.points)
     ends = [section.index[k % n] for c in (crossing.first, crossing.second) for k in (c, c + 1)]
     a, b, c, d = (places[k] if places else f"point {k}" for k in ends)
@@ -144,10 +144,10 @@ def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -
 
 
 def farthest_arc(curve: Curve, point: Floats) -> float:
-    """Return the arc length of the place on the curve that is farthest from `point`.
+    """Return the arc length of the point of the curve that is farthest from `point`.
 
-    Of several equally far places (a flat front) it is the middle one, so that a symmetric section keeps
-    its symmetry. Where the distance is smooth, its derivative is brought to zero.
+    Of several equally far points (a flat nose) it is the middle one, so that a symmetric section stays
+    symmetric. Where the distance is smooth, the zero of its derivative is found.
     """
     s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])
     s = np.sort(s)
@@ -161,7 +161,7 @@ def farthest_arc(curve: Curve, point: Floats) -> float:
     slopes = _slopes(curve, point, arcs := np.array([low, high]))
     if slopes[0] <= 0 or slopes[1] >= 0:
         return float(s[best[0]])
-    for _ in range(2):  # parts of parts, all places at once: a call costs more than a place
+    for _ in range(2):  # subdivision, all parts at once: a call costs more than a point
         arcs = np.linspace(low, high, _PARTS + 1)
         slopes = _slopes(curve, point, arcs)
         k = max(int(np.argmax(slopes <= 0)), 1)
@@ -171,6 +171,6 @@ def farthest_arc(curve: Curve, point: Floats) -> float:
 
 
 def _slopes(curve: Curve, point: Floats, arcs: Floats) -> Floats:
-    """Return by how much half the squared distance from `point` grows (m,) along the curve at `arcs` (m,)."""
+    """Return half the derivative (m,) of the squared distance from `point` along the curve at `arcs` (m,)."""
     points, ways = curve.at(arcs) - point, curve.tangent(arcs)
     return np.asarray(points[:, 0] * ways[:, 0] + points[:, 1] * ways[:, 1])

@@ -1,7 +1,7 @@
-"""Surfaces that touch or cross by rounding of their coordinates, moved apart.
+"""Moves apart surfaces that touch or cross because of rounded coordinates.
 
-Where a section is thinner than the digits of its file resolve, as at a cusped trailing edge, the two surfaces
-coincide or cross. Points there are moved across the chord, by half the missing thickness each and at most
+Where a section is thinner than the digits of its file resolve, as at a cusped trailing edge, its surfaces
+coincide or cross. Points there are moved normal to the chord, each by half the missing thickness and at most
 `MOST` chords.
 """
 
@@ -10,22 +10,21 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, along_and_across
 
 MOST = 4.5e-5
-"""Chords by which a point may move."""
-_WEDGE = 0.02  # near an edge the least thickness grows from nothing by this much of the distance
+"""Largest displacement of a point, in chords."""
+_WEDGE = 0.02  # near an edge the least thickness is this fraction of the distance from it
 
 
 def moved_apart(ring: Floats, nose: int) -> Floats:
-    """Return a ring (n, 2) with its surfaces moved apart, by `MOST` chords each at the most.
+    """Return a closed polygon (n, 2) with its surfaces moved apart, each by at most `MOST` chords.
 
-    They are then twice `MOST` chords apart, or as far as this allows.
-
-    It runs clockwise from the trailing edge, which stays, as does the leading edge, the point `nose`.
+    They are then 2 `MOST` chords apart, or less if this limit does not allow that. The polygon runs clockwise
+    from the trailing edge; that point and the leading edge, `nose`, are not moved.
     """
     edge = ring[0]
     axis = ring[nose] - edge
     chord = float(np.hypot(*axis))
     axis = axis / chord
-    across = np.array([axis[1], -axis[0]])  # to the upper side
+    across = np.array([axis[1], -axis[0]])  # towards the upper side
     along, below = along_and_across(ring - edge, axis)
     height = -below
     lower = np.arange(nose + 1)

@@ -1,4 +1,4 @@
-"""Sections whose coordinates ripple, smoothed.
+"""Smoothing of sections whose coordinates have ripples.
 
 Splines are those of P. Dierckx (FITPACK, through SciPy), with the fewest knots with which points are met to a
 given sum of squares: Curve and Surface Fitting with Splines (1993).
@@ -14,15 +14,15 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 
-_FEWEST = 12  # points of a stretch that is smoothed
-_HALVINGS = 40  # of the sum of squares in which the tolerance is sought
+_FEWEST = 12  # fewest points of a stretch that is smoothed
+_HALVINGS = 40  # bisections of the sum of squares in search of the tolerance
 _ENDS = 1e3  # weight of the ends of a stretch, which are corners
 
 
 def smooth_ring(curve: Curve, blunt: bool, limit: float) -> tuple[Floats, float]:
-    """Return the points (n, 2) of a section on splines within `limit` of them, and the farthest move.
+    """Return the points (n, 2) of a section moved to splines within `limit`, and the largest displacement.
 
-    Corners stay. The `curve` of a `blunt` section begins in the middle of its base, which is no point of it.
+    Corners are kept. The `curve` of a `blunt` section begins at the middle of its base, which is omitted.
 
     Raises InputError: SciPy is not installed.
     """

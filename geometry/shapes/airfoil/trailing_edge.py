@@ -1,16 +1,16 @@
-"""Blunt trailing edges with their two corners rounded off, or closed by a wedge behind them.
+"""Blunt trailing edges with rounded corners, or closed by a wedge.
 
 ::
 
-    upper surface ----.       The fillet, a cubic Bezier curve, leaves the surface at `along` from the corner
-                       )      and meets the base at `across` from it: 0.9 of half the base, capped, and twice
-                       |      that along the surface. The rest of the outline stays.
+    upper surface ----.       The fillet, a cubic Bezier curve, leaves the surface at a distance `along` from
+                       )      the corner and meets the base at `across` from it: 0.9 of half the base, with an
+                       |      upper limit; `along` is twice that. The rest of the outline is unchanged.
     base               |
 
-    upper surface ----.__          Both surfaces go on as cubics, leaving along their own directions, to a tip
-                     |   `--.._    `REACH` bases behind the middle of the base, where the mean of the two
-    base             |     __..--  directions points; nearer where they would meet before. The given points
-    lower surface ---+--``         stay; those on the base are dropped.
+    upper surface ----.__          Both surfaces continue as cubics, tangentially, to a tip behind the middle
+                     |   `--.._    of the base, in the mean of their two directions: `REACH` base widths away,
+    base             |     __..--  or nearer if the surfaces would meet before. The given points stay, except
+    lower surface ---+--``         those on the base, which are dropped.
 """
 
 import math
@@ -23,28 +23,28 @@ from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import arctan2, power, product
 from meshonet.geometry.spacing.size_field import GROWTH, limited_size
 
-_ACROSS = 0.9  # part of half the base that a fillet takes
-_ALONG = 2.0  # its length along the surface, in that along the base
-_CAP = 5e-3  # largest part of the base that a fillet takes, in chords
-_PULL = 0.6  # where the control points of the fillet are between its ends (0) and the corner (1)
-_POINTS = 24  # on a fillet
+_ACROSS = 0.9  # fraction of half the base that a fillet takes
+_ALONG = 2.0  # length of the fillet along the surface, over that along the base
+_CAP = 5e-3  # upper limit of the length that a fillet takes of the base, in chords
+_PULL = 0.6  # position of the fillet's control points between its ends (0) and the corner (1)
+_POINTS = 24  # points on a fillet
 _TURN = 0.5
 """Nodes of half a base that turns by 90 degrees that follow its turning, for each that follows its length."""
-_MORE = 1.3  # factor up to which cells are added so that neither half has fewer than wanted
-_NEAR = 0.1  # chords from the corner within which the surface is given by points taken from the curve
+_MORE = 1.3  # factor up to which cells are added so that neither half has too few
+_NEAR = 0.1  # chords from the corner within which the surface gets new points, taken from the curve
 REACH = 4.0
 """Largest length of the wedge in widths of the base: 14 degrees at the tip between parallel surfaces."""
 LEAST = 1.0
-"""The same at least: surfaces that would meet before are bent outwards, with a corner each."""
+"""Least length in the same unit: surfaces that would meet before are bent outwards, with a corner each."""
 _WEDGE_POINTS = 9  # on each side of a wedge
 
 
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
-    """Return the curve of a blunt section with its trailing corners rounded, and where the rounding ends.
+    """Return the curve of a blunt section with rounded trailing corners, and the arc length of their end.
 
-    The closed curve's first point is the middle of the base, its second and its last are the corners. The
-    new one begins there too, leaves the rounded part at the arc length returned and comes back to it as far
-    before its end.
+    The first point of the closed curve is the middle of the base, the second and the last are its corners.
+    The new curve also begins at the middle of the base; it is rounded up to the arc length returned, and over
+    the same length before its end.
     """
     length, half = curve.length, float(curve.knots[1])
     across = min(_ACROSS * half, _CAP * chord)
@@ -66,20 +66,20 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
     """Return distances (n + 1,) from the middle of a rounded base to its lower end, and to its upper end.
 
-    The density of nodes follows length and turning; turning is averaged over two cells to each side, as the
-    cells where the base turns most are the skewest of the grid. A slanted base turns more at one end, and has
-    more cells there. `curve` and `end` are those of `rounded_base`, `cells`, at least 3, those of a half that
-    turns by a right angle.
+    The node density follows length and turning angle. The latter is averaged over two cells on each side,
+    since the cells where the base turns most are the most skewed of the grid. An oblique base turns more at
+    one end, which gets more cells. `curve` and `end` are those of `rounded_base`; `cells`, at least 3, is the
+    number for a half that turns by 90 degrees.
     """
     per_cell = 64
-    n = per_cell * cells  # on either half; place n is the middle
+    n = per_cell * cells  # on either half; index n is the middle
     s = np.linspace(-end, end, 2 * n + 1)
     way = curve.tangent(s)
     turn = np.abs(np.diff(np.unwrap(arctan2(way[:, 1], way[:, 0]))))
     reach = 2 * per_cell
     ends = [np.full(reach, part.mean()) for part in (turn[:per_cell], turn[-per_cell:])]
     total = np.concatenate([[0.0], np.cumsum(np.concatenate([ends[0], turn, ends[1]]))])
-    around = total[2 * reach :] - total[: -2 * reach]  # two cells to each side of every place
+    around = total[2 * reach :] - total[: -2 * reach]  # two cells on each side of every point
     turn = (around[1:] + around[:-1]) / (4 * reach)
     weight = 1.0 + _TURN * turn * (2.0 * n / np.pi)
     size = limited_size(s[1:], (1.0 + _TURN) * end / cells / weight, GROWTH)
@@ -87,7 +87,7 @@ def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
     halves = count[n] - count[n::-1], count[n:] - count[n]
     more = min(max(cells / float(min(halves[0][-1], halves[1][-1])), 1.0), _MORE)
     upper, lower = (max(3, round(more * float(half[-1]))) for half in halves)
-    # halves of 12.6 and 15.4 make 13 and 15 cells without a step in size between them
+    # halves of 12.6 and 15.4 become 13 and 15 cells without a jump of size between them
     places = np.arange(-upper, lower + 1.0)
     knots, counts = np.array([-upper, 0.0, lower]), np.array([-halves[0][-1], 0.0, halves[1][-1]])
     distances = np.interp(monotone_cubic(knots, counts, places), count - count[n], s)
@@ -96,7 +96,7 @@ def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
 
 
 def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:
-    """Return points (n, 2) from the base to the surface, both ends on the curve."""
+    """Return points (n, 2) from the base to the surface, with both ends on the curve."""
     a, c, b = curve.at(np.array([begin, corner, end]))
     p, q = a + _PULL * (c - a), b + _PULL * (c - b)
     u = np.linspace(0.0, 1.0, _POINTS)[:, None]
@@ -105,16 +105,16 @@ def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:
 
 
 def wedged_base(points: Floats, tangents: tuple[Floats, Floats]) -> Floats:
-    """Return the ring (m, 2) of a blunt section, closed by a wedge; it starts at the tip.
+    """Return the closed polygon (m, 2) of a blunt section with a wedge added; it starts at the tip.
 
-    The points (n, 2) run clockwise from the lower corner of the base to the upper one; the `tangents` are the
-    unit directions (2,) in which the lower and the upper surface arrive there.
+    The points (n, 2) run clockwise from the lower to the upper corner of the base; `tangents` are the unit
+    directions (2,) in which the lower and the upper surface end there.
     """
     lower, upper = tangents
     gap = float(np.hypot(*(points[0] - points[-1])))
     along = (lower + upper) / np.hypot(*(lower + upper))
     cross = float(lower[1] * upper[0] - lower[0] * upper[1])
-    # tan of half the angle at which the surfaces converge
+    # tangent of half the angle at which the surfaces converge
     closing = cross / (1.0 + float(product(lower, upper)))
     reach = min(REACH, 0.5 / max(closing, 0.5 / REACH))
     reach = max(reach, LEAST)

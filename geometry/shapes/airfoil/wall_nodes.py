@@ -1,13 +1,13 @@
-"""Nodes along the wall of an airfoil: how many cells each stretch gets, and how large they are.
+"""Nodes along the wall of an airfoil: the number of cells of each stretch, and their sizes.
 
 ::
 
     half base | lower side                      nose   upper side                      | half base
     0 ... lower ................................ nose ................................ upper ... length
 
-Both sides get the same number of cells; where that leaves half a cell, one lies astride the nose, so that a
-symmetric section has symmetric nodes at every count. The first cells of the sides are as large as those of
-the base beside them.
+Both sides get the same number of cells. If half a cell is left over, one cell lies astride the nose, so that
+a symmetric section has symmetric nodes for every node count. The first cells of the sides are as large as the
+cells of the base next to them.
 """
 
 import math
@@ -35,13 +35,13 @@ _MANY = 192
 """Cells from which on half a base has at least four: a grid coarsened by four then has the base's corners."""
 _BASE_JUMP = 4.0
 """Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
-_ROUND_CELLS = 14  # fewest cells on half a rounded base, when there are 16 times as many in all
-_BASE_SHARE = 0.35  # largest part of all cells that goes to the base
+_ROUND_CELLS = 14  # fewest cells on half a rounded base, if there are 16 times as many in total
+_BASE_SHARE = 0.35  # largest fraction of all cells on the base
 
 
 @dataclass(frozen=True)
 class Stations:
-    """What the distribution of nodes depends on: arc lengths on the curve of an airfoil, and two lengths."""
+    """What the node distribution depends on: arc lengths on an airfoil's curve, chord and nose radius."""
 
     curve: Curve
     half_base: float
@@ -56,7 +56,7 @@ class Stations:
 
 @dataclass(frozen=True)
 class WallCells:
-    """Cells of half the base and of a side, and the steps at the trailing and at the leading edge."""
+    """Number of cells on half the base and on a side, and the cell sizes at trailing and leading edge."""
 
     half: int
     cells: float
@@ -70,13 +70,13 @@ class WallCells:
 def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
 
-    Spacings: ``conformal`` has equal angles of the circle that the section is an image of
-    (`meshonet.geometry.conformal.spacing`); ``tanh`` and ``auto`` stretch each side between a step at its two
-    edges; ``cosine`` is the half circle's on each side, or ``tanh`` with its end steps where one is given or
-    the edge is blunt; ``uniform`` has equal steps on a side; ``curvature`` follows
+    Spacings: ``conformal`` has equal angles on the circle that the section is mapped to
+    (`meshonet.geometry.conformal.spacing`); ``tanh`` and ``auto`` stretch each side between the cell sizes at
+    its two edges; ``cosine`` is cosine spacing on each side, or ``tanh`` with the same end cells if a cell
+    size is given or the trailing edge is blunt; ``uniform`` has equal cells on a side; ``curvature`` follows
     `meshonet.geometry.spacing.size_field`.
 
-    `le_spacing` and `te_spacing` are met to 1 %.
+    `le_spacing` and `te_spacing` are met within 1 %.
 
     Raises InputError: too few nodes, or steps that cannot be met with them.
     """
@@ -122,9 +122,9 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
 
 
 def arcs_to_corners(stations: Stations, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
-    """Return arc lengths (cells + 1,) from the lower corner of a base to the upper one, by curvature.
+    """Return arc lengths (cells + 1,) from the lower to the upper corner of a base, by curvature.
 
-    Cells at the corners are `first` long, unless `te_spacing` says otherwise, and grow by `ratio` at most.
+    Cells at the corners have length `first`, unless `te_spacing` is given, and grow by at most `ratio`.
     """
     from meshonet.geometry.spacing.size_field import arcs_by_curvature
 
@@ -143,9 +143,9 @@ def arcs_to_corners(stations: Stations, cells: int, sampling: Sampling, first: f
 
 
 def _on_inner_corners(arcs: Floats, stations: Stations, steps: tuple[int, ...]) -> Floats:
-    """Return the arcs with the corners of the two sides on nodes, if possible multiples of the first step.
+    """Return the arcs with corners inside the two sides on nodes, if possible multiples of the first step.
 
-    Those of the trailing edge are there already.
+    The corners of the trailing edge are already on nodes.
     """
     corners = stations.curve.corners
     inside = corners[(corners > stations.half_base) & (corners < stations.upper)]
@@ -154,7 +154,7 @@ def _on_inner_corners(arcs: Floats, stations: Stations, steps: tuple[int, ...]) 
 
 
 def _asked_half(cells: int, nodes: int, sampling: Sampling) -> int:
-    """Return the cells on half the base that is to have so many `nodes`.
+    """Return the number of cells on half of a base with `nodes` nodes.
 
     Raises InputError: there is no node in its middle, or its cells leave too few for the sides.
     """
@@ -174,7 +174,7 @@ def _asked_half(cells: int, nodes: int, sampling: Sampling) -> int:
 
 
 def _plan(stations: Stations, cells: int, sampling: Sampling) -> WallCells:
-    """Return how the cells are shared out and which steps they start from."""
+    """Return the numbers of cells of base and sides, and the cell sizes at their ends."""
     wanted_te = sampling.te_spacing and sampling.te_spacing * stations.chord
     wanted_le = sampling.le_spacing and sampling.le_spacing * stations.chord
     plan = _natural(stations, WallCells(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
@@ -208,10 +208,10 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> WallCells:
 
 
 def _natural(stations: Stations, plan: WallCells, sampling: Sampling) -> WallCells:
-    """Return the plan with the steps that the program chooses.
+    """Return the plan with default cell sizes.
 
-    At the nose that of equal angles on the circle which a conformal map makes of the section,
-    sqrt(r c / 2) π / n with the nose radius r; at a sharp edge see `_EDGE_STEP`.
+    At the nose, that of equal angles on the circle of the section's conformal map, sqrt(r c / 2) π / n with
+    nose radius r and chord c; for a sharp edge see `_EDGE_STEP`.
     """
     n = plan.cells
     side = 0.5 * (stations.upper - stations.half_base)
@@ -227,11 +227,12 @@ def _natural(stations: Stations, plan: WallCells, sampling: Sampling) -> WallCel
 
 
 def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tuple[int, float]:
-    """Return the cells of half a base and the size of the one at the corner.
+    """Return the number of cells of half a base and the size of the one at the corner.
 
-    At least 2, more for wider bases (measured: fewer fold at the corners, more make the solver slow); as
-    many as a step of the size asked for needs when growing by 15 % towards the middle. Where the steps beside
-    the base are `fixed`, those on it are not much smaller: cells fold at a corner between very unlike steps.
+    At least 2, more for wider bases (measured: with fewer cells fold at the corners, with more the solver is
+    slow), and as many as `step` requires with a growth of 15 % towards the middle. If the cell size next to
+    the base is `fixed`, cells on it are not much smaller: cells fold at a corner between very different
+    sizes.
     """
     enough = cells >= 48
     fewest = 4 if cells >= _MANY else 2
@@ -248,7 +249,7 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
     from meshonet.geometry.spacing.tanh_law import TanhLaw
 
     for half in range(4, most):
-        # steps go like sech², whose ratio is largest at the corner
+        # cell sizes vary like sech², whose ratio is largest at the corner
         d = TanhLaw(2 * half * 0.5 * step / half_base, 2 * half * 0.5 * step / half_base).stretch
         if d / half * math.tanh(0.5 * d) < math.log(_BASE_GROWTH):
             return half, step
@@ -258,7 +259,7 @@ def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tu
 def _whole_base(
     half_base: float, step: float, asked: int, half: int, steps: tuple[int, ...]
 ) -> tuple[int, float]:
-    """Return the cells of half a base, those `asked` for or a multiple of a step, and the corner one."""
+    """Return the cells of half a base, `asked` or a multiple of a step, and the corner cell's size."""
     every = first_within(steps, half)
     cells = asked or max(every, round(half / every) * every)
     return cells, min(step, half_base / cells) if cells > 1 else half_base
@@ -278,7 +279,7 @@ def _half_base(plan: WallCells, half_base: float) -> Floats:
 
 
 def _side(length: float, plan: WallCells, sampling: Sampling, q: Floats) -> Floats:
-    """Return distances along a side from its trailing edge at the places `q` of 0 to 1."""
+    """Return the distances along a side from its trailing edge at parameters `q` from 0 to 1."""
     ends_set = sampling.te_spacing is not None or sampling.le_spacing is not None
     if plan.cells < 4 and not ends_set:
         return np.asarray(length * q)
