@@ -10,6 +10,8 @@ Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans.
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -25,6 +27,9 @@ from meshonet.solvers.energy.quads import optimise
 FAILURES = 8
 """Trials without gain, one after another, after which the mesh stays as it is."""
 
+PER_CHORD = 14
+"""Chords for each one collapsed beside the first. With wanted sizes each is judged alone: blocks around
+several elements came out worse otherwise."""
 ITERATIONS = (6, 12, 22)
 """Iterations of the functional before a trial is judged, and further ones before it is judged again."""
 
@@ -37,23 +42,20 @@ PER_TRIAL, PER_OPTIMUM = 3, 20
 def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None = None) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
-    `price` is the mean deviation from 90 degrees that a block less may cost; `sizes`, if any, prescribe the
-    lengths of edges.
+    Several of many are collapsed before the next optimum, one if there are `sizes`, which prescribe the
+    lengths of edges. `price` is the mean deviation from 90 degrees that a block less may cost.
     """
 
     def wanted(mesh: QuadMesh) -> Floats | None:
         return sizes.edges(mesh) if sizes else None
 
-    def narrowest_last(blocks: BaseComplex) -> list[int]:
-        return ascending(widths(blocks))[::-1].tolist()
-
-    current, left, failures = base_complex(mesh), float(MOST_WORK), 0
-    best, chords = score(current, price, wanted(mesh)), narrowest_last(current)
-    while chords and failures < FAILURES and left > 0.0:
-        left -= PER_TRIAL * len(current.mesh.quads)
-        trial = _collapsed(current, chords.pop())
+    current, left, count = base_complex(mesh), float(MOST_WORK), 1
+    best, failed = score(current, price, wanted(mesh)), set[int]()
+    while len(failed) < FAILURES and left > 0.0:
+        trial, first, tried = _without(current, failed, count)
+        left -= PER_TRIAL * tried * len(current.mesh.quads)
         if trial is None:
-            continue
+            break
         for iterations in ITERATIONS:
             left -= (PER_OPTIMUM + iterations) * len(trial.mesh.quads)
             optimum = optimise(trial.mesh, iterations=iterations, targets=wanted(trial.mesh))
@@ -62,11 +64,32 @@ def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None =
             if not optimum.valid or less(value, best):
                 break
         if less(value, best):
-            current, best, failures = trial, value, 0
-            chords = narrowest_last(current)
+            current, best, failed = trial, value, set()
+            count = 1 if sizes else min(2 * count, 1 + trial.chords // PER_CHORD)
         else:
-            failures += 1
+            failed |= {first} if count == 1 else set()
+            count = 1
     return current
+
+
+def _without(current: BaseComplex, kept: Collection[int], count: int) -> tuple[BaseComplex | None, int, int]:
+    """Return the blocks without `count` chords, the narrowest but for those `kept`, one after another.
+
+    Fewer where no more can go, None where none can; the number of the first, and how many were tried.
+    """
+    trial, first, tried = None, -1, 0
+    for _ in range(count):
+        for chord in ascending(widths(trial or current)).tolist():
+            if trial is None and chord in kept:
+                continue
+            tried += 1
+            collapsed = _collapsed(trial or current, chord)
+            if collapsed is not None:
+                trial, first = collapsed, chord if trial is None else first
+                break
+        else:
+            break
+    return trial, first, tried
 
 
 def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:
