@@ -106,12 +106,12 @@ def _corners_in_space(grid: Grid, patch: Patch) -> _Corners:
 
 def _corners_of(lines: Iterable[tuple[Side, int, Floats, bool]]) -> _Corners:
     """Return the corners of lines of nodes (n, 2), given as side, first node, nodes, and whether closed."""
-    found: _Corners = []
+    corners: _Corners = []
     for side, first, nodes, ring in lines:
         closed = ring and side in _COUNTED_BACK and np.array_equal(nodes[0], nodes[-1])
         line = nodes[:-1] if closed else nodes
-        found += [(side, first + int(k), line[k]) for k in find_corners(line, closed=closed)]
-    return found
+        corners += [(side, first + int(k), line[k]) for k in find_corners(line, closed=closed)]
+    return corners
 
 
 def _check_corners(corners: _Corners, k: int, kept: int) -> None:

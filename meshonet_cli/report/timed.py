@@ -101,8 +101,8 @@ def delivered(
     size = (
         "{ni} x {nj} nodes" if "ni" in counts else "{blocks} blocks, {cells} cells, {interfaces} interfaces"
     )
-    told = f"{size.format(**counts)}, {text or topology}"
-    return Delivered(item, {**counts, "topology": topology, **facts}, told, notes=tuple(notes))
+    summary = f"{size.format(**counts)}, {text or topology}"
+    return Delivered(item, {**counts, "topology": topology, **facts}, summary, notes=tuple(notes))
 
 
 def _counts(what: Grid | Boundary) -> dict[str, int]:

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 Device = Literal["cpu", "cuda"]
 
 INSTALL_TORCH = (
-    "install it: pip install 'meshonet[train]', without a GPU behind pip install torch "
-    "--index-url https://download.pytorch.org/whl/cpu, which is a tenth as large"
+    "install it: pip install 'meshonet[train]'; without a GPU install PyTorch's CPU wheel first, "
+    "which is a tenth as large"
 )
 """Remedy where torch is not there."""
 STEPS = 3  # Picard steps of "auto" after the strip network
