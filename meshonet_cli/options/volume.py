@@ -37,8 +37,8 @@ def axis_of(text: str | None) -> "AxisLine | None":
 
     named = {"x": "0,0,1,0", "y": "0,0,0,1"}
     words, remedy = named.get(text or "", text), "use x, y or X,Y,DX,DY, e.g. 0,-2,1,0"
-    given = numbers(words, (4,), "an axis", remedy, "axis")
-    return None if given is None else AxisLine(*given)
+    line = numbers(words, (4,), "an axis", remedy, "axis")
+    return None if line is None else AxisLine(*line)
 
 
 @dataclass(frozen=True, kw_only=True)

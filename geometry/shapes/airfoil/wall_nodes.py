@@ -183,8 +183,8 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> WallCells:
         half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, fixed=fixed)
         if not stations.rounded:
             nodes = sampling.base_nodes
-            asked = _asked_half(cells, nodes, sampling) if nodes else 0
-            half, step = _whole_base(stations.half_base, step, asked, half, sampling.corner_steps(cells))
+            half_cells = _asked_half(cells, nodes, sampling) if nodes else 0
+            half, step = _whole_base(stations.half_base, step, half_cells, half, sampling.corner_steps(cells))
         if stations.rounded and not wanted_te and half < min(_ROUND_CELLS, cells // 16):
             half = min(_ROUND_CELLS, cells // 16)
             step = stations.half_base / half
