@@ -79,7 +79,7 @@ def test_finer_copies_go_round_along_the_first_axis() -> None:
 
 def test_numpy_equals_torch() -> None:
     torch = pytest.importorskip("torch")
-    from meshonet.solvers.neural.differentiable.networks import QuadUNet
+    from meshonet.solvers.neural.fit.networks import QuadUNet
 
     held, z = weights(), strips()
     net = QuadUNet(WIDTHS, BLOCKS, around=True).double()

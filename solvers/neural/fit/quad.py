@@ -12,8 +12,8 @@ from torch import Tensor
 
 from meshonet.geometry.arrays import Complexes, Floats, Topology
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.differentiable.networks import QuadUNet
 from meshonet.solvers.neural.fit.loop import Run, Task
+from meshonet.solvers.neural.fit.networks import QuadUNet
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.quad_figures import excess, held_out_figures
 from meshonet.solvers.neural.fit.quad_grids import Quads
@@ -45,7 +45,7 @@ STARTS = 8  # columns that strips begin at in turn: those that the coarsest of f
 
 @dataclass(frozen=True)
 class QuadUNetSizes:
-    """Widths and blocks of `meshonet.solvers.neural.differentiable.networks.QuadUNet`."""
+    """Widths and blocks of `meshonet.solvers.neural.fit.networks.QuadUNet`."""
 
     widths: tuple[int, ...] = (2, 3, 6, 8)
     blocks: tuple[int, ...] = (0, 1, 1, 2)

@@ -11,8 +11,8 @@ from torch import Tensor
 
 from meshonet.geometry.arrays import Complexes
 from meshonet.solvers.conformal.strip import across, harmonic, picard
-from meshonet.solvers.neural.differentiable.networks import StripFNO
 from meshonet.solvers.neural.fit.loop import Run, Task
+from meshonet.solvers.neural.fit.networks import StripFNO
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.model_file import STRIP, write_model

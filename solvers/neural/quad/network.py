@@ -9,7 +9,7 @@ On n = 33, 17, 9 and 5 nodes along each axis, with channels in sets of eight (`s
 
 with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b and down. Expanded
 once, the kernels are those of an ordinary convolutional network, which is compiled
-(`kernels/neural/network.c`). `meshonet.solvers.neural.differentiable.networks` is the same in torch.
+(`kernels/neural/network.c`). `meshonet.solvers.neural.fit.networks` is the same in torch.
 Ronneberger et al., U-Net, MICCAI 2015.
 """
 

@@ -6,7 +6,7 @@ import numpy as np
 import torch
 
 from meshonet.solvers.conformal.strip import COLUMNS
-from meshonet.solvers.neural.differentiable.networks import StripFNO
+from meshonet.solvers.neural.fit.networks import StripFNO
 from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS
 from meshonet.solvers.neural.strip.network import StripNetwork
 

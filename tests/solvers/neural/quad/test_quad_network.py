@@ -204,7 +204,7 @@ def test_single_precision_is_close_to_double() -> None:
 
 def test_numpy_equals_torch() -> None:
     torch = pytest.importorskip("torch")
-    from meshonet.solvers.neural.differentiable.networks import QuadUNet
+    from meshonet.solvers.neural.fit.networks import QuadUNet
 
     model = QuadUNet(WIDTHS, BLOCKS).double()
     held = weights()

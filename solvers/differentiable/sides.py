@@ -7,7 +7,7 @@ from torch import Tensor
 
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.differentiable.networks import QuadUNet
+from meshonet.solvers.neural.fit.networks import QuadUNet
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.quad.encoding import features
 from meshonet.solvers.neural.quad.operator import QuadOperator

@@ -10,6 +10,7 @@ from meshonet.geometry.arrays import Floats, array_like
 from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.resample.quad import REACH, mended
 from meshonet.solvers.algebraic.resample.spline import bending
+from meshonet.solvers.differentiable.transfinite import with_rim
 
 
 def refined(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
@@ -56,8 +57,7 @@ def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None 
     nodes = nodes + felt[2] * missed[0] + felt[3] * missed[1]
     missed = (south - nodes[..., 0])[..., None], (north - nodes[..., -1])[..., None]
     nodes = nodes + felt[0] * missed[0] + felt[1] * missed[1]
-    inner = torch.cat([south[:, :, 1:-1, None], nodes[:, :, 1:-1, 1:-1], north[:, :, 1:-1, None]], 3)
-    return torch.cat([west[:, :, None], inner, east[:, :, None]], 2)
+    return with_rim(sides, nodes[:, :, 1:-1, 1:-1])
 
 
 def inwards(planes: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:

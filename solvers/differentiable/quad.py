@@ -1,19 +1,20 @@
 """Differentiable four-sided grids: `neural.quad.coarse_grids` in torch, without polish or repair."""
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import torch
 from torch import Tensor
 
 from meshonet.geometry.arrays import Topology
-from meshonet.solvers.neural.differentiable.resample import between, folded, refined
-from meshonet.solvers.neural.differentiable.sides import (
+from meshonet.solvers.differentiable.resample import between, folded, refined
+from meshonet.solvers.differentiable.sides import (
     NetworkGrids,
     as_complex,
     as_numpy,
     as_planes,
     check_sides,
 )
+from meshonet.solvers.differentiable.transfinite import arc_lengths, interpolated
 from meshonet.solvers.neural.quad.coarse_grids import answered, in_frame, nearer, share
 from meshonet.solvers.neural.quad.encoding import LATENT, WINSLOW
 from meshonet.solvers.neural.quad.picard import nodes_after
@@ -35,7 +36,7 @@ class QuadGrids(NetworkGrids):
         check_sides(self._dtype, 2, south=south, north=north, west=west, east=east)
         sides = tuple(edge.movedim(-1, 1) for edge in (south, north, west, east))
         thin = tuple(between(side, LATENT) for side in sides)
-        base = as_complex(interpolated(thin, _laws(thin)))
+        base = as_complex(interpolated(thin, arc_lengths(thin)))
         shares = None if self._head == WINSLOW else _shares
         coarse = as_planes(answered(base, in_frame(base, torch), self._answer, shares, torch))
         if self._head == WINSLOW:
@@ -52,33 +53,3 @@ def _shares(near: Tensor, by: Tensor) -> Tensor:
     parts = [share(*pair) for pair in zip(as_numpy(start[where]), as_numpy(answer[where]), strict=True)]
     few = torch.tensor(parts, dtype=start.real.dtype, device=start.device)
     return torch.ones_like(start[:, 0, 0].real).index_copy(0, where, few)[:, None, None]
-
-
-def interpolated(sides: Any, laws: Any) -> Tensor:
-    """Return nodes (batch, 2, ni, nj) by transfinite interpolation, as `meshonet.solvers.algebraic.tfi`.
-
-    `sides`: south, north (batch, 2, ni), west, east (batch, 2, nj); `laws`: their parameters, 0 to 1,
-    (batch, n) each.
-    """
-    south, north, west, east = sides
-    s, n = (law[:, 1:-1, None] for law in laws[:2])
-    w, e = (law[:, None, 1:-1] for law in laws[2:])
-    u = (s + (n - s) * w) / (1.0 - (n - s) * (e - w))
-    v = (w + (e - w) * u)[:, None]
-    u = u[:, None]
-    a, b, c, d = (side[:, :, k, None, None] for side, k in ((south, 0), (south, -1), (north, -1), (north, 0)))
-    left = west[:, :, None, 1:-1] - a - v * (d - a)
-    right = east[:, :, None, 1:-1] - b - v * (c - b)
-    low, high = south[:, :, 1:-1, None], north[:, :, 1:-1, None]
-    inner = low + v * (high - low) + left + u * (right - left)
-    rows = torch.cat([low, inner, high], 3)
-    return torch.cat([west[:, :, None], rows, east[:, :, None]], 2)
-
-
-def _laws(sides: Any) -> tuple[Tensor, ...]:
-    fractions = []
-    for side in sides:
-        steps = side[..., 1:] - side[..., :-1]
-        along = torch.cumsum(torch.hypot(steps[:, 0], steps[:, 1]), -1)
-        fractions.append(torch.cat([torch.zeros_like(along[:, :1]), along / along[:, -1:]], -1))
-    return tuple(fractions)

@@ -1,0 +1,45 @@
+"""Members of a batch: which one failed, and batches of batches as one."""
+
+from collections.abc import Callable
+from typing import Any
+
+from torch import Tensor, isfinite
+
+from meshonet.geometry.errors import SolverError
+
+
+class MemberError(SolverError):
+    """No grid for one member of a batch.
+
+    Parameters
+    ----------
+    member : int
+        Its index, from 0.
+    problem, remedy : str
+        What is wrong with it, and what a user can do.
+    """
+
+    def __init__(self, member: int, problem: str, remedy: str) -> None:
+        super().__init__(f"member {member} of the batch: {problem}; {remedy}")
+        self._parts = member, problem, remedy
+
+    def later(self, count: int) -> "MemberError":
+        """Return the same error of a batch with `count` members before this one's."""
+        member, problem, remedy = self._parts
+        return MemberError(member + count, problem, remedy)
+
+
+def check_finite(nodes: Tensor) -> None:
+    """Raise MemberError for the first member of `nodes` (batch, ...) with a number that is not finite."""
+    bad = (~isfinite(nodes).flatten(1).all(1)).nonzero().flatten()
+    if len(bad):
+        raise MemberError(int(bad[0]), "a coordinate is not finite", "leave it out")
+
+
+def as_one_batch(function: Callable[..., Tensor], count: int, in_dims: Any, *tensors: Tensor) -> Any:
+    """Return the values of `function` for `count` batches, flattened to one batch, and their dimension."""
+    moved = [
+        tensor.expand(count, *tensor.shape) if dim is None else tensor.movedim(dim, 0)
+        for tensor, dim in zip(tensors, in_dims, strict=True)
+    ]
+    return function(*(tensor.flatten(0, 1) for tensor in moved)).unflatten(0, (count, -1)), 0

@@ -1,0 +1,205 @@
+"""Winslow's equations in torch: converged grids of batches, and their gradients by implicit differentiation.
+
+Newton's method, from coarse copies to the grid itself, with GMRES for its linear systems. With R(x, b) = 0 for
+inner nodes x and boundary nodes b, a functional whose derivative with respect to x is g has the derivative
+-R_bᵀ λ with respect to b, where R_xᵀ λ = g: one more linear system, whatever the number of iterations was.
+"""
+
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from meshonet.solvers.differentiable.gmres import gmres
+from meshonet.solvers.differentiable.members import MemberError, as_one_batch, check_finite
+from meshonet.solvers.differentiable.resample import between
+from meshonet.solvers.differentiable.separable import Separable
+from meshonet.solvers.differentiable.transfinite import Sides, arc_lengths, interpolated
+from meshonet.solvers.elliptic.winslow import left_side
+
+TOL = 1e-12  # preconditioned residual at which a grid is converged, relative to its extent
+ROUGH = 1e-3  # the same on coarse copies
+COARSEST = 9  # nodes along a direction from which on it is not made coarser
+STARTS = 10  # steps of damped fixed-point iteration on the coarsest copy
+DAMPING = 0.7  # their length
+STEPS = 25  # of Newton's method at the most
+HALVINGS = 6  # of a step that does not lower the residual; then a step of the fixed-point iteration is taken
+FORCING = 1e-2  # residual of the linear systems, relative
+ADJOINT = 1e-12  # the same of the system for gradients
+PRODUCTS = 40, 400  # with the matrix at the most: for a step, for gradients
+
+
+def solved(sides: Sides) -> Tensor:
+    """Return the nodes (batch, 2, ni, nj), float64, that solve Winslow's equations inside `sides`.
+
+    Raises MemberError, with the index of the first member of the batch that did not converge.
+    """
+    return Converged.apply(interpolated(sides, arc_lengths(sides)))  # type: ignore[no-any-return]
+
+
+def residual(nodes: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    """Return the left side of Winslow's equations, α and γ at the inner nodes of (batch, 2, ni, nj)."""
+    middle = nodes[:, :, 1:-1, 1:-1]
+    west, east = nodes[:, :, :-2, 1:-1], nodes[:, :, 2:, 1:-1]
+    south, north = nodes[:, :, 1:-1, :-2], nodes[:, :, 1:-1, 2:]
+    mixed = nodes[:, :, 2:, 2:] - nodes[:, :, 2:, :-2] - nodes[:, :, :-2, 2:] + nodes[:, :, :-2, :-2]
+    first = 0.5 * (east - west), 0.5 * (north - south)
+    second = east - 2.0 * middle + west, 0.25 * mixed, north - 2.0 * middle + south
+    return left_side((*first, *second), lambda a, b: (a * b).sum(1, keepdim=True))
+
+
+class Converged(torch.autograd.Function):
+    """From nodes (batch, 2, ni, nj), of which only those of the boundary count, to converged ones."""
+
+    @staticmethod
+    def forward(nodes: Tensor) -> Tensor:
+        """Return the solution of Winslow's equations with the boundary nodes of `nodes`."""
+        check_finite(nodes)
+        return nested(nodes)
+
+    @staticmethod
+    def setup_context(ctx: Any, inputs: tuple[Tensor], output: Tensor) -> None:
+        """Keep the solution."""
+        ctx.save_for_backward(output)
+
+    @staticmethod
+    def backward(ctx: Any, gradient: Tensor) -> Tensor:
+        """Return the derivative with respect to the boundary nodes, zero at inner nodes."""
+        return Adjoint.apply(*ctx.saved_tensors, gradient)  # type: ignore[no-any-return]
+
+    @staticmethod
+    def vmap(info: Any, in_dims: tuple[int | None], nodes: Tensor) -> tuple[Tensor, int]:
+        """Solve all members of both batches as one batch."""
+        return as_one_batch(Converged.apply, info.batch_size, in_dims, nodes)
+
+
+class Adjoint(torch.autograd.Function):
+    """The derivative with respect to boundary nodes, from that with respect to all nodes of a solution."""
+
+    @staticmethod
+    def forward(nodes: Tensor, gradient: Tensor) -> Tensor:
+        """Return the derivative (batch, 2, ni, nj), zero at inner nodes."""
+        with torch.enable_grad():
+            x = nodes.detach().requires_grad_()
+            left, alpha, gamma = residual(x)
+        inverse = Separable(alpha.detach(), gamma.detach())
+
+        def pulled(rows: Tensor) -> Tensor:
+            return torch.autograd.grad(left, x, rows, retain_graph=True)[0]
+
+        def times(flat: Tensor) -> Tensor:
+            return inner(pulled(inverse.solve_transposed(flat.view_as(left)))).flatten(1)
+
+        solution = gmres(times, inner(gradient).flatten(1), ADJOINT, PRODUCTS[1])
+        result = gradient - pulled(inverse.solve_transposed(solution.view_as(left)))
+        inner(result).zero_()
+        return result
+
+    @staticmethod
+    def setup_context(ctx: Any, inputs: tuple[Tensor, Tensor], output: Tensor) -> None:
+        """Keep nothing: second derivatives are not available."""
+
+    @staticmethod
+    def backward(ctx: Any, *gradients: Tensor) -> None:
+        """Raise NotImplementedError: there are no second derivatives."""
+        raise NotImplementedError("Winslow's grids have no second derivatives")
+
+    @staticmethod
+    def vmap(info: Any, in_dims: tuple[int | None, ...], *tensors: Tensor) -> tuple[Tensor, int]:
+        """Solve all members of both batches as one batch."""
+        return as_one_batch(Adjoint.apply, info.batch_size, in_dims, *tensors)
+
+
+def nested(nodes: Tensor, *, strict: bool = True) -> Tensor:
+    """Return the solution with the boundary nodes of `nodes` (batch, 2, ni, nj), by nested iteration.
+
+    Where it does not converge: raise MemberError if `strict`, else return the last iterate.
+    """
+    sides = nodes[..., 0], nodes[..., -1], nodes[:, :, 0], nodes[:, :, -1]
+    laws = arc_lengths(sides)
+    sizes = [(nodes.shape[2], nodes.shape[3])]
+    while max(sizes[-1]) > COARSEST:
+        sizes.append(tuple((n + 1) // 2 if n > COARSEST else n for n in sizes[-1]))  # type: ignore[arg-type]
+    x = before = None
+    for ni, nj in reversed(sizes):
+        counts = ni, ni, nj, nj
+        few = tuple(between(side, n) for side, n in zip(sides, counts, strict=True))
+        start = interpolated(few, tuple(between(law, n) for law, n in zip(laws, counts, strict=True)))
+        if x is None:
+            x = _fixed_point(start)
+        else:
+            change = torch.nn.functional.interpolate(x - before, (ni, nj), mode="bicubic", align_corners=True)
+            x = start + bordered(inner(change))
+        last = (ni, nj) == sizes[0]
+        x, before = newton(x, TOL if last and strict else ROUGH, strict=last and strict), start
+    assert x is not None
+    return x
+
+
+def newton(nodes: Tensor, tol: float, *, strict: bool = True) -> Tensor:
+    """Return the solution of Winslow's equations near `nodes` (batch, 2, ni, nj).
+
+    `tol` is the preconditioned residual at which a member has converged, relative to its extent. Raises
+    MemberError, if `strict`, with the index of the first member that has not converged.
+    """
+    nodes = nodes.clone()
+    extent = (nodes.amax((2, 3)) - nodes.amin((2, 3))).amax(1)
+    moving = torch.arange(len(nodes), device=nodes.device)
+    for _ in range(STEPS):
+        line = _Linearised(nodes[moving])
+        far = line.first.abs().amax((1, 2, 3)) > tol * extent[moving]
+        if not bool(far.any()):
+            return nodes
+        if not bool(far.all()):
+            moving = moving[far]
+            line = _Linearised(nodes[moving])
+        nodes[moving] = line.stepped()
+    if strict:
+        raise MemberError(
+            int(moving[0]), "Winslow's equations did not converge", "use the variational method"
+        )
+    return nodes
+
+
+class _Linearised:
+    """Winslow's equations near `nodes` (batch, 2, ni, nj), preconditioned; `first` is their residual."""
+
+    def __init__(self, nodes: Tensor) -> None:
+        left, alpha, gamma = residual(nodes)
+        self._nodes, self._inverse = nodes, Separable(alpha, gamma)
+        self.first = self._inverse.solve(left)
+
+    def stepped(self) -> Tensor:
+        """Return the nodes after a step of Newton's method, shortened where it does not lower the residual."""
+        nodes, first = self._nodes, self.first
+        step = gmres(self._times, first.flatten(1), FORCING, PRODUCTS[0]).view_as(first)
+        size, now = torch.ones_like(first[:, :1, :1, :1]), first.flatten(1).norm(dim=1)
+        for _ in range(HALVINGS):
+            trial = nodes - bordered(size * step)
+            after = self._inverse.solve(residual(trial)[0]).flatten(1).norm(dim=1)
+            worse = ~(after < (1.0 - 0.1 * size.flatten()) * now)
+            if not bool(worse.any()):
+                return trial
+            size = torch.where(worse[:, None, None, None], 0.5 * size, size)
+        return torch.where(worse[:, None, None, None], nodes - bordered(0.5 * first), trial)
+
+    def _times(self, flat: Tensor) -> Tensor:
+        move = bordered(flat.view_as(self.first))
+        change = torch.func.jvp(lambda x: residual(x)[0], (self._nodes,), (move,))[1]
+        return self._inverse.solve(change).flatten(1)
+
+
+def _fixed_point(nodes: Tensor) -> Tensor:
+    for _ in range(STARTS):
+        left, alpha, gamma = residual(nodes)
+        nodes = nodes - bordered(DAMPING * Separable(alpha, gamma).solve(left))
+    return nodes
+
+
+def inner(nodes: Tensor) -> Tensor:
+    return nodes[:, :, 1:-1, 1:-1]
+
+
+def bordered(inner: Tensor) -> Tensor:
+    """Return `inner` (batch, 2, mi, mj) with a border of zeros."""
+    return torch.nn.functional.pad(inner, (1, 1, 1, 1))
