@@ -84,18 +84,14 @@ def _head(dims: tuple[int, int, int], facts: Facts, cells: Mapping[str, NDArray[
         arrays.append(f"        <{tag}/>")
         offset += 8 + values.nbytes
     cell_data = ["      <CellData>", *arrays, "      </CellData>"] if arrays else ["      <CellData/>"]
-    lines = (*_field_data(facts), f'    <Piece Extent="{extent}">', "      <PointData/>", *cell_data)
-    return _HEAD.format(extent=extent, lines="\n".join(lines))
-
-
-def _field_data(facts: Facts) -> list[str]:
-    """Return the FieldData element; VTK spells strings as signed bytes, each string ended by a zero."""
-    lines = ["    <FieldData>"]
+    field_data = []  # VTK spells strings as signed bytes, each string ended by a zero
     for name, texts in facts.items():
         codes = " ".join(map(str, np.frombuffer("\0".join([*texts, ""]).encode(), np.int8)))
         tag = f'Array type="String" Name="{name}" NumberOfTuples="{len(texts)}" format="ascii"'
-        lines.append(f"      <{tag}>{codes}</Array>")
-    return [*lines, "    </FieldData>"]
+        field_data.append(f"      <{tag}>{codes}</Array>")
+    field_data = ["    <FieldData>", *field_data, "    </FieldData>"]
+    lines = (*field_data, f'    <Piece Extent="{extent}">', "      <PointData/>", *cell_data)
+    return _HEAD.format(extent=extent, lines="\n".join(lines))
 
 
 def _cell_values(name: str, values: NDArray[Any], nodes: Floats) -> NDArray[Any]:

@@ -140,7 +140,7 @@ def _compiled(grid: Grid, percentiles: bool) -> Quality:
 
 
 def _run(grid: Grid, kept: slice) -> CellRun:
-    return run_over(grid.x, grid.y, kept, periodic=grid.periodic, wake=grid.wake)
+    return run_over(*_planes(grid.nodes), kept, periodic=grid.periodic, wake=grid.wake)
 
 
 def angles(nodes: Floats) -> tuple[float, float]:

@@ -68,6 +68,8 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
     gaps, outwards, and end at `last`; there are none when none is worth it.
     """
     chosen: list[Panel] = []
+    angle = np.pi * (np.arange(NODES) + 0.5) / NODES
+    signed = sin(angle) * (1.0 - 2.0 * (np.arange(NODES) % 2))
     distance = NEAREST
     while spread + distance < height:
         far = spread + 2.0 * distance
@@ -75,16 +77,11 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
         start = max(int(ends[0]), first)
         stop = last if far >= height else min(int(ends[1]), last)
         if stop - start >= WORTH * NODES:
-            chosen.append(_panel(eta, start, stop))
+            a, b = eta[start], eta[stop - 1]
+            places = 0.5 * (a + b) - 0.5 * (b - a) * cos(angle)
+            chosen.append(Panel(start, stop, places, barycentric(places, signed, eta[start:stop])))
         elif stop > start:
             chosen.clear()  # too few levels here: they and all before them are evaluated themselves
         distance *= 2.0
     return chosen
 
-
-def _panel(eta: Floats, start: int, stop: int) -> Panel:
-    a, b = eta[start], eta[stop - 1]
-    angle = np.pi * (np.arange(NODES) + 0.5) / NODES
-    points = 0.5 * (a + b) - 0.5 * (b - a) * cos(angle)
-    weights = sin(angle) * (1.0 - 2.0 * (np.arange(NODES) % 2))
-    return Panel(start, stop, points, barycentric(points, weights, eta[start:stop]))

@@ -26,21 +26,14 @@ SHARPNESS = 2.30 * TAPS  # b
 FEWEST = 256  # columns
 
 
-def columns_for(highest: int) -> int:
-    """Return how many columns carry modes |k| <= `highest`: a power of two above 4 `highest`."""
-    count = FEWEST
-    while count < 4 * highest + 4:
-        count *= 2
-    return count
-
-
 def columns(modes: Complexes) -> Floats:
     """Return f (Q, 2, width) whose windowed sums are those of `modes` (m, 2 K + 1), k = 0 .. K, -K .. -1.
 
     Real parts before imaginary ones, zero from m on; the width is a multiple of `LANES`.
     """
     count, wide = len(modes), -(-len(modes) // LANES) * LANES
-    gain, unit = _transform(columns_for(modes.shape[1] // 2))
+    highest = modes.shape[1] // 2
+    gain, unit = _transform(max(FEWEST, 1 << (4 * highest + 3).bit_length()))  # Q >= 4 highest + 4
     samples = np.zeros((2 * len(unit), 2, wide))
     if count:
         fourier_columns(np.ascontiguousarray(modes), gain, unit, samples)

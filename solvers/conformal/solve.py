@@ -69,7 +69,8 @@ def solve(
 def _solved(
     boundary: Boundary, body: StripWalls, start: Complexes, polish: Polish, model: str | None, *, rough: bool
 ) -> Solution:
-    c, changes = _polished(start, polish)
+    steps = AUTO_STEPS if polish == "auto" else 0 if polish == "off" else polish
+    c, changes = picard(start, steps, SETTLED if polish == "auto" else 0.0, DIVERGED)
     if changes and not changes[-1] < DIVERGED:
         return _elliptic(boundary, f"the polish of the {_called(model)} diverged")
     nodes, finite = _evaluated(boundary, body, c)
@@ -108,17 +109,6 @@ def _starts(bodies: Sequence[StripWalls], correction: Correction | None) -> list
         wall, far = (np.array(side) for side in zip(*ends, strict=True))
         added = correction(wall, far, np.array([body.hand for body in bodies]))
     return [harmonic(a, b, across().eta) + more for (a, b), more in zip(ends, added, strict=True)]
-
-
-def _polished(c: Complexes, polish: Polish) -> tuple[Complexes, list[float]]:
-    """Return the modes after polish, and the largest change in each Picard step."""
-    changes: list[float] = []
-    for _ in range(AUTO_STEPS if polish == "auto" else 0 if polish == "off" else polish):
-        c, change = picard(c, 1)
-        changes += change
-        if not change[0] < DIVERGED or (polish == "auto" and change[0] < SETTLED):
-            break
-    return c, changes
 
 
 def _evaluated(boundary: Boundary, body: StripWalls, c: Complexes) -> tuple[Floats, bool]:

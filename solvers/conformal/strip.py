@@ -51,6 +51,12 @@ class Across:
     eigenvalues: Floats
     vectors: Floats
     inverse: Floats
+    matrices: Floats
+    """(4, LEVELS, LEVELS) as the compiled step takes them: `d1`, `d2`, `inverse` and `vectors`, transposed."""
+    stiffness: Floats
+    """`eigenvalues` with one more at either end."""
+    smooth: Floats
+    """`smoothing`."""
 
 
 @lru_cache(maxsize=1)
@@ -68,8 +74,12 @@ def across() -> Across:
     d1 = -2.0 * d / rate[:, None]
     d2 = elementary.product(d1, d1)
     kept = np.load(EIGENVECTORS)
-    arrays = (s, eta, d1, d2, kept[0], kept[1:n], kept[n:])
-    return Across(*(read_only(array) for array in arrays))
+    inner = np.zeros((2, LEVELS, LEVELS))
+    inner[:, 1:-1, 1:-1] = kept[n:], kept[1:n]
+    matrices = np.concatenate([[d1, d2], inner]).swapaxes(1, 2).copy()
+    stiffness = np.pad(kept[0], 1, constant_values=-1.0)
+    arrays = (s, eta, d1, d2, kept[0], kept[1:n], kept[n:], matrices, stiffness, smoothing())
+    return Across(*map(read_only, arrays))
 
 
 def interpolation(eta: Floats) -> Floats:
@@ -142,27 +152,18 @@ def _zeros(like: Any, count: int, xp: Any) -> Any:
     return xp.zeros((*like.shape[:-1], count), dtype=like.dtype, device=like.device)
 
 
-def picard(c: Complexes, steps: int) -> tuple[Complexes, list[float]]:
-    """Return the modes after `steps` Picard steps, and the largest change of F in each.
+def picard(
+    c: Complexes, steps: int, settled: float = 0.0, diverged: float = np.inf
+) -> tuple[Complexes, list[float]]:
+    """Return the modes after `steps` Picard steps at the most, and the largest change of F in each.
 
-    A step that is not finite counts as an infinite change, and is the last. `c`: (2 MODES + 1, LEVELS) modes
-    at the Chebyshev points; the two walls stay as they are.
+    The last step is one whose change is below `settled` or not below `diverged`; one that is not finite
+    counts as an infinite change. `c`: (2 MODES + 1, LEVELS) modes at the Chebyshev points; the two walls stay
+    as they are.
     """
     T = float((c[0, -1] - c[0, 0]).real)
-    parts = np.stack([c.real, c.imag])
-    matrices, eigenvalues, smooth = _kernels()
+    parts, grid = np.stack([c.real, c.imag]), across()
     changes: list[float] = []
-    while len(changes) < steps and (not changes or np.isfinite(changes[-1])):
-        changes.append(picard_step(parts, T, matrices, eigenvalues, smooth))
+    while len(changes) < steps and (not changes or settled <= changes[-1] < diverged):
+        changes.append(picard_step(parts, T, grid.matrices, grid.stiffness, grid.smooth))
     return parts[0] + 1j * parts[1], changes
-
-
-@lru_cache(maxsize=1)
-def _kernels() -> tuple[Floats, Floats, Floats]:
-    """Return what the compiled step takes: matrices, eigenvalues, and a filter against aliasing."""
-    grid = across()
-    inner = np.zeros((2, LEVELS, LEVELS))
-    inner[:, 1:-1, 1:-1] = grid.inverse, grid.vectors
-    matrices = np.concatenate([[grid.d1, grid.d2], inner]).swapaxes(1, 2).copy()
-    eigenvalues = np.pad(grid.eigenvalues, 1, constant_values=-1.0)
-    return read_only(matrices), read_only(eigenvalues), read_only(smoothing())

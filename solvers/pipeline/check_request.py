@@ -16,7 +16,17 @@ def check_request(request: GridRequest) -> None:
     """Raise InputError for a value out of its range, or for parameters that need or exclude each other."""
     if request.method not in ("best", "auto") and request.method.partition(":")[0] not in METHODS:
         method_named(request.method)  # which says what there is
-    _check_first_cells(request)
+    request.check_first_cell()
+    for side, height in request.sides.items():
+        check_height(height, f"spacing_{side}")
+    if not request.at_walls and not request.sides:
+        for name in ("constant_layers", "growth"):
+            if getattr(request, name) is not None:
+                problem = f"{{{name}}} without a first cell"
+                raise InputError(problem, "give {first_cell} or {y_plus} as well")
+    if request.at_walls and request.growth is not None and not 1 < request.growth <= 10:
+        remedy = "give the ratio of neighbouring cells, such as 1.15"
+        raise InputError(f"a growth of {request.growth:g}", remedy, parameter="growth")
     if request.method == "hyperbolic" and not request.at_walls:
         raise InputError("{method} hyperbolic without a first cell", "give {first_cell} or {y_plus} as well")
     if request.wall_angle is not None and request.method != "steger-sorenson":
@@ -34,7 +44,7 @@ def check_request(request: GridRequest) -> None:
     tol = request.settings.get("tol")
     if tol is not None and not 0 < tol < 1:
         raise InputError(f"{tol:g} is not between 0 and 1", "use e.g. 1e-8", parameter="tol")
-    for name, least in (("threads", 1), ("layers", 3)):
+    for name, least in (("threads", 1), ("constant_layers", 1), ("layers", 3)):
         value = getattr(request, name)
         if value is not None and value < least:
             raise InputError(f"{value} is too few", f"give {least} or more", parameter=name)
@@ -44,19 +54,3 @@ def check_request(request: GridRequest) -> None:
         from meshonet.solvers.pipeline.blocks import check_asked
 
         check_asked(request)
-
-
-def _check_first_cells(request: GridRequest) -> None:
-    request.check_first_cell()
-    for side, height in request.sides.items():
-        check_height(height, f"spacing_{side}")
-    if not request.at_walls and not request.sides:
-        for name in ("constant_layers", "growth"):
-            if getattr(request, name) is not None:
-                problem = f"{{{name}}} without a first cell"
-                raise InputError(problem, "give {first_cell} or {y_plus} as well")
-    if request.constant_layers is not None and request.constant_layers < 1:
-        raise InputError(f"{request.constant_layers} layers", "give at least 1", parameter="constant_layers")
-    if request.at_walls and request.growth is not None and not 1 < request.growth <= 10:
-        remedy = "give the ratio of neighbouring cells, such as 1.15"
-        raise InputError(f"a growth of {request.growth:g}", remedy, parameter="growth")
