@@ -13,11 +13,12 @@ import json
 from pathlib import Path
 from typing import Any
 
+from command_pages import reference
+
 from meshonet.api.models import models
-from meshonet.formats.catalogue import markdown
+from meshonet.formats.catalogue import rows
 from meshonet.geometry.families.family import FAMILIES, family
 from meshonet.solvers.neural.registry import HEADS, described, shipped
-from meshonet_cli.help.reference import reference
 
 DOCS = Path(__file__).parent
 REFERENCE = DOCS / "reference"
@@ -151,7 +152,9 @@ def said_of(path: Path) -> str:
 
 def formats_page() -> str:
     """Return reference/formats.md."""
-    return f"{FORMATS_HEAD}{markdown()}\n{FORMATS_REST}"
+    table = rows()
+    lines = [list(table[0]), ["---"] * len(table[0]), *(list(row.values()) for row in table)]
+    return FORMATS_HEAD + "".join(f"| {' | '.join(line)} |\n" for line in lines) + FORMATS_REST
 
 
 def models_page() -> str:

@@ -12,7 +12,6 @@ In space, rows are quadrilaterals a b c d whose normals point out of the domain,
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +19,7 @@ import numpy as np
 from meshonet.formats.mesh.cell_faces import cell_numbers, faces_of
 from meshonet.formats.mesh.names import unused
 from meshonet.geometry.blocks.block import Range, face_of
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection, Motion, cells_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.outer_patches import owners_of
 from meshonet.geometry.polygon.corners import Indices
@@ -131,25 +130,15 @@ def _parts(
     connection: Connection, numbers: Sequence[Indices], cells: Sequence[Indices]
 ) -> tuple[NamedFaces, NamedFaces]:
     """Return the faces of both sides of a connection, the donor's the other way round, and the cells."""
-    faces = [faces_of(nodes, connection.side) for nodes in both_sides(connection, numbers)]
-    behind = [rows.ravel(order="F") for rows in both_sides(cellwise(connection), cells)]
+    faces = [faces_of(nodes[..., 0], connection.side) for nodes in connection.pairs(numbers)]
+    behind = [rows.ravel(order="F") for rows in cells_beside(connection, cells)]
     return NamedFaces(faces[0], behind[0]), NamedFaces(faces[1][:, _OPPOSITE[faces[1].shape[1]]], behind[1])
 
 
-def both_sides(connection: Connection, numbers: Sequence[Indices]) -> tuple[Indices, Indices]:
-    """Return what `numbers` of all blocks are on both sides of a connection, in one order."""
-    plain = replace(connection, transform=None)
-    own, donor = plain.nodes(lambda block, side: face_of(numbers[block][..., None], side))
+def cells_beside(connection: Connection, cells: Sequence[Indices]) -> tuple[Indices, Indices]:
+    """Return what `cells` of all blocks are beside both sides of a connection, in one order."""
+    own, donor = cells_at(connection, lambda block, side: face_of(cells[block][..., None], side))
     return own[..., 0], donor[..., 0]
-
-
-def cellwise(connection: Connection) -> Connection:
-    """Return a connection with ranges of cells instead of nodes."""
-    own, donor = (
-        tuple((first, last - 1) for first, last in span)
-        for span in (connection.range, connection.donor_range)
-    )
-    return replace(connection, range=own, donor_range=donor)
 
 
 def donor_range(each: Connection) -> Range:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.mesh.cell_faces import cell_numbers
-from meshonet.formats.mesh.periodic import NamedFaces, both_sides, cellwise
+from meshonet.formats.mesh.periodic import NamedFaces, cells_beside
 from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -90,7 +90,7 @@ def _beyond(grid: Grid, cells: Sequence[Indices]) -> list[list[Labels]]:
     for each in grid.connections:
         if each.transform is None:
             for way in (each, each.reversed()):
-                _, donor = both_sides(cellwise(way), cells)
+                _, donor = cells_beside(way, cells)
                 part = tuple(slice(*span) for span in way.range)
                 table[way.block][sides.index(way.side)][part] = donor
     return [[np.ascontiguousarray(side.T, np.int32) for side in block] for block in table]

@@ -84,4 +84,3 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
             chosen.clear()  # too few levels here: they and all before them are evaluated themselves
         distance *= 2.0
     return chosen
-

@@ -52,7 +52,7 @@ class Across:
     vectors: Floats
     inverse: Floats
     matrices: Floats
-    """(4, LEVELS, LEVELS) as the compiled step takes them: `d1`, `d2`, `inverse` and `vectors`, transposed."""
+    """(4, LEVELS, LEVELS) for the compiled step: `d1`, `d2`, `inverse` and `vectors`, transposed."""
     stiffness: Floats
     """`eigenvalues` with one more at either end."""
     smooth: Floats

@@ -16,17 +16,7 @@ def check_request(request: GridRequest) -> None:
     """Raise InputError for a value out of its range, or for parameters that need or exclude each other."""
     if request.method not in ("best", "auto") and request.method.partition(":")[0] not in METHODS:
         method_named(request.method)  # which says what there is
-    request.check_first_cell()
-    for side, height in request.sides.items():
-        check_height(height, f"spacing_{side}")
-    if not request.at_walls and not request.sides:
-        for name in ("constant_layers", "growth"):
-            if getattr(request, name) is not None:
-                problem = f"{{{name}}} without a first cell"
-                raise InputError(problem, "give {first_cell} or {y_plus} as well")
-    if request.at_walls and request.growth is not None and not 1 < request.growth <= 10:
-        remedy = "give the ratio of neighbouring cells, such as 1.15"
-        raise InputError(f"a growth of {request.growth:g}", remedy, parameter="growth")
+    _check_first_cells(request)
     if request.method == "hyperbolic" and not request.at_walls:
         raise InputError("{method} hyperbolic without a first cell", "give {first_cell} or {y_plus} as well")
     if request.wall_angle is not None and request.method != "steger-sorenson":
@@ -54,3 +44,17 @@ def check_request(request: GridRequest) -> None:
         from meshonet.solvers.pipeline.blocks import check_asked
 
         check_asked(request)
+
+
+def _check_first_cells(request: GridRequest) -> None:
+    request.check_first_cell()
+    for side, height in request.sides.items():
+        check_height(height, f"spacing_{side}")
+    if not request.at_walls and not request.sides:
+        for name in ("constant_layers", "growth"):
+            if getattr(request, name) is not None:
+                problem = f"{{{name}}} without a first cell"
+                raise InputError(problem, "give {first_cell} or {y_plus} as well")
+    if request.at_walls and request.growth is not None and not 1 < request.growth <= 10:
+        remedy = "give the ratio of neighbouring cells, such as 1.15"
+        raise InputError(f"a growth of {request.growth:g}", remedy, parameter="growth")

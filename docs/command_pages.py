@@ -1,17 +1,24 @@
-"""What every ``--help`` prints: ``python -m meshonet_cli.help.reference > docs/reference/cli.md``."""
+"""The pages made of what ``--help`` prints: reference/cli.md, and the manual page.
+
+python docs/command_pages.py > meshonet.1
+"""
+
+from __future__ import annotations
 
 import contextlib
 import io
 from collections.abc import Iterator, Sequence
 
+from meshonet import __version__
 from meshonet_cli import app
 from meshonet_cli.commands import COMMANDS
 
-WIDTH = 98  # columns of the help texts
+WIDTH = 98  # columns of the help texts in the reference
+MANUAL_WIDTH = 78  # and in the manual page
 
 _HEAD = """# Commands
 
-<!-- made by python -m meshonet_cli.help.reference; a test keeps it current -->
+<!-- made by python docs/make_pages.py; a test keeps it current -->
 
 Look up an option here: what `meshonet --help` and the `--help` of every command print.
 `python -m meshonet_cli` is the same program.
@@ -53,5 +60,37 @@ def _table(docstring: str) -> Iterator[str]:
     yield from (line for line in lines[rules[2] + 1 :] if line)
 
 
+def man_page() -> str:
+    """Return the manual page of all commands in roff."""
+    lines = [
+        f'.TH MESHONET 1 "" "meshonet {__version__}" "User Commands"',
+        ".SH NAME",
+        r"meshonet \- structured grids from a boundary",
+        ".SH SYNOPSIS",
+        r"\fBmeshonet\fR \fICOMMAND\fR [\fIOPTIONS\fR] [\fIARGUMENTS\fR]",
+        ".SH DESCRIPTION",
+        *_roff(),
+        ".SH COMMANDS",
+    ]
+    for command in COMMANDS:
+        lines += [f'.SS "meshonet {_escaped(command.name)}"', *_roff(command.name)]
+    return "\n".join(lines) + "\n"
+
+
+def _roff(*command: str) -> list[str]:
+    """Return what the help of a command prints, its lines as they are."""
+    return [".nf", *map(_escaped, help_text(command, MANUAL_WIDTH).splitlines()), ".fi"]
+
+
+def _escaped(line: str) -> str:
+    r"""Return a line that roff prints as it is.
+
+    >>> _escaped(".5 of --res")
+    '\\&.5 of \\-\\-res'
+    """
+    text = line.replace("\\", r"\e").replace("-", r"\-")
+    return rf"\&{text}" if text.startswith((".", "'")) else text
+
+
 if __name__ == "__main__":
-    print(reference(), end="")  # noqa: T201
+    print(man_page(), end="")  # noqa: T201
