@@ -209,13 +209,7 @@ static void restrict_share(void *data, Member member)
                        p->blocks + k * SPACE * SPACE);
 }
 
-static void space_share(void *data, Member member)
-{
-    const Preconditioning *p = data;
-    ptrdiff_t first, last;
-    team_share(p->d->spectrum.mi, member, &first, &last);
-    add_space(p, first, last);
-}
+TEAM_ROWS(space_share, Preconditioning, task->d->spectrum.mi, add_space)
 
 /* result = P gradient. */
 static void precondition(void *problem, const double *gradient, float *result)
@@ -261,18 +255,7 @@ static void frame_rows(const Descent *d, ptrdiff_t first, ptrdiff_t last)
     }
 }
 
-static void frame_share(void *data, Member member)
-{
-    const Descent *d = data;
-    ptrdiff_t first, last;
-    team_share(d->spectrum.mi, member, &first, &last);
-    frame_rows(d, first, last);
-}
-
-static void set_frame(Descent *d)
-{
-    team_run(d->threads, frame_share, d);
-}
+TEAM_ROWS(frame_share, Descent, task->spectrum.mi, frame_rows)
 
 /* The square of the largest move of `direction`, in cells, at free nodes `first` to before `last`. */
 MESHONET_CLONES
