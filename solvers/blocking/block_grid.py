@@ -13,7 +13,6 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.decomposition.errors import most_folded
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
@@ -81,7 +80,8 @@ def fine_layout(
     assert fine is not None  # noqa: S101 - the first round makes it
     with timings.stage("refine"):
         times = 2 ** (halvings + halved - own)
-        return multiplied(fine, times) if times > 1 else fine
+        fine = multiplied(fine, times) if times > 1 else fine
+        return replace(fine, mesh=made_symmetric(fine.mesh))
 
 
 def cut_off(fine: Layout) -> float:
@@ -109,7 +109,7 @@ def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timi
 
 def _optimum(mesh: QuadMesh, turning: float) -> QuadOptimum:
     """Return the optimum of a mesh, its nodes symmetric to mirrors of the domain to which its quads are."""
-    images = images_of(mesh, mirrors_of(mesh.domain))
+    images = images_of(mesh)
     if images:
         optimum = optimise(made_symmetric(mesh, images), iterations=ITERATIONS, turning=turning)
         symmetric = made_symmetric(optimum.mesh, images)

@@ -12,12 +12,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.elementary import exp, log, times
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.ties import nearest_whole
 from meshonet.kernels._native import joined_classes
+from meshonet.solvers.blocking.decomposition.symmetry.images import Images, images_of
 from meshonet.solvers.blocking.sizes.wall_turning import corners_between, turning_between
 
 LEAST = 2
@@ -33,6 +34,7 @@ class Chords:
     `sides` (b, 4) are the edges at south, north, west and east of each block, `reversed` (b, 4) says where
     the block runs the other way along one, `wall` (e,) which are walls; the `partner` (e,) of an
     edge is the one that it is, moved by the period, else -1, and `chord` (e,) numbers the chord of each.
+    Counts are multiples of `multiple` (chords,): that of a ring of quads is the number of its mirrors.
     """
 
     layout: Layout
@@ -43,10 +45,11 @@ class Chords:
     partner: Indices
     chord: Indices
     count: int
+    multiple: Indices
 
     @classmethod
-    def of(cls, layout: Layout) -> Chords:
-        """Return the edges and chords of a layout."""
+    def of(cls, layout: Layout, images: Images | None = None) -> Chords:
+        """Return the edges and chords of a layout; mirror images, all by default, are of the same chord."""
         edges: list[Indices] = []
         numbers: dict[tuple[int, ...], int] = {}
         sides = np.empty((len(layout.blocks), 4), dtype=np.intp)
@@ -62,9 +65,19 @@ class Chords:
         has = np.flatnonzero(partner >= 0)
         wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
         wall[has], wall[partner[has]] = False, False
-        pairs = np.concatenate([sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)])
-        chord, count = joined_classes(np.ascontiguousarray(pairs), len(edges))
-        return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count)
+        pairs = [sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)]
+        around = np.ones(len(edges), dtype=np.intp)
+        images = images_of(layout.mesh) if images is None else images
+        for _, to in images:
+            image = np.array([numbers.get(_key(to[edge])[0], -1) for edge in edges])
+            pairs.append(np.stack([np.arange(len(edges)), image], axis=1)[image >= 0])
+        for k, edge in enumerate(edges):
+            if edge[0] == edge[-1]:
+                around[k] = max(1, sum(np.array_equal(distinct(to[edge]), distinct(edge)) for _, to in images))
+        chord, count = joined_classes(np.ascontiguousarray(np.concatenate(pairs)), len(edges))
+        multiple = np.ones(count, dtype=np.intp)
+        np.maximum.at(multiple, chord, around)
+        return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, multiple)
 
     @cached_property
     def counts(self) -> Indices:
@@ -136,7 +149,12 @@ class Chords:
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
-        return np.maximum(self.least if least is None else least, nearest_whole(exp(mean)).astype(np.intp))
+        return self.rounded(exp(mean), self.least if least is None else least)
+
+    def rounded(self, wanted: Floats, least: Indices) -> Indices:
+        """Return the counts (chords,) that are nearest to what is wanted, at least `least`."""
+        times = self.multiple
+        return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))
 
     def counts_for_cells(self, cells: int, least: Indices | None = None) -> Indices:
         """Return counts (chords,) for about so many cells in all; more where the fewest possible are more."""

@@ -6,23 +6,35 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from meshonet.geometry.arrays import Floats, distinct, norms
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 
 Images = list[tuple[Mirror, Indices]]
 """Mirrors, and the node (n,) that each node of a mesh becomes in them."""
 
 
-def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> Images:
-    """Return the images of nodes in those mirrors of its domain to which a mesh is nearly symmetric."""
-    images = ((mirror, _image(mesh, mirror)) for mirror in mirrors)
+def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images:
+    """Return the images of nodes in those mirrors of its domain, of all by default, that its quads have."""
+    mirrors = mirrors_of(mesh.domain) if mirrors is None else mirrors
+    if not mirrors or (mesh.places.partner >= 0).any():
+        return []
+    x, y = (mesh.nodes[mesh.quads, axis].mean(axis=1) for axis in (0, 1))
+    middles = np.stack([x, y], axis=1)
+    images = ((mirror, _image(mesh, mirror, middles)) for mirror in mirrors)
     return [(mirror, to) for mirror, to in images if to is not None]
 
 
-def made_symmetric(mesh: QuadMesh, images: Images) -> QuadMesh:
-    """Return the mesh with all nodes and their images at the means of both; corners stay."""
+def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
+    """Return the mesh with all nodes and their images, by default in all mirrors, at the means of both.
+
+    Corners stay. A ring with an odd number of quads around is symmetric to the first mirror only.
+    """
+    images = images_of(mesh) if images is None else images
+    if len(images) > 1 and (images[0][1][images[1][1]] != images[1][1][images[0][1]]).any():
+        images = images[:1]
     for mirror, to in images:
         places, nodes = mesh.places, 0.5 * (mesh.nodes + mirror.images(mesh.nodes[to]))
         arc, fixed = places.arc.copy(), places.cells > 0
@@ -36,13 +48,48 @@ def made_symmetric(mesh: QuadMesh, images: Images) -> QuadMesh:
     return mesh
 
 
-def _image(mesh: QuadMesh, mirror: Mirror) -> Indices | None:
-    """Return the node (n,) nearest to the image of each; None unless quads, walls and corners become such."""
-    places, quads = mesh.places, mesh.quads
-    to = nearest_points(mirror.images(mesh.nodes), np.ascontiguousarray(mesh.nodes))[0]
-    if (np.bincount(to, minlength=len(to)) != 1).any():
+def _image(mesh: QuadMesh, mirror: Mirror, middles: Floats) -> Indices | None:
+    """Return the node (n,) that each one becomes; None unless quads, walls and corners become such.
+
+    It follows from one quad and its image: that which are nearest to each other, by their size.
+    """
+    near, squares = nearest_points(mirror.images(middles), middles)
+    diagonals = mesh.nodes[mesh.quads[:, 2:]] - mesh.nodes[mesh.quads[:, :2]]
+    size = np.abs(diagonals[:, 0, 0] * diagonals[:, 1, 1] - diagonals[:, 0, 1] * diagonals[:, 1, 0])
+    quad = int(np.argmin(squares / np.maximum(size, 1e-300)))
+    corners = mirror.images(mesh.nodes[mesh.quads[quad, :1]]) - mesh.nodes[mesh.quads[near[quad]]]
+    to = _continued(mesh, quad, int(near[quad]), int(norms(corners).argmin()))
+    if to is None:
         return None
-    own, images = (each[np.lexsort(each.T)] for each in (np.sort(quads, axis=1), np.sort(to[quads], axis=1)))
+    places, longest = mesh.places, np.zeros(len(mesh.nodes))
+    length = norms(mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]])
+    for end in mesh.edges.T:
+        np.maximum.at(longest, end, length)
     loops = np.where(places.loop >= 0, mirror.loops[places.loop], -1)
     suits = np.array_equal(places.loop[to], loops) and np.array_equal(places.cells[to], places.cells)
-    return to if suits and np.array_equal(own, images) else None
+    return to if suits and (norms(mirror.images(mesh.nodes) - mesh.nodes[to]) < longest).all() else None
+
+
+def _continued(mesh: QuadMesh, quad: int, image: int, corner: int) -> Indices | None:
+    """Return the node (n,) that each one becomes if the first corner of a quad becomes a corner of its image.
+
+    Quads turn round: their corner i becomes number `first` - i of the image. None where quads do not fit.
+    """
+    images, first = np.full(len(mesh.quads), -1, dtype=np.intp), np.zeros(len(mesh.quads), dtype=np.intp)
+    images[quad], first[quad] = image, corner
+    front, sides = np.array([quad]), np.arange(4)
+    while len(front):
+        across = mesh.twin[front]
+        beyond = mesh.twin[images[front][:, None], (first[front][:, None] - sides - 1) % 4]
+        if ((across < 0) != (beyond < 0)).any():
+            return None
+        across, beyond = across[across >= 0], beyond[across >= 0]
+        new = images[across // 4] < 0
+        across, beyond = across[new], beyond[new]
+        images[across // 4], first[across // 4] = beyond // 4, (across + beyond + 1) % 4
+        front = distinct(across // 4)
+    to = np.zeros(len(mesh.nodes), dtype=np.intp)
+    turned = mesh.quads[images[:, None], (first[:, None] - sides) % 4]
+    to[mesh.quads] = turned
+    fits = np.array_equal(to[mesh.quads], turned) and (images >= 0).all()
+    return to if fits and np.array_equal(to[to], np.arange(len(to))) else None

@@ -46,7 +46,7 @@ def symmetric_blocks(
     With two mirrors at right angles they are symmetric to both if that can be, else to the first that can be.
     Those of a part have to be better, and no more, than the blocks as found if these are symmetric already.
     """
-    mesh, mirrors = blocks.mesh, mirrors_of(blocks.mesh.domain)
+    mesh, mirrors = blocks.mesh, mirrors_of(blocks.mesh.domain)[:2]
     irregular = wrong_count(mesh).any() or (mesh.irregular & ~mesh.wall_nodes).any()
     for group in [mirrors, mirrors[:1], mirrors[1:]][: (0, 1, 3)[len(mirrors)]]:
         ways: list[Callable[[], QuadMesh]]
@@ -82,11 +82,16 @@ def _trial(
 
 
 def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Images]:
-    """Return the mesh with its nodes symmetric, and their images; raises BlockingError: its quads are not."""
+    """Return the mesh with its nodes symmetric, and their images; raises BlockingError: its quads are not.
+
+    Of a domain with four mirrors they are symmetric to the others too, if the quads are.
+    """
     images = images_of(mesh, mirrors)
     if len(images) < len(mirrors):
         raise BlockingError("quads that are not symmetric")
-    return made_symmetric(mesh, images), images
+    if len(mirrors) > 1:
+        images += images_of(mesh, mirrors_of(mesh.domain)[2:])
+    return made_symmetric(mesh, images), images[: len(mirrors)]
 
 
 def _cut_on_mirrors(blocks: BaseComplex, images: Images) -> BaseComplex:
