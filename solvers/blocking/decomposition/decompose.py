@@ -117,7 +117,7 @@ def decompose(
     def scored(blocks: BaseComplex) -> float:
         return score(blocks, price, sizes.edges(blocks.mesh) if sizes else None)
 
-    return symmetric_blocks(blocks, of_part, optimised, scored).layout
+    return symmetric_blocks(blocks, of_part, optimised, scored, sizes is None).layout
 
 
 def _found(

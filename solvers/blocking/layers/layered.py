@@ -76,8 +76,8 @@ def layered(
         coarse = coarse or found_outside(walls.rest, walls.fronts, timings, bool(walls.mirrors))
         free = tuple(k for k in sheets if walls.is_free(k, coarse.mesh, wake_of(coarse.mesh, k)))
         if free == sheets:
-            coarse, rows = with_wall_rows(coarse, walls.stretches, sheets)
-            coarse, counts = _optimum(walls, rows, coarse, (cells, cell_size), None, timings)
+            coarse, rows = with_wall_rows(coarse, walls.stretches, sheets, walls.mirrors)
+            coarse, counts = _optimum(walls, rows, walls.symmetric(coarse), (cells, cell_size), None, timings)
             for _ in range(1, COUNTINGS if rows.loops else COUNTINGS - 1):
                 coarse, counts = _optimum(walls, rows, coarse, (cells, cell_size), counts, timings)
             wakes = rows.wakes(coarse)  # they have moved

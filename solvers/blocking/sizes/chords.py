@@ -34,7 +34,7 @@ class Chords:
     `sides` (b, 4) are the edges at south, north, west and east of each block, `reversed` (b, 4) says where
     the block runs the other way along one, `wall` (e,) which are walls; the `partner` (e,) of an
     edge is the one that it is, moved by the period, else -1, and `chord` (e,) numbers the chord of each.
-    Counts are multiples of `multiple` (chords,): that of a ring of quads is the number of its mirrors.
+    `images` are those of the nodes in mirrors: images of edges are of one chord.
     """
 
     layout: Layout
@@ -45,7 +45,7 @@ class Chords:
     partner: Indices
     chord: Indices
     count: int
-    multiple: Indices
+    images: Images
 
     @classmethod
     def of(cls, layout: Layout, images: Images | None = None) -> Chords:
@@ -66,18 +66,12 @@ class Chords:
         wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
         wall[has], wall[partner[has]] = False, False
         pairs = [sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)]
-        around = np.ones(len(edges), dtype=np.intp)
         images = images_of(layout.mesh) if images is None else images
         for _, to in images:
             image = np.array([numbers.get(_key(to[edge])[0], -1) for edge in edges])
             pairs.append(np.stack([np.arange(len(edges)), image], axis=1)[image >= 0])
-        for k, edge in enumerate(edges):
-            if edge[0] == edge[-1]:
-                around[k] = max(1, sum(np.array_equal(distinct(to[edge]), distinct(edge)) for _, to in images))
         chord, count = joined_classes(np.ascontiguousarray(np.concatenate(pairs)), len(edges))
-        multiple = np.ones(count, dtype=np.intp)
-        np.maximum.at(multiple, chord, around)
-        return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, multiple)
+        return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
 
     @cached_property
     def counts(self) -> Indices:
@@ -85,6 +79,23 @@ class Chords:
         cells = np.empty(self.count, dtype=np.intp)
         cells[self.chord] = [len(edge) - 1 for edge in self.edges]
         return cells
+
+    @cached_property
+    def multiple(self) -> Indices:
+        """(chords,) what divides counts of symmetric layouts, so that finer ones are symmetric.
+
+        Of a ring that is the number of its mirrors, and two where a corner lies on a mirror across a wall.
+        """
+        multiple = np.ones(self.count, dtype=np.intp)
+        for k, edge in enumerate(self.edges):
+            own = sum(np.array_equal(distinct(to[edge]), distinct(edge)) for _, to in self.images)
+            if own and self.wall[k] and edge[0] != edge[-1]:
+                loop = self.layout.mesh.domain.loops[self.layout.mesh.places.loop[edge[0]]]
+                own = 1 + len(corners_between(loop, *self.arcs(k)[[0, -1]].tolist())[0]) % 2
+            elif edge[0] != edge[-1]:
+                own = 1
+            multiple[self.chord[k]] = max(multiple[self.chord[k]], own)
+        return multiple
 
     @cached_property
     def lengths(self) -> Floats:

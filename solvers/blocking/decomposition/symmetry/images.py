@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, distinct, norms
+from meshonet.geometry.arrays import distinct, norms
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
@@ -14,17 +14,23 @@ from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mir
 
 Images = list[tuple[Mirror, Indices]]
 """Mirrors, and the node (n,) that each node of a mesh becomes in them."""
+SOME = 100
+"""Quads of which images are looked for; those of others follow from them."""
 
 
 def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images:
     """Return the images of nodes in those mirrors of its domain, of all by default, that its quads have."""
     mirrors = mirrors_of(mesh.domain) if mirrors is None else mirrors
-    if not mirrors or (mesh.places.partner >= 0).any():
+    if (mesh.places.partner >= 0).any():
         return []
-    x, y = (mesh.nodes[mesh.quads, axis].mean(axis=1) for axis in (0, 1))
-    middles = np.stack([x, y], axis=1)
-    images = ((mirror, _image(mesh, mirror, middles)) for mirror in mirrors)
-    return [(mirror, to) for mirror, to in images if to is not None]
+    images: Images = []
+    for mirror in mirrors:
+        known = mesh.of_quads.get(mirror)
+        to = known if isinstance(known, np.ndarray) else _image(mesh, mirror)
+        if to is not None:
+            mesh.of_quads[mirror] = to
+            images.append((mirror, to))
+    return images
 
 
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
@@ -48,26 +54,29 @@ def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
     return mesh
 
 
-def _image(mesh: QuadMesh, mirror: Mirror, middles: Floats) -> Indices | None:
+def _image(mesh: QuadMesh, mirror: Mirror) -> Indices | None:
     """Return the node (n,) that each one becomes; None unless quads, walls and corners become such.
 
-    It follows from one quad and its image: that which are nearest to each other, by their size.
+    It follows from one quad and its image: of some, those which are nearest to each other, by their size.
     """
-    near, squares = nearest_points(mirror.images(middles), middles)
-    diagonals = mesh.nodes[mesh.quads[:, 2:]] - mesh.nodes[mesh.quads[:, :2]]
-    size = np.abs(diagonals[:, 0, 0] * diagonals[:, 1, 1] - diagonals[:, 0, 1] * diagonals[:, 1, 0])
-    quad = int(np.argmin(squares / np.maximum(size, 1e-300)))
-    corners = mirror.images(mesh.nodes[mesh.quads[quad, :1]]) - mesh.nodes[mesh.quads[near[quad]]]
-    to = _continued(mesh, quad, int(near[quad]), int(norms(corners).argmin()))
+    x, y = (mesh.nodes[mesh.quads, axis].mean(axis=1) for axis in (0, 1))
+    middles, some = np.stack([x, y], axis=1), slice(None, None, 1 + len(mesh.quads) // SOME)
+    near, squares = nearest_points(mirror.images(middles[some]), middles)
+    corners = mesh.nodes[mesh.quads[some]]
+    one, other = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
+    size = np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
+    best = int(np.argmin(squares / np.maximum(size, 1e-300)))
+    quad, image = best * (1 + len(mesh.quads) // SOME), int(near[best])
+    off = norms(mirror.images(mesh.nodes[mesh.quads[quad, 0]]) - mesh.nodes[mesh.quads[image]])
+    to = _continued(mesh, quad, image, int(off.argmin()))
     if to is None:
         return None
-    places, longest = mesh.places, np.zeros(len(mesh.nodes))
-    length = norms(mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]])
-    for end in mesh.edges.T:
-        np.maximum.at(longest, end, length)
+    places = mesh.places
     loops = np.where(places.loop >= 0, mirror.loops[places.loop], -1)
     suits = np.array_equal(places.loop[to], loops) and np.array_equal(places.cells[to], places.cells)
-    return to if suits and (norms(mirror.images(mesh.nodes) - mesh.nodes[to]) < longest).all() else None
+    off = norms(mirror.images(mesh.nodes) - mesh.nodes[to]).mean()
+    edges = norms(mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]])
+    return to if suits and off < edges.mean() else None
 
 
 def _continued(mesh: QuadMesh, quad: int, image: int, corner: int) -> Indices | None:

@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import distinct
 from meshonet.geometry.domain.domain import Domain
@@ -39,21 +40,24 @@ Optimised = Callable[[QuadMesh], QuadMesh]
 
 
 def symmetric_blocks(
-    blocks: BaseComplex, find: FindPart, optimised: Optimised, score: Callable[[BaseComplex], float]
-) -> BaseComplex:
+    blocks: BaseComplex, find: FindPart, optimised: Optimised, score: Callable[[BaseComplex], float],
+    alike: bool,
+) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of some blocks; these where there are none about as good.
 
+    Edges are to be `alike`, or as long as they are in these blocks.
     With two mirrors at right angles they are symmetric to both if that can be, else to the first that can be.
     Those of a part have to be better, and no more, than the blocks as found if these are symmetric already.
     """
-    mesh, mirrors = blocks.mesh, mirrors_of(blocks.mesh.domain)[:2]
+    mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
+    mirrors = every[:2]
     irregular = wrong_count(mesh).any() or (mesh.irregular & ~mesh.wall_nodes).any()
     for group in [mirrors, mirrors[:1], mirrors[1:]][: (0, 1, 3)[len(mirrors)]]:
         ways: list[Callable[[], QuadMesh]]
         ways = [
             lambda: mesh,
             partial(_of_part, mesh.domain, group, find),
-            partial(_recounted, blocks, group, optimised),
+            partial(_recounted, blocks, group, optimised, alike),
         ]
         best, least = None, score(blocks) + WORTH
         for number, way in enumerate(ways):
@@ -63,8 +67,13 @@ def symmetric_blocks(
             fewer = trial is not None and (best is None or len(trial.blocks) <= len(best.blocks))
             if trial is not None and fewer and less(score(trial), least):
                 best, least = trial, score(trial)
-        if best is not None:
-            return best
+        if best is None:
+            continue
+        if group == mirrors and len(images_of(best.mesh)) < len(every):
+            trial = _trial(partial(_recounted, best, every, optimised, alike), every, optimised)
+            if trial is not None and less(score(trial), score(blocks) + WORTH):
+                best = trial
+        return best
     return blocks
 
 
@@ -76,7 +85,7 @@ def _trial(
         mesh, images = _symmetric(optimised(_symmetric(way(), mirrors)[0]), mirrors)
         if not is_conforming(mesh) or smallest_jacobian(mesh.nodes, mesh.quads) <= 0.0:
             return None
-        return _cut_on_mirrors(base_complex(mesh), images)
+        return cut_on_mirrors(mesh, images)
     except (SolverError, InputError):
         return None
 
@@ -89,19 +98,19 @@ def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Ima
     images = images_of(mesh, mirrors)
     if len(images) < len(mirrors):
         raise BlockingError("quads that are not symmetric")
-    if len(mirrors) > 1:
+    if len(mirrors) == 2:
         images += images_of(mesh, mirrors_of(mesh.domain)[2:])
-    return made_symmetric(mesh, images), images[: len(mirrors)]
+    return made_symmetric(mesh, images), images
 
 
-def _cut_on_mirrors(blocks: BaseComplex, images: Images) -> BaseComplex:
-    """Return the blocks cut along mirrors that go through corners of the domain where two cells meet.
+def cut_on_mirrors(mesh: QuadMesh, images: Images, more: NDArray[np.bool_] | None = None) -> BaseComplex:
+    """Return the blocks of a mesh, cut along mirrors that go through corners of the domain with two cells.
 
-    One cuts a ring too, which is cut open anywhere. So images of sides of blocks are sides of blocks. Raises
-    BlockingError: it has no line on a mirror.
+    They end at edges on `more` (e,) lines too. A mirror cuts a ring too, which is else cut open anywhere. So
+    images of sides of blocks are sides of blocks. Raises BlockingError: a ring has no line on a mirror.
     """
-    mesh = blocks.mesh
-    ring = any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
+    blocks = base_complex(mesh, more)
+    ring = bool(images) and any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
     lines = np.zeros(len(mesh.edges), dtype=bool)
     for _, to in images:
         own = to == np.arange(len(to))
@@ -114,15 +123,22 @@ def _cut_on_mirrors(blocks: BaseComplex, images: Images) -> BaseComplex:
         lines |= line & cut[label[mesh.edges[:, 0]]]
     if ring and not lines.any():
         raise BlockingError("a ring without a line on a mirror")
-    return base_complex(mesh, lines) if lines.any() else blocks
+    return base_complex(mesh, lines if more is None else lines | more) if lines.any() else blocks
 
 
-def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimised) -> QuadMesh:
+def _recounted(
+    blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimised, alike: bool
+) -> QuadMesh:
     """Return the mesh of the same blocks with counts of cells that images have in common."""
-    chords = Chords.of(blocks.layout)
-    even = refine(blocks.layout, np.full(chords.count, max(EVEN, int(chords.least.max()))), chords)
-    chords = Chords.of(replace(even, mesh=_symmetric(optimised(even.mesh), mirrors)[0]))
-    return refine(chords.layout, chords.counts_for_cells(len(blocks.mesh.quads)), chords).mesh
+    before = Chords.of(blocks.layout)
+    even = refine(blocks.layout, np.full(before.count, max(EVEN, int(before.least.max()))), before)
+    mesh, images = _symmetric(optimised(even.mesh), mirrors)
+    chords = Chords.of(replace(even, mesh=mesh), images)
+    counts = chords.counts_for_cells(len(blocks.mesh.quads))
+    if not alike:
+        wanted = np.bincount(chords.chord, before.counts[before.chord]) / np.bincount(chords.chord)
+        counts = chords.rounded(wanted, chords.least)
+    return refine(chords.layout, counts, chords).mesh
 
 
 def _of_part(domain: Domain, mirrors: Sequence[Mirror], find: FindPart) -> QuadMesh:
