@@ -55,7 +55,7 @@ def fine_layout(
     own = 0  # halvings that are optimised themselves
     while own < halved and wanted * 4 ** (own + 1) <= OPTIMISED:
         own += 1
-    chords = Chords.of(layout)
+    chords = Chords.of(layout, images_of(layout.mesh))
     least = chords.least
     turning, counts, finer = ALLOWED, least, 4.0 ** (halvings - own)
     fine: Layout | None = None
@@ -68,12 +68,12 @@ def fine_layout(
         if fine is not None and chords.cells(counts) > MORE * wanted / 4**halvings:
             if abs(cut_off(fine)) / finer < MOST_CUT_OFF:
                 break
-            turning, counts = _held_back(Chords.of(fine), turning), before
+            turning, counts = _held_back(chords.of_refined(fine), turning), before
         trial = _optimised(chords, counts, 2**own, turning, timings)
         if fine is not None and turning < ALLOWED and abs(cut_off(trial)) > abs(cut_off(fine)):
             break
         fine = trial
-        more = _more_along_walls(Chords.of(fine), finer, 2**own)
+        more = _more_along_walls(chords.of_refined(fine), finer, 2**own)
         if (more <= counts).all():
             break
         least = np.maximum(least, more)

@@ -97,7 +97,7 @@ def _outside(
     with timings.stage("first optimum"):
         coarse = _optimised(template(passage, at_corners=corners == "at first"), FIRST, None)
     with timings.stage("refine"):
-        chords = Chords.of(coarse, [])
+        chords = Chords.of(coarse)
         counts, times, metric = _counts(cascade, chords, cells, cell_size)
         coarse = refine(coarse, counts, chords)
     with timings.stage("optimum"):

@@ -117,7 +117,10 @@ def decompose(
     def scored(blocks: BaseComplex) -> float:
         return score(blocks, price, sizes.edges(blocks.mesh) if sizes else None)
 
-    return symmetric_blocks(blocks, of_part, optimised, scored, sizes is None).layout
+    def unsized() -> QuadMesh:
+        return decompose(domain, cells=cells, count=count, price=price, timings=part_timings).mesh
+
+    return symmetric_blocks(blocks, of_part, optimised, scored, unsized if sizes else None).layout
 
 
 def _found(

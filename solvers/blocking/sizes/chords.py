@@ -6,7 +6,7 @@ one count a chord. Edges of periodic sides have those of their partners.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -18,7 +18,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.ties import nearest_whole
 from meshonet.kernels._native import joined_classes
-from meshonet.solvers.blocking.decomposition.symmetry.images import Images, images_of
+from meshonet.solvers.blocking.decomposition.symmetry.images import Images
 from meshonet.solvers.blocking.sizes.wall_turning import corners_between, turning_between
 
 LEAST = 2
@@ -48,8 +48,8 @@ class Chords:
     images: Images
 
     @classmethod
-    def of(cls, layout: Layout, images: Images | None = None) -> Chords:
-        """Return the edges and chords of a layout; mirror images, all by default, are of the same chord."""
+    def of(cls, layout: Layout, images: Images = ()) -> Chords:
+        """Return the edges and chords of a layout; mirror images are of the same chord."""
         edges: list[Indices] = []
         numbers: dict[tuple[int, ...], int] = {}
         sides = np.empty((len(layout.blocks), 4), dtype=np.intp)
@@ -66,12 +66,15 @@ class Chords:
         wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
         wall[has], wall[partner[has]] = False, False
         pairs = [sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)]
-        images = images_of(layout.mesh) if images is None else images
         for _, to in images:
             image = np.array([numbers.get(_key(to[edge])[0], -1) for edge in edges])
             pairs.append(np.stack([np.arange(len(edges)), image], axis=1)[image >= 0])
         chord, count = joined_classes(np.ascontiguousarray(np.concatenate(pairs)), len(edges))
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
+
+    def of_refined(self, layout: Layout) -> Chords:
+        """Return the edges and the same chords of a layout with other counts."""
+        return replace(Chords.of(layout), chord=self.chord, count=self.count)
 
     @cached_property
     def counts(self) -> Indices:

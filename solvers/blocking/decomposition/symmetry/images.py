@@ -12,7 +12,7 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 
-Images = list[tuple[Mirror, Indices]]
+Images = Sequence[tuple[Mirror, Indices]]
 """Mirrors, and the node (n,) that each node of a mesh becomes in them."""
 SOME = 100
 """Quads of which images are looked for; those of others follow from them."""
@@ -23,7 +23,7 @@ def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images
     mirrors = mirrors_of(mesh.domain) if mirrors is None else mirrors
     if (mesh.places.partner >= 0).any():
         return []
-    images: Images = []
+    images = []
     for mirror in mirrors:
         known = mesh.of_quads.get(mirror)
         to = known if isinstance(known, np.ndarray) else _image(mesh, mirror)

@@ -41,11 +41,11 @@ Optimised = Callable[[QuadMesh], QuadMesh]
 
 def symmetric_blocks(
     blocks: BaseComplex, find: FindPart, optimised: Optimised, score: Callable[[BaseComplex], float],
-    alike: bool,
+    unsized: Callable[[], QuadMesh] | None = None,
 ) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of some blocks; these where there are none about as good.
 
-    Edges are to be `alike`, or as long as they are in these blocks.
+    Edges are all alike without `unsized`, which makes the mesh of blocks for such edges, a last resort.
     With two mirrors at right angles they are symmetric to both if that can be, else to the first that can be.
     Those of a part have to be better, and no more, than the blocks as found if these are symmetric already.
     """
@@ -57,11 +57,12 @@ def symmetric_blocks(
         ways = [
             lambda: mesh,
             partial(_of_part, mesh.domain, group, find),
-            partial(_recounted, blocks, group, optimised, alike),
+            partial(_recounted, blocks, group, optimised, unsized is None),
+            *([unsized] if unsized else []),
         ]
         best, least = None, score(blocks) + WORTH
         for number, way in enumerate(ways):
-            if best is not None and (number == 2 or not irregular):
+            if best is not None and (number >= 2 or not irregular):
                 break
             trial = _trial(way, group, optimised)
             fewer = trial is not None and (best is None or len(trial.blocks) <= len(best.blocks))
@@ -70,7 +71,7 @@ def symmetric_blocks(
         if best is None:
             continue
         if group == mirrors and len(images_of(best.mesh)) < len(every):
-            trial = _trial(partial(_recounted, best, every, optimised, alike), every, optimised)
+            trial = _trial(partial(_recounted, best, every, optimised, unsized is None), every, optimised)
             if trial is not None and less(score(trial), score(blocks) + WORTH):
                 best = trial
         return best
@@ -99,7 +100,7 @@ def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Ima
     if len(images) < len(mirrors):
         raise BlockingError("quads that are not symmetric")
     if len(mirrors) == 2:
-        images += images_of(mesh, mirrors_of(mesh.domain)[2:])
+        images = [*images, *images_of(mesh, mirrors_of(mesh.domain)[2:])]
     return made_symmetric(mesh, images), images
 
 
