@@ -107,8 +107,9 @@ class Ring:
 
 
 def march_ring(
-    domain: Domain, number: int, first: float, thickness: float, largest: float, mirrors: Sequence[Mirror] = ()
-) -> Ring:
+    domain: Domain, number: int, first: float, thickness: float, largest: float,
+    mirrors: Sequence[Mirror] = (),
+) -> Ring:  # fmt: skip
     """Return the ring around a loop of a domain, as thick as `thickness` where there is room.
 
     `first` is the height of first cells, `largest` the length of cells along the wall, all in the domain's

@@ -36,8 +36,7 @@ def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floa
     ends = np.append(starts[1:], starts[0] + loop.length)
     firsts, lasts = ([_counted(arc, closed, count, loop.length) for arc in arcs] for arcs in (starts, ends))
     counts = [
-        multiple * max(2, round((last - first) / multiple))
-        for first, last in zip(firsts, lasts, strict=True)
+        multiple * max(2, round((last - first) / multiple)) for first, last in zip(firsts, lasts, strict=True)
     ]
     for total in sums:  # stretches between corners have as many columns as their images
         for k, end in enumerate(ends.tolist()):

@@ -91,7 +91,8 @@ def with_wall_rows(
 ) -> tuple[Layout, WallRows]:
     """Return a layout with a row of quads along some stretches and around some loops with a sharp edge.
 
-    With it comes which blocks these are; they are symmetric to mirrors if its quads are. Raises BlockingError: the lines of the mesh do not bound blocks.
+    With it comes which blocks these are; they are symmetric to `mirrors` if its quads are. Raises
+    BlockingError: the lines of the mesh do not bound blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front

@@ -33,15 +33,18 @@ def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images
     return images
 
 
+def agree(images: Images) -> bool:
+    """Return whether images in the first two mirrors, at right angles, are the same in either order."""
+    return len(images) < 2 or np.array_equal(images[0][1][images[1][1]], images[1][1][images[0][1]])
+
+
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
     """Return the mesh with all nodes and their images, by default in all mirrors, at the means of both.
 
     Corners stay. A ring with an odd number of quads around is symmetric to the first mirror only.
     """
     images = images_of(mesh) if images is None else images
-    if len(images) > 1 and (images[0][1][images[1][1]] != images[1][1][images[0][1]]).any():
-        images = images[:1]
-    for mirror, to in images:
+    for mirror, to in images if agree(images) else images[:1]:
         places, nodes = mesh.places, 0.5 * (mesh.nodes + mirror.images(mesh.nodes[to]))
         arc, fixed = places.arc.copy(), places.cells > 0
         for number, loop in enumerate(mesh.domain.loops):

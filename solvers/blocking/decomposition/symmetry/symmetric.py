@@ -2,6 +2,7 @@
 
 Three ways: nodes at the means of themselves and their images, where the quads are symmetric; where only the
 blocks are, the same with equal counts of cells; and the blocks of a half, or of a quarter, and their images.
+Where lengths of edges are prescribed, a fourth one is the blocks for edges that are all alike.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from meshonet.solvers.blocking.decomposition.collapse.contract import is_conform
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.padding import Span, wrong_count
 from meshonet.solvers.blocking.decomposition.symmetry.halves import both_halves, left_half, spans_between
-from meshonet.solvers.blocking.decomposition.symmetry.images import Images, images_of, made_symmetric
+from meshonet.solvers.blocking.decomposition.symmetry.images import Images, agree, images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirror_about, mirrors_of
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import refine
@@ -45,9 +46,10 @@ def symmetric_blocks(
 ) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of some blocks; these where there are none about as good.
 
-    Edges are all alike without `unsized`, which makes the mesh of blocks for such edges, a last resort.
-    With two mirrors at right angles they are symmetric to both if that can be, else to the first that can be.
-    Those of a part have to be better, and no more, than the blocks as found if these are symmetric already.
+    With two mirrors at right angles they are symmetric to both if that can be, else to the first that can be,
+    and to the two mirrors between if the same blocks can be. Those of a part have to be better, and no more,
+    than the blocks as found if these are symmetric already. Where lengths of edges are prescribed, `unsized`
+    makes the mesh of blocks for edges that are all alike, which are taken if no others are symmetric.
     """
     mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
     mirrors = every[:2]
@@ -97,7 +99,7 @@ def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Ima
     Of a domain with four mirrors they are symmetric to the others too, if the quads are.
     """
     images = images_of(mesh, mirrors)
-    if len(images) < len(mirrors):
+    if len(images) < len(mirrors) or not agree(images):
         raise BlockingError("quads that are not symmetric")
     if len(mirrors) == 2:
         images = [*images, *images_of(mesh, mirrors_of(mesh.domain)[2:])]
@@ -127,10 +129,11 @@ def cut_on_mirrors(mesh: QuadMesh, images: Images, more: NDArray[np.bool_] | Non
     return base_complex(mesh, lines if more is None else lines | more) if lines.any() else blocks
 
 
-def _recounted(
-    blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimised, alike: bool
-) -> QuadMesh:
-    """Return the mesh of the same blocks with counts of cells that images have in common."""
+def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimised, alike: bool) -> QuadMesh:
+    """Return the mesh of the same blocks with counts of cells that images have in common.
+
+    They are for edges that are all `alike`, or near those that the blocks have.
+    """
     before = Chords.of(blocks.layout)
     even = refine(blocks.layout, np.full(before.count, max(EVEN, int(before.least.max()))), before)
     mesh, images = _symmetric(optimised(even.mesh), mirrors)
