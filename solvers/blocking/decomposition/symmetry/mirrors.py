@@ -56,12 +56,11 @@ def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
     middles, centre = _centroids(domain)
     for along in _directions(domain, middles, centre):
         across = np.array([-along[1], along[0]])
-        both = (mirror_about(domain, centre, along), mirror_about(domain, centre, across))
-        if all(both):
-            halfway = (mirror_about(domain, centre, (along + each) / _ROOT) for each in (across, -across))
-            both = (*both, *halfway)
-        if any(both):
-            return tuple(mirror for mirror in both if mirror)
+        found = [mirror_about(domain, centre, along), mirror_about(domain, centre, across)]
+        if all(found):
+            found += [mirror_about(domain, centre, (along + each) / _ROOT) for each in (across, -across)]
+        if any(found):
+            return tuple(mirror for mirror in found if mirror)
     return ()
 
 
