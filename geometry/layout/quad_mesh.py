@@ -110,6 +110,11 @@ class QuadMesh:
         """(n,) whether the number of quads at a node is not four, or on the boundary not two."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
+    @cached_property
+    def of_quads(self) -> dict[object, object]:
+        """What others have derived of the quads alone; meshes of the same quads share it."""
+        return {}
+
     def aspects(self, lengths: Floats) -> Floats:
         """Return aspect ratios (m,): geometric mean of sides 1-2, 3-0 over 0-1, 2-3, of `lengths` (e,)."""
         sides = lengths[self.edge_of]
@@ -123,6 +128,7 @@ class QuadMesh:
     def with_places(self, nodes: Floats, places: Places) -> QuadMesh:
         """Return the same quads with nodes (n, 2) and their places on the boundary replaced."""
         moved = replace(self, nodes=nodes, places=places)
-        known = ("_sides", "on_wall", "wall_nodes", "valence", "irregular")  # these depend on the quads alone
+        known = ("_sides", "on_wall", "wall_nodes", "valence", "irregular", "of_quads")
+        # these depend on the quads alone
         moved.__dict__.update({name: self.__dict__[name] for name in known if name in self.__dict__})
         return moved

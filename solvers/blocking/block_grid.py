@@ -13,7 +13,6 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.decomposition.errors import most_folded
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
@@ -56,7 +55,7 @@ def fine_layout(
     own = 0  # halvings that are optimised themselves
     while own < halved and wanted * 4 ** (own + 1) <= OPTIMISED:
         own += 1
-    chords = Chords.of(layout)
+    chords = Chords.of(layout, images_of(layout.mesh))
     least = chords.least
     turning, counts, finer = ALLOWED, least, 4.0 ** (halvings - own)
     fine: Layout | None = None
@@ -69,19 +68,20 @@ def fine_layout(
         if fine is not None and chords.cells(counts) > MORE * wanted / 4**halvings:
             if abs(cut_off(fine)) / finer < MOST_CUT_OFF:
                 break
-            turning, counts = _held_back(Chords.of(fine), turning), before
+            turning, counts = _held_back(chords.of_refined(fine), turning), before
         trial = _optimised(chords, counts, 2**own, turning, timings)
         if fine is not None and turning < ALLOWED and abs(cut_off(trial)) > abs(cut_off(fine)):
             break
         fine = trial
-        more = _more_along_walls(Chords.of(fine), finer, 2**own)
+        more = _more_along_walls(chords.of_refined(fine), finer, 2**own)
         if (more <= counts).all():
             break
         least = np.maximum(least, more)
     assert fine is not None  # noqa: S101 - the first round makes it
     with timings.stage("refine"):
         times = 2 ** (halvings + halved - own)
-        return multiplied(fine, times) if times > 1 else fine
+        fine = multiplied(fine, times) if times > 1 else fine
+        return replace(fine, mesh=made_symmetric(fine.mesh))
 
 
 def cut_off(fine: Layout) -> float:
@@ -109,7 +109,7 @@ def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timi
 
 def _optimum(mesh: QuadMesh, turning: float) -> QuadOptimum:
     """Return the optimum of a mesh, its nodes symmetric to mirrors of the domain to which its quads are."""
-    images = images_of(mesh, mirrors_of(mesh.domain))
+    images = images_of(mesh)
     if images:
         optimum = optimise(made_symmetric(mesh, images), iterations=ITERATIONS, turning=turning)
         symmetric = made_symmetric(optimum.mesh, images)

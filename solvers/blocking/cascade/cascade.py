@@ -117,7 +117,7 @@ class Cascade:
     def ring(self) -> Ring:
         """The layers around the blade."""
         largest = self.blade.length / COLUMNS
-        return march_ring(self.blades, self.blade, self.layers.first, self.thickness, largest)
+        return march_ring(self.blades, 0, self.layers.first, self.thickness, largest)
 
     @cached_property
     def ends(self) -> tuple[float, float]:

@@ -84,12 +84,9 @@ def decompose(
     attempts: int = ATTEMPTS,
     timings: Timings | None = None,
     sizes: SizeMetric | None = None,
-    spans: Sequence[Span] = (),
+    symmetric: bool = True,
 ) -> Layout:
     """Return a layout of the blocks of a domain, its quad mesh optimised.
-
-    Of a symmetric domain they are symmetric (`symmetry.symmetric`), but with `sizes` or `spans`, which are of
-    what layers leave of a domain: its nodes are symmetric to fewer digits.
 
     Parameters
     ----------
@@ -99,25 +96,31 @@ def decompose(
     attempts : how often to try, each time with a finer triangulation and another seed.
     timings : filled with what the stages took.
     sizes : of the edges of the quad mesh, in place of `cells`; by default they are all alike.
-    spans : stretches of loops between convex corners along which no singularity is to lie.
+    symmetric : whether those of a symmetric domain are to be symmetric (`symmetry.symmetric`).
 
     Raises BlockingError: no attempt came to a valid layout, or the domain has too many corners.
     """
     timings = timings or Timings()
-    blocks = _found(domain, cells, count, price, attempts, timings, sizes, spans)
-    if sizes is not None or spans:
+    blocks = _found(domain, cells, count, price, attempts, timings, sizes, ())
+    if not symmetric:
         return blocks.layout
     part_timings = Timings(timings.seconds)
 
     def of_part(part: Domain, parts: int, rows: Sequence[Span]) -> QuadMesh:
         shares = cells // parts, count // parts
-        return _found(part, *shares, parts * price, attempts, part_timings, None, rows).mesh
+        return _found(part, *shares, parts * price, attempts, part_timings, sizes, rows).mesh
 
     def optimised(mesh: QuadMesh) -> QuadMesh:
         with timings.stage("first optimum"):
-            return _optimised(mesh, FIRST_ITERATIONS, None)
+            return _optimised(mesh, FIRST_ITERATIONS, sizes)
 
-    return symmetric_blocks(blocks, of_part, optimised, lambda blocks: score(blocks, price)).layout
+    def scored(blocks: BaseComplex) -> float:
+        return score(blocks, price, sizes.edges(blocks.mesh) if sizes else None)
+
+    def unsized() -> QuadMesh:
+        return decompose(domain, cells=cells, count=count, price=price, timings=part_timings).mesh
+
+    return symmetric_blocks(blocks, of_part, optimised, scored, unsized if sizes else None).layout
 
 
 def _found(

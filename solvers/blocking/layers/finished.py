@@ -14,6 +14,7 @@ from meshonet.geometry.layout.lattice import corner_jacobians
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.collapse.score import deviations
+from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.energy.quads import optimise
@@ -64,6 +65,7 @@ def evened(layout: Layout, settings: LayerSettings, held: Bools | None = None) -
         mesh = evened_mesh(layout.mesh, held, limit)
     except SolverError:  # nodes that coincide
         return layout
+    mesh = made_symmetric(mesh)
     before, after = (float(deviations(each).mean()) for each in (layout.mesh, mesh))
     return replace(layout, mesh=mesh) if after <= DEARER * before + DEARER_DEG else layout
 
@@ -79,7 +81,7 @@ def unfolded(layout: Layout, held: Bools) -> Layout:
     for _ in range(NEAR_FOLDS):
         free[mesh.quads[free[mesh.quads].any(axis=1)]] = True
     optimum = optimise(mesh, iterations=FEW_ITERATIONS, held=held | ~free)
-    return replace(layout, mesh=optimum.mesh) if optimum.valid else layout
+    return replace(layout, mesh=made_symmetric(optimum.mesh)) if optimum.valid else layout
 
 
 def smallest_corner(mesh: QuadMesh) -> float:

@@ -14,6 +14,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import arctan2, cos, exp, log, sin
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.spacing.growth import growing_steps
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
 from meshonet.solvers.blocking.layers.even_line import evened_steps
 
@@ -50,7 +51,9 @@ class NearField:
         if len(domain.loops) < 2 or outer.corners:
             return None
         bodies = np.concatenate([loop.curve.points for loop in domain.loops[1:]])
-        centre = 0.5 * (bodies.min(axis=0) + bodies.max(axis=0))
+        centre, mirrors = 0.5 * (bodies.min(axis=0) + bodies.max(axis=0)), mirrors_of(domain)
+        for mirror in mirrors:
+            centre = 0.5 * (centre + mirror.images(centre))
         reach = float(np.hypot(*(bodies - centre).T).max())
         arcs = np.linspace(0.0, outer.length, 8 * _POINTS, endpoint=False)
         away = outer.at(arcs) - centre
@@ -61,6 +64,8 @@ class NearField:
         if (np.diff(angles) <= 0).any():
             return None
         turn = 2.0 * math.pi * np.arange(_POINTS) / _POINTS
+        if mirrors:  # from a mirror on
+            turn += math.atan2(mirrors[0].along[1], mirrors[0].along[0])
         points = centre + NEAR * reach * np.stack([cos(turn), sin(turn)], axis=1)
         curve = Curve(points, closed=True, corners=())
         circle = Loop(curve, (), outer.names[:1])

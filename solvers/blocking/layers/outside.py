@@ -17,13 +17,17 @@ PRICE = 0.08
 """Degrees of mean deviation that a block costs: from .03 to .08 a tube bank has 70 blocks, at 0 it has 91."""
 
 
-def found_outside(rest: Domain, fronts: Collection[int], timings: Timings | None = None) -> Layout:
+def found_outside(
+    rest: Domain, fronts: Collection[int], timings: Timings | None = None, symmetric: bool = True
+) -> Layout:
     """Return the blocks of a domain of which some loops are fronts of layers.
+
+    If they are to be `symmetric`, those of a symmetric domain are.
 
     Raises BlockingError: no blocks are found.
     """
     plain = replace(rest, loops=tuple(_smooth(loop) for loop in rest.loops))
-    layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
+    layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE, symmetric=symmetric)
     mesh = replace(layout.mesh, domain=rest)
     return replace(layout, mesh=mesh, fronts=tuple(sorted(fronts)))
 

@@ -10,6 +10,7 @@ itself is a map from (place along the front, height) that gives a column of node
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -22,9 +23,10 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
 from meshonet.solvers.blocking.layers.even_line import FINER, SLACK, Measures
 from meshonet.solvers.blocking.layers.marched import GAP_PART, fitted
-from meshonet.solvers.blocking.layers.wall_columns import wall_columns
+from meshonet.solvers.blocking.layers.wall_columns import nearest_arc, wall_columns
 from meshonet.solvers.hyperbolic.settings import ATTEMPTS
 
 
@@ -104,14 +106,30 @@ class Ring:
         return low, high
 
 
-def march_ring(domain: Domain, loop: Loop, first: float, thickness: float, largest: float) -> Ring:
+def march_ring(
+    domain: Domain, number: int, first: float, thickness: float, largest: float,
+    mirrors: Sequence[Mirror] = (),
+) -> Ring:  # fmt: skip
     """Return the ring around a loop of a domain, as thick as `thickness` where there is room.
 
     `first` is the height of first cells, `largest` the length of cells along the wall, all in the domain's
-    unit. Raises InputError: a gap that no layer fits in, or a wall that every march folds at; with the place.
+    unit. The ring is symmetric to those of some mirrors of the domain that take the loop to itself. Raises
+    InputError: a gap that no layer fits in, or a wall that every march folds at; with the place.
     """
-    arcs = wall_columns(loop, largest)
+    loop = domain.loops[number]
+    own = [mirror for mirror in mirrors if mirror.loops[number] == number]
+    sums = [float(mirror.sums[number]) for mirror in own]
+    arcs = wall_columns(loop, largest, sums)
+    images = [
+        (nearest_arc(arcs, total - arcs[0], loop.length) - np.arange(len(arcs))) % len(arcs) for total in sums
+    ]
     room = GAP_PART * wall_gaps(domain, loop, arcs)
+    for total, to in zip(sums, images, strict=True):
+        step = (total - arcs[to] - arcs) / loop.length
+        arcs = arcs + 0.5 * loop.length * (step - np.round(step))
+        room = np.minimum(room, room[to])
+    if own:
+        arcs = _at_corners(loop, arcs)
     levels = fitted(
         loop.at(arcs),
         arcs,
@@ -122,7 +140,28 @@ def march_ring(domain: Domain, loop: Loop, first: float, thickness: float, large
         ATTEMPTS,
         place=lambda k: place(loop, arcs[k]),
     )
+    for mirror, to in zip(own, images, strict=True):
+        levels = 0.5 * (levels + mirror.images(levels[to]))
+    if own:
+        levels[:, 0] = loop.at(arcs)
     return _ring(loop, arcs, levels)
+
+
+def mirrored(ring: Ring, loop: Loop, mirror: Mirror, total: float) -> Ring:
+    """Return the mirror image of a ring, around another loop; `total` is the sum of arc lengths of both."""
+    arcs = _at_corners(loop, np.mod(total - ring.arcs[::-1], loop.length))
+    levels = mirror.images(ring.levels[::-1])
+    levels[:, 0] = loop.at(arcs)
+    first = -int(np.argmin(arcs))
+    return _ring(loop, np.roll(arcs, first), np.roll(levels, first, axis=0))
+
+
+def _at_corners(loop: Loop, arcs: Floats) -> Floats:
+    """Return arc lengths (n,) with those nearest to corners of a loop at these."""
+    arcs = arcs.copy()
+    for corner in loop.corner_arcs.tolist():
+        arcs[nearest_arc(arcs, corner, loop.length)] = corner
+    return arcs
 
 
 def place(loop: Loop, arc: float) -> str:

@@ -12,14 +12,17 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_points
+from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
+from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 from meshonet.solvers.blocking.layers.even_line import Measures
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.marched import GAP_PART
 from meshonet.solvers.blocking.layers.near_field import NearField
-from meshonet.solvers.blocking.layers.rings import Ring, march_ring
+from meshonet.solvers.blocking.layers.rings import Ring, march_ring, mirrored
 from meshonet.solvers.blocking.layers.row_sizes import RowSizes
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
@@ -85,6 +88,15 @@ class WallLayers:
     def fronts(self) -> tuple[int, ...]:
         """Numbers of the loops of `rest` that are fronts of layers."""
         return tuple(self.rings)
+
+    @cached_property
+    def mirrors(self) -> tuple[Mirror, ...]:
+        """Mirrors of what the layers leave; none unless the domain has some."""
+        return mirrors_of(self.rest) if mirrors_of(self.domain) else ()
+
+    def symmetric(self, layout: Layout) -> Layout:
+        """Return the layout outside the layers with its nodes symmetric, if its quads are."""
+        return replace(layout, mesh=made_symmetric(layout.mesh, images_of(layout.mesh, self.mirrors)))
 
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
         """Return whether a wake, nodes from a sharp edge on, has room for layers out to the outer loop."""
@@ -157,7 +169,14 @@ def rings_around(domain: Domain, loops: Sequence[int], settings: LayerSettings) 
 
     Raises InputError: no room for layers; a wall that they fold at.
     """
-    return {k: march_ring(domain, domain.loops[k], settings.first, *_sizes(domain, k)) for k in loops}
+    mirrors, rings = mirrors_of(domain), dict[int, Ring]()
+    for k in loops:
+        mirror = next((each for each in mirrors if int(each.loops[k]) in rings), None)
+        if mirror is None:
+            rings[k] = march_ring(domain, k, settings.first, *_sizes(domain, k), mirrors)
+        else:
+            rings[k] = mirrored(rings[int(mirror.loops[k])], domain.loops[k], mirror, float(mirror.sums[k]))
+    return rings
 
 
 def _sizes(domain: Domain, number: int) -> tuple[float, float]:
@@ -219,5 +238,7 @@ def wanted_counts(
     while times % multiple and multiple % times:  # either divides the other
         times -= 1
     stride = max(multiple // times, 1)
-    coarse = np.maximum(chords.least, np.round(counts / (times * stride)).astype(np.intp))
+    around = times * stride * chords.multiple
+    least = -(-chords.least // chords.multiple)
+    coarse = chords.multiple * np.maximum(least, np.round(counts / around).astype(np.intp))
     return Counts(np.where(inner, coarse, ROWS), stride, times, scale, metric)

@@ -21,8 +21,10 @@ from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.decomposition.collapse.base_complex import base_complex
 from meshonet.solvers.blocking.decomposition.quads.padding import pad_span
+from meshonet.solvers.blocking.decomposition.symmetry.images import images_of
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
+from meshonet.solvers.blocking.decomposition.symmetry.symmetric import cut_on_mirrors
 from meshonet.solvers.blocking.layers.even_mesh import consecutive_edges, growth_along
 from meshonet.solvers.blocking.layers.sheet import with_sheet
 from meshonet.solvers.blocking.layers.stretches import Stretch
@@ -85,11 +87,12 @@ class WallRows:
 
 
 def with_wall_rows(
-    layout: Layout, stretches: Sequence[Stretch], sheets: Sequence[int] = ()
+    layout: Layout, stretches: Sequence[Stretch], sheets: Sequence[int] = (), mirrors: Sequence[Mirror] = ()
 ) -> tuple[Layout, WallRows]:
     """Return a layout with a row of quads along some stretches and around some loops with a sharp edge.
 
-    With it comes which blocks these are. Raises BlockingError: the lines of the mesh do not bound blocks.
+    With it comes which blocks these are; they are symmetric to `mirrors` if its quads are. Raises
+    BlockingError: the lines of the mesh do not bound blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front
@@ -114,7 +117,7 @@ def with_wall_rows(
         rungs.append(across[len(row) // 2])
     lines = np.zeros(len(mesh.edges), dtype=bool)
     lines[_edges(mesh, [edge for front in fronts for edge in front])] = True
-    parts = base_complex(mesh, lines & ~mesh.on_wall)
+    parts = cut_on_mirrors(mesh, images_of(mesh, mirrors), lines & ~mesh.on_wall)
     row_of = np.full(parts.chords, -1, dtype=np.intp)
     row_of[parts.chord[_edges(mesh, rungs)]] = np.arange(len(rungs))
     rows_across = row_of[parts.sides[2].reshape(-1, 4)][:, [2, 0]]

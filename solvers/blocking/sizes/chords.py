@@ -6,18 +6,19 @@ one count a chord. Edges of periodic sides have those of their partners.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.elementary import exp, log, times
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.ties import nearest_whole
 from meshonet.kernels._native import joined_classes
+from meshonet.solvers.blocking.decomposition.symmetry.images import Images
 from meshonet.solvers.blocking.sizes.wall_turning import corners_between, turning_between
 
 LEAST = 2
@@ -33,6 +34,7 @@ class Chords:
     `sides` (b, 4) are the edges at south, north, west and east of each block, `reversed` (b, 4) says where
     the block runs the other way along one, `wall` (e,) which are walls; the `partner` (e,) of an
     edge is the one that it is, moved by the period, else -1, and `chord` (e,) numbers the chord of each.
+    `images` are those of the nodes in mirrors: images of edges are of one chord.
     """
 
     layout: Layout
@@ -43,10 +45,11 @@ class Chords:
     partner: Indices
     chord: Indices
     count: int
+    images: Images
 
     @classmethod
-    def of(cls, layout: Layout) -> Chords:
-        """Return the edges and chords of a layout."""
+    def of(cls, layout: Layout, images: Images = ()) -> Chords:
+        """Return the edges and chords of a layout; mirror images are of the same chord."""
         edges: list[Indices] = []
         numbers: dict[tuple[int, ...], int] = {}
         sides = np.empty((len(layout.blocks), 4), dtype=np.intp)
@@ -62,9 +65,16 @@ class Chords:
         has = np.flatnonzero(partner >= 0)
         wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
         wall[has], wall[partner[has]] = False, False
-        pairs = np.concatenate([sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)])
-        chord, count = joined_classes(np.ascontiguousarray(pairs), len(edges))
-        return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count)
+        pairs = [sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)]
+        for _, to in images:
+            image = np.array([numbers.get(_key(to[edge])[0], -1) for edge in edges])
+            pairs.append(np.stack([np.arange(len(edges)), image], axis=1)[image >= 0])
+        chord, count = joined_classes(np.ascontiguousarray(np.concatenate(pairs)), len(edges))
+        return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
+
+    def of_refined(self, layout: Layout) -> Chords:
+        """Return the edges and the same chords of a layout with other counts."""
+        return replace(Chords.of(layout), chord=self.chord, count=self.count)
 
     @cached_property
     def counts(self) -> Indices:
@@ -72,6 +82,23 @@ class Chords:
         cells = np.empty(self.count, dtype=np.intp)
         cells[self.chord] = [len(edge) - 1 for edge in self.edges]
         return cells
+
+    @cached_property
+    def multiple(self) -> Indices:
+        """(chords,) what divides counts of symmetric layouts, so that finer ones are symmetric.
+
+        Of a ring that is the number of its mirrors, and two where a corner lies on a mirror across a wall.
+        """
+        multiple = np.ones(self.count, dtype=np.intp)
+        for k, edge in enumerate(self.edges):
+            own = sum(np.array_equal(distinct(to[edge]), distinct(edge)) for _, to in self.images)
+            if own and self.wall[k] and edge[0] != edge[-1]:
+                loop = self.layout.mesh.domain.loops[self.layout.mesh.places.loop[edge[0]]]
+                own = 1 + len(corners_between(loop, *self.arcs(k)[[0, -1]].tolist())[0]) % 2
+            elif edge[0] != edge[-1]:
+                own = 1
+            multiple[self.chord[k]] = max(multiple[self.chord[k]], own)
+        return multiple
 
     @cached_property
     def lengths(self) -> Floats:
@@ -136,7 +163,12 @@ class Chords:
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
-        return np.maximum(self.least if least is None else least, nearest_whole(exp(mean)).astype(np.intp))
+        return self.rounded(exp(mean), self.least if least is None else least)
+
+    def rounded(self, wanted: Floats, least: Indices) -> Indices:
+        """Return the counts (chords,) that are nearest to what is wanted, at least `least`."""
+        times = self.multiple
+        return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))
 
     def counts_for_cells(self, cells: int, least: Indices | None = None) -> Indices:
         """Return counts (chords,) for about so many cells in all; more where the fewest possible are more."""

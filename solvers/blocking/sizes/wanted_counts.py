@@ -6,7 +6,6 @@ import numpy as np
 
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.ties import nearest_whole
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 
@@ -32,4 +31,4 @@ class WantedCounts:
         wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
         weight = np.bincount(chords.chord, wanted, chords.count)
         mean = np.bincount(chords.chord, wanted * log(np.maximum(wanted, 1e-9)), chords.count) / weight
-        return multiple * np.maximum(chords.least, nearest_whole(exp(mean) / multiple).astype(np.intp))
+        return multiple * chords.rounded(exp(mean) / multiple, chords.least)

@@ -6,6 +6,7 @@ c - s, one constant c a loop. So where a place on a wall goes is known exactly, 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -21,6 +22,7 @@ SAME = 1e-7
 meant to be symmetric are so to 1e-12, others not to 1e-4."""
 MOST = 64
 """Directions looked at closely: a circle has as many as points, of which the first will do."""
+_ROOT = math.sqrt(2.0)
 _STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of two places an interval
 
 
@@ -49,14 +51,16 @@ class Mirror:
 def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
     """Return two mirrors of a domain at right angles if there are such, else one, or none.
 
-    Those along x and y are taken before others.
+    Those along x and y are taken before others. After the two come the two halfway between if there are such.
     """
     middles, centre = _centroids(domain)
     for along in _directions(domain, middles, centre):
         across = np.array([-along[1], along[0]])
-        both = (mirror_about(domain, centre, along), mirror_about(domain, centre, across))
-        if any(both):
-            return tuple(mirror for mirror in both if mirror)
+        found = [mirror_about(domain, centre, along), mirror_about(domain, centre, across)]
+        if all(found):
+            found += [mirror_about(domain, centre, (along + each) / _ROOT) for each in (across, -across)]
+        if any(found):
+            return tuple(mirror for mirror in found if mirror)
     return ()
 
 
