@@ -8,6 +8,7 @@ import numpy as np
 
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
@@ -15,6 +16,7 @@ from meshonet.solvers.blocking.decomposition.errors import most_folded
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.blocking.sizes.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
 from meshonet.solvers.energy.quads import QuadOptimum, optimise
@@ -66,22 +68,24 @@ def fine_layout(
             counts = chords.counts_for_size(cell_size * 2**halvings, least)
         else:
             counts = chords.counts_for_cells(int(wanted / 4**halvings), least)
+        counts = counts_along_sides(chords, counts, least)
         if fine is not None and chords.cells(counts) > MORE * wanted / 4**halvings:
             if abs(cut_off(fine)) / finer < MOST_CUT_OFF:
                 break
-            turning, counts = _held_back(Chords.of(fine), turning), before
+            turning, counts = _held_back(Chords.of(fine, chords), turning), before
         trial = _optimised(chords, counts, 2**own, turning, timings)
         if fine is not None and turning < ALLOWED and abs(cut_off(trial)) > abs(cut_off(fine)):
             break
         fine = trial
-        more = _more_along_walls(Chords.of(fine), finer, 2**own)
+        more = _more_along_walls(Chords.of(fine, chords), finer, 2**own)
         if (more <= counts).all():
             break
         least = np.maximum(least, more)
     assert fine is not None  # noqa: S101 - the first round makes it
     with timings.stage("refine"):
         times = 2 ** (halvings + halved - own)
-        return multiplied(fine, times) if times > 1 else fine
+        fine = multiplied(fine, times) if times > 1 else fine
+        return replace(fine, mesh=with_tied_sides(fine.mesh))
 
 
 def cut_off(fine: Layout) -> float:
@@ -100,7 +104,7 @@ def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timi
         fine = refine(chords.layout, counts, chords)
         fine = multiplied(fine, times) if times > 1 else fine
     with timings.stage("optimum"):
-        optimum = _optimum(fine.mesh, turning)
+        optimum = _optimum(with_tied_sides(fine.mesh), turning)
     if not optimum.valid:
         where = most_folded(optimum.mesh)
         raise NoValidGridError(f"cells of the blocks stay folded after optimisation, most {where}")
@@ -109,7 +113,7 @@ def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timi
 
 def _optimum(mesh: QuadMesh, turning: float) -> QuadOptimum:
     """Return the optimum of a mesh, its nodes symmetric to mirrors of the domain to which its quads are."""
-    images = images_of(mesh, mirrors_of(mesh.domain))
+    images = images_of(mesh, () if mesh.domain.periodic else mirrors_of(mesh.domain))
     if images:
         optimum = optimise(made_symmetric(mesh, images), iterations=ITERATIONS, turning=turning)
         symmetric = made_symmetric(optimum.mesh, images)

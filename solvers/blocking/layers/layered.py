@@ -21,8 +21,9 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats, middle
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.elementary import exp, log
-from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
@@ -39,6 +40,7 @@ from meshonet.solvers.blocking.layers.wall_layers import ROWS, Counts, WallLayer
 from meshonet.solvers.blocking.layers.wall_rows import WallRows, with_wall_rows
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.even_metric import metric_places
+from meshonet.solvers.blocking.sizes.periodic_counts import alike_along_sides
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quads import optimise
 
@@ -103,12 +105,12 @@ def _optimum(
         places = metric_places(chords, counts.coarse, counts.metric)
         for edge in np.flatnonzero(rows.of_chords(chords)[chords.chord] >= 0):
             places[edge] = np.linspace(0.0, len(chords.edges[edge]) - 1.0, ROWS + 1)
-        coarse = refine(layout, counts.coarse, chords, places)
+        coarse = _tied(refine(layout, counts.coarse, chords, places))
     with timings.stage("optimum"):
         if counts.stride > 1:
             with suppress(NoValidGridError):  # so few cells may stay folded, and more not
                 coarse = _optimised(coarse, walls, rows, counts, STRIDING)
-            coarse = multiplied(coarse, counts.stride)
+            coarse = _tied(multiplied(coarse, counts.stride))
         coarse = _optimised(coarse, walls, rows, counts, ITERATIONS)
     settings, known = walls.settings, before.layers if before else (1.0,) * len(rows.loops)
     layers = [
@@ -130,17 +132,25 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
             if smallest_corner(even.mesh) > 0.0:
                 coarse = _optimised(even, walls, rows, counts, ITERATIONS, on)
                 break
-        coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on, times * EVEN))
+        coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on | coarse.mesh.tied, times * EVEN))
     with timings.stage("refine"):
         chords = Chords.of(coarse)
         row, cells = rows.of_chords(chords), times * chords.counts
         for number in range(len(rows.loops)):
             cells[row == number] = layers_of(coarse, rows, number, times, settings)
-        fine = refine(coarse, cells, chords)
+        if not alike_along_sides(chords, cells):
+            problem = "layers end at one of two periodic sides and not at the other"
+            raise InputError(problem, "name the walls at both", parameter="walls")
+        fine = _tied(refine(coarse, cells, chords))
         fine = unfolded(fine, np.isin(fine.mesh.places.loop, list(walls.measures)))
         moved = evened_loops(fine, walls.measures, EVEN)
         fine = moved if smallest_corner(moved.mesh) > 0.0 else fine
-        return with_layers(fine, rows, settings)
+        return _tied(with_layers(fine, rows, settings))
+
+
+def _tied(layout: Layout) -> Layout:
+    """Return the layout with the nodes of periodic sides in pairs."""
+    return replace(layout, mesh=with_tied_sides(layout.mesh))
 
 
 def _optimised(
@@ -187,5 +197,5 @@ def _joined(walls: WallLayers, rows: WallRows, layout: Layout) -> Layout:
         attached.append(walls.near.rows(mesh, heights_inside(layout, 0), multiple=settings.multiple))
     whole = attach(layout, walls.domain, attached)
     held = np.zeros(len(whole.mesh.nodes), dtype=bool)
-    held[: len(mesh.nodes)] = held_nodes(layout, rows, settings)
+    held[: len(mesh.nodes)] = held_nodes(layout, rows, settings) | mesh.tied
     return finished(whole, settings, held)

@@ -45,8 +45,8 @@ class Chords:
     count: int
 
     @classmethod
-    def of(cls, layout: Layout) -> Chords:
-        """Return the edges and chords of a layout."""
+    def of(cls, layout: Layout, like: Chords | None = None) -> Chords:
+        """Return the edges and chords of a layout, numbered as those of another with the same blocks."""
         edges: list[Indices] = []
         numbers: dict[tuple[int, ...], int] = {}
         sides = np.empty((len(layout.blocks), 4), dtype=np.intp)
@@ -62,6 +62,11 @@ class Chords:
         has = np.flatnonzero(partner >= 0)
         wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
         wall[has], wall[partner[has]] = False, False
+        tied = layout.mesh.tied
+        if tied.any():
+            wall &= [not tied[edge[1:-1]].any() for edge in edges]
+        if like is not None:
+            return cls(layout, tuple(edges), sides, turned, wall, partner, like.chord, like.count)
         pairs = np.concatenate([sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)])
         chord, count = joined_classes(np.ascontiguousarray(pairs), len(edges))
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count)
