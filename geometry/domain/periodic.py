@@ -63,6 +63,7 @@ def with_periodic_sides(domain: Domain, pairs: Sequence[tuple[str, str]]) -> Dom
     _check_names(domain, pairs)
     loop = _without_kinks(domain.loops[0], {name for pair in pairs for name in pair})
     found = tuple(each for pair in pairs for each in _matched(loop, pair, domain.extent))
+    loop = _with_cells(loop, found)
     made = replace(domain, loops=(loop, *domain.loops[1:]), periodic=(*domain.periodic, *found))
     shifts = rounded(np.array([each.shift for each in made.periodic]), made).tolist()
     return replace(
@@ -127,23 +128,36 @@ def _matched(loop: Loop, names: tuple[str, str], extent: float) -> list[Periodic
 
 
 def _stretches(loop: Loop, name: str) -> list[tuple[float, float]]:
-    """Return the arc lengths at which the stretches of a name start and end, the end after the start.
-
-    Raises InputError: a side that ends where the boundary does not turn.
-    """
+    """Return the arc lengths at which the stretches of a name start and end, the end after the start."""
     arcs, count = loop.corner_arcs.tolist(), len(loop.corners)
     found = []
     for k in range(count):
         if loop.names[k] != name:
             continue
-        for end in (k, (k + 1) % count):
-            if loop.corner_cells[end] == 2:
-                x, y = loop.at(loop.corner_arcs[end : end + 1])[0]
-                problem = f"periodic side {name!r} ends at ({x:.6g}, {y:.6g}), where the boundary has no corner"
-                raise InputError(problem, "end it at a corner of 45 degrees or more", parameter="periodic")
         stop = arcs[(k + 1) % count]
         found.append((arcs[k], stop if stop > arcs[k] else stop + loop.length))
     return found
+
+
+def _with_cells(loop: Loop, pairs: Sequence[Periodic]) -> Loop:
+    """Return the loop with as many cells at the ends of periodic sides as both ends together have room for.
+
+    A smooth wall that a side cuts leaves 180 degrees at both ends together, for one cell each, whatever it
+    leaves at either. Raises InputError: a side that ends where the boundary does not turn.
+    """
+    cells, arcs, length = loop.corner_cells.copy(), loop.corner_arcs, loop.length
+    for each in pairs:
+        for ends in zip(each.first, each.second[::-1], strict=True):
+            both = [int(np.abs(np.mod(arcs - arc + 0.5 * length, length) - 0.5 * length).argmin()) for arc in ends]
+            room = max(2, round(float(loop.corner_angles[both].sum()) / 90.0))
+            for k in both:
+                if cells[k] == 2 and cells[both].sum() > room:
+                    cells[k] = 1
+                if cells[k] == 2:
+                    x, y = loop.at(arcs[k : k + 1])[0]
+                    problem = f"a periodic side ends at ({x:.6g}, {y:.6g}), where the boundary goes straight on"
+                    raise InputError(problem, "end it at a corner", parameter="periodic")
+    return replace(loop, cells=tuple(cells.tolist()))
 
 
 def _distance(loop: Loop, own: tuple[float, float], other: tuple[float, float], shift: Floats) -> float:

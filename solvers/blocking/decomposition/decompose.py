@@ -35,6 +35,7 @@ from meshonet.solvers.blocking.decomposition.quads.padding import (
 )
 from meshonet.solvers.blocking.decomposition.quads.quad_mesh import quad_mesh
 from meshonet.solvers.blocking.decomposition.symmetry.symmetric import symmetric_blocks
+from meshonet.solvers.blocking.sizes.periodic_counts import check_sides
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.stages import reached
@@ -89,7 +90,7 @@ def decompose(
     """Return a layout of the blocks of a domain, its quad mesh optimised.
 
     Of a symmetric domain they are symmetric (`symmetry.symmetric`), but with `sizes` or `spans`, which are of
-    what layers leave of a domain: its nodes are symmetric to fewer digits.
+    what layers leave of a domain: its nodes are symmetric to fewer digits. Nor are they with periodic sides.
 
     Parameters
     ----------
@@ -105,7 +106,7 @@ def decompose(
     """
     timings = timings or Timings()
     blocks = _found(domain, cells, count, price, attempts, timings, sizes, spans)
-    if sizes is not None or spans:
+    if sizes is not None or spans or domain.periodic:
         return blocks.layout
     part_timings = Timings(timings.seconds)
 
@@ -133,7 +134,9 @@ def _found(
             mesh = _quad_mesh(domain, *finer, attempt, timings, sizes)
             if len(mesh.quads) > MOST and len(base_complex(mesh).blocks) > MOST:
                 break
-            return _blocks(mesh, price, timings, sizes, spans if attempt < PADDED else ())
+            blocks = _blocks(mesh, price, timings, sizes, spans if attempt < PADDED else ())
+            check_sides(blocks.layout)
+            return blocks
         except SolverError as error:
             problem = error
     else:

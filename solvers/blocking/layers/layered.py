@@ -136,8 +136,10 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
     with timings.stage("refine"):
         chords = Chords.of(coarse)
         row, cells = rows.of_chords(chords), times * chords.counts
-        for number in range(len(rows.loops)):
-            cells[row == number] = layers_of(coarse, rows, number, times, settings)
+        layers = [layers_of(coarse, rows, number, times, settings) for number in range(len(rows.loops))]
+        cut = max((n for n, loop in zip(layers, rows.loops, strict=True) if loop == 0), default=0)
+        for number, loop in enumerate(rows.loops):  # walls that periodic sides cut have the same at both
+            cells[row == number] = cut if loop == 0 and walls.domain.periodic else layers[number]
         if not alike_along_sides(chords, cells):
             problem = "layers end at one of two periodic sides and not at the other"
             raise InputError(problem, "name the walls at both", parameter="walls")

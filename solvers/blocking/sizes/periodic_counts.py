@@ -7,8 +7,11 @@ from types import MappingProxyType
 
 import numpy as np
 
+from meshonet.geometry.domain.periodic import Periodic
+from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import following, sides_of
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.arc_counts import Row, nearest_whole
 from meshonet.solvers.blocking.sizes.chords import Chords
 
@@ -27,7 +30,30 @@ def counts_along_sides(
     rows += [({chord: 1.0}, float(count), float(count)) for chord, count in fixed.items()]
     least = least.copy()
     least[list(fixed)] = list(fixed.values())
-    return nearest_whole(counts.astype(np.float64), least.astype(np.float64), rows)
+    try:
+        return nearest_whole(counts.astype(np.float64), least.astype(np.float64), rows)
+    except BlockingError:
+        raise BlockingError(_unmatched(chords.layout.mesh.domain.periodic[0])) from None
+
+
+def check_sides(layout: Layout) -> None:
+    """Raise BlockingError if no counts of cells are alike on periodic sides, or blocks run past their ends."""
+    mesh = layout.mesh
+    if not mesh.domain.periodic:
+        return
+    for each, first, second in sides_of(mesh):
+        ends = np.array([first[0], first[-1], second[0], second[-1]])
+        if (mesh.valence[ends] != mesh.places.cells[ends]).any():
+            raise BlockingError(_unmatched(each))
+    chords = Chords.of(layout)
+    counts_along_sides(chords, chords.counts, chords.least)
+
+
+def _unmatched(sides: Periodic) -> str:
+    return (
+        f"blocks along periodic sides {sides.names[0]!r} and {sides.names[1]!r} cannot be matched; cut the "
+        "domain where its sides meet walls at about 90 degrees"
+    )
 
 
 def alike_along_sides(chords: Chords, counts: Indices) -> bool:
