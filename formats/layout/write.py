@@ -55,7 +55,9 @@ def as_dict(layout: Layout) -> dict[str, Any]:
         "edges": drawn.edges, "faces": drawn.faces,
     }  # fmt: skip
     if domain.periodic:
-        facts["periodic"] = [{name: list(value) for name, value in vars(each).items()} for each in domain.periodic]
+        facts["periodic"] = [
+            {name: list(value) for name, value in vars(each).items()} for each in domain.periodic
+        ]
     return facts
 
 

@@ -102,7 +102,7 @@ def _without_kinks(loop: Loop, names: set[str]) -> Loop:
 def _matched(loop: Loop, names: tuple[str, str], extent: float) -> list[Periodic]:
     """Return the stretches of two sides in pairs, each with the same shift."""
     first, second = (_stretches(loop, name) for name in names)
-    sides = f"periodic sides {names[0]!r} and {names[1]!r}"
+    sides = f"sides {names[0]!r} and {names[1]!r}"
     if len(first) != len(second):
         parts = f"{sides} have {len(first)} and {len(second)} parts between corners"
         raise InputError(parts, "make one a translated copy of the other", parameter="periodic")
@@ -148,14 +148,18 @@ def _with_cells(loop: Loop, pairs: Sequence[Periodic]) -> Loop:
     cells, arcs, length = loop.corner_cells.copy(), loop.corner_arcs, loop.length
     for each in pairs:
         for ends in zip(each.first, each.second[::-1], strict=True):
-            both = [int(np.abs(np.mod(arcs - arc + 0.5 * length, length) - 0.5 * length).argmin()) for arc in ends]
+            both = [
+                int(np.abs(np.mod(arcs - arc + 0.5 * length, length) - 0.5 * length).argmin()) for arc in ends
+            ]
             room = max(2, round(float(loop.corner_angles[both].sum()) / 90.0))
             for k in both:
                 if cells[k] == 2 and cells[both].sum() > room:
                     cells[k] = 1
                 if cells[k] == 2:
                     x, y = loop.at(arcs[k : k + 1])[0]
-                    problem = f"a periodic side ends at ({x:.6g}, {y:.6g}), where the boundary goes straight on"
+                    problem = (
+                        f"a periodic side ends at ({x:.6g}, {y:.6g}), where the boundary goes straight on"
+                    )
                     raise InputError(problem, "end it at a corner", parameter="periodic")
     return replace(loop, cells=tuple(cells.tolist()))
 

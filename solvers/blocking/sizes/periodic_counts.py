@@ -58,7 +58,9 @@ def _unmatched(sides: Periodic) -> str:
 
 def alike_along_sides(chords: Chords, counts: Indices) -> bool:
     """Return whether `counts` (chords,) are as many cells on both sides of every pair."""
-    return all(sum(value * counts[chord] for chord, value in row.items()) == 0.0 for row, _, _ in _rows(chords))
+    return all(
+        sum(value * counts[chord] for chord, value in row.items()) == 0.0 for row, _, _ in _rows(chords)
+    )
 
 
 def _rows(chords: Chords) -> list[Row]:
