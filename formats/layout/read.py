@@ -15,8 +15,9 @@ from meshonet.formats.source import Source, open_source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.curve import Curve
-from meshonet.geometry.domain.domain import Domain, Periodic
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.domain.places import arc_at, cells_at
 from meshonet.geometry.errors import InputError, in_place, in_source
 from meshonet.geometry.layout.lattice import lattice_quads
@@ -49,10 +50,7 @@ def read_layout(source: Source) -> Layout:
         raise InputError(problem, f"this program reads version {VERSION}")
     file = Values(data)
     loops = tuple(_loop(values) for values in file.rows("loops"))
-    periodic = None
-    if "periodic" in data:
-        sides = file.row("periodic")
-        periodic = Periodic(sides.pair("first"), sides.pair("second"), sides.pair("shift"))
+    periodic = _periodic(file) if "periodic" in data else ()
     domain = Domain(loops, printable(file.text("name")), periodic=periodic)
     layout = _LayoutNodes(domain, file.rows("vertices"), file.rows("edges"), file.rows("faces")).layout()
     fronts = [k for k, values in enumerate(file.rows("loops")) if values.data.get("front") is True]
@@ -75,6 +73,18 @@ def read_shapes(source: Source) -> Iterator[DomainShape]:
 def read_grids(source: Source) -> Iterator[Grid]:
     """Yield the blocks of a layout as a coarse grid."""
     yield to_grid(read_layout(source), source.stem)
+
+
+def _periodic(file: Values) -> tuple[Periodic, ...]:
+    rows = [file.row("periodic")] if isinstance(file.data["periodic"], dict) else file.rows("periodic")
+    pairs = []
+    for values in rows:
+        names = values.texts("names") if "names" in values.data else ["periodic1", "periodic2"]
+        if len(names) != 2:
+            raise values.error("names no two sides")
+        both = printable(names[0]), printable(names[1])
+        pairs.append(Periodic(values.pair("first"), values.pair("second"), values.pair("shift"), both))
+    return tuple(pairs)
 
 
 def _loop(values: Values) -> Loop:

@@ -54,8 +54,10 @@ def as_dict(layout: Layout) -> dict[str, Any]:
         "vertices": [drawn.vertex(int(node)) for node in layout.vertices],
         "edges": drawn.edges, "faces": drawn.faces,
     }  # fmt: skip
-    if domain.periodic is not None:
-        facts["periodic"] = {name: list(value) for name, value in vars(domain.periodic).items()}
+    if domain.periodic:
+        facts["periodic"] = [
+            {name: list(value) for name, value in vars(each).items()} for each in domain.periodic
+        ]
     return facts
 
 

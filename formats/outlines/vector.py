@@ -3,8 +3,9 @@
 A polygon is a domain, with its holes; a closed line is a body, or an outline with corners; two open lines are
 the walls of a channel, four the edges of a domain, and a line ``# name`` above one of WKT names it.
 Collections hold several. A third coordinate is dropped. Properties of a GeoJSON feature besides ``name``:
-``names``, for each ring one name or a list of one for each stretch between corners, and ``corners``, for each
-ring a list of numbers of its points, counted from 0.
+``names``, for each ring one name or a list of one for each stretch between corners; ``corners``, for each
+ring a list of numbers of its points, counted from 0; and ``periodic``, pairs of names of sides of the outer
+ring that are translated copies of each other.
 https://www.ogc.org/standards/sfa , https://www.rfc-editor.org/rfc/rfc7946
 """
 
@@ -158,7 +159,20 @@ def _shape(drawn: _Geometry, rings: list[Any], name: str) -> Shape:
             for k, (ring, own, label) in enumerate(zip(points, corners, names, strict=True), start=1)
         ],
         name,
+        periodic=_periodic(drawn.properties.get("periodic")),
     )
+
+
+def _periodic(values: Any) -> list[tuple[str, str]]:
+    """Return the pairs of names that the property ``periodic`` holds."""
+    pairs = [] if values is None else values
+    if not isinstance(pairs, list) or not all(
+        isinstance(pair, list) and len(pair) == 2 and all(isinstance(name, str) for name in pair)
+        for pair in pairs
+    ):
+        remedy = 'give e.g. [["left", "right"], ["bottom", "top"]]'
+        raise InputError("property 'periodic' holds no pairs of names", remedy)
+    return [(printable(a.strip()), printable(b.strip())) for a, b in pairs]
 
 
 def _of_rings(properties: Mapping[str, Any], key: str, count: int) -> list[Any]:

@@ -120,6 +120,28 @@ class QuadMesh:
         sides = lengths[self.edge_of]
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
 
+    @property
+    def tied(self) -> NDArray[np.bool_]:
+        """(n,) whether a node has a partner or is one: nodes of periodic sides, which move freely."""
+        tied = self.places.partner >= 0
+        tied[self.places.partner[tied]] = True
+        return tied
+
+    def shifts(self, images: Indices) -> Floats:
+        """Return the period (k, 2) by which each of the nodes `images` (k,) is moved from its partner."""
+        known = np.array([each.shift for each in self.domain.periodic] or [(0.0, 0.0)])
+        way = self.nodes[images] - self.nodes[self.places.partner[images]]
+        off = np.hypot(*(way[:, None] - known).transpose(2, 0, 1))
+        return np.asarray(known[off.argmin(axis=1)])
+
+    def beside_partners(self, nodes: Floats) -> Floats:
+        """Return `nodes` (n, 2), those with a partner where it is, moved by the period."""
+        images = np.flatnonzero(self.places.partner >= 0)
+        if images.size and self.domain.periodic:
+            nodes = nodes.copy()
+            nodes[images] = nodes[self.places.partner[images]] + self.shifts(images)
+        return nodes
+
     def with_nodes(self, nodes: Floats, arc: Floats | None = None) -> QuadMesh:
         """Return the same quads with nodes (n, 2) and, if given, boundary arc lengths (n,) replaced."""
         places = self.places if arc is None else replace(self.places, arc=arc)

@@ -21,7 +21,8 @@ typedef struct {
     Walls walls;
     ptrdiff_t free_count, tied_count;
     const ptrdiff_t *free, *tied, *unknown, *wall;
-    double shift[2], bent, allowed; /* weight of the turning of wall edges, beyond an angle */
+    const double *shift;
+    double bent, allowed; /* weight of the turning of wall edges, beyond an angle */
     double *x, *g, *here, *there, *inverse_size; /* (nodes, 2) twice; unknowns twice; 1 / sizes of cells (unknowns) */
     Stiffness stiffness;
     Steps steps;

@@ -58,7 +58,7 @@ def grid(
     **parameters
         Those of `meshonet.Sampling` and `meshonet.GridRequest`, such as ``topology``, ``far_field``,
         ``y_plus``, ``reynolds``, ``growth``, ``repair``, ``cells``, ``cell_size``, ``walls``, ``layout``
-        (one, or its file), and settings of the method, such as ``tol``.
+        (one, or its file), ``periodic`` (pairs of names), and settings of the method, such as ``tol``.
 
     Returns
     -------
@@ -85,12 +85,15 @@ def grid(
 
 
 def domain_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return parameters with the layout of a file read, and names of walls as a tuple of them."""
+    """Return parameters with the layout of a file read, and names of walls and of sides as tuples."""
     layout, walls = parameters.get("layout"), parameters.get("walls", ())
     if isinstance(layout, str | Path):
         parameters = parameters | {"layout": layout_of(str(layout))}
     if not isinstance(walls, tuple):
         parameters = parameters | {"walls": tuple(walls.split(",") if isinstance(walls, str) else walls)}
+    if parameters.get("periodic"):
+        pairs = [tuple(pair.split(",") if isinstance(pair, str) else pair) for pair in parameters["periodic"]]
+        parameters = parameters | {"periodic": tuple(pairs)}
     return parameters
 
 

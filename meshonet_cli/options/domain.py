@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
+from meshonet.geometry.errors import InputError
 from meshonet_cli.options.groups import DOMAIN, numbers, option_of
 
 _option = option_of(DOMAIN)
@@ -54,11 +55,18 @@ class DomainOptions:
         "--outlet", metavar="L", help="With --pitch: length behind the blade, in axial chords. [default: 1]",
     )] = None
 
+    periodic: Annotated[list[str] | None, _option(
+        "--periodic", metavar="SIDE,SIDE",
+        help="Two sides of the outer boundary, by name, that are periodic: translated copies of each other. "
+        "Their nodes match, and formats that know periodic sides have them as such. Repeat it for a second "
+        "pair. GeoJSON has the property periodic for the same.",
+    )] = None
+
     walls: Walls = None
 
     def parameters(self) -> dict[str, Any]:
         """Return them for the library; raise InputError for what cannot be read."""
-        values = dict(vars(self), walls=())
+        values = dict(vars(self), walls=(), periodic=tuple(map(_pair, self.periodic or ())))
         del values["assemble"]
         if self.layout is not None:
             from meshonet.formats.layout.read import layout_of
@@ -70,3 +78,12 @@ class DomainOptions:
             values["walls"] = tuple(map(str.strip, self.walls.split(",")))
         return values
 # fmt: on
+
+
+def _pair(text: str) -> tuple[str, str]:
+    """Return the two names of a pair of periodic sides."""
+    names = [name.strip() for name in text.split(",")]
+    if len(names) != 2 or not all(names):
+        problem = f"{text!r} is not two names"
+        raise InputError(problem, "use SIDE,SIDE, e.g. left,right", parameter="periodic")
+    return names[0], names[1]

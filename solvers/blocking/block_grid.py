@@ -8,12 +8,14 @@ import numpy as np
 
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.decomposition.errors import most_folded
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
 from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.blocking.sizes.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
 from meshonet.solvers.energy.quads import QuadOptimum, optimise
@@ -65,6 +67,7 @@ def fine_layout(
             counts = chords.counts_for_size(cell_size * 2**halvings, least)
         else:
             counts = chords.counts_for_cells(int(wanted / 4**halvings), least)
+        counts = counts_along_sides(chords, counts, least)
         if fine is not None and chords.cells(counts) > MORE * wanted / 4**halvings:
             if abs(cut_off(fine)) / finer < MOST_CUT_OFF:
                 break
@@ -81,7 +84,7 @@ def fine_layout(
     with timings.stage("refine"):
         times = 2 ** (halvings + halved - own)
         fine = multiplied(fine, times) if times > 1 else fine
-        return replace(fine, mesh=made_symmetric(fine.mesh))
+        return replace(fine, mesh=with_tied_sides(made_symmetric(fine.mesh)))
 
 
 def cut_off(fine: Layout) -> float:
@@ -100,7 +103,7 @@ def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timi
         fine = refine(chords.layout, counts, chords)
         fine = multiplied(fine, times) if times > 1 else fine
     with timings.stage("optimum"):
-        optimum = _optimum(fine.mesh, turning)
+        optimum = _optimum(with_tied_sides(fine.mesh), turning)
     if not optimum.valid:
         where = most_folded(optimum.mesh)
         raise NoValidGridError(f"cells of the blocks stay folded after optimisation, most {where}")

@@ -8,6 +8,7 @@ from time import perf_counter
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.periodic import with_periodic_sides
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.around_body import around_body
 from meshonet.geometry.layout.layout import Layout
@@ -83,6 +84,9 @@ def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
     layout = layout or decompose(domain)
     if not (request.cells or request.cell_size or request.res or request.refine):
         return layout
+    if domain.periodic:
+        problem = "a count or size of cells for the layout of a domain with periodic sides"
+        raise InputError(problem, "drop it: nodes are matched when the grid is made")
     cells, size = _wanted(domain, request)
     return fine_layout(layout, cells=cells, cell_size=size, halved=request.refine)
 
@@ -169,7 +173,7 @@ def _checked(domain: Domain, request: BlockRequest) -> Domain:
     for name in request.walls:
         if name not in known:
             raise InputError(f"there is no wall {name!r}", "use " + ", ".join(known), parameter="walls")
-    return domain
+    return with_periodic_sides(domain, request.periodic)
 
 
 def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | None]:

@@ -40,6 +40,7 @@ class BlockRequest(FirstCell):
     walls : names of the stretches with layers; none stands for all holes.
     pitch : vector from one blade of a cascade to the next: the domain is the passage around it.
     inlet, outlet : lengths of the passage before and behind the blade, in its axial chords; None is 1.
+    periodic : pairs of sides of the outer boundary, by name, that are translated copies of each other.
     layout : blocks to take, of this domain or of one like it.
     refine : how often all cells are halved. `cells`, `cell_size` and `res` say what the coarsest grid of the
         family has, `first_cell` and `growth` what the finest has, which is the one that is made.
@@ -58,6 +59,7 @@ class BlockRequest(FirstCell):
     outlet: float | None = None
     layout: Layout | None = None
     refine: int = 0
+    periodic: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         sizes = [name for name in ("cells", "cell_size", "res") if getattr(self, name) is not None]

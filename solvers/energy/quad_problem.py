@@ -105,15 +105,13 @@ class Problem:
         self.areas = self._areas()
         line, pairs = self._lines()
         target = np.zeros(len(line)) if targets is None else log(targets)
-        periodic = self.mesh.domain.periodic
-        shift = (0.0, 0.0) if periodic is None else periodic.shift
         return QuadDescent(
             self.nodes,
             (self.quads, np.stack([ratio, 1.0 / ratio], axis=1), self.areas),
             (self.mesh.edges, line, pairs, target),
             self._relief(),
             self.inner,
-            (np.stack([known.images, known.originals], axis=1), (shift[0] / self.unit, shift[1] / self.unit)),
+            (np.stack([known.images, known.originals], axis=1), self.mesh.shifts(known.images) / self.unit),
             self.unknown,
             self.wall,
             (walls.nodes, self.of_wall, self.arc),
@@ -210,7 +208,6 @@ class Problem:
         nodes = self.nodes * self.unit + self.centre
         nodes[known.fixed] = self.mesh.nodes[known.fixed]
         nodes = self._on_walls(nodes, arc[walls.nodes])
-        periodic = self.mesh.domain.periodic
-        if periodic is not None:
-            nodes[known.images] = nodes[known.originals] + np.array(periodic.shift)
+        if len(known.images):
+            nodes[known.images] = nodes[known.originals] + self.mesh.shifts(known.images)
         return self.mesh.with_nodes(nodes, arc)

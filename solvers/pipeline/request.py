@@ -101,6 +101,7 @@ class ManyBlocks(Request):
     inlet: float | None = None
     outlet: float | None = None
     layout: Layout | None = None
+    periodic: tuple[tuple[str, str], ...] = ()
 
     @property
     def asks_for_blocks(self) -> tuple[str, ...]:
@@ -183,6 +184,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         Axial chords before and behind the blade of a cascade.
     layout : Layout, optional
         Blocks to use again.
+    periodic : tuple of tuple of str, optional
+        Pairs of sides of a domain, by name, that are periodic.
     layers : int, optional
         Nodes along the lines of a volume marched from a surface, the wall's included.
     symmetry : {'x', 'y', 'z', 'none'}, optional

@@ -65,7 +65,4 @@ def part_of_the_way(given: Layout, layout: Layout, part: Floats) -> Layout:
         way = np.mod(mesh.places.arc[on] - arc[on] + 0.5 * loop.length, loop.length) - 0.5 * loop.length
         arc[on] = np.mod(arc[on] + part[on] * way, loop.length)
         nodes[on] = loop.at(arc[on])
-    periodic, tied = old.domain.periodic, np.flatnonzero(old.places.partner >= 0)
-    if periodic is not None:
-        nodes[tied] = nodes[old.places.partner[tied]] + np.array(periodic.shift)
-    return replace(layout, mesh=mesh.with_nodes(nodes, arc))
+    return replace(layout, mesh=mesh.with_nodes(old.beside_partners(nodes), arc))

@@ -15,8 +15,9 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
-from meshonet.geometry.domain.domain import Domain, Periodic
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.elementary import product
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -167,7 +168,7 @@ def _closed(layout: Layout, passage: Passage, lower: Indices, upper: Indices) ->
     knots = outer.curve.knots[corners]
     shift = (float(pitch[0]), float(pitch[1]))
     periodic = Periodic((float(knots[0]), float(knots[1])), (float(knots[2]), float(knots[3])), shift)
-    domain = Domain((outer, mesh.domain.loops[BLADE]), passage.domain.name, periodic=periodic)
+    domain = Domain((outer, mesh.domain.loops[BLADE]), passage.domain.name, periodic=(periodic,))
     moved = replace(places, loop=loop, arc=arc, cells=cells)
     return Layout(QuadMesh(domain, nodes, mesh.quads, moved), layout.blocks, layout.layers)
 
@@ -178,12 +179,13 @@ def turned_round(layout: Layout) -> Layout:
     images = np.flatnonzero(places.partner >= 0)
     partner = np.full(len(places.partner), -1, dtype=np.intp)
     partner[places.partner[images]] = images
-    loops, periodic = mesh.domain.loops, mesh.domain.periodic
-    if periodic is None:
+    loops = mesh.domain.loops
+    if not mesh.domain.periodic:
         return layout
     names = tuple(loops[0].names[k] for k in (2, 1, 0, 3))
     outer = Loop(loops[0].curve, loops[0].corners, names)
+    (periodic,) = mesh.domain.periodic
     shift = (-periodic.shift[0], -periodic.shift[1])
     swapped = Periodic(periodic.second, periodic.first, shift)
-    domain = replace(mesh.domain, loops=(outer, *loops[1:]), periodic=swapped)
+    domain = replace(mesh.domain, loops=(outer, *loops[1:]), periodic=(swapped,))
     return replace(layout, mesh=replace(mesh, domain=domain, places=replace(places, partner=partner)))

@@ -35,6 +35,7 @@ from meshonet.solvers.blocking.decomposition.quads.padding import (
 )
 from meshonet.solvers.blocking.decomposition.quads.quad_mesh import quad_mesh
 from meshonet.solvers.blocking.decomposition.symmetry.symmetric import symmetric_blocks
+from meshonet.solvers.blocking.sizes.periodic_counts import check_sides
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.stages import reached
@@ -88,6 +89,8 @@ def decompose(
 ) -> Layout:
     """Return a layout of the blocks of a domain, its quad mesh optimised.
 
+    The nodes of a domain with periodic sides are not made symmetric.
+
     Parameters
     ----------
     cells : of the quad mesh that blocks are found in.
@@ -102,7 +105,7 @@ def decompose(
     """
     timings = timings or Timings()
     blocks = _found(domain, cells, count, price, attempts, timings, sizes, ())
-    if not symmetric:
+    if not symmetric or domain.periodic:
         return blocks.layout
     part_timings = Timings(timings.seconds)
 
@@ -136,7 +139,9 @@ def _found(
             mesh = _quad_mesh(domain, *finer, attempt, timings, sizes)
             if len(mesh.quads) > MOST and len(base_complex(mesh).blocks) > MOST:
                 break
-            return _blocks(mesh, price, timings, sizes, spans if attempt < PADDED else ())
+            blocks = _blocks(mesh, price, timings, sizes, spans if attempt < PADDED else ())
+            check_sides(blocks.layout)
+            return blocks
         except SolverError as error:
             problem = error
     else:

@@ -21,8 +21,9 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats, middle
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.elementary import exp, log
-from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
@@ -40,6 +41,7 @@ from meshonet.solvers.blocking.layers.wall_layers import ROWS, Counts, WallLayer
 from meshonet.solvers.blocking.layers.wall_rows import WallRows, with_wall_rows
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.even_metric import metric_places
+from meshonet.solvers.blocking.sizes.periodic_counts import alike_along_sides
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quads import optimise
 
@@ -104,12 +106,12 @@ def _optimum(
         places = metric_places(chords, counts.coarse, counts.metric)
         for edge in np.flatnonzero(rows.of_chords(chords)[chords.chord] >= 0):
             places[edge] = np.linspace(0.0, len(chords.edges[edge]) - 1.0, ROWS + 1)
-        coarse = walls.symmetric(refine(layout, counts.coarse, chords, places))
+        coarse = _tied(walls.symmetric(refine(layout, counts.coarse, chords, places)))
     with timings.stage("optimum"):
         if counts.stride > 1:
             with suppress(NoValidGridError):  # so few cells may stay folded, and more not
                 coarse = _optimised(coarse, walls, rows, counts, STRIDING)
-            coarse = walls.symmetric(multiplied(coarse, counts.stride))
+            coarse = _tied(walls.symmetric(multiplied(coarse, counts.stride)))
         coarse = _optimised(coarse, walls, rows, counts, ITERATIONS)
     settings, known = walls.settings, before.layers if before else (1.0,) * len(rows.loops)
     layers = [
@@ -131,17 +133,28 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
             if smallest_corner(even.mesh) > 0.0:
                 coarse = _optimised(even, walls, rows, counts, ITERATIONS, on)
                 break
-        coarse = walls.symmetric(replace(coarse, mesh=evened_mesh(coarse.mesh, on, times * EVEN)))
+        coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on | coarse.mesh.tied, times * EVEN))
+        coarse = walls.symmetric(coarse)
     with timings.stage("refine"):
         chords = Chords.of(coarse, images_of(coarse.mesh, walls.mirrors))
         row, cells = rows.of_chords(chords), times * chords.counts
-        for number in range(len(rows.loops)):
-            cells[row == number] = layers_of(coarse, rows, number, times, settings)
-        fine = walls.symmetric(refine(coarse, cells, chords))
+        layers = [layers_of(coarse, rows, number, times, settings) for number in range(len(rows.loops))]
+        cut = max((n for n, loop in zip(layers, rows.loops, strict=True) if loop == 0), default=0)
+        for number, loop in enumerate(rows.loops):  # walls that periodic sides cut have the same at both
+            cells[row == number] = cut if loop == 0 and walls.domain.periodic else layers[number]
+        if not alike_along_sides(chords, cells):
+            problem = "layers end at one of two periodic sides and not at the other"
+            raise InputError(problem, "name the walls at both", parameter="walls")
+        fine = _tied(walls.symmetric(refine(coarse, cells, chords)))
         fine = walls.symmetric(unfolded(fine, np.isin(fine.mesh.places.loop, list(walls.measures))))
         moved = walls.symmetric(evened_loops(fine, walls.measures, EVEN))
         fine = moved if smallest_corner(moved.mesh) > 0.0 else fine
-        return walls.symmetric(with_layers(fine, rows, settings))
+        return _tied(walls.symmetric(with_layers(fine, rows, settings)))
+
+
+def _tied(layout: Layout) -> Layout:
+    """Return the layout with the nodes of periodic sides in pairs."""
+    return replace(layout, mesh=with_tied_sides(layout.mesh))
 
 
 def _optimised(
@@ -189,5 +202,5 @@ def _joined(walls: WallLayers, rows: WallRows, layout: Layout) -> Layout:
     whole = attach(layout, walls.domain, attached)
     whole = replace(whole, mesh=made_symmetric(whole.mesh))
     held = np.zeros(len(whole.mesh.nodes), dtype=bool)
-    held[: len(mesh.nodes)] = held_nodes(layout, rows, settings)
+    held[: len(mesh.nodes)] = held_nodes(layout, rows, settings) | mesh.tied
     return finished(whole, settings, held)

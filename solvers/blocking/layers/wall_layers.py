@@ -27,6 +27,7 @@ from meshonet.solvers.blocking.layers.row_sizes import RowSizes
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.blocking.sizes.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
 
@@ -72,13 +73,14 @@ class WallLayers:
         """
         rings = rings_around(domain, loops, settings)
         numbers = sorted({*sheets, *(stretch.loop for stretch in stretches)})
-        near = None if 0 in rings or 0 in numbers else NearField.of(domain)
+        outer = 0 in rings or 0 in numbers or domain.periodic
+        near = None if outer else NearField.of(domain)
         rest = list(domain.loops)
         if near is not None:
             rest[0] = near.circle
         for k, ring in rings.items():
             rest[k] = ring.front
-        left = Domain(tuple(rest), domain.name)
+        left = Domain(tuple(rest), domain.name, periodic=domain.periodic)
         sizes = {k: RowSizes.of(left, k, [s for s in stretches if s.loop == k]) for k in numbers}
         for each in sizes.values():
             each.check_room(settings)
@@ -241,4 +243,6 @@ def wanted_counts(
     around = times * stride * chords.multiple
     least = -(-chords.least // chords.multiple)
     coarse = chords.multiple * np.maximum(least, np.round(counts / around).astype(np.intp))
-    return Counts(np.where(inner, coarse, ROWS), stride, times, scale, metric)
+    fixed = {int(chord): ROWS for chord in np.flatnonzero(~inner)}
+    coarse = counts_along_sides(chords, np.where(inner, coarse, ROWS), chords.least, fixed)
+    return Counts(coarse, stride, times, scale, metric)

@@ -65,6 +65,9 @@ class Chords:
         has = np.flatnonzero(partner >= 0)
         wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
         wall[has], wall[partner[has]] = False, False
+        tied = layout.mesh.tied
+        if tied.any():
+            wall &= [not tied[edge[1:-1]].any() for edge in edges]
         pairs = [sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)]
         for _, to in images:
             image = np.array([numbers.get(_key(to[edge])[0], -1) for edge in edges])

@@ -100,7 +100,7 @@ class _Refined:
 
     def _set_partners(self) -> None:
         of, domain = self.old.places.partner, self.old.domain
-        if not (of >= 0).any() or domain.periodic is None:
+        if not (of >= 0).any() or not domain.periodic:
             return
         kept = self.chords.layout.vertices
         has = of[kept] >= 0
@@ -113,7 +113,8 @@ class _Refined:
             )
             self.places.partner[self.edges[k]] = beyond if same else beyond[::-1]
         moved = np.flatnonzero(self.places.partner >= 0)
-        self.nodes[moved] = self.nodes[self.places.partner[moved]] + np.array(domain.periodic.shift)
+        known = QuadMesh(domain, self.nodes, np.empty((0, 4), dtype=np.intp), self.places)
+        self.nodes[moved] = self.nodes[self.places.partner[moved]] + known.shifts(moved)
 
     def _filled(self) -> Layout:
         """Return the layout of all blocks between the edges."""

@@ -52,7 +52,10 @@ def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
     """Return two mirrors of a domain at right angles if there are such, else one, or none.
 
     Those along x and y are taken before others. After the two come the two halfway between if there are such.
+    A domain with periodic sides counts as having none.
     """
+    if domain.periodic:
+        return ()
     middles, centre = _centroids(domain)
     for along in _directions(domain, middles, centre):
         across = np.array([-along[1], along[0]])
