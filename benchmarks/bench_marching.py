@@ -33,7 +33,7 @@ from meshonet.geometry.threads import limited_to
 from meshonet.solvers.hyperbolic.volume.graph import march_graph
 from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_levels, march_surface
 from meshonet.solvers.hyperbolic.volume.settings import ATTEMPTS
-from meshonet.solvers.hyperbolic.volume.symmetry import in_planes, symmetry_planes
+from meshonet.solvers.hyperbolic.volume.symmetry import in_planes, symmetry_of
 
 HEAD = """# Volumes marched from surfaces: quality and time
 
@@ -151,7 +151,7 @@ def worst_growth(edges: Floats) -> float:
 
 def growth_as_marched(surface: Surface, march: VolumeMarch, attempt: int) -> float:
     """Return the worst growth of the march number `attempt`, before nodes are moved along lines."""
-    planes, inside = symmetry_planes(surface, march.symmetry)
+    planes, inside, _ = symmetry_of(surface, march.symmetry, march.distance(surface.size))
     nodes, steps = in_planes(surface, planes, inside), march.steps(surface.size)
     smoothing = ATTEMPTS[attempt - 1]
     graph = march_graph(surface, planes, inside, smoothing.splay, smoothing.boost)

@@ -37,12 +37,7 @@ from meshonet.solvers.hyperbolic.volume.limited_growth import (
     slower_steps,
 )
 from meshonet.solvers.hyperbolic.volume.settings import ATTEMPTS, Smoothing, VolumeMarch
-from meshonet.solvers.hyperbolic.volume.symmetry import (
-    free_edges_note,
-    in_planes,
-    planes_note,
-    symmetry_planes,
-)
+from meshonet.solvers.hyperbolic.volume.symmetry import in_planes, symmetry_of
 from meshonet.solvers.solution import Solution, timed
 from meshonet.solvers.stages import filling
 
@@ -75,14 +70,14 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
     Raises InputError: settings that no march can meet; NoValidGridError with the worst cells: cells stay
     folded, by their corners or a Bezier coefficient of their Jacobian.
     """
-    planes, inside = symmetry_planes(surface, settings.symmetry)
-    nodes = in_planes(surface, planes, inside)
     steps = settings.steps(surface.size)
+    planes, inside, found = symmetry_of(surface, settings.symmetry, settings.distance(surface.size))
+    nodes = in_planes(surface, planes, inside)
     volume, tries = _best(surface, planes, inside, nodes, steps, settings.limit)
     if volume.made < len(steps) or volume.folded:
         raise _refusal(volume, len(steps))
     grid = volume_grid(surface, volume.blocks, np.any(inside, axis=0))
-    notes = [*surface.notes, planes_note(planes, settings.symmetry), free_edges_note(surface, inside)]
+    notes = [*surface.notes, *found]
     if tries > 1:
         notes.append(f"{tries} marches were made: others left folded cells")
     return Solution(

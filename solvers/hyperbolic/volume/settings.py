@@ -57,12 +57,16 @@ class VolumeMarch:
         """Largest ratio of neighbouring cells; infinite where `layers` decide it."""
         return math.inf if self.layers is not None and self.growth is None else self.growth or GROWTH
 
+    def distance(self, size: float) -> float:
+        """Return how far a surface of extent `size` is marched."""
+        return FAR_FIELD * size if self.far_field is None else self.far_field
+
     def steps(self, size: float) -> Floats:
         """Return the steps (layers - 1,) of a march from a surface of extent `size`.
 
         Raises InputError: too few layers for the growth, or for any.
         """
-        far = FAR_FIELD * size if self.far_field is None else self.far_field
+        far = self.distance(size)
         if far < 2.0 * self.first_cell:
             problem = f"the far field at {far:.4g} is nearer than two first cells of {self.first_cell:.4g}"
             raise InputError(problem, "give a larger {far_field} or a smaller {first_cell}")
