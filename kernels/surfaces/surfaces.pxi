@@ -23,6 +23,8 @@ cdef extern from "surfaces/march.h":
         ptrdiff_t sweeps, ramp
         double tolerance
         ptrdiff_t most
+        double relaxing, settled
+        ptrdiff_t relaxations
     ctypedef struct SurfaceMarched:
         ptrdiff_t levels, steps, iterations
     int c_surface_march "surface_march"(double *levels, const double *heights, ptrdiff_t count, const Graph *graph,
@@ -61,7 +63,7 @@ def surface_march(levels, heights, graph, settings, int threads):
     cdef SurfaceMarched made
     cdef int failed
     (s.explicit_smoothing, s.implicit_smoothing, s.theta, s.sharp, s.size, s.longest, s.weight, s.blend, s.sweeps,
-     s.ramp, s.tolerance, s.most) = settings
+     s.ramp, s.tolerance, s.most, s.relaxing, s.settled, s.relaxations) = settings
     cdef Written px = fills(levels, (count + 1, 3, n))
     cdef Read apart = reads(heights, (count,))
     with nogil:

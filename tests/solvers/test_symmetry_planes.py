@@ -75,7 +75,5 @@ def test_the_distance_is_that_of_the_walls_that_face_the_plane() -> None:
 
 def test_a_plate_is_extruded_whichever_way_it_faces() -> None:
     for turn in ([0, 1, 2], [1, 2, 0], [2, 0, 1]):
-        grid = march_surface(
-            surface_of(grid_of([plate(8)[0][..., turn]])), VolumeMarch(1e-3, 33, 2.5)
-        ).grid
+        grid = march_surface(surface_of(grid_of([plate(8)[0][..., turn]])), VolumeMarch(1e-3, 33, 2.5)).grid
         assert corner_quality(grid) > 0.99

@@ -98,13 +98,16 @@ class Smoothing(NamedTuple):
     ramp: int = 10
     tolerance: float = 1e-3
     most: int = 150
+    relaxing: float = 0.0
+    settled: float = 0.25
+    relaxations: int = 0
     splay: float = 0.0
     boost: float = 3.0
     """Of free edges, and where other than four faces meet (`meshonet.solvers.hyperbolic.volume.graph`)."""
 
     def numbers(self, size: float) -> tuple[float, ...]:
         """Return the parameters as kernels take them, with half the extent (`size`) of the surface."""
-        return (*self[:4], size, *self[4:11])
+        return (*self[:4], size, *self[4:14])
 
 
 ATTEMPTS = (
