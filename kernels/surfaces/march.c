@@ -187,9 +187,10 @@ static int take_step(const March *m, Runner *r, double *left, ptrdiff_t level)
     swap(&step->along, &step->before);
     advance(r, length);
     const SurfaceMarch *set = m->settings;
-    const double strength = set->relaxing * length * fmin(1.0, r->gone / (set->settled * set->size));
-    if (strength > 0.0)
-        relax_front(&r->solver, m->moves, strength, set->relaxations, r->first, r->end, r->member);
+    const Relaxing relaxing = {set->relaxing * length, r->gone / (set->settled * set->size), r->gone * set->near};
+    if (set->relaxing > 0.0)
+        for (ptrdiff_t k = 0; k < set->relaxations; k++)
+            relax_front(&r->solver, m->moves, &relaxing, r->first, r->end, r->member);
     return iterations;
 }
 

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from surface_shapes import grid_of, half_sphere, plate, room_corner, wing
+from surface_shapes import corner_quality, grid_of, half_sphere, plate, room_corner, wing
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.surface.surface import surface_of
 from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_surface
@@ -15,24 +14,6 @@ from meshonet.solvers.hyperbolic.volume.symmetry import closes_in, symmetry_of
 def planes(patches: list[Floats], far: float, axis: str | None = None) -> tuple[list[str], str]:
     symmetry = symmetry_of(surface_of(grid_of(patches)), axis, far)
     return [str(plane) for plane in symmetry.planes], "; ".join(symmetry.notes)
-
-
-def corner_quality(grid: Grid) -> float:
-    """The least ratio of the smallest to the largest determinant at the eight corners of a cell."""
-    least = np.inf
-    for block in grid.blocks:
-        u, v, w = (np.diff(block.nodes, axis=axis) for axis in range(3))
-        ends = (slice(None, -1), slice(1, None))
-        values = np.stack(
-            [
-                (np.cross(u[:, b, c], v[a, :, c]) * w[a, b]).sum(axis=-1)
-                for a in ends
-                for b in ends
-                for c in ends
-            ]
-        )
-        least = min(least, float((values.min(axis=0) / np.abs(values).max(axis=0)).min()))
-    return least
 
 
 def test_planes_that_walls_of_a_corner_face_are_none_and_named() -> None:
