@@ -113,11 +113,12 @@ def picture_format(output: str, to_format: str | None = None) -> Format:
     return record
 
 
-def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
+def read_shapes(text: str, fmt: str | None = None, *, surfaces: bool = False) -> Iterator[Shape]:
     """Return what can be sampled into boundaries: from a path, from ``-``, or a designation ``naca:2412``.
 
     The outer edges of a grid are boundaries, so a grid file serves too. Behind a record that cannot be read,
-    for which it raises, the iterator goes on with those that formats can still reach.
+    for which it raises, the iterator goes on with those that formats can still reach. With `surfaces` flat
+    patches of grids in space are surfaces, not grids in the plane.
 
     Raises InputError: a source that cannot be opened, is of no known format, or is not right; named with its
     place.
@@ -136,9 +137,17 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
     if record.read_grids is not None:
         from meshonet.formats.mesh.recover_topology import boundary_of
 
-        read = record.read_grids
+        read = partial(_surfaces, record.read_grids) if surfaces else record.read_grids
         return _Records(source, lambda: map(boundary_of, read(source)))
     raise _unreadable(record, source.name)
+
+
+def _surfaces(read: Callable[[Source], Iterator[Grid]], source: Source) -> Iterator[Grid]:
+    """Return grids of a source, flat patches as surfaces."""
+    from meshonet.formats.mesh.slices import surfaces_wanted
+
+    with surfaces_wanted():
+        return iter(list(read(source)))
 
 
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:

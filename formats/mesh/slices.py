@@ -6,11 +6,14 @@ The rule, for all blocks of a file together:
   other shifted along one coordinate (a layer one cell thick), is a slice.
 - Where all blocks are slices across the same coordinate at the same places, the file holds a grid in the
   plane: that coordinate and the index across are left out.
-- Else a block with one plane of nodes is a surface patch, any other one a volume.
+- Else, and always within `surfaces_wanted`, a block with one plane of nodes is a surface patch, any other one
+  a volume.
 - Index i is reversed in the plane and in volumes where their directions are left-handed.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -25,6 +28,19 @@ from meshonet.geometry.errors import InputError, in_place
 
 _SAME = 1e-6
 """Two planes are copies, and a coordinate constant, to this part of the grid's size (float32 holds 1e-7)."""
+
+
+_SURFACES = ContextVar("_SURFACES", default=False)
+
+
+@contextmanager
+def surfaces_wanted() -> Iterator[None]:
+    """Within it flat patches are read as surfaces, with all three coordinates."""
+    token = _SURFACES.set(True)
+    try:
+        yield
+    finally:
+        _SURFACES.reset(token)
 
 
 @dataclass(frozen=True)
@@ -62,7 +78,7 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
         for coordinates, place in zip(blocks, places or [""] * len(blocks), strict=True):
             with in_place(place):
                 slices.append(_slice_of(coordinates))
-        if _in_one_plane(slices):
+        if _in_one_plane(slices) and not _SURFACES.get():
             planes = [_plane(block, each) for block, each in zip(blocks, slices, strict=True) if each]
             return [
                 replace(each, nodes=each.nodes[::-1], reversed=True) if is_left_handed(each.nodes) else each

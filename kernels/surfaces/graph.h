@@ -23,6 +23,7 @@ typedef struct {
     const double *sign, *shift;    /* (3, ghosts) */
     const ptrdiff_t *fixed_nodes;  /* (fixed): nodes that stay in planes, ascending */
     const double *boost;           /* (nodes): factor of the explicit smoothing */
+    const double *hollow;          /* (nodes): distance from the next concave edge, not 0 */
     const double *moves;           /* (3, fixed): 0 where they do not move along an axis, else 1 */
 } Graph;
 

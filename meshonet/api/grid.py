@@ -9,6 +9,7 @@ import numpy as np
 from meshonet.api.files import read
 from meshonet.formats.layout.read import layout_of
 from meshonet.formats.mesh.recover_topology import boundary_of
+from meshonet.formats.registry import read_shapes
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
@@ -81,6 +82,8 @@ def grid(
     """
     far_field = parameters.get("far_field")
     request = grid_request(method, res=res, **domain_parameters(parameters))
+    if request.of_surface and isinstance(shape, str | Path):
+        shape = next(read_shapes(str(shape), surfaces=True))
     return make_grid(shape_of(shape, assemble=assemble, far_field=far_field), request).grid
 
 

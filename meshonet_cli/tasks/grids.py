@@ -80,7 +80,7 @@ def write_grids(
     nodes = (sampling.ni or DEFAULT_NI) * (sampling.nj or DEFAULT_NJ)
     alone = method_of(request).together is None
     task = BatchTask(
-        partial(read_shapes, fmt=batch.files.from_format),
+        partial(read_shapes, fmt=batch.files.from_format, surfaces=request.of_surface),
         partial(_grids, request=request, criteria=criteria, detailed=session.as_json),
         nodes=None if request.asks_for_blocks else nodes,
         together=1 if alone else max(1, min(SHARED, MOST_NODES // nodes)),

@@ -12,7 +12,7 @@ from meshonet.geometry.spacing.first_cell import FirstCell
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.check_request import check_request
 from meshonet.solvers.pipeline.methods import METHODS
-from meshonet.solvers.pipeline.uses import FOR_MANY, chosen
+from meshonet.solvers.pipeline.uses import FOR_MANY, OF_SURFACE, chosen
 
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
@@ -118,6 +118,11 @@ class Volume(Request):
     layers: int | None = None
     symmetry: Literal["x", "y", "z", "none"] | None = None
     energy: Literal["angles", "shape"] | None = None
+
+    @property
+    def of_surface(self) -> bool:
+        """Whether options that only surfaces have a use for ask for a march from one, be it flat."""
+        return self.method == "hyperbolic" and not OF_SURFACE.isdisjoint(self.chosen)
 
 
 @dataclass(frozen=True)

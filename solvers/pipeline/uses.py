@@ -68,7 +68,9 @@ USES: dict[str, frozenset[str]] = {
 
 FOR_MANY = tuple(sorted(USES[MANY] - USES[ONE]))
 """Options any of which asks for many blocks."""
-IN_SPACE = _row("layers symmetry energy")
+OF_SURFACE = _row("layers symmetry")
+"""Options that only marching from a surface has a use for."""
+IN_SPACE = OF_SURFACE | _row("energy")
 """Options that no grid in the plane has a use for."""
 
 
