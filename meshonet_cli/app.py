@@ -46,7 +46,7 @@ def options(
         bool, typer.Option("--version", help="Show the version and exit.", callback=_version, is_eager=True)
     ] = False,
 ) -> None:
-    """Structured grids from a boundary: algebraic, elliptic, and by neural operator."""
+    """Make structured grids from a boundary by algebraic, elliptic and other methods, or neural operators."""
 
 
 class Plain(typer.core.TyperCommand):

@@ -14,9 +14,9 @@ _SIGNS = {True: "ok", False: "NO", None: "-"}
 
 
 def doctor(as_json: o.AsJson = False) -> int:
-    """Say what is installed, whether it works, and what could be added.
+    """Check the installation, and list what is missing or could be added.
 
-    The exit code is 1 when something is missing or does not work.
+    The exit code is 1 if something required is missing or does not work.
     """
     from meshonet.api.doctor import doctor as examined
     from meshonet_cli.terminal.session import Session

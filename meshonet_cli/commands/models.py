@@ -13,12 +13,16 @@ EXAMPLES = ("meshonet models", "meshonet models quad-general", "meshonet models 
 def models(
     name: Annotated[
         list[str] | None,
-        typer.Argument(metavar="NAME", show_default=False, help="Model to tell all of: recipe and figures."),
+        typer.Argument(
+            metavar="NAME",
+            show_default=False,
+            help="Model whose training recipe and results are printed in full.",
+        ),
     ] = None,
     as_json: o.AsJson = False,
     debug: o.Debug = False,
 ) -> int:
-    """List the operators that are shipped."""
+    """List the neural operators that are shipped."""
     from meshonet.api.models import models as described
     from meshonet_cli.terminal.session import Session
 

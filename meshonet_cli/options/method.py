@@ -8,9 +8,9 @@ from meshonet_cli.options.groups import METHOD, bad_value, option_of
 # fmt: off
 Refine = Annotated[int, option_of(METHOD)(
     "--refine", metavar="K", min=0, max=8,
-    help="Solve at --res, halve all cells and solve again, K times. The result is the finest grid of a "
-    "family; convert --coarsen makes the others from it. Of many blocks, --cells, --cell-size and --res say "
-    "what the coarsest grid has, --first-cell and --growth what the finest has.",
+    help="Number of refinements: solve at --res, then halve all cells and solve again, K times. The result "
+    "is the finest of K + 1 nested grids; convert --coarsen extracts the others. For many blocks --cells, "
+    "--cell-size and --res refer to the coarsest grid, --first-cell and --growth to the finest.",
 )]
 # fmt: on
 

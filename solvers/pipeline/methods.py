@@ -147,30 +147,32 @@ METHODS: Mapping[str, MethodEntry] = MappingProxyType(
     {
         "tfi": MethodEntry(
             "meshonet.solvers.algebraic.tfi:solve",
-            "interpolates between the edges",
+            "transfinite interpolation between the four edges",
             kind="algebraic",
         ),
         "winslow": MethodEntry(
-            "meshonet.solvers.elliptic.solve:solve", "elliptic, without control functions"
+            "meshonet.solvers.elliptic.solve:solve", "Winslow's elliptic equations without control functions"
         ),
         "thomas-middlecoff": MethodEntry(
             "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
-            "with control functions that carry the spacing of the edges into the interior",
+            "Winslow's equations with control functions that continue the spacing of the edges inside",
             sweeps=False,
         ),
         "steger-sorenson": MethodEntry(
             "meshonet.solvers.elliptic.steger_sorenson:solve_steger_sorenson",
-            "with sources at walls that turn grid lines to {wall_angle} there",
+            "Winslow's equations with sources that turn grid lines at walls to the angle {wall_angle}",
             sweeps=False,
         ),
         "variational": MethodEntry(
             "meshonet.solvers.energy.variational:solve",
-            "minimises a functional of angles and edge lengths; better angles, no folds",
+            "minimises a functional of angles and edge lengths; angles are closer to 90 degrees",
         ),
-        "hyperbolic": MethodEntry("meshonet.solvers.hyperbolic.march:hyperbolic", "marches from the wall"),
+        "hyperbolic": MethodEntry(
+            "meshonet.solvers.hyperbolic.march:hyperbolic", "marches row by row from the wall"
+        ),
         "conformal": MethodEntry(
             "meshonet.solvers.conformal.solve:Conformal",
-            "Winslow's equations around a body, in the strip that a conformal map makes of its domain",
+            "Winslow's equations around a body, solved in the strip that is its conformal image",
         ),
         "operator": MethodEntry(
             "meshonet.solvers.neural.inference:OperatorMethod", "a neural operator", kind="network"
