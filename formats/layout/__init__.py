@@ -1,4 +1,4 @@
-"""Layouts of blocks as JSON: the loops of a domain, vertices, edges with their curves, and four-sided faces.
+"""Block layouts as JSON: the loops of a domain, vertices, edges with their curves, and four-sided faces.
 
 ::
 
@@ -10,13 +10,16 @@
      "faces":    [{"south": [0], "east": [2], "north": [-2], "west": [3], "cells": [4, 2],
                    "points": [[0.1, 0.1], ...], "layers": 0}]}
 
-A place on a loop is the number of a corner and, behind the point, the part of the way to the next one; on a
-loop without corners it is the part of its length from the first point. Loops have the domain on their left,
-the outer one first; ``straight`` is true for polygons, else a list of the intervals that are, and ``kinks``
-are the points where a smooth curve may bend. A loop that is no wall but the front of layers, which a grid has
-around the wall, has ``"front": true``. Points and places of edges are those of the nodes between the
-ends; points of a face are the nodes inside, j fastest. The sides of a face run along i or j; an edge that is
-run through backwards has the number -1 - k, as arcs have in TopoJSON (https://github.com/topojson). Vertices
-and edges on a periodic side name their ``partner``, and the layout has ``periodic``: the arc lengths of both
-stretches and the shift.
+- Loops: the domain is on their left, and the outer loop is the first. ``straight`` is true for polygons, else
+  a list of the straight intervals. ``kinks`` are the points at which a smooth curve may bend. A loop with
+  ``"front": true`` is not a wall but the outer front of layers; a grid has layers between it and the wall.
+- A place on a loop is a number: the integer part is the index of a corner, the fraction the relative arc
+  length from there to the next corner. On a loop without corners it is the relative arc length from the first
+  point.
+- Edges: points and places are those of the nodes between the two ends.
+- Faces: points are those of the interior nodes, j fastest. Each side is a list of edges in the direction of i
+  or j; an edge k that runs against this direction has the number -1 - k, like arcs in TopoJSON
+  (https://github.com/topojson).
+- Vertices and edges on a periodic side have their ``partner``. The layout then has ``periodic``: the arc
+  lengths of both sides and the translation between them.
 """
