@@ -40,8 +40,7 @@ class Colouring:
     values : cell values (ni-1, nj-1); for several blocks a tuple with one array per block.
     label : quantity and unit, for the colour bar.
     limits : values at the two ends of the colour scale; None selects the 1st and 99th percentile of the cells
-        in
-        view.
+        in view.
     worst_is_low : whether small values are bad and get the strong colours.
     """
 

@@ -25,8 +25,7 @@ class View:
     zoom : x0, x1, y0, y1 for planar pictures, with z0, z1 for pictures in space; cells outside are not drawn.
     every : step between drawn lines; None selects it by the resolution of the picture.
     slice : slice of a volume: ``i=10``, ``k=-1`` or ``x=.5``; None draws the walls, or the whole boundary of
-        a
-        volume without walls.
+        a volume without walls.
     seen_from : azimuth and elevation in degrees, for pictures in space; None is `SEEN_FROM`.
 
     Raises InputError: an unknown form of slice, a box without extent, `every` below 1.

@@ -3,10 +3,11 @@
 A part is written atomically, and describes how it was made:
 
 ========== ========================================================================================
-request    attribute: digest of the settings, equal in all parts part_size  attribute: number of inputs of
-each part but the last size       attribute: node counts and topology as text inputs     dataset of texts:
-digests of the inputs failed     dataset of texts: JSON lists ``[input, member, error, again]``, one for each
-sample that could
+request    attribute: digest of the settings, equal in all parts
+part_size  attribute: number of inputs of each part but the last
+size       attribute: node counts and topology as text
+inputs     dataset of texts: digests of the inputs
+failed     dataset of texts: JSON lists ``[input, member, error, again]``, one for each sample that could
            not be made; `again` says whether to try it again
 ========== ========================================================================================
 

@@ -40,8 +40,7 @@ class MeshBoundary:
     Parameters
     ----------
     edges : (k, 2) point numbers by name; the empty name stands for edges without one. If there are no edges,
-        the
-        edges that belong to only one cell are used.
+        the edges that belong to only one cell are used.
     cells : (m, 3 or 4) point numbers, one array per kind of cell.
     """
 

@@ -32,8 +32,7 @@ class Unstructured:
     cells : (m, 4) node numbers, counter-clockwise for a right-handed grid; or (m, 8), the bottom face in this
         order, then the top face. i is fastest.
     faces : named parts of the boundary: edges (k, 2) with the domain on their left, or quadrilaterals (k, 4)
-        whose
-        normals point out of it; periodic parts are last.
+        whose normals point out of it; periodic parts are last.
     periodic : pairs of names in `faces` whose rows correspond to each other.
     """
 

@@ -2,8 +2,7 @@
 
 The output file, ``case/case.foam``, is empty; ParaView uses it to open a case. The mesh is written into its
 folder. OpenFOAM's tools need three dictionaries in ``system`` to read a mesh; minimal ones are written if
-they
-are missing. https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
+they are missing. https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
 """
 
 from collections.abc import Iterable

@@ -4,8 +4,8 @@ A polygon with its holes is a domain. A closed line is a body, or an outline wit
 the walls of a channel, four the edges of a domain. In WKT, a line ``# name`` gives the name of the next line.
 Collections contain several shapes. A third coordinate is dropped. A GeoJSON feature can have the properties
 ``name``; ``names``, for each ring one name or a list with one name for each stretch between corners; and
-``corners``, for each ring a list of point indices, counted from 0.
-https://www.ogc.org/standards/sfa , https://www.rfc-editor.org/rfc/rfc7946
+``corners``, for each ring a list of point indices, counted from 0. https://www.ogc.org/standards/sfa ,
+https://www.rfc-editor.org/rfc/rfc7946
 """
 
 from __future__ import annotations
