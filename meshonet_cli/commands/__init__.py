@@ -1,4 +1,4 @@
-"""One command a file; this is their list, in the order of the help."""
+"""The list of commands in the order of the help; each command has a module."""
 
 from collections.abc import Callable
 from importlib import import_module
@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 
 class Command(NamedTuple):
-    """A command by its name and the first line of its help; its module is loaded when it is needed.
+    """Name and summary of a command, whose module is loaded when needed.
 
-    The module of ``solve-pde`` is ``solve_pde``. It holds the function ``solve_pde`` and its ``EXAMPLES``,
+    The module of ``solve-pde`` is ``solve_pde``. It contains the function ``solve_pde`` and its ``EXAMPLES``,
     which a test runs.
     """
 

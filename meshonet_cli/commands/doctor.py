@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = ("meshonet doctor", "meshonet doctor --json")
 _SIGNS = {True: "ok", False: "NO", None: "-"}
-"""What is printed of a check: passed, failed, not made."""
+"""Printed result of a check: passed, failed, not applicable."""
 
 
 def doctor(as_json: o.AsJson = False) -> int:
@@ -34,7 +34,7 @@ def _well(findings: "Sequence[Finding]") -> bool:
 
 
 def findings_text(findings: "Sequence[Finding]") -> str:
-    """Return findings by their groups, a line each, and whether all is well."""
+    """Return findings by group, one per line, and whether all is well."""
     lines: list[str] = []
     width = max(len(finding.name) for finding in findings)
     for group in dict.fromkeys(finding.group for finding in findings):

@@ -13,9 +13,9 @@ EXAMPLES = (
     "meshonet plot wing.cgns -o wing.html",
 )
 _BOX = ("a box", "use x0,x1,y0,y1", "zoom")
-"""What an error says of a box: name, remedy, parameter."""
+"""Description, remedy and parameter for errors about a box."""
 _DIRECTION = ("a direction", "use azimuth and elevation in degrees, e.g. -125,25", "seen_from")
-"""Likewise of a direction."""
+"""Description, remedy and parameter for errors about a direction."""
 _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 

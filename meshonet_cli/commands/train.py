@@ -148,7 +148,7 @@ def train(
 
 
 def _values(words: Sequence[str]) -> dict[str, Any]:
-    """Return the values of ``name=value`` words by name, read as JSON where they are that."""
+    """Return the values of ``name=value`` words by name, interpreted as JSON where possible."""
     values: dict[str, Any] = {}
     for word in words:
         name, mark, text = word.partition("=")

@@ -1,1 +1,1 @@
-"""Pages that are made of the help texts."""
+"""Pages that are generated from the help texts."""

@@ -1,4 +1,4 @@
-"""The manual page, made of the help: ``python -m meshonet_cli.help.man > meshonet.1``."""
+"""Generates the manual page from the help: ``python -m meshonet_cli.help.man > meshonet.1``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from meshonet_cli.commands import COMMANDS
 from meshonet_cli.help.reference import help_text
 
 _WIDTH = 78
-"""Characters a line of a manual page."""
+"""Characters per line of a manual page."""
 
 
 def man_page() -> str:
@@ -28,12 +28,12 @@ def man_page() -> str:
 
 
 def _block(*command: str) -> list[str]:
-    """Return what the help of a command prints, its lines as they are."""
+    """Return the help of a command with its line breaks."""
     return [".nf", *map(_escaped, help_text(command, _WIDTH).splitlines()), ".fi"]
 
 
 def _escaped(line: str) -> str:
-    r"""Return a line that roff prints as it is.
+    r"""Return a line for roff, with special characters escaped.
 
     >>> _escaped(".5 of --res")
     '\\&.5 of \\-\\-res'

@@ -1,4 +1,4 @@
-"""Options that say how high the cells at walls are, and how they grow."""
+"""Options for the first-cell height at walls and the growth of cells."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -64,7 +64,7 @@ class LayerOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class SideOptions:
-    """First cells off single sides of four-sided domains."""
+    """First cells at single sides of four-sided domains."""
 
     spacing_south: Annotated[float | None, _option(
         "--spacing-south", metavar="H",

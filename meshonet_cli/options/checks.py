@@ -1,4 +1,4 @@
-"""Options that say what a grid must be to be written, and what ends the program with 1."""
+"""Options for the validity of grids, and for quality limits that set the exit code."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,10 @@ _option = option_of(CHECKS)
 
 
 class Profile(Enum):
-    """Profiles of `meshonet.geometry.quality.profiles`; typer repeats choices of an enumeration only."""
+    """Profiles of `meshonet.geometry.quality.profiles`.
+
+    Typer allows repeated options only for enumerations.
+    """
 
     openfoam = "openfoam"
     pointwise = "pointwise"
@@ -30,7 +33,7 @@ AllowInvalid = Annotated[bool, _option(
 
 @dataclass(frozen=True, kw_only=True)
 class CheckOptions:
-    """What a grid must be."""
+    """Validity of a grid."""
 
     repair: Annotated[bool | None, _option(
         "--repair/--no-repair",
@@ -42,7 +45,7 @@ class CheckOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class GateOptions:
-    """What a grid must be to pass."""
+    """Quality limits of a grid."""
 
     fail_on: Annotated[list[str] | None, _option(
         "--fail-on", metavar="GATE",
@@ -60,9 +63,9 @@ class GateOptions:
     )] = None
 
     def criteria(self, more: Sequence[str] = ()) -> "Criteria":
-        """Return gates and profiles; gates may name figures of `more` too.
+        """Return gates and profiles; gates may refer to the names in `more` too.
 
-        Raises InputError: a gate that is none.
+        Raises InputError: an invalid gate.
         """
         from meshonet.geometry.quality.criteria import Criteria
 

@@ -1,4 +1,4 @@
-"""Options of domains that are made as many blocks."""
+"""Options of multi-block domains."""
 
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
@@ -23,7 +23,7 @@ Walls = Annotated[str | None, _option(
 
 @dataclass(frozen=True, kw_only=True)
 class DomainOptions:
-    """How a domain is split into blocks. Each of these but --assemble asks for blocks."""
+    """How a domain is split into blocks. Each of these options except --assemble makes a multi-block grid."""
 
     assemble: Annotated[bool, _option(
         "--assemble",
@@ -62,7 +62,7 @@ class DomainOptions:
     walls: Walls = None
 
     def parameters(self) -> dict[str, Any]:
-        """Return them for the library; raise InputError for what cannot be read."""
+        """Return the options as parameters of the library. Raises InputError: an invalid value."""
         values = dict(vars(self), walls=())
         del values["assemble"]
         if self.layout is not None:

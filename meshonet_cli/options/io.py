@@ -1,4 +1,4 @@
-"""Options that say what is read, which of many inputs, what is written and what is printed."""
+"""Options for input, selection of inputs, output and messages."""
 
 import re
 from collections.abc import Sequence
@@ -65,7 +65,7 @@ Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")
 
 @dataclass(frozen=True, kw_only=True)
 class FileOptions(Files):
-    """Files of a command that turns files into files or datasets."""
+    """Output of a command that writes files or datasets."""
 
     output: Output
     from_format: From = None
@@ -76,14 +76,14 @@ class FileOptions(Files):
 
 @dataclass(frozen=True, kw_only=True)
 class PrintOptions:
-    """What is printed."""
+    """Messages of a command."""
 
     as_json: AsJson = False
     quiet: Annotated[bool, _option("-q", "--quiet", help="Print only warnings and errors.")] = False
     debug: Debug = False
 
     def session(self) -> "Session":
-        """Return the session that prints so."""
+        """Return the session with these options."""
         from meshonet_cli.terminal.session import Session
 
         return Session(quiet=self.quiet, as_json=self.as_json, debug=self.debug)
@@ -91,7 +91,7 @@ class PrintOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class InputOptions(PrintOptions):
-    """Which inputs are taken of folders, zip archives and lists, which of all inputs, what is printed."""
+    """Selection of inputs from folders, zip archives and lists; shards; messages."""
 
     pick: Annotated[list[str] | None, _option(
         "--pick", metavar="PATTERN",
@@ -107,9 +107,9 @@ class InputOptions(PrintOptions):
     def inputs(
         self, words: Sequence[str], *, grids: bool = False, suffixes: Sequence[str] = ()
     ) -> "Inputs":
-        """Return the inputs that `words` name: shapes, or `grids`, or files of other endings.
+        """Return the inputs that `words` name: shapes, `grids`, or files with the given extensions.
 
-        Raises InputError: as `Inputs`; a shard that is none.
+        Raises InputError: as `Inputs`; an invalid shard.
         """
         from meshonet.formats.inputs import Inputs, readable_suffixes
 
@@ -117,14 +117,14 @@ class InputOptions(PrintOptions):
         return Inputs(tuple(words), endings, tuple(self.pick or ()), self.part() if self.shard else (1, 1))
 
     def part(self) -> tuple[int, int]:
-        """Return K and N of the shard, 1 and 1 for all inputs. Raises InputError: it is none."""
+        """Return K and N of the shard, 1 and 1 for all inputs. Raises InputError: an invalid shard."""
         match = re.fullmatch(r"(\d{1,9})/(\d{1,9})", self.shard or "1/1", re.ASCII)
         if match is None:
             raise bad_value(str(self.shard), "a shard", "use K/N, e.g. 3/8 for the third of eight", "shard")
         return int(match[1]), int(match[2])
 
     def batch(self, inputs: Any, files: Files) -> "Batch":
-        """Return the run over `inputs`, in this process."""
+        """Return the batch over `inputs` in this process."""
         from meshonet_cli.batch.run import Batch
 
         return Batch(inputs, files, self.session())
@@ -132,7 +132,7 @@ class InputOptions(PrintOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class RunOptions(InputOptions):
-    """Options of inputs and printing, and where members of a batch are worked on."""
+    """Selection of inputs, messages, and the engine of a batch."""
 
     jobs: Annotated[int, _option(
         "--jobs", metavar="N", min=1, max=1024, show_default=True, help="Number of processes for a batch.",
@@ -149,7 +149,7 @@ class RunOptions(InputOptions):
     )] = None
 
     def batch(self, inputs: Any, files: Files) -> "Batch":
-        """Return the run over `inputs`. Raises InputError: options that do not go together."""
+        """Return the batch over `inputs`. Raises InputError: options that exclude each other."""
         engine = Engine(self.engine, self.jobs, self.scheduler)
         return replace(super().batch(inputs, files), engine=engine)
 # fmt: on

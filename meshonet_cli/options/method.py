@@ -16,7 +16,7 @@ Refine = Annotated[int, option_of(METHOD)(
 
 
 def polish_steps(text: str) -> Literal["auto", "off"] | int:
-    """Return the steps of ``auto``, ``off`` or a number, or raise InputError.
+    """Return the value of ``--polish``: ``auto``, ``off`` or a number. Raises InputError: other text.
 
     >>> polish_steps("off"), polish_steps("3")
     ('off', 3)
@@ -29,7 +29,9 @@ def polish_steps(text: str) -> Literal["auto", "off"] | int:
 
 
 def coarse_nodes(text: str) -> Literal["auto"] | int | None:
-    """Return the nodes of ``auto``, ``off`` (None; 0 is the same) or a number from 9 on, or raise InputError.
+    """Return the value of ``--coarse``: ``auto``, None for ``off`` or 0, or a number of at least 9.
+
+    Raises InputError: other text.
 
     >>> coarse_nodes("auto"), coarse_nodes("off"), coarse_nodes("65")
     ('auto', None, 65)

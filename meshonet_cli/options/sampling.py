@@ -1,4 +1,4 @@
-"""Options that say how the nodes of a boundary are placed."""
+"""Options for the boundary nodes."""
 
 import re
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ Resolution = Annotated[str | None, _option(
 
 @dataclass(frozen=True, kw_only=True)
 class SamplingOptions:
-    """How the nodes of a boundary are placed."""
+    """Distribution of the boundary nodes."""
 
     res: Resolution = None
     topology: Annotated[TopologyName, _option(
@@ -95,7 +95,7 @@ class SamplingOptions:
     )] = False
 
     def placed(self) -> "Sampling":
-        """Return them for the library; raise InputError for what cannot be read or is out of range."""
+        """Return the options as `Sampling`. Raises InputError: an invalid value."""
         from meshonet.geometry.spacing.sampling import Sampling
 
         ni, nj, nk = (None, None, None) if self.res is None else resolution(self.res)
@@ -107,7 +107,7 @@ class SamplingOptions:
 
 
 def resolution(text: str) -> tuple[int, int, int | None]:
-    """Return the node counts (ni, nj, nk) of ``N``, ``NIxNJ`` or ``NIxNJxNK``, or raise InputError.
+    """Return the node counts (ni, nj, nk) of ``N``, ``NIxNJ`` or ``NIxNJxNK``. Raises InputError: other text.
 
     >>> resolution("200"), resolution("400x100"), resolution("33x33x65")
     ((200, 200, None), (400, 100, None), (33, 33, 65))
@@ -122,7 +122,7 @@ def resolution(text: str) -> tuple[int, int, int | None]:
 
 
 def four_corners(text: str) -> tuple[int, int, int, int]:
-    """Return the four indices of ``I,J,K,L``, or raise InputError.
+    """Return the four indices of ``I,J,K,L``. Raises InputError: other text.
 
     >>> four_corners("0,10,20,30")
     (0, 10, 20, 30)

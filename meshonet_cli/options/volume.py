@@ -1,4 +1,4 @@
-"""Options of grids in space."""
+"""Options of three-dimensional grids."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -30,9 +30,9 @@ Axis = Annotated[str | None, _option(
 
 
 def axis_of(text: str | None) -> "AxisLine | None":
-    """Return the line that the words of an option mean, None for none.
+    """Return the axis described by an option, None for None.
 
-    Raises InputError: other words than an axis or four numbers.
+    Raises InputError: neither a named axis nor four numbers.
     """
     from meshonet.geometry.blocks.revolve import AxisLine
 
@@ -44,7 +44,7 @@ def axis_of(text: str | None) -> "AxisLine | None":
 
 @dataclass(frozen=True, kw_only=True)
 class VolumeOptions:
-    """How a volume is marched from a surface, or filled inside six faces."""
+    """How a volume is marched from a surface, or made inside six faces."""
 
     layers: Layers = None
     symmetry: Annotated[Literal["x", "y", "z", "none"] | None, _option(

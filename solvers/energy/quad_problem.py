@@ -84,7 +84,7 @@ class Problem:
         self.descent = self._descent(aspects, targets, turning)
 
     def _number(self) -> None:
-        """Assign numbers to the unknowns: first coordinates of inner nodes, then arc lengths of wall nodes."""
+        """Assign numbers to the unknowns: coordinates of inner nodes, then arc lengths of wall nodes."""
         n, known, walls = len(self.nodes), self.unknowns, self.walls
         free = ~known.fixed & (known.tied | (self.mesh.places.loop < 0))
         free[known.images] = False
