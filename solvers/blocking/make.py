@@ -1,4 +1,4 @@
-"""From a domain to a grid of blocks, as it was asked for."""
+"""Makes a multi-block grid of a domain."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from meshonet.solvers.solution import Solution
 
 METHOD = "blocks"
 GROWTH = 1.2
-"""Ratio of neighbouring layers where nobody asked for one."""
+"""Default ratio of neighbouring layers."""
 CUT_OFF = 1e-3
-"""Part of the area that cells along walls may cut off before it is said."""
+"""Fraction of the area that cells may cut off along walls without a note."""
 
 
 def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
-    """Return the grid of blocks of a domain, with layers where a first cell is asked for.
+    """Return the multi-block grid of a domain, with layers if a first cell is given.
 
-    Raises InputError: loops that cross or touch, names of walls that it does not have, a layout of another
-    domain; SolverError: no blocks are found; NoValidGridError: cells are folded.
+    Raises InputError: loops that cross or touch, unknown names of walls, a layout of another domain;
+    SolverError: the decomposition fails; NoValidGridError: folded cells.
     """
     begun, timings = perf_counter(), Timings()
     domain = _checked(shape.domain, request)
@@ -69,9 +69,9 @@ def _cut_off(fine: Layout) -> str:
 
 
 def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
-    """Return the blocks of a domain, with as many cells as are asked for, else those they were found with.
+    """Return the blocks of a domain; without a requested number of cells, with that of the decomposition.
 
-    Raises InputError: as `make_blocks`; SolverError: no blocks are found.
+    Raises InputError: as `make_blocks`; SolverError: the decomposition fails.
     """
     domain = _checked(shape.domain, request)
     if request.pitch is not None:

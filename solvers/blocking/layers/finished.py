@@ -1,4 +1,4 @@
-"""The last steps of grids with layers: cells made to grow evenly, folded ones unfolded."""
+"""Last steps of grids with layers: limitation of growth ratios, repair of folded cells."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Grids of blocks with layers at walls: rings around loops, rows of quads elsewhere, rows to a far field.
+"""Multi-block grids with layers at walls: rings around loops, rows of quads elsewhere, rows to a far field.
 
 ::
 

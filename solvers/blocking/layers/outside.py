@@ -1,4 +1,4 @@
-"""The blocks of what layers leave of a domain: found, or taken from another domain of the same kind."""
+"""The blocks of the domain outside of layers: decomposed, or transferred from a similar domain."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
-"""Rings of layers around the loops of a domain: marched from the wall, no thicker than the gaps allow.
+"""Rings of layers around the loops of a domain: marched from the wall, limited by the gaps.
 
 ::
 
     wall --march, step by step as thick as the gap in front allows--> front
 
-The front is a smooth loop that stands in for the wall when the rest of the domain is decomposed; the ring
-itself is a map from (place along the front, height) that gives a column of nodes anywhere.
+The front is a smooth loop that replaces the wall when the rest of the domain is decomposed. The ring itself
+is a map from position along the front and height to the plane, so that it gives a column of nodes anywhere.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Where the columns of a layer of cells start on a wall: dense at corners and where the wall turns."""
+"""Starting points of the columns of layers on a wall, dense at corners and where the wall turns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Walls with their layers, what these leave of a domain, and how fine cells there are to be."""
+"""Walls with their layers, the remaining domain, and the numbers of cells in it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows of quads along walls of a finished layout: the blocks of the layers there.
+"""Rows of quads along walls of a finished layout, which become the blocks of the layers there.
 
 ::
 

@@ -1,4 +1,4 @@
-"""Counts of cells along the chords of a layout that sizes of cells ask for."""
+"""Numbers of cells along the chords of a layout for given cell sizes."""
 
 from __future__ import annotations
 
