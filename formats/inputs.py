@@ -156,7 +156,7 @@ class Inputs:
 
     @cached_property
     def _begun(self) -> int:
-        """How many inputs there are, of which no more than `_BEGINNING` are looked for."""
+        """Number of inputs; counting stops at `_BEGINNING`."""
         return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
@@ -172,7 +172,7 @@ class Inputs:
             yield entry, samples, 1 if samples is None else len(samples)
 
     def first(self) -> str:
-        """Return the first input; InputError where there is none."""
+        """Return the first input. Raises InputError: there is none."""
         first = next(iter(self))
         if isinstance(first, InputError):
             raise first

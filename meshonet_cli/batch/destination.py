@@ -158,10 +158,12 @@ def _size_there(index: Path) -> int:
 
 
 def usual_part_size(nodes: int | None, most: int = _MOST_IN_PART) -> int:
-    """Return the number of grids in a part of 256 MiB, at most `most`; `nodes` is None if unknown.
+    """Return the number of grids in a part of up to 256 MiB, at most `most`; `nodes` is None if unknown.
+
+    It is rounded down to 1, 2 or 5 times a power of ten.
 
     >>> usual_part_size(200 * 100), usual_part_size(65 * 65), usual_part_size(800 * 400)
-    (500, 1000, 50)
+    (500, 1000, 20)
     """
     fitting = min(_PART_BYTES // (17 * (nodes or _LIKELY_NODES) + 2000), most)
     sizes = (digit * 10**power for power in range(4) for digit in (1, 2, 5))

@@ -68,8 +68,8 @@ def template(passage: Passage, *, at_corners: bool = True) -> Layout:
 def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], list[Floats]]:
     """Return the four blocks of the ring, i clockwise around the blade, j away from it.
 
-    Their feet are not where they should be; the second list has the angles (n,) of these instead. Lines lead
-    away along hyperbolae, G = h cosh(μ + iν).
+    Their first nodes are not on the blade yet; the second result has their angles (n,) instead. Lines leave
+    the slit along hyperbolae, G = h cosh(μ + iν).
     """
     along, up = np.linspace(-x, x, cells + 1), np.linspace(-ASIDE, ASIDE, CELLS + 1)
     blocks, angles = [], []
@@ -83,9 +83,9 @@ def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], lis
 
 
 def _joined(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
-    """Return the places of nodes, and blocks of their numbers.
+    """Return the positions of nodes, and blocks of their numbers.
 
-    What coincides, but for periods iπ, is one node.
+    Nodes that coincide up to multiples of the period iπ are merged.
     """
     places = np.concatenate([piece.ravel() for piece in pieces])
     inner = np.zeros(len(places), dtype=bool)
@@ -105,7 +105,7 @@ def _joined(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
 def _placed(
     passage: Passage, flow: PassageFlow, nodes: Complexes, blocks: tuple[Indices, ...], angles: list[Floats]
 ) -> Layout:
-    """Return the layout with `nodes` taken to the plane of the map, those of walls on its loops.
+    """Return the layout with `nodes` mapped to the plane of the map, and wall nodes on its loops.
 
     Those of the blade are at `angles` around the slit, for each block of the ring.
     """
@@ -129,7 +129,7 @@ def _placed(
 
 
 def _put_at_corners(layout: Layout, front: Loop) -> None:
-    """Put the nearest node, none twice, at each corner of the blade or of its layers, in place."""
+    """Move the nearest node to each corner of the blade or of its layers, in place; no node is used twice."""
     places = layout.mesh.places
     free = places.loop == BLADE
     for arc, cells in zip(front.corner_arcs, front.corner_cells, strict=True):
@@ -141,7 +141,7 @@ def _put_at_corners(layout: Layout, front: Loop) -> None:
 
 
 def _arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
-    """Return the arc lengths (k,) of angles (k,) around the slit, on the loop whose points `flow` has."""
+    """Return the arc lengths (k,) on the loop of the blade for angles (k,) around the slit."""
     turn = 2.0 * np.pi
     around, knots = flow.around, np.append(front.curve.knots, front.length)
     parts = len(around) // (len(knots) - 1)

@@ -69,7 +69,7 @@ def _pairs(old: tuple[Loop, ...], new: tuple[Loop, ...]) -> dict[int, int]:
 
 
 def _by_name(holes: tuple[Loop, ...]) -> dict[tuple[str, ...], int]:
-    """Return the number of each hole by its names, nothing where some share them."""
+    """Return the index of each hole by its names; empty if several holes share names."""
     numbers = {tuple(sorted(set(loop.names))): k for k, loop in enumerate(holes, start=1)}
     return numbers if len(numbers) == len(holes) else {}
 

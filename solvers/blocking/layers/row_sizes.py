@@ -117,7 +117,7 @@ class RowSizes:
 
 
 def _gaps(domain: Domain, number: int, arcs: Floats) -> Floats:
-    """Return the distance (n,) to the next wall in front, but for the loop's own around a corner."""
+    """Return the distance (n,) to the next wall in front, without the loop's own wall around a corner."""
     loop = domain.loops[number]
     points, along = loop.at(arcs), loop.tangent(arcs)
     others = [each for k, each in enumerate(domain.loops) if k != number]

@@ -82,7 +82,7 @@ def _edge(mesh: QuadMesh, number: int) -> list[int]:
 
 
 def _turned(mesh: QuadMesh, half: Half, node: int, beside: int, steps: int) -> int:
-    """Return the neighbour of a node that comes so many quads after another one, counter-clockwise."""
+    """Return the neighbour of a node that follows another one after a number of quads, counter-clockwise."""
     for _ in range(steps):
         k, i = half[node, beside]
         beside = int(mesh.quads[k, (i + 3) % 4])

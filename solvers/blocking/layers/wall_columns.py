@@ -10,16 +10,16 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.solvers.blocking.sizes.wall_turning import wall_bend
 
 TURN = np.radians(4.0)
-"""How much of the wall's turning one cell takes."""
+"""Largest angle by which the wall turns along one cell."""
 GROWTH = 0.1
-"""By how much of the length between them cells may differ."""
+"""Largest difference of neighbouring cells relative to their length."""
 _SAMPLES = 4000
 _CORNER_PART = 1.0 / 40.0  # cell at a corner, in cells elsewhere
 _PIECE_PART = 1.0 / 3.0  # and at the most in lengths of the pieces of wall that end there
 
 
 def wall_columns(loop: Loop, largest: float) -> Floats:
-    """Return ascending arc lengths (n,) of columns around a loop, its corners among them.
+    """Return ascending arc lengths (n,) of columns around a loop, including its corners.
 
     `largest` is the length of the largest cell.
     """

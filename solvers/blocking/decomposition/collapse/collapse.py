@@ -75,9 +75,10 @@ def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None =
 
 
 def _without(current: BaseComplex, kept: Collection[int], count: int) -> tuple[BaseComplex | None, int, int]:
-    """Return the blocks without `count` chords, the narrowest but for those `kept`, one after another.
+    """Return the blocks without `count` chords, the narrowest first; chords in `kept` are not removed.
 
-    Fewer where no more can go, None where none can; the number of the first, and how many were tried.
+    Fewer chords are removed if no more can be, and None is returned if none can. Also returned are the number
+    of the first removed chord, and the number of chords that were tried.
     """
     trial, first, tried = None, -1, 0
     for _ in range(count):
@@ -95,7 +96,7 @@ def _without(current: BaseComplex, kept: Collection[int], count: int) -> tuple[B
 
 
 def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:
-    """Return the mesh without a chord, None where that is not allowed or simplifies nothing."""
+    """Return the mesh without a chord, None if this is not permitted or removes no block."""
     mesh = current.mesh
     trial = contract(mesh, current.chord == chord)
     if trial is None:

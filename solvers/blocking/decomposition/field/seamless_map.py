@@ -30,14 +30,14 @@ Values of 0.05 and 0.5 instead of 0.2 change the mean score of 22 domains by les
 
 @dataclass(frozen=True, eq=False)
 class SeamlessMap:
-    r"""Coordinates w = u + i v at each corner of each triangle, continuous but for quarter-turns and shifts.
+    r"""Coordinates w = u + i v at each corner of each triangle, continuous up to quarter turns and shifts.
 
-    The coordinates of neighbours f and g agree along their edge up to
+    The coordinates of neighbours f and g agree along their common edge up to
 
         w_g = i^k (w_f - w_f(a)) + w_g(a),   k = turns[f, e], e the edge in f, a one of its ends,
 
-    so lines of constant u or v go on over every edge, u lines as v lines where k is odd. Each edge of a wall
-    lies on such a line. Edge e of a triangle goes from its corner e to corner (e + 1) % 3::
+    so that lines of constant u or v continue over every edge; if k is odd, u lines become v lines. Each edge
+    of a wall is on such a line. Edge e of a triangle goes from its corner e to corner (e + 1) % 3::
 
                2
               / \
