@@ -238,8 +238,8 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     lines += [
         "",
         "Variational grids have smaller cell corner angles than Winslow's grids. The network achieves\n"
-        f"{100 * gain['mean_gain']:.0f} % of this reduction in the mean over cells of each cell's largest\n"
-        f"angle, and {100 * gain['max_gain']:.0f} % in the largest angle of the grid.",
+        f"{100 * gain['mean_gain']:.0f} % of this reduction for the mean over all cells (of the largest angle\n"
+        f"of a cell), and {100 * gain['max_gain']:.0f} % for the largest angle of the grid.",
     ]
     return lines
 

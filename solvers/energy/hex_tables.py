@@ -1,7 +1,7 @@
 """Tables of a hexahedral mesh for the compiled minimisation: blocks, one layer beyond them, and forces.
 
-Of each block (``kernels/hexes/energy.h``) only the part around free nodes is stored, with its longest
-direction last.
+Only the part of each block around free nodes is stored, with its longest direction last
+(``kernels/hexes/energy.h``).
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
 
 class WantedCounts:
-    """What edges of chords want, for any sizes at the same points."""
+    """Target numbers of cells of chords, for metrics that differ only in their sizes."""
 
     def __init__(self, chords: Chords, metric: SizeMetric) -> None:
         self.chords = chords
@@ -26,7 +26,7 @@ class WantedCounts:
         self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
 
     def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
-        """Return counts (chords,), multiples near what edges want: its geometric mean, by length."""
+        """Return counts (chords,), multiples of `multiple` near the weighted geometric mean of those of the edges."""
         parts = [self.length / near.length(metric) for near in self.near]
         chords = self.chords
         wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
