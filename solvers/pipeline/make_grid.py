@@ -134,7 +134,7 @@ def make_grids_of(
 
 @dataclass
 class _Member:
-    """A shape in progress: its boundary or an error, and its solution if others were solved with it."""
+    """A shape in progress: its boundary or an error, and its solution if it was solved in a group."""
 
     boundary: Boundary | BaseWake | DomainShape | SpatialShape | Exception
     seconds: dict[str, float]

@@ -130,8 +130,8 @@ def _with_growth(
 ) -> _Volume | None:
     """Return a valid volume whose cells grow by at most `growth` along its lines, None if there is none.
 
-    Several marches with decreasing steps are made, and the nodes of each are moved along the lines to keep the
-    limit. The result is the one with the best cells.
+    Several marches with decreasing steps are made, and the nodes of each are moved along the lines to keep
+    the limit. The result is the one with the best cells.
     """
     tried = [(lines, steps)]
     for _ in range(_SLOWER):

@@ -56,7 +56,7 @@ class Triangulation:
 
 
 class _Frame:
-    """Whole coordinates of at most 30 bits, the domain in the middle half."""
+    """Transformation to integer coordinates of 30 bits; the domain takes the middle half of the range."""
 
     def __init__(self, domain: Domain) -> None:
         points = np.concatenate([loop.curve.points for loop in domain.loops])
