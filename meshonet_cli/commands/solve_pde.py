@@ -46,10 +46,10 @@ def solve_pde(
     )] = "auto",
     tol: Annotated[float | None, _option(
         "--tol", metavar="T",
-        help="Stop when the residual, relative to that of the initial grid, is below T. The variational "
-        "method stops when no node moves by more than about T times the square root of the area of the "
-        "domain. [default: stop when more iterations would change the grid by less than its discretisation "
-        "error]",
+        help="Stop when the residual, relative to that of the transfinite interpolation, is below T. The "
+        "variational method stops when no node moves by more than about T times the square root of the area "
+        "of the domain. [default: stop when more iterations would change the grid by less than its "
+        "discretisation error]",
     )] = None,
     max_cycles: Annotated[int | None, _option(
         "--max-cycles", metavar="N", min=1,
