@@ -165,7 +165,7 @@ def _optimised(
 
 
 def _thickness(walls: WallLayers, mesh: QuadMesh, base: Indices, loop: int, scale: float) -> Floats:
-    """Return how thick layers are to be over nodes (k,) of a wall, or of the wake behind it."""
+    """Return the thickness of layers at nodes (k,) of a wall, or of the wake behind it."""
     sizes = walls.sizes[loop]
     thick = sizes.thickness_at(mesh.places.arc[base], scale, walls.settings)
     behind = mesh.places.loop[base] != loop
