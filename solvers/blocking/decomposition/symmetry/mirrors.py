@@ -18,8 +18,8 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import Indices
 
 SAME = 1e-7
-"""Largest distance of a symmetric boundary from its mirror image, relative to the extent. Drawings that are meant
-to be symmetric deviate by up to 1e-12, others by more than 1e-4."""
+"""Largest distance of a symmetric boundary from its mirror image, relative to the extent. Drawings that are
+meant to be symmetric deviate by up to 1e-12, others by more than 1e-4."""
 MOST = 64
 """Largest number of directions that are examined; a circle has as many as points."""
 _STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of two places an interval
@@ -29,7 +29,7 @@ _STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of
 class Mirror:
     """A line through `centre` (2,) along the unit vector `along` (2,), and what it does to loops.
 
-    The image of loop k is the loop `loops[k]`; the image of its point at arc length s is at `sums[k]` - s there.
+    The image of loop k is the loop `loops[k]`; the image of its point at arc length s is at `sums[k]` - s.
     """
 
     centre: Floats
