@@ -23,7 +23,7 @@ _HEAD = """# Commands
 Look up an option here: what `meshonet --help` and the `--help` of every command print.
 `python -m meshonet_cli` is the same program.
 """
-"""Begins the page of commands."""
+"""Start of the page."""
 
 
 def reference() -> str:
@@ -35,12 +35,12 @@ def reference() -> str:
 
 
 def _block(*words: str) -> tuple[str, ...]:
-    """Return what ``--help`` prints as a block of Markdown."""
+    """Return the help of a command as a block of Markdown."""
     return "```text", help_text(words, WIDTH), "```", ""
 
 
 def help_text(words: Sequence[str], width: int) -> str:
-    """Return what ``--help`` prints behind `words`, in lines of `width` at the most."""
+    """Return the output of ``--help`` for the command `words`, in lines of at most `width` characters."""
     arguments = [*words, "--help"]
     with contextlib.redirect_stdout(io.StringIO()) as printed:
         app.application().main(arguments, prog_name="meshonet", standalone_mode=False, terminal_width=width)
@@ -48,7 +48,7 @@ def help_text(words: Sequence[str], width: int) -> str:
 
 
 def _table(docstring: str) -> Iterator[str]:
-    """Turn the table of exit codes in a docstring, and the paragraph after it, into Markdown."""
+    """Convert the table of exit codes in a docstring, and the paragraph after it, to Markdown."""
     lines = docstring.splitlines()
     rules = [k for k, line in enumerate(lines) if line.startswith("=====")]
     yield "| code | meaning |"

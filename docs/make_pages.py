@@ -240,9 +240,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Variational grids have smaller cell corner angles than Winslow's grids. The network achieves\n"
-        f"{100 * gain['mean_gain']:.0f} % of this reduction in the mean over cells of each cell's largest\n"
-        f"angle, and {100 * gain['max_gain']:.0f} % in the largest angle of the grid.",
+        "Variational grids have smaller cell corner angles than Winslow's grids. The network\n"
+        f"achieves {100 * gain['mean_gain']:.0f} % of this reduction for the mean over all cells (of the\n"
+        f"largest angle of a cell), and {100 * gain['max_gain']:.0f} % for the largest angle of the grid.",
     ]
     return lines
 

@@ -1,4 +1,4 @@
-"""Layouts of blocks as JSON: the loops of a domain, vertices, edges with their curves, and four-sided faces.
+"""Block layouts as JSON: the loops of a domain, vertices, edges with their curves, and four-sided faces.
 
 ::
 

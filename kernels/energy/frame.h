@@ -1,9 +1,9 @@
-/* The preconditioner of a descent: gradients turned into the frame of each node, divided as in spectral.h, and turned
-   back. Frames are the steps along xi, so that a move in them counts in cells.
+/* The preconditioner of a minimisation: gradients are rotated and scaled to the frame of each node, divided as in
+   spectral.h, and transformed back. The frame is the step along xi, so that displacements are measured in cells.
 
-   The transforms know neither how the softest moves, p = ψ_ξ with q = -ψ_η, couple both coordinates, nor how cells
-   differ: the smoothest ones would come last. So to P comes S H⁻¹ Sᵀ, with S splines from the inner nodes of a coarse
-   grid and H the Hessian there (hessian.h), as a banded Cholesky factor. */
+   The spectral part P neglects the coupling of both coordinates in the softest modes, p = ψ_ξ with q = -ψ_η, and the
+   variation of cells, so that smooth errors would converge last. S H⁻¹ Sᵀ is therefore added to P, with S splines from the
+   inner nodes of a coarse grid and H the Hessian there (hessian.h), as a banded Cholesky factor. */
 #pragma once
 #include "hessian.h"
 #include "spectral.h"

@@ -1,4 +1,4 @@
-/* Descents of the functional over quads: inner nodes move freely, wall nodes along their curves. */
+/* Minimisation of the functional over quads: interior nodes move in the plane, wall nodes along their curves. */
 #pragma once
 #include "energy.h"
 #include "energy/steps.h"

@@ -1,4 +1,4 @@
-"""A layout with as many cells as asked for, its nodes optimised."""
+"""Refines a layout to the requested number of cells and optimises its nodes."""
 
 from __future__ import annotations
 
@@ -21,12 +21,14 @@ from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
 from meshonet.solvers.energy.quads import QuadOptimum, optimise
 
 CELLS = 2500
-"""Cells where nobody asked for a count."""
+"""Default number of cells."""
 OPTIMISED = 6000
-"""Most cells that are optimised themselves; more are splines through half as many each way."""
+"""Largest number of cells that are optimised directly; finer grids are splines through half as many in
+each direction.
+"""
 ITERATIONS = 150
 CUT_OFF = 7e-4
-"""Most of the area that cells may cut off along walls, before walls get more of them."""
+"""Fraction of the area that cells may cut off along walls before the walls get more cells."""
 ROUNDS, STEP, MORE = 7, 1.12, 1.19
 """How often at the most, by which factor, and up to how many times the cells asked for."""
 MOST_CUT_OFF = 9.5e-4
@@ -43,10 +45,10 @@ def fine_layout(
     halved: int = 0,
     timings: Timings | None = None,
 ) -> Layout:
-    """Return a layout with as many cells as asked for, its nodes optimised all together.
+    """Return a layout with the requested number of cells and optimised nodes.
 
-    Then all cells are halved so often: every second, fourth, ... node makes the coarser grids of a family.
-    Raises NoValidGridError: it stays folded.
+    Then all cells are halved `halved` times, so that every second, fourth, ... node forms the coarser nested
+    grids. Raises NoValidGridError: folded cells remain.
     """
     timings = timings or Timings()
     area = layout.mesh.domain.area
@@ -88,7 +90,7 @@ def fine_layout(
 
 
 def cut_off(fine: Layout) -> float:
-    """Return which part of the area cells along walls cut off; less than 0 where they add some."""
+    """Return the fraction of the area that cells along walls cut off; negative if they add area."""
     (x, y), area = fine.mesh.nodes[fine.mesh.quads].transpose(2, 0, 1), fine.mesh.domain.area
     return 1.0 - 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()) / area
 

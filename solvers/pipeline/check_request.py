@@ -1,4 +1,4 @@
-"""What a request cannot ask for: values out of range, parameters that need or exclude each other."""
+"""Validation of requests: values out of range, options that need or exclude each other."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def check_request(request: GridRequest) -> None:
-    """Raise InputError for a value out of its range, or for parameters that need or exclude each other."""
+    """Raise InputError for a value out of range, or for options that need or exclude each other."""
     if request.method not in ("best", "auto") and request.method.partition(":")[0] not in METHODS:
         method_named(request.method)  # which says what there is
     _check_first_cells(request)

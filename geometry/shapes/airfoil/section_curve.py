@@ -187,7 +187,7 @@ def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -
 def farthest_arc(curve: Curve, point: Floats) -> float:
     """Return the arc length of the point of the curve that is farthest from `point`.
 
-    Of several equally far points (a flat nose) it is the middle one, so that a symmetric section stays
+    If several points are equally far (a flat nose), it is the middle one, so that a symmetric section stays
     symmetric. Where the distance is smooth, the zero of its derivative is found.
     """
     s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])

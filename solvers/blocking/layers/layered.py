@@ -1,4 +1,4 @@
-"""Grids of blocks with layers at walls: rings around loops, rows of quads elsewhere, rows to a far field.
+"""Multi-block grids with layers at walls: rings around loops, rows of quads elsewhere, rows to a far field.
 
 ::
 
@@ -62,11 +62,11 @@ def layered(
     domain: Domain, loops: Sequence[int], settings: LayerSettings, *, stretches: Sequence[Stretch] = (),
     cells: int = 0, cell_size: float = 0.0, layout: Layout | None = None, timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
-    """Return a fine layout of about so many cells, with layers at loops of a domain and stretches of others.
+    """Return a fine layout of about `cells` cells, with layers at loops of a domain and some stretches.
 
-    Without `cells`, none away from walls is longer than `cell_size`. `layout` is to be taken instead of one
-    that is found: of a domain like it outside rings like these, or of the whole of it.
-    Raises InputError, BlockingError; NoValidGridError: cells stay folded.
+    Without `cells`, edges away from walls are at most `cell_size` long. `layout`, if given, is used instead
+    of a decomposition; it belongs to a similar domain, outside of rings like these or as a whole. Raises
+    InputError; BlockingError; NoValidGridError: folded cells.
     """
     timings = timings or Timings()
     sheets = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))
@@ -179,7 +179,7 @@ def _optimised(
 
 
 def _thickness(walls: WallLayers, mesh: QuadMesh, base: Indices, loop: int, scale: float) -> Floats:
-    """Return how thick layers are to be over nodes (k,) of a wall, or of the wake behind it."""
+    """Return the thickness of layers at nodes (k,) of a wall, or of the wake behind it."""
     sizes = walls.sizes[loop]
     thick = sizes.thickness_at(mesh.places.arc[base], scale, walls.settings)
     behind = mesh.places.loop[base] != loop

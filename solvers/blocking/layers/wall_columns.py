@@ -1,4 +1,4 @@
-"""Where the columns of a layer of cells start on a wall: dense at corners and where the wall turns."""
+"""Starting points of the columns of layers on a wall, dense at corners and where the wall turns."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.solvers.blocking.sizes.wall_turning import wall_bend
 
 TURN = np.radians(4.0)
-"""How much of the wall's turning one cell takes."""
+"""Largest angle by which the wall turns along one cell."""
 GROWTH = 0.1
-"""By how much of the length between them cells may differ."""
+"""Largest difference of neighbouring cells relative to their length."""
 _SAMPLES = 4000
 _CORNER_PART = 1.0 / 40.0  # cell at a corner, in cells elsewhere
 _PIECE_PART = 1.0 / 3.0  # and at the most in lengths of the pieces of wall that end there

@@ -1,4 +1,4 @@
-"""Walls with their layers, what these leave of a domain, and how fine cells there are to be."""
+"""Walls with their layers, the remaining domain, and the numbers of cells in it."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ _BISECTIONS = 14
 
 @dataclass(frozen=True, eq=False)
 class WallLayers:
-    """Walls with their layers, and the domain in which blocks are looked for.
+    """Walls with their layers, and the remaining domain, which is decomposed into blocks.
 
-    `rings` are by number of their loop, which is the same in both domains; along `stretches`, and around the
-    loops `sheets` and the wakes behind them, layers are rows of the layout itself, whose `sizes` are by loop;
-    `near` stands in for a distant outer loop.
+    `rings` are given by the number of their loop, which is the same in both domains. Along `stretches`,
+    around the loops `sheets` and along their wakes, layers are rows of the layout itself, with `sizes` given
+    by loop. `near` replaces a distant outer loop.
     """
 
     domain: Domain
@@ -69,7 +69,7 @@ class WallLayers:
     ) -> WallLayers:  # fmt: skip
         """Return the layers of a domain: rings around some loops, rows along stretches and around `sheets`.
 
-        Raises InputError: no room for layers; a wall that they fold at.
+        Raises InputError: too little room for layers; a wall at which layers fold.
         """
         rings = rings_around(domain, loops, settings)
         numbers = sorted({*sheets, *(stretch.loop for stretch in stretches)})
@@ -101,7 +101,7 @@ class WallLayers:
         return replace(layout, mesh=made_symmetric(layout.mesh, images_of(layout.mesh, self.mirrors)))
 
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
-        """Return whether a wake, nodes from a sharp edge on, has room for layers out to the outer loop."""
+        """Return whether a wake, nodes from a sharp edge on, has room for layers up to the outer loop."""
         return bool(mesh.places.loop[wake[-1]] == 0) and self.has_room(number, mesh.nodes[wake])
 
     def has_room(self, number: int, wake: Floats, scale: float = 1.0) -> bool:
@@ -121,9 +121,9 @@ class WallLayers:
     def metric(
         self, scale: float, size: float = 0.0, wakes: Mapping[int, Floats] | None = None
     ) -> SizeMetric:
-        """Return the sizes of cells outside the layers: at most `size`, or `scale` times their columns.
+        """Return the cell sizes outside the layers: at most `size`, or `scale` times those of the columns.
 
-        `wakes` (k, 2) are by the number of their loop.
+        `wakes` are lines (k, 2) by the number of their loop.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -142,7 +142,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """What steps are to be even in, besides arc length, along the loops that stand in for others."""
+        """Measures, besides arc length, whose steps should be even along the loops that replace others."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])
@@ -150,11 +150,11 @@ class WallLayers:
         return measures
 
     def ring_rows(self, ring: Ring) -> int:
-        """Return the layers of a ring."""
+        """Return the number of layers of a ring."""
         return self.settings.rows(float(ring.thickness.max()))
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
-        """Return the cells of rings and of the rows to the far field, for counts (chords,)."""
+        """Return the number of cells in rings and in rows to the far field, for counts (chords,)."""
         along = np.zeros(len(self.rest.loops), dtype=np.intp)
         places = chords.layout.mesh.places
         for edge in np.flatnonzero(chords.wall):
@@ -169,7 +169,7 @@ class WallLayers:
 def rings_around(domain: Domain, loops: Sequence[int], settings: LayerSettings) -> dict[int, Ring]:
     """Return the rings around some loops of a domain, by number.
 
-    Raises InputError: no room for layers; a wall that they fold at.
+    Raises InputError: too little room for layers; a wall at which layers fold.
     """
     mirrors, rings = mirrors_of(domain), dict[int, Ring]()
     for k in loops:
@@ -193,16 +193,17 @@ def _sizes(domain: Domain, number: int) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class Counts:
-    """Cells along the chords of a coarse layout, and how a fine one comes from it.
+    """Numbers of cells along the chords of a coarse layout, and the refinement to the fine one.
 
     Parameters
     ----------
-    coarse : (chords,) counts of the layout that is optimised, over `stride`.
-    stride, times : by how much counts are multiplied before cells are optimised, and after.
-    scale : of the sizes along walls.
-    metric : the sizes that counts follow.
-    layers : (rows,) layers of each row over those that its thickness asked for, known after the optimum, and
-        the geometric mean with what was known before it: each changes the other.
+    coarse : (chords,) counts of the optimised layout, divided by `stride`.
+    stride, times : factors of the counts before and after the optimisation.
+    scale : factor of the sizes along walls.
+    metric : target sizes.
+    layers : (rows,) ratio of the layers of each row to the number that its thickness requires. It is known
+        after an optimisation and averaged geometrically with the previous value, because both depend on each
+        other.
     """
 
     coarse: Indices
@@ -216,10 +217,10 @@ class Counts:
 def wanted_counts(
     walls: WallLayers, rows: WallRows, chords: Chords, cells: int, size: float, before: Counts | None
 ) -> Counts:
-    """Return counts for about so many cells in all, or else for cells of a size.
+    """Return counts for about `cells` cells in total, or for cells of the given size.
 
-    A row has `ROWS` cells across while nodes are optimised, however many it is to have. `before` are the
-    counts of the optimum before this one.
+    During the optimisation each row has `ROWS` cells across, whatever its final number. `before` are the
+    counts of the previous optimisation.
     """
     multiple, row = walls.settings.multiple, rows.of_chords(chords)
     wakes = rows.wakes(chords.layout)

@@ -22,9 +22,9 @@ from meshonet.solvers.blocking.decomposition.symmetry.images import Images
 from meshonet.solvers.blocking.sizes.wall_turning import corners_between, turning_between
 
 LEAST = 2
-"""Fewest cells along an edge of a block."""
+"""Smallest number of cells along an edge of a block."""
 TURNING_DEG = 25.0
-"""Most degrees by which a wall turns along a cell."""
+"""Largest angle in degrees by which a wall turns along a cell."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +81,7 @@ class Chords:
 
     @cached_property
     def counts(self) -> Indices:
-        """(chords,) cells along the edges of each chord, as the layout has them."""
+        """(chords,) numbers of cells along the edges of each chord in the layout."""
         cells = np.empty(self.count, dtype=np.intp)
         cells[self.chord] = [len(edge) - 1 for edge in self.edges]
         return cells
@@ -110,7 +110,7 @@ class Chords:
         return np.array([np.hypot(*np.diff(nodes[edge], axis=0).T).sum() for edge in self.edges])
 
     def arcs(self, edge: int) -> Floats:
-        """Return the arc lengths (n,) of the nodes of a wall edge, rising or falling without a jump."""
+        """Return the arc lengths (n,) of the nodes of a wall edge, monotonic without a jump."""
         nodes, places = self.edges[edge], self.layout.mesh.places
         length = self.layout.mesh.domain.loops[places.loop[nodes[0]]].length
         step = np.diff(places.arc[nodes])
@@ -122,7 +122,7 @@ class Chords:
 
     @cached_property
     def least(self) -> Indices:
-        """(chords,) fewest cells: `LEAST`, a node at each corner of the domain, `TURNING_DEG` at walls."""
+        """(chords,) smallest numbers of cells, due to `LEAST`, corners of the domain and `TURNING_DEG`."""
         least = np.full(self.count, LEAST, dtype=np.intp)
         mesh = self.layout.mesh
         for edge in np.flatnonzero(self.wall):
@@ -136,12 +136,12 @@ class Chords:
         return least
 
     def cells(self, counts: Indices) -> int:
-        """Return the cells of all blocks with these `counts` (chords,)."""
+        """Return the total number of cells for these `counts` (chords,)."""
         along = counts[self.chord[self.sides]]
         return int((along[:, 0] * along[:, 2]).sum())
 
     def cut_off(self) -> Floats:
-        """Return the areas (e,) between the walls and the cells along each edge, whatever their signs."""
+        """Return the absolute areas (e,) between the walls and the cells along each edge."""
         mesh, lost = self.layout.mesh, np.zeros(len(self.edges))
         part = np.linspace(0.0, 1.0, 5)
         for edge in np.flatnonzero(self.wall):
@@ -154,15 +154,15 @@ class Chords:
         return lost
 
     def bend(self, edge: int) -> float:
-        """Return the most radians by which the wall turns along one cell of a wall edge."""
+        """Return the largest angle in radians by which the wall turns along one cell of a wall edge."""
         arcs = np.sort(self.arcs(edge))
         loop = self.layout.mesh.domain.loops[self.layout.mesh.places.loop[self.edges[edge][0]]]
         return float(np.radians(turning_between(loop, arcs[:-1], arcs[1:]).max()))
 
     def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
-        """Return counts (chords,) for cells of a size: the geometric mean over edges of length / size.
+        """Return counts (chords,) for a cell size: the geometric mean over edges of length / size.
 
-        They are at least `least` (chords,), by default the property of that name.
+        They are at least `least` (chords,), by default the property with that name.
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
@@ -174,7 +174,7 @@ class Chords:
         return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))
 
     def counts_for_cells(self, cells: int, least: Indices | None = None) -> Indices:
-        """Return counts (chords,) for about so many cells in all; more where the fewest possible are more."""
+        """Return counts (chords,) for about `cells` cells in total, or for the fewest possible."""
         size = np.sqrt(self.layout.mesh.domain.area / cells)
         best = self.counts_for_size(size, least)
         for _ in range(12):

@@ -126,10 +126,10 @@ def _volume(surface: Surface, lines: Floats) -> _Volume:
 def _with_growth(
     surface: Surface, lines: Floats, marched: Callable[[Floats], Floats], steps: Floats, growth: float
 ) -> _Volume | None:
-    """Return a valid volume whose cells grow by no more than `growth` along its lines, None where none is.
+    """Return a valid volume whose cells grow by at most `growth` along its lines, None if there is none.
 
-    Of marches by smaller and smaller steps, whose nodes are moved along the lines by what these leave, it is
-    that with the best cells.
+    Several marches with decreasing steps are made, and the nodes of each are moved along the lines to keep
+    the limit. The result is the one with the best cells.
     """
     tried = [(lines, steps)]
     for _ in range(_SLOWER):

@@ -1,4 +1,4 @@
-"""Symmetric blocks of symmetric domains, where they are about as good as those that were found.
+"""Symmetric blocks of symmetric domains, if they are about as good as those of the decomposition.
 
 Three ways: nodes at the means of themselves and their images, where the quads are symmetric; where only the
 blocks are, the same with equal counts of cells; and the blocks of a half, or of a quarter, and their images.
