@@ -49,7 +49,8 @@ class SamplingOptions:
         "--te", metavar="auto|exact|round|wedge", show_default=True,
         help="Blunt trailing edges: exact keeps them, round rounds their two corners (grid angles there "
         "then deviate from 90 degrees by at most 10, not 45), wedge closes them by a wedge up to four "
-        "base heights long. auto is exact, but wedge for a C grid without a first cell, which is one block.",
+        "base heights long. auto is exact, but wedge for C grids that are not marched, or have no first "
+        "cell and a base of at most 0.005 chords.",
     )] = "auto"
     far_field: Annotated[float | None, _option(
         "--far-field", metavar="R",
