@@ -83,7 +83,7 @@ class Cap:
         ratio = norms(_edge(core, 1) - _edge(core)) / norms(ring[:, -1] - ring[:, -2])
         ratio[self._corners(len(ring))] = 1.0
         uneven = float(np.maximum(ratio, 1.0 / ratio).max())
-        return min(least_sine(ring), least_sine(core)) / max(1.0, uneven / (_EVEN + 0.01)) ** 4
+        return min(least_sine(ring), least_sine(core)) / math.pow(max(1.0, uneven / (_EVEN + 0.01)), 4)
 
     def _corners(self, n: int) -> Indices:
         """Return the lines of a ring, of `n`, that end at corners of the core: none runs on from these."""

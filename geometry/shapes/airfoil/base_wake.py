@@ -200,7 +200,7 @@ def corner_cell(cells: float, first: float, chord: float) -> float:
     From these lengths they grow to the mean by `_STEEP` over half of each side.
     """
     side = 0.5 * cells
-    return max(first, chord / side * _STEEP ** (-0.5 * side))
+    return max(first, chord / side * math.pow(_STEEP, -0.5 * side))
 
 
 def _whole(cells: int, steps: tuple[int, ...]) -> int:
