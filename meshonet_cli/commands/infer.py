@@ -50,8 +50,9 @@ def infer(
 
     Around a body, this is an O grid by a conformal map, or a grid marched from the wall for C grids and where
     a first cell is given. In a four-sided domain the variational method makes it. Any other domain is split
-    into blocks. In space, six faces are filled by the variational method, and surfaces with a first cell are
-    marched off. A neural operator is used where --model, --polish or --device asks for one.
+    into blocks. In space, six faces are filled by the variational method, and volumes are marched from
+    surfaces if a first cell is given. A neural operator is used where --model, --polish or --device asks for
+    one.
     """
     from meshonet_cli.tasks.grids import write_grids
 

@@ -76,8 +76,9 @@ def solve_pde(
 ) -> int:
     """Make grids by elliptic equations, a variational method, or marching.
 
-    In space, six faces (of a grid, or six patches that enclose a volume) are filled, the patches of a surface
-    are marched off by --method hyperbolic, and several blocks are smoothed across their interfaces.
+    In space, six faces (of a grid, or six patches that enclose a volume) are filled, volumes are marched
+    from the patches of a surface by --method hyperbolic, and several blocks are smoothed across their
+    interfaces.
     """
     from meshonet_cli.tasks.grids import initial_grid, write_grids
 

@@ -52,8 +52,8 @@ def stack(
     )] = None,
     tip: Annotated[Literal["round", "flat", "open"] | None, _volume(
         "--tip", metavar="round|flat|open",
-        help="How a wing ends: half as high as thick, flat, or not closed. [default: what the file says, or "
-        "round]",
+        help="Tip of a wing: a round cap, half as high as the section is thick; a flat one; or none. "
+        "[default: what the file says, or round]",
     )] = None,
     revolve: Annotated[float | None, _volume(
         "--revolve", metavar="DEG",

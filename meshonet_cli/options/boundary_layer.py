@@ -16,7 +16,7 @@ WallAngle = Annotated[float | None, _option(
 Slide = Annotated[bool | None, _option(
     "--slide/--no-slide",
     help="Move the nodes of south and north of a four-sided domain along these walls to where grid lines "
-    "leave at right angles. [default: with --first-cell, when this command samples the nodes]",
+    "leave at right angles. [default: with first cells there, when this command samples the nodes]",
 )]
 FirstCell = Annotated[float | None, _option(
     "--first-cell", "--wall-spacing", metavar="H",
