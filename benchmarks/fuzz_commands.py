@@ -2,8 +2,9 @@
 
     python benchmarks/fuzz_commands.py [--minutes 10] [--commands stack sweep] [--seed 0]
 
-Passed is a command that does its work, or refuses it in one line with nothing written, within twenty seconds of
-processor time and 2 GiB. The exit code is 1 when one did not pass; its words and files are kept in fuzz-failures/.
+Passed is a command that does its work, or refuses it in one line with nothing written, within twenty seconds
+of processor time and 2 GiB. The exit code is 1 when one did not pass; its words and files are kept in
+fuzz-failures/.
 """
 
 from __future__ import annotations
@@ -37,7 +38,8 @@ LEFT_OUT = (*TAKES_WORDS, "--debug", "--help", "--engine")
 """Options that name outputs, print tracebacks or start other programs."""
 FILES = {
     "wing.toml": 'kind = "wing"\ntip = "round"\n' + SECTION.format(1.0, 0.0) + SECTION.format(0.5, 2.0),
-    "path.toml": "start = [0, 0, 0]\n[[pieces]]\nline = 2.0\n[[pieces]]\narc = 90\nradius = 1.5\ntowards = [0, 1, 0]\n",
+    "path.toml": "start = [0, 0, 0]\n[[pieces]]\nline = 2.0\n"
+    "[[pieces]]\narc = 90\nradius = 1.5\ntowards = [0, 1, 0]\n",
     "path.csv": "0 0 0\n9 0 0\n18 3 0\n",
     "step.wkt": "POLYGON ((0 0, 1 0, 1 1, 3 1, 3 2, 0 2, 0 0))",
     "blade.csv": "0 0\n1 -0.1\n1.1 0\n1 0.1\n",
@@ -56,10 +58,10 @@ BASES = (
 )
 """What is made worse."""
 WORDS = (
-    *NONSENSE, "0", "1", "2", "3", "0.5", "1e-9", "1e-3", "1e3", "1e9", "1e300", "0,1", "1e300,0", "0,0", "0,0,0",
-    "1,2,3,4", "17", "33x9", "9x33", "100000x2", "1000000", "round", "auto", "south", "south=0,-0.1", "all=2",
-    "south,north", "max_angle>1", "a=b", "=", ",", ";", "x", "../..", "/dev/null", "{index:c}", "made.h5", "-",
-    "wing.toml", "\x1b[31m",
+    *NONSENSE, "0", "1", "2", "3", "0.5", "1e-9", "1e-3", "1e3", "1e9", "1e300", "0,1", "1e300,0", "0,0",
+    "0,0,0", "1,2,3,4", "17", "33x9", "9x33", "100000x2", "1000000", "round", "auto", "south", "south=0,-0.1", "all=2",
+    "south,north", "max_angle>1", "a=b", "=", ",", ";", "x", "../..", "/dev/null", "{index:c}", "made.h5",
+    "-", "wing.toml", "\x1b[31m",
 )  # fmt: skip
 """Values of options: wrong ones, extreme ones, and some that may fit."""
 
