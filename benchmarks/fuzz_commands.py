@@ -59,9 +59,9 @@ BASES = (
 """What is made worse."""
 WORDS = (
     *NONSENSE, "0", "1", "2", "3", "0.5", "1e-9", "1e-3", "1e3", "1e9", "1e300", "0,1", "1e300,0", "0,0",
-    "0,0,0", "1,2,3,4", "17", "33x9", "9x33", "100000x2", "1000000", "round", "auto", "south", "south=0,-0.1", "all=2",
-    "south,north", "max_angle>1", "a=b", "=", ",", ";", "x", "../..", "/dev/null", "{index:c}", "made.h5",
-    "-", "wing.toml", "\x1b[31m",
+    "0,0,0", "1,2,3,4", "17", "33x9", "9x33", "100000x2", "1000000", "round", "auto", "south", "south=0,-0.1",
+    "all=2", "south,north", "max_angle>1", "a=b", "=", ",", ";", "x", "../..", "/dev/null", "{index:c}",
+    "made.h5", "-", "wing.toml", "\x1b[31m",
 )  # fmt: skip
 """Values of options: wrong ones, extreme ones, and some that may fit."""
 
