@@ -124,7 +124,7 @@ ATTEMPTS = (
 )
 """Tried in turn while cells are folded, on surfaces without concave edges."""
 
-_RELAXED = Smoothing(explicit=1.0, implicit=2.0, theta=0.0, longest=1.0, blend=0.1, relaxing=3.0)
+_RELAXED = Smoothing(explicit=1.0, outer=1.0, implicit=2.0, theta=0.0, longest=1.0, blend=0.1, relaxing=3.0)
 CONCAVE_ATTEMPTS = (
     _RELAXED,
     _RELAXED._replace(near=4.0),
