@@ -31,7 +31,8 @@ def stack(
     sections: Annotated[list[str], typer.Argument(
         metavar="SECTIONS.toml", show_default=False,
         help="File with two sections or more: airfoil (a file or naca:2412), chord, z, and where needed x, y "
-        "and twist, or sweep and dihedral; or - for standard input.",
+        "and twist, or sweep and dihedral; or a blade row (kind = \"row\"): profiles, hub, shroud and blades; or "
+        "- for standard input.",
     )],
     files: VolumeFiles,
     run: o.RunOptions,
@@ -46,6 +47,9 @@ def stack(
         "--base", metavar="H",
         help="Least height of trailing edges, in chords of their section; thinner ones are opened to it. "
         "[default: 0.005]",
+    )] = None,
+    cells: Annotated[int | None, _sampling(
+        "--cells", metavar="N", help="About so many cells in the passage of a blade row. [default: 500000]",
     )] = None,
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R", help="Distance of the far field, in longest chords. [default: 15]",
@@ -80,11 +84,11 @@ def stack(
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
 ) -> int:
-    """Make volumes around wings and blades, and in ducts, from sections."""
+    """Make volumes around wings and blades, in ducts, and of passages of blade rows."""
     from meshonet_cli.tasks.volumes import write_stacks
 
     chosen = {
-        "around": around, "span": span, "base": base, "far_field": far_field, "first_cell": first_cell,
+        "around": around, "cells": cells, "span": span, "base": base, "far_field": far_field, "first_cell": first_cell,
         "y_plus": y_plus, "reynolds": reynolds, "layers": layers, "growth": growth, "threads": threads,
         "revolve": revolve, "axis": o.axis_of(axis),
     }

@@ -48,12 +48,13 @@ Bools = NDArray[np.bool_]
 def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:
     """Return the mesh with nodes, but for `held` (n,) ones, moved where edges along lines grow too fast.
 
-    Nodes on loops that are not held slide along them, all but corners and those with a partner.
+    Nodes on loops that are not held slide along them, all but corners and those of periodic sides.
     `limit` is the logarithm of the ratio that neighbouring edges may have. Where that cannot be reached they
     differ by as little more as cells of good angles allow.
     """
     lines = consecutive_edges(mesh)
-    sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0) & (mesh.places.partner < 0)
+    sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0)
+    sliding[_periodic(mesh)] = False  # both nodes of a pair would have to move alike
     fixed = held | (mesh.wall_nodes & ~sliding)
     weight, before = EXCESS, np.inf
     for _ in range(ROUNDS):
@@ -68,6 +69,12 @@ def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:
         z, weight = _Patch.of(mesh, lines, z, free, _tangents(mesh, sliding & free), limit).evened(z, weight)
         mesh = on_loops(mesh.with_nodes(np.stack([z.real, z.imag], axis=1)), sliding & free)
     return mesh
+
+
+def _periodic(mesh: QuadMesh) -> Indices:
+    """Return the nodes of both periodic sides."""
+    images = np.flatnonzero(mesh.places.partner >= 0)
+    return np.concatenate([images, mesh.places.partner[images]])
 
 
 def _tangents(mesh: QuadMesh, sliding: Bools) -> Complexes:
