@@ -70,6 +70,7 @@ def read_row(data: Table, source: Source) -> Row:
     if ("profiles" in data.data) == ("sections" in data.data):
         problem = "stands beside sections" if "profiles" in data.data else "is missing"
         raise data.error("profiles", problem, "give profiles or [[sections]]")
+    notes: tuple[str, ...] = ()
     if "profiles" in data.data:
         files = _files(data, folder)
         profiles = [points for file in files for points in point_blocks(file, (3,))]
@@ -77,14 +78,16 @@ def read_row(data: Table, source: Source) -> Row:
             _placed(columns, polar)(points * [scale, scale, 1.0]) for points in profiles
         ]  # fmt: skip
     else:
-        profiles = [_section(row, folder) * scale for row in data.rows("sections", least=2)]
+        made = [_section(row, folder) for row in data.rows("sections", least=2)]
+        profiles = [points * scale for points, _ in made]
+        notes = tuple(dict.fromkeys(note for _, own in made for note in own))
     blades = data.number("blades")
     if blades != round(blades):
         raise data.error("blades", f"{blades:g} is no whole number", "count them")
     span = _span(hub, shroud)
     return Row(
         tuple(profiles), hub, shroud, int(blades), _gap(data, "tip_gap", span, scale),
-        _gap(data, "hub_gap", span, scale), data.text("name", source.stem or "row"),
+        _gap(data, "hub_gap", span, scale), data.text("name", source.stem or "row"), notes,
     )  # fmt: skip
 
 
@@ -148,8 +151,8 @@ def _gap(data: Table, key: str, span: float, scale: float) -> float:
     return gap * scale
 
 
-def _section(row: Table, folder: Path) -> Floats:
-    """Return the profile (n, 3) of an airfoil on a cylinder."""
+def _section(row: Table, folder: Path) -> tuple[Floats, tuple[str, ...]]:
+    """Return the profile (n, 3) of an airfoil on a cylinder, and notes."""
     row.only("airfoil", "outline", "chord", "radius", "stagger", "about", "x", "theta")
     section = Section(section_shape(row, folder), row.positive("chord"), row.positive("radius"))
     with in_place(row.place):

@@ -8,13 +8,17 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import cos, sin
+from meshonet.geometry.rows.edges import round_edged
 from meshonet.geometry.sections.section import Section
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 
 def on_cylinder(
     section: Section, about: tuple[float, float], stagger: float, x: float, theta: float
-) -> Floats:
-    """Return the points (n, 3) of a section on the cylinder whose radius is the section's z.
+) -> tuple[Floats, tuple[str, ...]]:
+    """Return the points (n, 3) of a section on the cylinder whose radius is the section's z, and notes.
+
+    Trailing edges are made round (`meshonet.geometry.rows.edges`).
 
     Parameters
     ----------
@@ -24,7 +28,11 @@ def on_cylinder(
     x, theta : where that point is, theta = atan2(y, z) in radians.
     """
     origin, length = section.frame
-    a, b = ((section.shape.curve.points - origin) / length - np.array(about)).T * section.chord
+    shape, notes = section.shape, tuple[str, ...]()
+    if isinstance(shape, Airfoil):
+        shape, notes = round_edged(shape)
+    a, b = ((shape.curve.points - origin) / length - np.array(about)).T * section.chord
     c, s = math.cos(stagger), math.sin(stagger)
     angle = theta + (a * s + b * c) / section.z
-    return np.stack([x + a * c - b * s, section.z * sin(angle), section.z * cos(angle)], axis=1)
+    points = np.stack([x + a * c - b * s, section.z * sin(angle), section.z * cos(angle)], axis=1)
+    return points, notes

@@ -33,6 +33,8 @@ class Row:
         Distances of the blade from casing and hub.
     name : str, optional
         Of the row.
+    notes : tuple of str, optional
+        What was changed of the profiles.
 
     Raises
     ------
@@ -47,6 +49,7 @@ class Row:
     tip_gap: float = 0.0
     hub_gap: float = 0.0
     name: str = "row"
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not FEWEST <= self.blades <= MOST:

@@ -25,6 +25,7 @@ def make_row(row: Row, request: RowRequest | None = None) -> Result:
             from meshonet.solvers.rows.row_grid import row_grid
         with stage("grid", seconds):
             grid, notes = row_grid(row, request)
+        notes = (*row.notes, *notes)
         note = request.height_note(f"on a chord of {row.chord:.6g}", row.chord)
         solution = Solution(grid, "row", notes=(*notes, note) if note else notes)
         return judged(solution, seconds, request, remedy=_REMEDY)

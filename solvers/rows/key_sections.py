@@ -30,7 +30,7 @@ from meshonet.solvers.blocking.sizes.refine import refine
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.rows.harmonic import harmonic
-from meshonet.solvers.rows.opposite import opposite_places
+from meshonet.solvers.rows.opposite import at_corners, opposite_places
 from meshonet.solvers.rows.section_plane import SectionPlane
 
 UPPER, TRAILING, LOWER, LEADING = 8, 9, 10, 11
@@ -84,8 +84,21 @@ def planned(
     With `opposite` nodes on both sides of the blade are opposite each other.
     """
     plane = planes[len(planes) // 2]
+    for early in (True, False):
+        try:
+            return _planned(plane, planes, cells, opposite, early)
+        except NoValidGridError:
+            if not early:
+                raise
+    raise AssertionError
+
+
+def _planned(
+    plane: SectionPlane, planes: Sequence[SectionPlane], cells: int, opposite: bool, early: bool
+) -> tuple[SectionPlan, SectionLayout]:
+    """Return the plan and the middle section, `early` with nodes at corners of the blade from the start."""
     cascade = plane.cascade
-    coarse = passage_optimum(template(cascade.passage, at_corners=False), FIRST, None)
+    coarse = passage_optimum(template(cascade.passage, at_corners=early), FIRST, None)
     chords = Chords.of(coarse)
     counts, times, metric = counts_of(cascade, chords, cells, None)
     ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
@@ -97,9 +110,8 @@ def planned(
     plan = SectionPlan(scale, times, rows, wall, np.empty(0))
     layout = _optimum(layout, plan.metric(plane), ITERATIONS, None)
     places = plane.places_under(layout.mesh.places.arc[wall])
-    plan = replace(plan, places=opposite_places(places) if opposite else places)
-    if not opposite:
-        return plan, SectionLayout(plane, layout)
+    places = at_corners(opposite_places(places) if opposite else places, plane.corners)
+    plan = replace(plan, places=places)
     for k in range(1, _STEPS + 1):  # the others follow, before cells fold
         layout = _with_places(layout, plan, plane, 1.0 / (_STEPS + 1 - k))
         layout = _optimum(layout, plan.metric(plane), ITERATIONS // _STEPS, wall)

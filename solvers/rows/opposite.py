@@ -43,3 +43,12 @@ def _leading_node(places: Floats) -> int:
     lead, trail = int(off.argmin()), int(np.abs(places - 0.5).argmin())
     upper = (trail - lead) % k
     return (lead + round(0.5 * (upper - 0.5 * k))) % k
+
+
+def at_corners(places: Floats, corners: Floats) -> Floats:
+    """Return places u (k,) with the one nearest to each of the `corners` (c,), u too, put there."""
+    out = places.copy()
+    for corner in corners:
+        off = np.abs(np.mod(places - corner + 0.5, 1.0) - 0.5)
+        out[int(off.argmin())] = corner
+    return out

@@ -50,13 +50,19 @@ class SectionPlane:
         to = row.channel.meridional(height)
         points = np.stack([to.forward(s), theta], axis=1)
         corners = np.flatnonzero(np.isin(u, row.surface.corners))
-        loop = Loop(Curve(points, closed=True, corners=corners), (), ("blade",))
+        edges = tuple(corners.tolist())
+        loop = Loop(Curve(points, closed=True, corners=corners), edges, ("blade",))
         low, high = float(points[:, 0].min()), float(points[:, 0].max())
         radius = float(row.channel.at(np.array([s.mean()]), np.array([height]))[0, 1])
         settings = LayerSettings(first / radius, growth)
         chord, pitch = high - low, (0.0, 2.0 * np.pi / row.blades)
         cascade = Cascade(loop, pitch, low / chord, (to.length - high) / chord, settings, row.name)
         return cls(height, to, cascade, u)
+
+    @property
+    def corners(self) -> Floats:
+        """Places u (c,) of the corners of the blade."""
+        return self.places[list(self.cascade.blade.corners)]
 
     @cached_property
     def _walls(self) -> Floats:
