@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, pairs_of
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -148,18 +148,27 @@ def _with_places(layout: Layout, plan: SectionPlan, plane: SectionPlane, part: f
 def carried(before: SectionLayout, plane: SectionPlane, plan: SectionPlan) -> Layout:
     """Return the layout of a section's neighbour with its boundary that of the section.
 
-    Displacements of inner nodes are harmonic on the graph of edges.
+    Displacements are those in (m', theta), from the centres of the maps, and harmonic between the boundaries:
+    in the planes of the maps inlet and outlet are circles whose sizes differ by large factors.
     """
     mesh, domain = before.layout.mesh, plane.cascade.passage.domain
-    nodes, arc = mesh.nodes.copy(), mesh.places.arc.copy()
+    old, new = before.plane.cascade.passage, plane.cascade.passage
+    arc = mesh.places.arc.copy()
+    start = old.map.back(mesh.nodes) - pairs_of(np.array(old.map.centre))
+    end = start.copy()
     arc[plan.wall] = plane.image_arcs(plan.places)
-    on = mesh.places.loop >= 0
-    for number in (BLADE, INLET, OUTLET):
+    for passage, arcs, out in ((old, mesh.places.arc, start), (new, arc, end)):
+        centre = pairs_of(np.array(passage.map.centre))
+        out[plan.wall] = passage.front.at(passage.front_arcs(arcs[plan.wall])) - centre
+    for number, was, now in ((INLET, old.inlet, new.inlet), (OUTLET, old.outlet, new.outlet)):
         own = np.flatnonzero(mesh.places.loop == number)
-        if number != BLADE:
-            arc[own] *= domain.loops[number].length / mesh.domain.loops[number].length
-        nodes[own] = domain.loops[number].at(arc[own])
-    nodes = mesh.nodes + harmonic(mesh, nodes - mesh.nodes, on)
+        arc[own] *= domain.loops[number].length / mesh.domain.loops[number].length
+        end[own, 0] = start[own, 0] + (now - was)
+    moves = harmonic(mesh, end - start, mesh.places.loop >= 0)
+    nodes = new.map.forward(start + moves + pairs_of(np.array(new.map.centre)))
+    for number, loop in enumerate(domain.loops):
+        own = np.flatnonzero(mesh.places.loop == number)
+        nodes[own] = loop.at(arc[own])
     return replace(before.layout, mesh=QuadMesh(domain, nodes, mesh.quads, replace(mesh.places, arc=arc)))
 
 

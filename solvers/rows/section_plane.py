@@ -6,14 +6,15 @@ passage is that of a plane cascade with the pitch 2 pi / blades.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Complexes, Floats, complex_of
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import modulus
 from meshonet.geometry.rows.blade import clustered
 from meshonet.geometry.rows.channel import MeridionalMap
 from meshonet.geometry.rows.row import Row
@@ -58,6 +59,31 @@ class SectionPlane:
         chord, pitch = high - low, (0.0, 2.0 * np.pi / row.blades)
         cascade = Cascade(loop, pitch, low / chord, (to.length - high) / chord, settings, row.name)
         return cls(height, to, cascade, u)
+
+    @property
+    def room(self) -> tuple[float, float]:
+        """Pitches between the front of the layers and inlet and outlet."""
+        before, behind = self.cascade.ends
+        return before / self.cascade.pitch[1], behind / self.cascade.pitch[1]
+
+    @property
+    def thickest(self) -> float:
+        """Place u on the upper side, 0 to 0.5, at which opposite points of both sides are farthest apart."""
+        u = np.linspace(0.1, 0.4, 61)
+        return float(u[int(modulus(self._opposite(u) - self._opposite(1.0 - u)).argmax())])
+
+    def _opposite(self, u: Floats) -> Complexes:
+        return complex_of(self.cascade.blade.at(self.wall_arcs(u)))
+
+    def ending(self, near: tuple[float, float], thickest: float) -> SectionPlane:
+        """Return the section with straight rows that begin `near` pitches before and behind the blade.
+
+        The centre of its map is in the middle between both sides at the place `thickest`, so that neighbouring
+        sections have maps that differ little.
+        """
+        one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
+        centre = complex(0.5 * (one + other))
+        return replace(self, cascade=replace(self.cascade, near=near, centre=centre))
 
     @property
     def corners(self) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -44,9 +45,13 @@ class SectionTable:
 
 
 def section_table(
-    plan: SectionPlan, section: SectionLayout, like: SectionTable | None = None
-) -> SectionTable:
-    """Return a section with layers and rows to inlet and outlet, its nodes numbered as those of another."""
+    plan: SectionPlan, section: SectionLayout, like: SectionTable | None = None,
+    longest: Mapping[int, float] | None = None,
+) -> SectionTable:  # fmt: skip
+    """Return a section with layers and rows to inlet and outlet, its nodes numbered as those `like` has.
+
+    The first one has as many cells in these rows as their greatest lengths ask for, `longest` by loop.
+    """
     cascade = section.plane.cascade
     passage = cascade.passage
     fine = multiplied(section.layout, plan.times)
@@ -60,7 +65,8 @@ def section_table(
         start = mesh.nodes[loop_nodes(mesh, number)]
         first = math.exp(log(heights_inside(flat, number)).mean())
         if like is None:
-            counts[number] = len(row_steps(first, length, plan.metric(section.plane).largest)) - 1
+            most = max(length, (longest or {}).get(number, length))
+            counts[number] = len(row_steps(first, most, plan.metric(section.plane).largest)) - 1
         else:
             counts[number] = like.steps[number]
         steps = _grown(first, length, counts[number])

@@ -16,7 +16,7 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import modulus, times
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.assembly import far_loop
-from meshonet.solvers.blocking.cascade.passage import Passage
+from meshonet.solvers.blocking.cascade.passage import NEAR, Passage
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.rings import Ring, march_ring
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
@@ -45,6 +45,8 @@ class Cascade:
     inlet, outlet : lengths of the passage before and behind the blade, in axial chords.
     settings : of the layers at the blade; by default a few rows of cells of equal size.
     name : of the blade.
+    near : pitches in front of and behind the blade from which straight rows lead on, where there is room.
+    centre : of the passage's map, in the blade; by default a point far from its surface.
     """
 
     blade: Loop
@@ -53,6 +55,8 @@ class Cascade:
     outlet: float = 1.0
     settings: LayerSettings | None = None
     name: str = ""
+    near: tuple[float, float] = (NEAR, NEAR)
+    centre: complex | None = None
 
     @property
     def opposite(self) -> bool:
@@ -137,7 +141,8 @@ class Cascade:
     @cached_property
     def passage(self) -> Passage:
         """The passage around the blade or its layers."""
-        return Passage.around(self.ring.front, self.left, *self.ends, self.name)
+        front = self.ring.front
+        return Passage.around(front, self.left, *self.ends, self.name, self.near, self.centre)
 
     @cached_property
     def rows_of_layers(self) -> int:
