@@ -149,7 +149,8 @@ def carried(before: SectionLayout, plane: SectionPlane, plan: SectionPlan) -> La
     """Return the layout of a section's neighbour with its boundary that of the section.
 
     Displacements are those in (m', theta), from the centres of the maps, and harmonic between the boundaries:
-    in the planes of the maps inlet and outlet are circles whose sizes differ by large factors.
+    in the planes of the maps inlet and outlet are circles whose sizes differ by large factors. Inlet and
+    outlet follow the edges of the blade in theta.
     """
     mesh, domain = before.layout.mesh, plane.cascade.passage.domain
     old, new = before.plane.cascade.passage, plane.cascade.passage
@@ -160,10 +161,12 @@ def carried(before: SectionLayout, plane: SectionPlane, plan: SectionPlan) -> La
     for passage, arcs, out in ((old, mesh.places.arc, start), (new, arc, end)):
         centre = pairs_of(np.array(passage.map.centre))
         out[plan.wall] = passage.front.at(passage.front_arcs(arcs[plan.wall])) - centre
-    for number, was, now in ((INLET, old.inlet, new.inlet), (OUTLET, old.outlet, new.outlet)):
+    aside = plane.edges_aside - before.plane.edges_aside
+    ends = ((INLET, new.inlet - old.inlet, aside[0]), (OUTLET, new.outlet - old.outlet, aside[1]))
+    for number, along, across in ends:
         own = np.flatnonzero(mesh.places.loop == number)
-        arc[own] *= domain.loops[number].length / mesh.domain.loops[number].length
-        end[own, 0] = start[own, 0] + (now - was)
+        end[own] = start[own] + [along, across]
+        arc[own] = new.line_arcs(number, new.map.forward(end[own] + pairs_of(np.array(new.map.centre))))
     moves = harmonic(mesh, end - start, mesh.places.loop >= 0)
     nodes = new.map.forward(start + moves + pairs_of(np.array(new.map.centre)))
     for number, loop in enumerate(domain.loops):

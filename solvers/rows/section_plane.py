@@ -75,6 +75,12 @@ class SectionPlane:
     def _opposite(self, u: Floats) -> Complexes:
         return complex_of(self.cascade.blade.at(self.wall_arcs(u)))
 
+    @property
+    def edges_aside(self) -> Floats:
+        """Theta (2,) of the leading and the trailing edge, from the centre of the map."""
+        edges = self.cascade.blade.at(self.wall_arcs(np.array([0.0, 0.5])))
+        return np.asarray(edges[:, 1] - self.cascade.passage.map.centre.imag)
+
     def ending(self, near: tuple[float, float], thickest: float) -> SectionPlane:
         """Return the section with straight rows that begin `near` pitches before and behind the blade.
 
