@@ -124,7 +124,8 @@ def next_section(plan: SectionPlan, before: SectionLayout, plane: SectionPlane) 
     Raises NoValidGridError: its cells stay folded.
     """
     layout = carried(before, plane, plan)
-    return SectionLayout(plane, _optimum(layout, plan.metric(plane), FROM_NEIGHBOUR, plan.wall))
+    held = np.flatnonzero(layout.mesh.places.loop >= 0)  # at inlet and outlet too, where nodes would gather
+    return SectionLayout(plane, _optimum(layout, plan.metric(plane), FROM_NEIGHBOUR, held))
 
 
 def around_blade(layout: Layout) -> Indices:
@@ -176,7 +177,7 @@ def carried(before: SectionLayout, plane: SectionPlane, plan: SectionPlan) -> La
 
 
 def _optimum(layout: Layout, metric: SizeMetric, iterations: int, wall: Indices | None) -> Layout:
-    """Return the layout with nodes where the functional is least, those of the `wall` (k,) held."""
+    """Return the layout with nodes where the functional is least, nodes `wall` (k,) held."""
     held = None if wall is None else np.isin(np.arange(len(layout.mesh.nodes)), wall)
     optimum = optimise(
         layout.mesh, iterations=iterations, targets=metric.gradual(layout.mesh), held=held,
