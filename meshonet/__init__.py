@@ -51,8 +51,8 @@ if TYPE_CHECKING:
     from meshonet.geometry.errors import SolverError as SolverError
     from meshonet.geometry.layout.layout import Layout as Layout
     from meshonet.geometry.quality.report import QualityReport as QualityReport
-    from meshonet.geometry.sections.section import Section as Section
     from meshonet.geometry.rows.row import Row as Row
+    from meshonet.geometry.sections.section import Section as Section
     from meshonet.geometry.sections.stack import Stack as Stack
     from meshonet.geometry.spacing.sampling import Sampling as Sampling
     from meshonet.solvers.pipeline.make_grid import make_grid as make_grid

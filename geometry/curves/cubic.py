@@ -1,5 +1,7 @@
 """Cubic splines through tables of values at any knots."""
 
+from typing import Any
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -56,27 +58,28 @@ class CubicTable:
         h = np.diff(self.knots).reshape(-1, *(1,) * (self.values.ndim - 1))
         begin, end = self.bends[:-1] * h**2, self.bends[1:] * h**2
         rise = np.diff(self.values, axis=0)
-        return np.stack([self.values[:-1], rise - (2.0 * begin + end) / 6.0, begin / 2.0, (end - begin) / 6.0])
+        first = rise - (2.0 * begin + end) / 6.0
+        return np.stack([self.values[:-1], first, begin / 2.0, (end - begin) / 6.0])
 
-    def _values(self, at: object, places: Floats, first: Indices, more: int) -> Floats:
+    def _values(self, at: Any, places: Floats, first: Indices, more: int) -> Floats:
         h, t, start, stop, begin, end = self._parts(at, places, first, more)
         bend = (2.0 - t) * begin + (1.0 + t) * end
         inner = start + t * (stop - start) - t * (1.0 - t) * h**2 / 6.0 * bend
         return np.asarray(np.where(t == 1.0, stop, inner))
 
-    def _slopes(self, at: object, places: Floats, first: Indices, more: int) -> Floats:
+    def _slopes(self, at: Any, places: Floats, first: Indices, more: int) -> Floats:
         h, t, start, stop, begin, end = self._parts(at, places, first, more)
         left = 1.0 - t
         return np.asarray(
             (stop - start) / h + h / 6.0 * ((3.0 * t * t - 1.0) * end - (3.0 * left * left - 1.0) * begin)
         )
 
-    def _parts(self, at: object, places: Floats, first: Indices, more: int) -> tuple[Floats, ...]:
-        after = (at[0] + 1, at[1]) if isinstance(at, tuple) else at + 1  # type: ignore[operator]
+    def _parts(self, at: Any, places: Floats, first: Indices, more: int) -> tuple[Floats, ...]:
+        after = (at[0] + 1, at[1]) if isinstance(at, tuple) else at + 1
         shape = (*places.shape, *(1,) * more)
         h = self.knots[first + 1] - self.knots[first]
         t = ((places - self.knots[first]) / h).reshape(shape)
-        tables = self.values[at], self.values[after], self.bends[at], self.bends[after]  # type: ignore[index]
+        tables = self.values[at], self.values[after], self.bends[at], self.bends[after]
         return (h.reshape(shape), t, *tables)
 
 

@@ -49,7 +49,9 @@ class BladeSurface:
         wrong = np.flatnonzero(np.diff(heights) <= 0.0)
         if len(wrong):
             k = int(wrong[0])
-            problem = f"is at {100 * heights[k + 1]:.3g} % of the span, behind one at {100 * heights[k]:.3g} %"
+            problem = (
+                f"is at {100 * heights[k + 1]:.3g} % of the span, behind one at {100 * heights[k]:.3g} %"
+            )
             raise InputError(problem, "give profiles from hub to casing", place=f"profile {k + 2}")
         foot, tip = self.channel.foot, self.channel.tip
         low, high = self.profiles[0].range[1], self.profiles[-1].range[0]

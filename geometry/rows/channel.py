@@ -48,7 +48,7 @@ class MeridionalMap:
 
     @property
     def length(self) -> float:
-        """m' of the outlet; that of the inlet is 0."""
+        """M' of the outlet; that of the inlet is 0."""
         return float(self.forward.values[-1])
 
 

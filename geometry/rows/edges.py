@@ -20,7 +20,9 @@ def round_edged(airfoil: Airfoil) -> tuple[Airfoil, tuple[str, ...]]:
     name = airfoil.name or "a section"
     if height < LEAST_EDGE * (1.0 - 1e-9):
         body = Airfoil(_opened(airfoil, LEAST_EDGE * airfoil.chord), airfoil.name, notes=airfoil.notes)
-        change = f"{name} is changed: its trailing edge, {height:.2g} chords thick, is opened to {LEAST_EDGE:g}"
+        change = (
+            f"{name} is changed: its trailing edge, {height:.2g} chords thick, is opened to {LEAST_EDGE:g}"
+        )
         notes = (Change(f"{change} and rounded"),)
     elif body.blunt:
         notes = (Change(f"{name} is changed: its base, {height:.2g} chords thick, is rounded"),)

@@ -63,7 +63,7 @@ class BladeProfile:
         self.leading, self.trailing = self._edges()
 
     def _edges(self) -> tuple[float, float]:
-        """Return the arc lengths of the leading and the trailing edge: the points farthest from each other."""
+        """Return the arc lengths of leading and trailing edge: the points farthest from each other."""
         arcs = np.linspace(0.0, self.curve.length, _SAMPLES, endpoint=False)
         points = self.curve.at(arcs)
         ends = [points[int(norms(points - points.mean(axis=0)).argmax())]]
@@ -76,7 +76,7 @@ class BladeProfile:
         return (one, two) if x[0] < x[1] else (two, one)
 
     def _farthest(self, point: Floats, arcs: Floats, points: Floats) -> float:
-        """Return the arc length at which the curve is farthest from a point, between samples by a parabola."""
+        """Return the arc length that is farthest from a point, between samples by a parabola."""
         away = norms(points - point)
         k = int(away.argmax())
         before, here, after = away[k - 1], away[k], away[(k + 1) % len(away)]

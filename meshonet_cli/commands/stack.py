@@ -31,8 +31,8 @@ def stack(
     sections: Annotated[list[str], typer.Argument(
         metavar="SECTIONS.toml", show_default=False,
         help="File with two sections or more: airfoil (a file or naca:2412), chord, z, and where needed x, y "
-        "and twist, or sweep and dihedral; or a blade row (kind = \"row\"): profiles, hub, shroud and blades; or "
-        "- for standard input.",
+        "and twist, or sweep and dihedral; or a row of blades: profiles, hub, shroud and blades; or - for "
+        "standard input.",
     )],
     files: VolumeFiles,
     run: o.RunOptions,
@@ -88,7 +88,8 @@ def stack(
     from meshonet_cli.tasks.volumes import write_stacks
 
     chosen = {
-        "around": around, "cells": cells, "span": span, "base": base, "far_field": far_field, "first_cell": first_cell,
+        "around": around, "span": span, "base": base, "cells": cells, "far_field": far_field,
+        "first_cell": first_cell,
         "y_plus": y_plus, "reynolds": reynolds, "layers": layers, "growth": growth, "threads": threads,
         "revolve": revolve, "axis": o.axis_of(axis),
     }

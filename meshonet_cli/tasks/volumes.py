@@ -49,7 +49,8 @@ def write_stacks(
     request = stack_request(**{name: value for name, value in chosen.items() if name != "cells"})
     if surface and criteria:
         raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")
-    make = each(_surface, request=request) if surface else each(_stacked, parameters=chosen, criteria=criteria)
+    volumes = each(_stacked, parameters=chosen, criteria=criteria)
+    make = each(_surface, request=request) if surface else volumes
     return batch.run(BatchTask(partial(_stack, tip=tip, surface=surface), make, nodes=VOLUME_NODES))
 
 

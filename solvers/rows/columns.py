@@ -43,7 +43,7 @@ def _arcs(steps: Floats) -> Floats:
 
 
 def with_first(steps: Floats, first: Floats) -> Floats:
-    """Return steps (k, m) of the same sums, the first made `first` (k,), by a factor that changes gradually."""
+    """Return steps (k, m) of the same sums, the first `first` (k,), by a factor that changes gradually."""
     t = np.linspace(0.0, 1.0, steps.shape[1])
     begin = steps * exp(log(first[:, None] / steps[:, :1]) * (1.0 - t) ** 2)
     total = steps.sum(axis=1)

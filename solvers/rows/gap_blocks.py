@@ -52,22 +52,23 @@ def gap_blocks(
 
     Raises NoValidGridError: cells stay folded.
     """
-    ends = [(level, made.values[level][around]) for level in levels]
-    blade_end = 0 if zone.high == 1.0 else 1
-    planes, fill = [], None
-    for level, values in (ends[blade_end], ends[1 - blade_end]):
-        to = row.channel.meridional(zone.low if level == levels[0] else zone.high)
-        outline = np.stack([to.forward(values[:, 0]), values[:, 1]], axis=1)
-        if fill is None:
-            radius = norms(space[level][around][:, 1:]).mean()
-            fill = filled_outline(outline, lead, first / float(radius), growth)
-            nodes = fill.layout.mesh.nodes
-        else:
-            nodes = _carried(fill, outline)
-        planes.append(np.stack([to.back(nodes[:, 0]), nodes[:, 1]], axis=1))
-    low, high = planes if blade_end == 0 else planes[::-1]
+    tip = zone.high == 1.0  # the blade is below this gap, otherwise above it
+    heights = (zone.low, zone.high) if tip else (zone.high, zone.low)
+    outlines, maps = [], []
+    for level, height in zip(levels if tip else levels[::-1], heights, strict=True):
+        s, theta, _ = made.values[level][around].T
+        maps.append(row.channel.meridional(height))
+        outlines.append(np.stack([maps[-1].forward(s), theta], axis=1))
+    radius = float(norms(space[levels[0]][around][:, 1:]).mean())
+    fill = filled_outline(outlines[0], lead, first / radius, growth)
+    planes = [fill.layout.mesh.nodes, _carried(fill, outlines[1])]
+    ends = [
+        np.stack([to.back(nodes[:, 0]), nodes[:, 1]], axis=1) for to, nodes in zip(maps, planes, strict=True)
+    ]
+    low, high = ends if tip else ends[::-1]
     ids = around[fill.outline]
-    return GapBlocks(fill, ids, _between(row, low, high, zone, space[levels[0] : levels[1] + 1][:, ids], fill, growth))
+    given = space[levels[0] : levels[1] + 1][:, ids]
+    return GapBlocks(fill, ids, _between(row, low, high, zone, given, fill, growth))
 
 
 def _carried(fill: GapFill, outline: Floats) -> Floats:
@@ -100,11 +101,12 @@ def _between(
     for block in fill.layout.blocks[:4]:
         rows = block.shape[1] - 1
         for j in range(1, rows):
-            ids = block[1:-1, j] if j else block[:-1, j]
-            space[:, ids] += (1.0 - j / rows) ** 2 * move[:, block[1:-1, 0]]
+            space[:, block[1:-1, j]] += (1.0 - j / rows) ** 2 * move[:, block[1:-1, 0]]
     for block in fill.layout.blocks[:4]:  # lines between two blocks, once
         rows = block.shape[1] - 1
-        space[:, block[0, 1:rows]] += ((1.0 - np.arange(1, rows) / rows) ** 2)[:, None] * move[:, block[0, :1]]
+        space[:, block[0, 1:rows]] += ((1.0 - np.arange(1, rows) / rows) ** 2)[:, None] * move[
+            :, block[0, :1]
+        ]
     space[:, :k] = outline
     for end, own, size in ((0, 1, zone.ends[0]), (-1, -2, zone.ends[1])):
         for _ in range(_ROUNDS):

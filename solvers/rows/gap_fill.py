@@ -1,4 +1,4 @@
-"""Five blocks inside the outline of a blade, in a gap: a ring of four, and a core.
+r"""Five blocks inside the outline of a blade, in a gap: a ring of four, and a core.
 
 ::
 
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -60,7 +61,7 @@ def outline_sides(outline: Floats, lead: int) -> list[Indices]:
     half = count // 2
     m = (_aside(outline, lead) + _aside(outline, lead + half) + 1) // 2
     cuts = [m, half - m, half + m, count - m, count + m]
-    return [(lead + np.arange(a, b + 1)) % count for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
+    return [(lead + np.arange(a, b + 1)) % count for a, b in pairwise(cuts)]
 
 
 def _aside(outline: Floats, edge: int) -> int:
@@ -96,7 +97,9 @@ def filled_outline(outline: Floats, lead: int, first: float, growth: float) -> G
         lines = nodes[block]
         steps = norms(np.diff(lines, axis=1))
         even = np.repeat(steps.mean(axis=1)[:, None], steps.shape[1], axis=1)
-        nodes[block[:, 1:-1]] = resampled(lines, steps, with_first(even, np.minimum(first, even[:, 0])))[:, 1:-1]
+        nodes[block[:, 1:-1]] = resampled(lines, steps, with_first(even, np.minimum(first, even[:, 0])))[
+            :, 1:-1
+        ]
     return GapFill(order, Layout(mesh.with_nodes(nodes), tuple(blocks)))
 
 

@@ -11,7 +11,7 @@ from meshonet.solvers.sparse import SparsePattern
 
 
 def harmonic(mesh: QuadMesh, moves: Floats, given: NDArray[np.bool_]) -> Floats:
-    """Return displacements (n, 2) of all nodes: `moves` (n, 2) where `given` (n,), means of neighbours elsewhere."""
+    """Return displacements (n, 2): `moves` (n, 2) where `given` (n,), elsewhere means of neighbours."""
     free = np.flatnonzero(~given)
     number = np.full(len(given), -1)
     number[free] = np.arange(len(free))

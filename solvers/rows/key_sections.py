@@ -23,8 +23,8 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of, passage_optimum
 from meshonet.solvers.blocking.cascade.passage import BLADE, INLET, OUTLET
 from meshonet.solvers.blocking.cascade.passage_template import template
-from meshonet.solvers.blocking.layers.layer_rows import JOIN
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs
+from meshonet.solvers.blocking.layers.layer_rows import JOIN
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import refine
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric

@@ -9,10 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.extrude import thick
@@ -49,9 +50,7 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
         inside = None
         if zone.gap:
             around = stacked.columns[:, 0]
-            inside = gap_blocks(
-                row, made, space, around, stacked.leading, zone, levels, first, growth
-            )
+            inside = gap_blocks(row, made, space, around, stacked.leading, zone, levels, first, growth)
         gaps.append(inside)
     return _joined(row, stacked, zones, gaps, space, turn), _notes(zones, first)
 
@@ -73,31 +72,41 @@ def _joined(
     starts: list[int] = []
     whole = len(stacked.layout.blocks)
     for zone, inside, (low, high) in zip(zones, gaps, stacked.bounds, strict=True):
-        layout, nodes = stacked.layout, space[low : high + 1]
+        layout, nodes, start = stacked.layout, space[low : high + 1], len(blocks)
         if inside is not None:
-            layout, nodes = _with_inside(layout, inside), np.concatenate([nodes, inside.space[:, len(inside.outline) :]], axis=1)
-        plane, start, top = to_grid(layout), len(blocks), high - low
+            layout = _with_inside(layout, inside)
+            nodes = np.concatenate([nodes, inside.space[:, len(inside.outline) :]], axis=1)
+        plane = to_grid(layout)
         starts.append(start)
         blocks += [Block(np.moveaxis(nodes[:, ids], 0, 2), finite=True) for ids in layout.blocks]
         patches += [replace(patch, block=patch.block + start) for patch in plane.patches]
+        patches += _end_patches(zone, layout, start, whole)
         for each in plane.connections:
+            own = replace(each, block=each.block + start, donor=each.donor + start, transform=None)
             moved = turn if each.transform else None
-            each = replace(each, block=each.block + start, donor=each.donor + start, transform=None)
-            connections.append(replace(thick(each, top + 1), transform=moved))
-        for number, ids in enumerate(layout.blocks):
-            for side in ("bottom", "top"):
-                name = _end_name(zone, side, number >= whole)
-                if name:
-                    i, j = (n - 1 for n in ids.shape)
-                    patches.append(Patch(name, side, 0, i, (0, j), start + number, "wall"))  # type: ignore[arg-type]
-    for below, above in zip(starts[:-1], starts[1:], strict=True):
+            connections.append(replace(thick(own, high - low + 1), transform=moved))
+    for below, above in pairwise(starts):
         for number, ids in enumerate(stacked.layout.blocks):
             face = tuple((0, n - 1) for n in ids.shape)
-            connections.append(Connection(below + number, "top", face, above + number, "bottom", face, (1, 2)))
+            ends = (below + number, "top", face), (above + number, "bottom", face)
+            connections.append(Connection(*ends[0], *ends[1], (1, 2)))  # type: ignore[arg-type]
     return Grid(tuple(blocks), tuple(patches), tuple(connections), row.name)
 
 
-def _end_name(zone: Zone, side: str, inside: bool) -> str:
+def _end_patches(zone: Zone, layout: Layout, start: int, whole: int) -> list[Patch]:
+    """Return the patches at both ends of a zone; its blocks from number `whole` on are in a gap."""
+    patches = []
+    sides: tuple[Side, Side] = ("bottom", "top")
+    for number, ids in enumerate(layout.blocks):
+        for side in sides:
+            name = _end_name(zone, side, number >= whole)
+            if name:
+                i, j = (n - 1 for n in ids.shape)
+                patches.append(Patch(name, side, 0, i, (0, j), start + number, "wall"))
+    return patches
+
+
+def _end_name(zone: Zone, side: Side, inside: bool) -> str:
     """Return the name of the patch at the bottom or the top of a block, empty where another block follows."""
     if side == "bottom" and zone.low == 0.0:
         return "hub"

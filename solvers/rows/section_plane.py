@@ -84,8 +84,8 @@ class SectionPlane:
     def ending(self, near: tuple[float, float], thickest: float) -> SectionPlane:
         """Return the section with straight rows that begin `near` pitches before and behind the blade.
 
-        The centre of its map is in the middle between both sides at the place `thickest`, so that neighbouring
-        sections have maps that differ little.
+        The centre of its map is in the middle between both sides at the place `thickest`, so that maps of
+        neighbouring sections differ little.
         """
         one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
         centre = complex(0.5 * (one + other))

@@ -9,7 +9,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -30,7 +29,6 @@ DEGREE = 5
 _EXACT = 40
 """Rounds in which first cells are made exact at most."""
 _CLOSE = 1e-13
-_SLOPE = 0.5  # of the way along columns: nodes there are moved with the blade by a part
 
 
 class StackedRow:
@@ -118,8 +116,7 @@ class StackedRow:
 
     def _heights(self) -> Floats:
         """Return heights (levels, n)."""
-        n = len(self.layout.mesh.nodes)
-        parts = []
+        parts: list[Floats] = []
         for zone in self.zones:
             at = zone.low + (zone.high - zone.low) * key_heights(SAMPLES)
             samples = self.lines.at(at[:, None])
@@ -130,7 +127,6 @@ class StackedRow:
         heights = np.concatenate(parts)
         second, first = self.twins
         heights[:, second] = heights[:, first]
-        assert heights.shape[1] == n
         return heights
 
     def _put_on_blade(self, values: Floats) -> None:
@@ -171,9 +167,9 @@ class StackedRow:
             for j in range(2, m - 1):
                 share = (1.0 - (j - 1) / (m - 2)) ** 2
                 own = values[np.ix_(levels, self.columns[:, j])]
-                values[np.ix_(levels, self.columns[:, j])] = begin + (own - begin) * (
-                    1.0 + share * (factor - 1.0)
-                )[..., None]
+                values[np.ix_(levels, self.columns[:, j])] = (
+                    begin + (own - begin) * (1.0 + share * (factor - 1.0))[..., None]
+                )
         values[np.ix_(levels, above)] = end
         return worst
 

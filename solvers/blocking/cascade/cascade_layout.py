@@ -107,6 +107,7 @@ def _outside(
 
 
 def passage_optimum(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
+    """Return the layout of a passage with its nodes where the functional is least, for sizes if given."""
     targets = metric.gradual(layout.mesh) if metric else None
     optimum = optimise(layout.mesh, iterations=iterations, targets=targets, weights=WEIGHTS)
     if not optimum.valid:

@@ -64,7 +64,7 @@ class Passage:
         points = front.curve.points
         passage = PassageMap(pitch, inner_point(points) if centre is None else centre)
         axial = passage.axial(points)
-        before, behind = (min(part * abs(pitch), most) for part, most in zip(near, (inlet, outlet), strict=True))
+        before, behind = min(near[0] * abs(pitch), inlet), min(near[1] * abs(pitch), outlet)
         first, last = float(axial.min()) - before, float(axial.max()) + behind
         blade = Loop(_polygon(passage.forward(points)), front.corners, front.names)
         ends = [
