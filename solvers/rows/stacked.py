@@ -105,11 +105,12 @@ class StackedRow:
         self._put_on_blade(values)
         made = RowNodes(self.row.channel, values)
         self._tie(values)
-        for k in range(_EXACT):
-            corner = k > 0
-            self._exact_along_span(made, corner)
-            off = self._exact_off_blade(made, corner)
-            if k > 0 and off < _CLOSE:
+        self._exact_off_blade(made, near_ends=False)
+        self._exact_along_span(made, near_blade=False)
+        for _ in range(_EXACT):  # nodes next to two walls
+            off = self._exact_off_blade(made, near_ends=True)
+            self._exact_along_span(made, near_blade=True)
+            if off < _CLOSE:
                 break
         self._tie(values)
         return made
@@ -145,7 +146,7 @@ class StackedRow:
         values[:, second] = values[:, first]
         values[:, second, 1] += self.row.pitch
 
-    def _exact_off_blade(self, made: RowNodes, near_ends: bool) -> float:
+    def _exact_off_blade(self, made: RowNodes, *, near_ends: bool) -> float:
         """Make first cells at the blade exact; return by how much the worst was not.
 
         With `near_ends` only those of the levels next to walls.
@@ -179,7 +180,7 @@ class StackedRow:
         levels = self.levels
         return np.array(sorted({*(k + 1 for k in levels[:-1]), *(k - 1 for k in levels[1:])}))
 
-    def _exact_along_span(self, made: RowNodes, near_blade: bool) -> None:
+    def _exact_along_span(self, made: RowNodes, *, near_blade: bool) -> None:
         """Make first cells exact at hub, tip and casing; with `near_blade` only those next to the blade."""
         nodes = self.columns[:, 1] if near_blade else np.arange(made.values.shape[1])
         for zone, low, high in zip(self.zones, self.levels[:-1], self.levels[1:], strict=True):
