@@ -29,7 +29,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("train", "Fit a neural operator to datasets (needs the extra `train`)."),
     Command("infer", "Make the grid that measures best: conformal, marched or variational."),
     Command("layout", "Split domains into blocks and write these."),
-    Command("stack", "Make volumes around wings and blades, and in ducts, from sections."),
+    Command("stack", "Make volumes around wings, in ducts and blade rows, from sections."),
     Command("sweep", "Make volumes of pipes and ducts, cross-sections carried along curves."),
     Command("deform", "Make grids follow a changed boundary, their layers as they were."),
     Command("quality", "Measure grids: folded cells, angles, skewness."),

@@ -84,7 +84,7 @@ def stack(
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
 ) -> int:
-    """Make volumes around wings and blades, in ducts, and of passages of blade rows."""
+    """Make volumes around wings, in ducts and blade rows, from sections."""
     from meshonet_cli.tasks.volumes import write_stacks
 
     chosen = {

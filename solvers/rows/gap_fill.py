@@ -21,6 +21,7 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.elementary import power
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
@@ -35,7 +36,7 @@ _MOST_ASIDE = 8
 _INSET = 0.5  # part of half the thickness that the ring fills
 _FEWEST_ROWS = 4
 _ITERATIONS = 150
-_POWER = 6  # how fast the core's lines gather towards its ends
+_POWER = 6.0  # how fast the core's lines gather towards its ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +111,7 @@ def _first_guess(sides: Sequence[Floats], first: float, growth: float) -> tuple[
     width = norms(half)
     along = np.concatenate([[0.0], np.cumsum(norms(np.diff(middle, axis=0)))])
     part = along / along[-1]
-    at = along + _INSET * (width[0] * (1.0 - part) ** _POWER - width[-1] * part**_POWER)
+    at = along + _INSET * (width[0] * power(1.0 - part, _POWER) - width[-1] * power(part, _POWER))
     across = np.linspace(-1.0, 1.0, len(sides[1]))[None, :, None]
     centre, reach = cubic_spline(middle, along, at), cubic_spline(half, along, at)
     core = centre[:, None] + (1.0 - _INSET) * across * reach[:, None]

@@ -30,6 +30,8 @@ from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.rows.stacked import StackedRow
 from meshonet.solvers.rows.zones import Zone, section_cells, zones_of
 
+_MANY_MORE = 1.3
+
 
 def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     """Return the grid of a passage, and notes.
@@ -52,7 +54,8 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
             around = stacked.columns[:, 0]
             inside = gap_blocks(row, made, space, around, stacked.leading, zone, levels, first, growth)
         gaps.append(inside)
-    return _joined(row, stacked, zones, gaps, space, turn), _notes(zones, first)
+    grid = _joined(row, stacked, zones, gaps, space, turn)
+    return grid, (*_notes(zones, first), *_more_cells(grid, request.cells))
 
 
 def turned_by(angle: float) -> Motion:
@@ -127,6 +130,14 @@ def _with_inside(layout: Layout, inside: GapBlocks) -> Layout:
     places = Places(*(np.concatenate(pair) for pair in pairs))
     places.loop[inside.outline] = -1
     return Layout(QuadMesh(mesh.domain, nodes, lattice_quads(blocks), places), blocks)
+
+
+def _more_cells(grid: Grid, wanted: int) -> tuple[str, ...]:
+    """Return a note if blocks and layers need many more cells than were asked for."""
+    cells = sum(math.prod(n - 1 for n in block.counts) for block in grid.blocks)
+    if cells <= _MANY_MORE * wanted:
+        return ()
+    return (f"{cells} cells instead of {wanted}: its blocks and layers need about as many",)
 
 
 def _notes(zones: Sequence[Zone], first: float) -> tuple[str, ...]:

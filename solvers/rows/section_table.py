@@ -98,7 +98,7 @@ def _grown(first: float, length: float, cells: int) -> Floats:
     low, high = 1.0 / _RATIO, _RATIO
     for _ in range(_BISECTIONS):
         ratio = 0.5 * (low + high)
-        total = first * sum(ratio ** (k + 1) for k in range(cells))
+        total = first * sum(math.pow(ratio, k + 1) for k in range(cells))
         low, high = (low, ratio) if total > length else (ratio, high)
-    steps = np.concatenate([[0.0], np.cumsum([ratio ** (k + 1) for k in range(cells)])])
+    steps = np.concatenate([[0.0], np.cumsum([math.pow(ratio, k + 1) for k in range(cells)])])
     return np.asarray(steps * (length / steps[-1]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -45,7 +46,7 @@ def zones_of(row: Row, first: float, growth: float, cells: int) -> list[Zone]:
     Cells in gaps start with `first`, or less where the gap is too narrow for `GAP_ROWS` of that.
     """
     channel = row.channel
-    parts = PARTS * (cells / PARTS_CELLS) ** (1.0 / 3.0)
+    parts = PARTS * math.cbrt(cells / PARTS_CELLS)
     narrow = {gap: min(first, gap / GAP_ROWS) for gap in (row.hub_gap, row.tip_gap) if gap > 0.0}
     ends = narrow.get(row.hub_gap, first), narrow.get(row.tip_gap, first)
     width = channel.span * (channel.tip - channel.foot)

@@ -1,4 +1,4 @@
-"""``meshonet stack`` of rows of blades: files with names and a rotation, and options that rows do not have."""
+"""``meshonet stack`` of rows of blades: files with names, and options that rows do not have."""
 
 from pathlib import Path
 

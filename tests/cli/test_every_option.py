@@ -247,7 +247,11 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--around": (f"{WING} {MADE}", "OPTION 61", "nodes"),
         "--span": (f"{WING} {MADE}", "OPTION 11", "nodes"),
         "--base": (f"{WING} {MADE}", "OPTION .01", "nodes"),
-        "--cells": (f"row.toml --first-cell .002 --cells 20000 {MADE}", "OPTION 30000", "nodes"),
+        "--cells": (
+            f"row.toml --first-cell .01 --growth 1.5 --cells 20000 {MADE}",
+            "OPTION 60000",
+            "nodes",
+        ),
         "--far-field": (f"{WING} {MADE}", "OPTION 7", "nodes"),
         "--tip": (f"{WING} --surface {MADE}", "OPTION flat", "nodes"),
         "--surface": (f"{WING} {MADE}", "OPTION", "nodes"),

@@ -16,7 +16,12 @@ def section(profiles) -> np.ndarray:
 
 def test_direction_start_and_a_repeated_point_of_a_profile_do_not_matter() -> None:
     given = list(blade_row.profiles())
-    changed = [np.roll(given[0], 17, axis=0), given[1][::-1], np.concatenate([given[2], given[2][:1]]), given[3]]
+    changed = [
+        np.roll(given[0], 17, axis=0),
+        given[1][::-1],
+        np.concatenate([given[2], given[2][:1]]),
+        given[3],
+    ]
     assert section(changed) == pytest.approx(section(given), abs=1e-6)
 
 
@@ -43,12 +48,24 @@ def test_a_profile_is_met_at_its_height() -> None:
 @pytest.mark.parametrize(
     ("profiles", "words"),
     [
-        (blade_row.profiles()[::-1], "profile 2: is at .* % of the span, .*; give profiles from hub to casing"),
+        (
+            blade_row.profiles()[::-1],
+            "profile 2: is at .* % of the span, .*; give profiles from hub to casing",
+        ),
         (blade_row.profiles()[2:], "profile 1: begins at 7.* % of the span"),
-        (blade_row.profiles()[:2], "profile 2: ends at .* % of the span; give a profile nearer to the casing"),
+        (
+            blade_row.profiles()[:2],
+            "profile 2: ends at .* % of the span; give a profile nearer to the casing",
+        ),
         ([p[:5] for p in blade_row.profiles()], "profile 1: 5 points; give 12 or more"),
-        ([p + [2.0, 0.0, 0.0] for p in blade_row.profiles()], "profile 1: hub and casing end before the blade"),
-        ([p - [1.2, 0.0, 0.0] for p in blade_row.profiles()], "profile 1: hub and casing begin behind the blade"),
+        (
+            [p + np.array([2.0, 0.0, 0.0]) for p in blade_row.profiles()],
+            "profile 1: hub and casing end before the blade",
+        ),
+        (
+            [p - np.array([1.2, 0.0, 0.0]) for p in blade_row.profiles()],
+            "profile 1: hub and casing begin behind the blade",
+        ),
     ],
 )
 def test_profiles_that_make_no_blade_are_refused_by_number(profiles, words: str) -> None:

@@ -1,4 +1,4 @@
-"""Grids of rows: valid, first cells exact in space, periodic by a rotation, the blade where its profiles are."""
+"""Grids of rows: valid, first cells exact in space, periodic, the blade where its profiles are."""
 
 import math
 from functools import cache
@@ -107,6 +107,11 @@ def test_the_gap_has_rows_enough_and_narrow_ones_lower_first_cells_and_say_so() 
     assert any("first cells at the walls of a gap are" in note for note in result.notes)
     tip = next(p for p in result.grid.patches if p.name == "tip")
     assert result.grid.blocks[tip.block].counts[2] >= 18
+
+
+def test_more_cells_than_asked_for_are_said() -> None:
+    result = make_row(blade_row.blade_row(), RowRequest(first_cell=FIRST, cells=20_000, threads=1))
+    assert any("instead of 20000" in note for note in result.notes)
 
 
 def test_bits_do_not_depend_on_the_number_of_threads() -> None:
