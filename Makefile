@@ -244,7 +244,7 @@ dist: wheel man
 
 man: $(VENV)/.installed
 	@mkdir -p dist
-	$(BIN)/python -m meshonet_cli.help.man > dist/meshonet.1
+	$(BIN)/python docs/command_pages.py > dist/meshonet.1
 
 clean:
 	rm -rf build demo *.egg-info $(VENV)/.installed $(VENV)/.developing $(VENV)/.documenting

@@ -1,27 +1,27 @@
-"""Stacks of sections in TOML: what ``meshonet stack`` reads.
+"""Stacks of cross-sections in TOML, the input of ``meshonet stack``.
 
 ::
 
     kind = "wing"              # wing, blade or duct
-    tip = "round"              # of a wing: round, flat or open
-    between = "linear"         # or smooth: cubics through three and more sections
-    tip_spacing = 0.001        # of a wing: last cells along the span, in chords of the last section
-    le_spacing = 0.002         # cells at leading edges, in chords of each section
-    te_spacing = 0.001         # and at trailing edges
+    tip = "round"              # tip of a wing: round, flat or open
+    between = "linear"         # interpolation: linear, or smooth by cubics through three or more sections
+    tip_spacing = 0.001        # length of a wing's last cells along the span, in chords of the last section
+    le_spacing = 0.002         # length of cells at leading edges, in chords of each section
+    te_spacing = 0.001         # length of cells at trailing edges, likewise
 
     [[sections]]               # the root
-    airfoil = "naca:2412"      # or a file, looked for beside this one
-    chord = 1.0                # in any unit, which is that of the grid
-    z = 0.0                    # along the span
+    airfoil = "naca:2412"      # or a file, relative to the folder of this one
+    chord = 1.0                # in the unit of the grid
+    z = 0.0                    # position along the span
 
     [[sections]]
     airfoil = "tip.dat"
     chord = 0.5
-    twist = -2.0               # degrees, nose up
-    about = 0.25               # chords behind the leading edge; [x, y] also sets a height
+    twist = -2.0               # degrees, positive nose up
+    about = 0.25               # centre of the twist, in chords behind the leading edge; or [x, y]
     z = 3.0
-    sweep = 20                 # degrees of the leading edge from the section before; or x = 1.09
-    dihedral = 5               # degrees, likewise; or y = 0.26
+    sweep = 20                 # sweep of the leading edge from the previous section in degrees; or x = 1.09
+    dihedral = 5               # dihedral from the previous section in degrees; or y = 0.26
 
 With ``kind = "row"`` it is a row of blades (`meshonet.formats.rows.read`).
 """
@@ -42,14 +42,14 @@ from meshonet.geometry.sections.stack import BETWEEN, KINDS, TIPS, Stack
 
 _SPACINGS = "tip_spacing", "le_spacing", "te_spacing"
 _STEEPEST = 85.0
-"""Degrees of sweep and dihedral; at 90 the next section would be infinitely far away."""
+"""Largest sweep and dihedral in degrees; at 90 the next section would be infinitely far away."""
 
 
 def stack_of(text: str) -> Stack | Row:
     """Return the stack or the row of a file, or of standard input for ``-``.
 
-    Raises InputError: a file that cannot be read or is no TOML; a key that is not known, or a value that does
-    not fit, with its place; a section's file that holds no airfoil or closed curve.
+    Raises InputError, with the place: a file that cannot be read or is not TOML; an unknown key; an invalid
+    value; a section whose file has no airfoil or closed curve.
     """
     return read_stack(open_source(text))
 
@@ -93,7 +93,7 @@ def _section(row: Table, about: tuple[float, float], before: list[Section], fold
 
 
 def _along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
-    """Return x or y of a section: its own, or by the angle of the line from the section before."""
+    """Return x or y of a section: the given value, or that given by an angle to the previous section."""
     if angle not in row.data:
         return row.number(direct, getattr(before[-1], direct) if before else 0.0)
     if direct in row.data:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 
 class MeshonetError(Exception):
-    """Base class of every error that a user can cause or must be told of."""
+    """Base class of all errors with a message for the user."""
 
     exit_code = 2
 

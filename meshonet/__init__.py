@@ -6,8 +6,8 @@
     grid.quality()["max_angle"].max
     grid.write("naca0012.cgns")
 
-Functions are named after the commands of the program, and their parameters after its options, with
-underscores. What is here is loaded when it is first used: importing the package costs nothing.
+Functions have the names of the commands, and parameters those of the options, with underscores. Each name is
+loaded when it is first used, so that importing the package takes no time.
 """
 
 from importlib import import_module
@@ -107,7 +107,7 @@ __all__ = ["__version__", *_HOMES]
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name, loaded now (PEP 562)."""
+    """Return a public name, which is loaded at its first use (PEP 562)."""
     if name not in _HOMES:
         raise AttributeError(f"module 'meshonet' has no attribute {name!r}")
     value = globals()[name] = getattr(import_module(_HOMES[name]), name)

@@ -5,7 +5,6 @@ volumes have eight corners (`meshonet.geometry.quality.volumes`); cells of surfa
 relative to their own normals (`meshonet.geometry.quality.surfaces`).
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -140,7 +139,8 @@ def _compiled(grid: Grid, percentiles: bool) -> Quality:
 
 
 def _run(grid: Grid, kept: slice) -> CellRun:
-    return run_over(grid.x, grid.y, kept, periodic=grid.periodic, wake=grid.wake)
+    x, y = _planes(grid.nodes)
+    return run_over(x, y, kept, periodic=grid.periodic, wake=grid.wake)
 
 
 def angles(nodes: Floats) -> tuple[float, float]:
@@ -192,6 +192,6 @@ def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
     return [cells[NAMES.index(name)] for cells in metrics_of_blocks(grid)]
 
 
-def _planes(nodes: Floats) -> Sequence[Floats]:
+def _planes(nodes: Floats) -> tuple[Floats, Floats]:
     planar = as_planar(nodes)
     return planar[..., 0], planar[..., 1]

@@ -7,7 +7,7 @@
    Fronts that spread, or are smoothed, come less far than the steps are long: what a step comes to, on average over the
    surface, is measured, and the next one is made as much longer. */
 #include "march.h"
-#include "solve.h"
+#include "relax.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,6 +23,7 @@ typedef struct {
     const double *heights;
     ptrdiff_t count;
     double *volume, *other; /* (rows) */
+    double *moves;          /* (3, nodes): of a relaxed front */
     SurfaceMarched *made;
 } March;
 
@@ -35,12 +36,14 @@ typedef struct {
     Member member;
 } Runner;
 
-static void measure(Runner *r)
+static void measure(const March *m, Runner *r)
 {
     for (ptrdiff_t c = r->first; c < r->end; c++) {
         ptrdiff_t first, last;
         chunk_range(&r->solver, c, &first, &last);
         r->solver.sums[c] = step_sizes(&r->solver.step, first, last);
+        if (m->settings->relaxing > 0.0)
+            r->solver.sums[c] = nearest_reach(&r->solver.step, first, last);
     }
     team_wait(r->member);
     r->shortest = r->solver.sums[0];
@@ -167,7 +170,7 @@ static int solve_length(const March *m, Runner *r, double length, double again, 
 static int take_step(const March *m, Runner *r, double *left, ptrdiff_t level)
 {
     Step *step = &r->solver.step;
-    measure(r);
+    measure(m, r);
     const double whole = *left / r->yield;
     double length = fmin(whole, m->settings->longest * r->shortest);
     if (whole > length && whole - length < 0.3 * length)
@@ -183,6 +186,11 @@ static int take_step(const March *m, Runner *r, double *left, ptrdiff_t level)
     *left = whole > length ? *left - length * r->yield : 0.0;
     swap(&step->along, &step->before);
     advance(r, length);
+    const SurfaceMarch *set = m->settings;
+    const Relaxing relaxing = {set->relaxing * length, r->gone / (set->settled * set->size), r->gone * set->near};
+    if (set->relaxing > 0.0)
+        for (ptrdiff_t k = 0; k < set->relaxations; k++)
+            relax_front(&r->solver, m->moves, &relaxing, r->first, r->end, r->member);
     return iterations;
 }
 
@@ -233,8 +241,8 @@ int surface_march(double *levels, const double *heights, ptrdiff_t count, const 
     double **short_ones[] = {&s->step.right, &s->r, &s->r0, &s->v, &s->t};
     double **single[] = {&s->step.area, &m.volume, &m.other};
     double **plain[] = {&s->step.reach, &s->step.height};
-    double *room = calloc((size_t)(4 * 3 * rows + 5 * 3 * n + 3 * rows + 2 * n + 4 * n + 12 * n + SUMS * s->chunks),
-                          sizeof(double));
+    const ptrdiff_t moves = settings->relaxing > 0.0 ? 3 * n : 0;
+    double *room = calloc((size_t)(15 * rows + 33 * n + SUMS * s->chunks + moves), sizeof(double));
     if (room == NULL)
         return -1;
     double *next = room;
@@ -253,6 +261,7 @@ int surface_march(double *levels, const double *heights, ptrdiff_t count, const 
     for (ptrdiff_t k = 0; k < 4 * n; k++)
         near[k] = (int)graph->near[k];
     s->step.near = near;
+    m.moves = next + 16 * n + SUMS * s->chunks;
     for (int d = 0; d < 3; d++)
         memcpy(s->step.x + d * rows, levels + d * n, (size_t)n * sizeof(double));
     team_run(threads, run, &m);

@@ -10,6 +10,10 @@ typedef struct {
     ptrdiff_t sweeps, ramp; /* such sweeps; levels over which they set in */
     double tolerance;     /* of linear systems */
     ptrdiff_t most;       /* steps to a level: more are needed where cells collapse */
+    double relaxing;      /* of fronts between steps, relax.h; with 0 there is none, and steps are longer */
+    double settled;       /* distance over `size` at which it has set in everywhere */
+    double near;          /* distance over that from a concave edge at which it has set in there */
+    ptrdiff_t relaxations; /* sweeps after a step */
 } SurfaceMarch;
 
 typedef struct {

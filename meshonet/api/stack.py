@@ -16,31 +16,32 @@ from meshonet.solvers.stacking.request import stack_request
 def stack(
     sections: str | Path | Stack | Row, *, tip: Tip | None = None, surface: bool = False, **parameters: Any
 ) -> Grid:
-    """Return the volume around a wing or blade, inside a duct, or of the passage of a blade row.
+    """Return the volume grid of a wing, a blade, a duct or a row of blades, from cross-sections.
 
     Parameters
     ----------
     sections : str, Path, Stack or Row
-        A TOML file, or the stack or row itself.
+        The stack of sections or the row of blades, or its TOML file.
     tip : {'round', 'flat', 'open'}, optional
-        How a wing ends; None is what the stack says.
+        Shape of the tip of a wing; None is that of the stack.
     surface : bool, optional
-        The patches of its surface instead of a volume.
+        Return the patches of the surface instead of a volume.
     **parameters
-        Those of `meshonet.StackRequest`, such as ``around``, ``span``, ``first_cell``, ``y_plus``,
-        ``reynolds``, ``layers``, ``growth``, ``far_field``; of a row those of `meshonet.RowRequest`,
-        ``first_cell``, ``y_plus``, ``reynolds``, ``growth``, ``cells``.
+        Fields of `meshonet.StackRequest`, such as ``around``, ``span``, ``first_cell``, ``y_plus``,
+        ``reynolds``, ``layers``, ``growth``, ``far_field``; for a row those
+        of `meshonet.RowRequest`: ``first_cell``, ``y_plus``, ``reynolds``, ``growth``, ``cells``.
 
     Returns
     -------
     Grid
+        The volume grid, or the surface patches.
 
     Raises
     ------
     InputError
         A file or parameter that cannot be used.
     NoValidGridError
-        Cells are folded, and `allow_invalid` was not given.
+        The grid has folded cells, and `allow_invalid` is not given.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The volumes of `stack` and `sweep`."""
+"""Tasks of `stack` and `sweep`."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ from meshonet_cli.report.timed import Delivered, delivered, part_names
 from meshonet_cli.tasks.grids import reported
 
 VOLUME_NODES = 1_000_000
-"""Nodes of a volume, about; how many there will be is known when it is made."""
+"""Assumed number of nodes of a volume, which is not known in advance."""
 
 
 def write_stacks(
     batch: Batch, parameters: Mapping[str, Any], criteria: Criteria, *, tip: Tip | None, surface: bool
 ) -> int:
-    """Write the volumes, or the surfaces, of the stacks of the inputs and return the exit code."""
+    """Write the volumes or surfaces of the stacks and return the exit code."""
     chosen = _shared(parameters, batch) | {"percentiles": criteria.percentiles}
     request = stack_request(**{name: value for name, value in chosen.items() if name != "cells"})
     if surface and criteria:
@@ -83,7 +83,7 @@ def write_sweeps(
     batch: Batch, path: str | Revolution, section: Mapping[str, Any], settings: Sweep, criteria: Criteria,
     *, around: int | None = None,
 ) -> int:  # fmt: skip
-    """Write the volumes of the sections of the inputs along a path or about an axis; return the exit code."""
+    """Write the volumes of the sections swept along a path or about an axis, and return the exit code."""
     parameters = domain_parameters(_shared(section, batch)) | {"percentiles": criteria.percentiles}
     res = parameters.pop("res")
     request = grid_request(res=None if res is None else _counts(res), **parameters)
@@ -107,5 +107,5 @@ def _counts(text: str) -> tuple[int, int]:
 
 
 def _shared(parameters: Mapping[str, Any], batch: Batch) -> dict[str, Any]:
-    """Return parameters, the cores shared out among the workers of the engine."""
+    """Return parameters in which the cores are shared among the workers of the engine."""
     return {**parameters, "threads": batch.engine.threads(parameters.get("threads"))}

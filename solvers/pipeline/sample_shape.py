@@ -1,4 +1,4 @@
-"""The boundary nodes of a shape, as a request samples them."""
+"""Boundary nodes of a shape for a request."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ MARCHING = ("best", "auto", "hyperbolic")
 
 
 def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainShape | SpatialShape:
-    """Return the boundary of a shape, or the shape itself in space and where many blocks are made of it.
+    """Return the boundary of a shape; a three-dimensional or multi-block shape is returned itself.
 
-    Of an airfoil whose base a C grid keeps it is what both its blocks begin at.
+    For an airfoil whose blunt base is kept in a C grid, the result is the line around the base and its wake.
     """
     if isinstance(shape, SpatialShape):
         return shape
@@ -63,7 +63,7 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
 
 
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
-    """Say whether a C grid with layers is wanted of an airfoil whose blunt base is to stay."""
+    """Return whether the request is a C grid with layers that keeps the blunt base of an airfoil."""
     sampling = request.sampling
     marches = request.method in MARCHING and request.at_walls
     keeps = marches and sampling.topology == "c" and sampling.te in ("auto", "exact")
@@ -75,7 +75,7 @@ def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
 
 
 def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> BaseWake:
-    """Return the lines of nodes around an airfoil with a base and behind it."""
+    """Return the lines of nodes around an airfoil with a blunt base and along its wake."""
     from meshonet.geometry.shapes.airfoil.base_wake import behind_base
 
     refuse(request.chosen, AROUND_BASE)
@@ -87,7 +87,7 @@ def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> Ba
 
 
 def _far_field_advice(request: GridRequest, unit: str) -> tuple[str, ...]:
-    """Return advice on forces, where cells are thin at walls and the far field is where it is by default."""
+    """Return advice on forces for grids with layers and the default far field."""
     if not request.at_walls or request.sampling.far_field is not None:
         return ()
     where = f"the far field is {DEFAULT_FAR_FIELD:g} {unit} away, the default"
@@ -95,7 +95,7 @@ def _far_field_advice(request: GridRequest, unit: str) -> tuple[str, ...]:
 
 
 def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Sampling:
-    """Return `sampling` with `k` times the cells of the `boundary` of `shape`, those of a wake included."""
+    """Return `sampling` with `k` times the cells of the `boundary` of `shape`, including those of a wake."""
     wakes = [patch.stop - patch.start for patch in boundary.patches if patch.name == "wake"]
     made = boundary.topology == "c" and wakes and not isinstance(shape, Boundary)
     nodes = k * wakes[0] + 1 if made else sampling.wake_nodes

@@ -1,15 +1,15 @@
-r"""The cap on the end of a wing: a ring along the edge of the last section, and a core inside it.
+r"""The cap of a wing tip: a ring along the edge of the last section, and a core inside it.
 
 ::
 
       upper side               m cells on each side of the trailing and of the leading edge end at the two
-     .-------------------.     short sides of the core, the others at its long ones: no corner of a cell is
-    /|   ring            |\    wider than it must be. A core that fills the whole section has corners of
-    ||  .-------------.  ||    160 degrees at both edges, and a surface without one ends in a line of nodes
-   LE|  |    core     |  |TE   where cells of the volume have corners of 180.
+     .-------------------.     short sides of the core, all others at its long sides, which keeps angles
+    /|   ring            |\    small. A core that fills the whole section would have angles of 160 degrees
+    ||  .-------------.  ||    at both edges. A surface without core would end in a line of nodes, where
+   LE|  |    core     |  |TE   cells of the volume have angles of 180 degrees.
     ||  '-------------'  ||
-    \|                   |/    The core reaches across the middle half of the thickness. A round cap stands
-     '-------------------'     as high over every place as the section is thick there: half an ellipse.
+    \|                   |/    The core covers the middle half of the thickness. The height of a round cap at
+     '-------------------'     each point is half the local thickness of the section: half an ellipse.
       lower side
 """
 
@@ -26,9 +26,9 @@ from meshonet.geometry.elementary import cos, product, sin
 from meshonet.solvers.sweeping.ring_steps import ring_steps
 
 CORE = 0.5
-"""Part of the thickness that the core reaches across."""
+"""Fraction of the thickness that the core covers."""
 ROWS = 6
-"""Rows of the ring."""
+"""Number of rows of the ring."""
 _EVEN = 1.12  # ratio of the last cells of the ring and those of the core, which needs not be 1
 _RATIO = 1.5  # of neighbouring rows of the ring, at the most
 _FINE = 65  # places on each line of the ring by which its length is measured
@@ -42,9 +42,9 @@ class Cap:
 
     Parameters
     ----------
-    short : cells on each side of an edge that end at a short side of the core.
-    rows : cells of the ring, from the section's edge to the core, whose cells they lead to by one ratio.
-    bulge : height over the height of a half circle on the section; 0 is flat.
+    short : number of cells on each side of an edge that end at a short side of the core.
+    rows : number of cells of the ring from the section's edge to the core; they grow by a constant ratio.
+    bulge : height relative to that of a half circle over the section; 0 is flat.
     """
 
     short: int = 4
@@ -54,8 +54,8 @@ class Cap:
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:
         """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
 
-        The `loop` (n, 3), closed, lies in a plane of constant z and runs from the trailing edge over the
-        upper side; the cap stands above it. Both patches turn their outer side to +z.
+        The closed `loop` (n, 3) is in a plane of constant z and runs from the trailing edge along the upper
+        side first. The cap is above it; the normals of both patches point to +z.
         """
         plane, m = loop[:, :2], self.short
         upper, lower, half = self._inner(plane)
@@ -66,7 +66,7 @@ class Cap:
         return self._ring(loop, core), core
 
     def _ring(self, loop: Floats, core: Floats) -> Floats:
-        """Return the nodes (n, rows + 1, 3) between the edge of the section and that of the core."""
+        """Return the nodes (n, rows + 1, 3) between the edges of section and core."""
         inner = _edge(core)
         sizes = norms(_edge(core, 1) - inner)
         m, half = self.short, (len(loop) - 1) // 2
@@ -88,7 +88,7 @@ class Cap:
         return ring
 
     def _lines(self, loop: Floats, inner: Floats, part: Floats) -> Floats:
-        """Return the places (n, k, 3) that are `part` (n, k) of the way, in angle, from edge to core."""
+        """Return the points (n, k, 3) at the fraction `part` (n, k) of the angle from edge to core."""
         inwards, rise = part, np.zeros(part.shape)
         if self.bulge:
             phi = part * math.acos(CORE)
@@ -119,7 +119,7 @@ class Cap:
         return middle + CORE * across, middle - CORE * across, np.hypot(*across.T)
 
     def connections(self, n: int, ring: int, core: int) -> tuple[Connection, ...]:
-        """Return where the numbered blocks of a ring of `n` nodes around and of its core touch themselves."""
+        """Return the connections of the blocks `ring`, with `n` nodes around, and `core`."""
         m, half = self.short, (n - 1) // 2
         whole = ((0, self.rows),)
         parts = (
@@ -147,7 +147,7 @@ def _sides(plane: Floats) -> tuple[Floats, Floats]:
 def _edge(core: Floats, k: int = 0) -> Floats:
     """Return the nodes around a core (., ., 3) in the order of its ring, from the middle of its west side.
 
-    With `k` those so many steps inside of them.
+    With `k`, they are the nodes k layers further inside.
     """
     m, last = core.shape[1] // 2, -1 - k
     west, east = core[k], core[last]

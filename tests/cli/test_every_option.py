@@ -132,6 +132,7 @@ DOMAINS = {
     "--cells": (f"step.wkt {MADE}", "OPTION 400", "nodes"),
     "--cell-size": (f"step.wkt {MADE}", "OPTION .2", "nodes"),
     "--layout": (f"step.wkt --cells 400 {MADE}", "OPTION tall.json", "nodes"),
+    "--periodic": (f"named.geojson {MADE}", "OPTION left,right", "nodes"),
     "--pitch": (f"naca:0012 --cells 900 {MADE}", "OPTION 0,0", "code"),
     "--inlet": (f"naca:0012 --cells 900 {MADE}", "OPTION .7", "code"),
     "--outlet": (f"naca:0012 --cells 900 {MADE}", "OPTION .7", "code"),
@@ -376,6 +377,11 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "tail.csv").write_text("2,0\n2.2,.1\n2.4,0\n2.2,-.1\n2.05,-.08\n")
     (folder / "step.wkt").write_text("POLYGON ((0 1, 2 1, 2 0, 6 0, 6 2, 0 2, 0 1))")
     (folder / "tall.wkt").write_text("POLYGON ((0 1, 2 1, 2 0, 6 0, 6 3, 0 3, 0 1))")
+    (folder / "named.geojson").write_text(
+        '{"type": "Feature", "properties": {"names": [["bottom", "right", "top", "left"], "hole"]}, '
+        '"geometry": {"type": "Polygon", "coordinates": [[[0, 0], [3, 0], [3, 3], [0, 3], [0, 0]], '
+        "[[1, 1.2], [1, 2.2], [2, 2.2], [2, 1.2], [1, 1.2]]]}}"
+    )
     (folder / "hole.wkt").write_text("POLYGON ((0 0, 3 0, 3 3, 0 3, 0 0), (1 1, 1 2, 2 2, 2 1, 1 1))")
     (folder / "box.csv").write_text("0,0\n2,0\n3,1\n0,1\n")
     (folder / "hump.csv").write_text("0,0\n1,0.3\n2,0\n2,1\n0,1\n")

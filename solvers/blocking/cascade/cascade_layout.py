@@ -41,16 +41,18 @@ from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
 from meshonet.solvers.energy.quads import optimise
 
 MOST_OPTIMISED = 4000
-"""Cells that are optimised at the most; finer grids are splines through these."""
+"""Largest number of cells that are optimised directly; finer grids are splines through these."""
 CORNERS = ("at first", "later", "nowhere")
-"""When nodes are put at the corners of the blade, in the order of attempts."""
+"""When nodes are moved to the corners of the blade, in the order of attempts."""
 LEAST = 4
-"""Cells along the side of a block that is optimised."""
+"""Smallest number of cells along the side of an optimised block."""
 FIRST, ITERATIONS, PASSES = 150, 120, 2
 WEIGHTS = 0.95, 1e-3
-"""w and β of the functional: with less β angles are better, but rounding moves nodes by 1 % of a passage."""
+"""Weights w and β of the functional. A smaller β improves angles, but lets rounding errors move nodes by 1
+%.
+"""
 ROW_GROWTH = 1.1
-"""Ratio of neighbouring cells on the way to inlet and outlet."""
+"""Growth ratio of cells towards inlet and outlet."""
 _BISECTIONS = 14
 
 
@@ -58,10 +60,11 @@ def cascade_layout(
     cascade: Cascade, *, cells: int | None = None, cell_size: float | None = None,
     timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
-    """Return a fine layout of a passage of about so many `cells`, or of cells of a size away from the blade.
+    """Return a fine layout of a passage with about `cells` cells, or with a cell size away from the blade.
 
-    Its outer loop is named periodic1, outlet, periodic2 and inlet; nodes of periodic2 are those of periodic1
-    moved by the pitch. Raises InputError: no room for layers, inlet or outlet; NoValidGridError: folds.
+    Its outer loop has the parts periodic1, outlet, periodic2 and inlet; nodes of periodic2 are those of
+    periodic1 plus the pitch. Raises InputError: too little room for layers, inlet or outlet;
+    NoValidGridError: folded cells.
     """
     timings = timings or Timings()
     with timings.stage("layers"):
