@@ -247,7 +247,7 @@ def _features(data: Any) -> list[tuple[Mapping[str, Any], Any]]:
 
 def _text(source: Source) -> str:
     try:
-        return source.read_bytes().decode("utf-8-sig")
+        return source.text_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError("is not UTF-8 text", "save it as UTF-8", place=f"byte {error.start}") from None
 

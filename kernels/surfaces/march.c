@@ -13,6 +13,7 @@
 #include <string.h>
 
 static const double FAR_POWER = 0.15; /* of the height over the size, by which smoothing sets in */
+static const double LEAST_IMPLICIT = 1.5; /* smoothing, over the explicit one: steps stay stable */
 static const double LEAST_YIELD = 0.3; /* volume swept by that of a straight march, at least */
 enum { HALVINGS = 2 };
 
@@ -149,8 +150,10 @@ static int solve_length(const March *m, Runner *r, double length, double again, 
     Step *step = &r->solver.step;
     const double part = part_of(set, level), keep = 0.5 * (1.0 + pow(1.0 - set->blend, (double)(level - 1)));
     const double far = fmin(1.0, pow((r->gone + length) / set->size, FAR_POWER));
-    const StepRule rule = {set->explicit_smoothing, set->implicit_smoothing, set->theta, far, set->sharp,
-                           r->gone == 0.0};
+    const double away = fmin(1.0, (r->gone + length) / set->size);
+    const double outer = 1.0 + (set->outer - 1.0) * away;
+    const double implicit = fmax(set->implicit_smoothing, LEAST_IMPLICIT * outer * set->explicit_smoothing);
+    const StepRule rule = {set->explicit_smoothing, implicit, outer, set->theta, far, set->sharp, r->gone == 0.0};
     double *before = step->before;
     if (rule.first)
         step->before = step->along;

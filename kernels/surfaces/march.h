@@ -3,6 +3,7 @@
 
 typedef struct {
     double explicit_smoothing, implicit_smoothing, theta;
+    double outer;         /* factor of the explicit smoothing at half the size from the wall and beyond */
     double sharp;         /* cosine between the normals of faces beyond which their edge is averaged */
     double size;          /* half the size of the surface */
     double longest;       /* step over the least distance of neighbours, at most */

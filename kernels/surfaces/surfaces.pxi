@@ -20,7 +20,7 @@ cdef extern from "surfaces/graph.h":
 
 cdef extern from "surfaces/march.h":
     ctypedef struct SurfaceMarch:
-        double explicit_smoothing, implicit_smoothing, theta, sharp, size, longest, weight, blend
+        double explicit_smoothing, implicit_smoothing, theta, outer, sharp, size, longest, weight, blend
         ptrdiff_t sweeps, ramp
         double tolerance
         ptrdiff_t most
@@ -63,7 +63,7 @@ def surface_march(levels, heights, graph, settings, int threads):
     cdef SurfaceMarch s
     cdef SurfaceMarched made
     cdef int failed
-    (s.explicit_smoothing, s.implicit_smoothing, s.theta, s.sharp, s.size, s.longest, s.weight, s.blend, s.sweeps,
+    (s.explicit_smoothing, s.implicit_smoothing, s.theta, s.outer, s.sharp, s.size, s.longest, s.weight, s.blend, s.sweeps,
      s.ramp, s.tolerance, s.most, s.relaxing, s.settled, s.near, s.relaxations) = settings
     cdef Written px = fills(levels, (count + 1, 3, n))
     cdef Read apart = reads(heights, (count,))

@@ -17,8 +17,8 @@ WallAngle = Annotated[float | None, _option(
 Slide = Annotated[bool | None, _option(
     "--slide/--no-slide",
     help="Move the nodes of south and north along these walls, so that grid lines leave the walls at right "
-    "angles. Applies to four-sided domains. [default: --slide if --first-cell is given and this command "
-    "places the nodes of the boundary, else --no-slide]",
+    "angles. Applies to four-sided domains. [default: --slide if first cells are given there and this "
+    "command places the nodes of the boundary, else --no-slide]",
 )]
 FirstCell = Annotated[float | None, _option(
     "--first-cell", "--wall-spacing", metavar="H",

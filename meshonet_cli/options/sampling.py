@@ -55,8 +55,8 @@ class SamplingOptions:
         "--te", metavar="auto|exact|round|wedge", show_default=True,
         help="Treatment of blunt trailing edges: exact keeps their shape, round rounds the two corners, and "
         "wedge closes the base by a wedge of up to four base heights. At the corners, grid angles deviate "
-        "from 90 degrees by about 45 with exact and by at most 10 with round. auto is wedge for a C grid "
-        "without a first cell, else exact.",
+        "from 90 degrees by about 45 with exact and by at most 10 with round. auto is exact, but wedge for a "
+        "C grid that is not marched, or that has no first cell and a base of at most 0.005 chords.",
     )] = "auto"
     far_field: Annotated[float | None, _option(
         "--far-field", metavar="R",

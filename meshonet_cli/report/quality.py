@@ -57,7 +57,7 @@ class Measured(Timed):
         rows = [f"{self.item.label}: {size}, {quality.cells} cells, {folded}", quality_table(grid, quality)]
         if many:
             rows.append(lines_table(report.figures.blocks))
-        if report.figures.wall_rows and (report.profile or grid.around_body or many):
+        if report.figures.wall_rows and (report.profile or many or grid.form == "plane"):
             rows.append(walls_table(report.figures.wall_rows))
         if report.profile or not many:
             rows.append(growth_table(report.figures))

@@ -13,7 +13,7 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.decomposition.errors import most_folded
-from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
+from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric, node_images
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
@@ -59,7 +59,7 @@ def fine_layout(
     own = 0  # halvings that are optimised themselves
     while own < halved and wanted * 4 ** (own + 1) <= OPTIMISED:
         own += 1
-    chords = Chords.of(layout, images_of(layout.mesh))
+    chords = Chords.of(layout, node_images(layout.mesh))
     least = chords.least
     turning, counts, finer = ALLOWED, least, 4.0 ** (halvings - own)
     fine: Layout | None = None

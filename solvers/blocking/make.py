@@ -14,11 +14,12 @@ from meshonet.geometry.layout.around_body import around_body
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.reach import MOST_CELLS
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
 from meshonet.solvers.blocking.decomposition.decompose import Timings, decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
-from meshonet.solvers.blocking.request import CELLS, LAYERED_CELLS, MOST_CELLS, BlockRequest
+from meshonet.solvers.blocking.request import CELLS, LAYERED_CELLS, BlockRequest
 from meshonet.solvers.blocking.wall_note import wall_note
 from meshonet.solvers.solution import Solution
 
@@ -185,7 +186,7 @@ def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | 
         if request.cell_size < least:
             problem = f"edges of {request.cell_size:g} are more than {MOST_CELLS} cells"
             raise InputError(problem, f"use {least:.2g} or more", parameter="cell_size")
-        return None, request.cell_size
+        return None, min(request.cell_size, domain.extent)
     return request.cells or CELLS, None
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.reach import MOST_CELLS
 from meshonet.geometry.spacing.first_cell import FirstCell
 
 if TYPE_CHECKING:
@@ -16,7 +17,6 @@ CELLS = 2500
 """Default number of cells."""
 LAYERED_CELLS = 20_000
 """Default number of cells of grids with layers."""
-MOST_CELLS = 20_000_000
 MOST_HALVINGS = 8
 LARGEST_PITCH = 1e12
 """Largest pitch in the unit of the blade, so that squares of coordinates do not overflow."""

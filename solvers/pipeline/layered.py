@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 UPRIGHT_DEGREES = 0.3  # by which lines may lean at walls whose nodes have slid
 LEANING_DEGREES = 1.0  # by which they may lean when sources have turned them
+OBLIQUE_DEGREES = 20.0  # beyond which layers that lean are worth a note
 
 
 @dataclass(frozen=True)
@@ -115,14 +116,16 @@ class Layered(Wrapper):
         solution = self._even(boundary, heights, start)
         if heights.any:
             edges = solution.boundary or boundary
+            slid = solution.boundary is not None
             solution = spread(guard(solution, edges, allow_invalid=True), edges, heights)
+            solution = solution if slid else _noted_lean(solution, boundary, heights)
         seconds = {**solution.seconds, "grid": perf_counter() - begun}
         note = (self.cells.note,) if self.cells.note else ()
         return replace(solution, notes=(*note, *solution.notes), seconds=seconds)
 
     def _even(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         """Return the grid of `boundary` without layers; wall nodes may slide or grid lines be turned."""
-        channel = self.channels and not boundary.around_body and self.cells.height is not None
+        channel = self.channels and not boundary.around_body and bool(heights.south or heights.north)
         slide = channel and boundary.sampled if self.slide is None else self.slide
         if slide:
             solution = self._slid(boundary, start)
@@ -167,3 +170,23 @@ class Layered(Wrapper):
         return solved(
             method_named("steger-sorenson", **self.turning, heights=heights.by_side), boundary, start
         )
+
+
+def _noted_lean(solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
+    """Return a solution whose wall nodes did not slide, with a note if lines lean much in its layers."""
+    from meshonet.solvers.elliptic.steger_sorenson import largest_lean
+
+    if (
+        boundary.topology != "quad"
+        or not (heights.south or heights.north)
+        or min(solution.grid.nodes.shape[:2]) < 3
+    ):
+        return solution
+    lean = largest_lean(solution.grid.nodes, boundary)
+    if lean <= OBLIQUE_DEGREES:
+        return solution
+    note = (
+        f"grid lines leave south or north up to {lean:.0f} degrees off the right angle; elliptic methods "
+        "with {slide} move the wall nodes to where there is none"
+    )
+    return replace(solution, notes=(note, *solution.notes))

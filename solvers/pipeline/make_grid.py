@@ -265,7 +265,7 @@ def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -
     begun = time.perf_counter()
     solution = around_base(
         lines,
-        first=(request.height() or 0.0) * lines.chord,
+        first=lines.first,
         growth=request.growth,
         free_rows=request.growth is not None and request.sampling.nj is None,
         constant=request.constant_layers or 1,

@@ -13,9 +13,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Advice
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
-from meshonet.geometry.spacing.sampling import DEFAULT_FAR_FIELD, Sampling
+from meshonet.geometry.spacing.sampling import DEFAULT_FAR_FIELD, DEFAULT_NI, DEFAULT_NJ, Sampling
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.uses import AROUND_BASE, IN_SPACE, ONE, refuse
+from meshonet.solvers.pipeline.uses import AROUND_BASE, IN_SPACE, ONE, USES, refuse
 
 if TYPE_CHECKING:
     from typing import TypeGuard
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 MARCHING = ("best", "auto", "hyperbolic")
 """Methods by which grids with layers around airfoils are marched."""
+THIN_BASE = 0.005
+"""Base in chords up to which C grids without layers close it with a wedge, unless it is asked for."""
 
 
 def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainShape | SpatialShape:
@@ -63,15 +65,22 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
 
 
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
-    """Return whether the request is a C grid with layers that keeps the blunt base of an airfoil."""
+    """Return whether the request is a marched C grid that keeps the blunt base of an airfoil.
+
+    Without layers, a thin base and the base of a grid that is solved for and refined are kept only if the
+    request says so.
+    """
     sampling = request.sampling
-    marches = request.method in MARCHING and request.at_walls
-    keeps = marches and sampling.topology == "c" and sampling.te in ("auto", "exact")
+    keeps = request.method in MARCHING and sampling.topology == "c" and sampling.te in ("auto", "exact")
     if not keeps:
         return False
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
-    return isinstance(shape, Airfoil) and shape.blunt
+    if not (isinstance(shape, Airfoil) and shape.blunt):
+        return False
+    if request.at_walls or sampling.te == "exact":
+        return True
+    return shape.gap > THIN_BASE * shape.chord and USES[AROUND_BASE].issuperset(request.chosen)
 
 
 def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> BaseWake:
@@ -81,9 +90,17 @@ def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> Ba
     refuse(request.chosen, AROUND_BASE)
     body = shape.smoothed(sampling.smooth) if sampling.smooth else shape
     body = body.normalised() if sampling.normalise else body
-    lines = behind_base(body, sampling, (request.height() or 0.0) * body.unit, request.growth)
-    advice = _far_field_advice(request, shape.far_field_unit)
-    return replace(lines, notes=(*lines.notes, *advice))
+    height, notes = request.height(), _far_field_advice(request, shape.far_field_unit)
+    if height is None:
+        from meshonet.solvers.hyperbolic.default_spacing import CHOSEN, first_cell_around_base
+
+        ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
+        away, notes = sampling.radius * body.chord, (CHOSEN,)
+        first = first_cell_around_base(body.gap, away, body.chord, ni, nj)
+    else:
+        first = height * body.unit
+    lines = behind_base(body, sampling, first, request.growth)
+    return replace(lines, notes=(*lines.notes, *notes))
 
 
 def _far_field_advice(request: GridRequest, unit: str) -> tuple[str, ...]:

@@ -28,6 +28,8 @@ FADE = 8
 """Number of cells from the tip whose lengths vary around the section."""
 REACH = 0.05
 """Largest distance from the tip, in its chords, over which such cells extend."""
+_NEAR = 1e-3
+"""Part of the last panel over which the slope of its lines at the tip is measured."""
 _ROOT_CELL = 1.4
 """Length of the cell at the root relative to the mean cell along the span."""
 
@@ -105,7 +107,7 @@ def _lofted(stack: Stack, unit: Floats, ring: Floats | None, nodes: int) -> Floa
         tip = None if stack.tip_spacing is None else stack.tip_spacing * stack.sections[-1].chord
         main = stack.lofted(unit, span_heights(stack.z, nodes, tip)).transpose(1, 0, 2)
     else:
-        last = _tip_cells(ring)
+        last = _tip_cells(ring) / _slant(stack, unit)
         z = span_heights(stack.z, nodes, float(last.min()))
         panel = int(np.searchsorted(z, stack.z[-2]))
         heights = np.tile(z, (len(last), 1))
@@ -115,6 +117,13 @@ def _lofted(stack: Stack, unit: Floats, ring: Floats | None, nodes: int) -> Floa
         main[:, -1] = ring[:, 0]
     main[-1] = main[0]
     return main
+
+
+def _slant(stack: Stack, unit: Floats) -> Floats:
+    """Return the lengths (n,) of lines along the span that go with a unit of height at the tip."""
+    height = _NEAR * (stack.z[-1] - stack.z[-2])
+    below, tip = stack.lofted(unit, np.array([stack.z[-1] - height, stack.z[-1]]))
+    return norms(tip - below) / height
 
 
 def _with_last(z: Floats, last: Floats, reach: float) -> Floats:

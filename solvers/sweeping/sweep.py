@@ -25,6 +25,7 @@ from meshonet.geometry.curves.frames import STEPS, frames_along, turned
 from meshonet.geometry.curves.path import Path
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.reach import check_reach
 
 TURN_DEG = 4.0
 """Largest turning angle of the path within a cell, unless the number of planes is given."""
@@ -78,7 +79,7 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     too.
 
     Raises InputError: a section that is not planar or is periodic; with the place, a bend that is too tight
-    for the section; as `frames_along`.
+    for the section; a path that takes too many planes; as `frames_along`.
     """
     settings = settings or Sweep()
     section = walled(section)
@@ -141,6 +142,10 @@ def _planes(section: Grid, path: Path) -> int:
         cells += u.size
     step = _LONG * math.sqrt(area / cells)
     step = min(step, math.radians(TURN_DEG) / bend) if bend else step
+    check_reach(
+        path.length / step * cells, "cells", f"a path of length {path.length:.4g} that bends with a radius "
+        f"of {1.0 / bend if bend else math.inf:.3g}", "smooth the path, or give {planes}",
+    )  # fmt: skip
     return max(2, math.ceil(path.length / step - 1e-9) + 1)
 
 

@@ -1,4 +1,4 @@
-"""Grids in space by the commands: surfaces marched off, six faces filled, and what is refused."""
+"""Grids in space by the commands: volumes marched from surfaces, six faces filled, and what is refused."""
 
 from pathlib import Path
 

@@ -103,8 +103,8 @@ def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str,
     off = departure(curve) / chord
     if off > DEPARTURE:
         note = (
-            f"the wall is a smooth curve through the points, which leaves the straight lines between them by "
-            f"up to {off:.2g} chords; more points would say where it runs"
+            f"the wall is a smooth curve through the points, up to {off:.2g} chords away from straight lines "
+            "between them; give more points where it matters"
         )
         notes += (Change(note) if off > FAR_OFF else note,)
     return notes

@@ -15,10 +15,12 @@ from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import modulus, times
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.reach import MOST_CELLS, check_reach
 from meshonet.geometry.shapes.assembly import far_loop
 from meshonet.solvers.blocking.cascade.passage import NEAR, Passage
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.rings import Ring, march_ring
+from meshonet.solvers.blocking.request import CELLS
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 
 THICKNESS, COLUMNS = 0.018, 140
@@ -32,6 +34,10 @@ GAP_PART = 0.25
 _SAMPLES = 400
 ACROSS = 12.0
 """Smallest number of cells per pitch, before the requested number of cells is distributed."""
+COARSEST = 20.0
+"""How many times as long cells may get along the blade."""
+MORE = 10.0
+"""Cells in those asked for, at the most, where a long inlet or outlet does not do with fewer."""
 SHORTEST = 0.08
 """Smallest distance in pitches from the blade with its layers to inlet or outlet."""
 
@@ -164,6 +170,17 @@ class Cascade:
         """Return cell sizes for cells `scale` times as long along the blade."""
         metric = self.metric
         return replace(metric, along=scale * metric.along, largest=metric.largest * scale**0.5)
+
+    def check_reach(self, cells: int | None, cell_size: float | None) -> None:
+        """Raise InputError where the largest cells are far more than `cells`, or too many of a size."""
+        largest = cell_size or abs(self.left) / ACROSS * COARSEST**0.5
+        length = (1.0 + self.inlet + self.outlet) * self.chord
+        most = MOST_CELLS if cell_size else min(MORE * (cells or CELLS), MOST_CELLS)
+        long = "inlet" if self.inlet > self.outlet else "outlet"
+        check_reach(
+            length / largest * (abs(self.left) / largest), "cells", f"a passage of length {length:.3g}",
+            f"use a shorter {{{long}}}, or " + ("larger cells" if cell_size else "more {cells}"), most=most,
+        )  # fmt: skip
 
 
 def _moved(blade: Loop, curve: Curve, shift: Floats) -> Loop:

@@ -19,7 +19,7 @@ from meshonet.geometry.elementary import log
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.cascade.cascade import Cascade
+from meshonet.solvers.blocking.cascade.cascade import COARSEST, Cascade
 from meshonet.solvers.blocking.cascade.passage import (
     BLADE,
     INLET,
@@ -63,10 +63,11 @@ def cascade_layout(
     """Return a fine layout of a passage with about `cells` cells, or with a cell size away from the blade.
 
     Its outer loop has the parts periodic1, outlet, periodic2 and inlet; nodes of periodic2 are those of
-    periodic1 plus the pitch. Raises InputError: too little room for layers, inlet or outlet;
-    NoValidGridError: folded cells.
+    periodic1 plus the pitch. Raises InputError: too little room for layers, inlet or outlet,
+    far more cells than requested; NoValidGridError: folded cells.
     """
     timings = timings or Timings()
+    cascade.check_reach(cells, cell_size)
     with timings.stage("layers"):
         passage = cascade.passage
     for attempt in CORNERS:
@@ -146,9 +147,11 @@ def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
 def row_steps(first: float, length: float, largest: float) -> Floats:
     """Return distances from 0 to a length, of cells that grow from `first` to about `largest`."""
     cells = [min(first * ROW_GROWTH**0.5, length)]
-    while sum(cells) < length - 0.5 * cells[-1]:
+    total = cells[0]
+    while total < length - 0.5 * cells[-1]:
         cells.append(max(min(cells[-1] * ROW_GROWTH, largest), cells[0]))
-    steps = np.concatenate([[0.0], np.cumsum(cells)]) * (length / sum(cells))
+        total += cells[-1]
+    steps = np.concatenate([[0.0], np.cumsum(cells)]) * (length / total)
     steps[-1] = length
     return np.asarray(steps)
 
@@ -163,7 +166,7 @@ def counts_of(
         metric = replace(cascade.metric, across=sizes, along=sizes, largest=cell_size)
         counts = wanted.counts(metric)
     else:
-        low, high = math.log(0.05), math.log(20.0)
+        low, high = math.log(0.05), math.log(COARSEST)
         for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)
             metric = cascade.scaled(math.exp(middle))

@@ -27,7 +27,7 @@ from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
-from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
+from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric, node_images
 from meshonet.solvers.blocking.layers.attach import attach
 from meshonet.solvers.blocking.layers.even_line import evened_loops
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
@@ -100,7 +100,7 @@ def _optimum(
     timings: Timings,
 ) -> tuple[Layout, Counts]:  # fmt: skip
     """Return the layout outside the rings with cells counted anew, optimised."""
-    chords = Chords.of(layout, images_of(layout.mesh, walls.mirrors))
+    chords = Chords.of(layout, node_images(layout.mesh, walls.mirrors))
     with timings.stage("refine"):
         counts = wanted_counts(walls, rows, chords, *size, before)
         places = metric_places(chords, counts.coarse, counts.metric)
@@ -136,7 +136,7 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
         coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on | coarse.mesh.tied, times * EVEN))
         coarse = walls.symmetric(coarse)
     with timings.stage("refine"):
-        chords = Chords.of(coarse, images_of(coarse.mesh, walls.mirrors))
+        chords = Chords.of(coarse, node_images(coarse.mesh, walls.mirrors))
         row, cells = rows.of_chords(chords), times * chords.counts
         layers = [layers_of(coarse, rows, number, times, settings) for number in range(len(rows.loops))]
         cut = max((n for n, loop in zip(layers, rows.loops, strict=True) if loop == 0), default=0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,6 +19,7 @@ GROWTH = 0.1
 _SAMPLES = 4000
 _CORNER_PART = 1.0 / 40.0  # cell at a corner, in cells elsewhere
 _PIECE_PART = 1.0 / 3.0  # and at the most in lengths of the pieces of wall that end there
+_RESOLVED = 0.01  # samples that a cell at a corner is long, at the least, without more samples there
 
 
 def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floats:
@@ -26,7 +28,8 @@ def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floa
     `largest` is the length of the largest cell; `sums` are those of mirrors that take the loop to itself: the
     images of columns are columns.
     """
-    arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
+    arcs = np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs)
+    arcs = distinct(np.append(arcs, _beside_corners(loop, largest)))
     size = _sizes(loop, arcs, largest)
     closed = np.append(arcs, loop.length)
     density = 1.0 / np.append(size, size[0])
@@ -70,12 +73,29 @@ def _sizes(loop: Loop, arcs: Floats, largest: float) -> Floats:
     bend = wall_bend(loop, arcs, max(3, round(0.004 * len(arcs))))
     size = np.minimum(largest, TURN / np.maximum(bend, 1e-300))
     size = np.maximum(size, _CORNER_PART * largest)
-    corners = loop.corner_arcs
-    if len(corners):
-        pieces = np.diff(corners, append=corners[0] + length)
-        shortest = np.minimum(pieces, np.roll(pieces, 1))
-        at_corner = np.minimum(_CORNER_PART * largest, _PIECE_PART * shortest)
-        for arc, smallest, cells in zip(corners, at_corner, loop.corner_cells, strict=True):
-            if cells > 1:  # columns converge at convex corners, where layers end
-                size[np.searchsorted(arcs, arc)] = smallest
+    for arc, smallest in _at_corners(loop, largest):
+        size[np.searchsorted(arcs, arc)] = smallest
     return graded(size, arcs, length, GROWTH)
+
+
+def _at_corners(loop: Loop, largest: float) -> list[tuple[float, float]]:
+    """Return arc lengths of convex corners and the cells there: columns converge where layers end."""
+    corners = loop.corner_arcs
+    if len(corners) == 0:
+        return []
+    pieces = np.diff(corners, append=corners[0] + loop.length)
+    shortest = np.minimum(pieces, np.roll(pieces, 1))
+    sizes = np.minimum(_CORNER_PART * largest, _PIECE_PART * shortest)
+    every = zip(corners.tolist(), sizes.tolist(), loop.corner_cells, strict=True)
+    return [(arc, size) for arc, size, cells in every if cells > 1]
+
+
+def _beside_corners(loop: Loop, largest: float) -> Floats:
+    """Return arc lengths (k,) where cells grow from far smaller ones than samples tell apart."""
+    step = loop.length / _SAMPLES
+    beside = [np.zeros(0)]
+    for arc, size in _at_corners(loop, largest):
+        if 0.0 < size < _RESOLVED * step:
+            away = np.ldexp(size, np.arange(math.ceil(math.log2(step / size))))
+            beside.append(np.concatenate([arc - away, arc + away]) % loop.length)
+    return np.concatenate(beside)

@@ -6,6 +6,7 @@ one count a chord. Edges of periodic sides have those of their partners.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,7 +19,6 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.ties import nearest_whole
 from meshonet.kernels._native import joined_classes
-from meshonet.solvers.blocking.decomposition.symmetry.images import Images
 from meshonet.solvers.blocking.sizes.wall_turning import corners_between, turning_between
 
 LEAST = 2
@@ -34,7 +34,7 @@ class Chords:
     `sides` (b, 4) are the edges at south, north, west and east of each block, `reversed` (b, 4) says where
     the block runs the other way along one, `wall` (e,) which are walls; the `partner` (e,) of an
     edge is the one that it is, moved by the period, else -1, and `chord` (e,) numbers the chord of each.
-    `images` are those of the nodes in mirrors: images of edges are of one chord.
+    `images` are the nodes (n,) that all become in each mirror: images of edges are of one chord.
     """
 
     layout: Layout
@@ -45,10 +45,10 @@ class Chords:
     partner: Indices
     chord: Indices
     count: int
-    images: Images
+    images: Sequence[Indices]
 
     @classmethod
-    def of(cls, layout: Layout, images: Images = ()) -> Chords:
+    def of(cls, layout: Layout, images: Sequence[Indices] = ()) -> Chords:
         """Return the edges and chords of a layout; mirror images are of the same chord."""
         edges: list[Indices] = []
         numbers: dict[tuple[int, ...], int] = {}
@@ -69,7 +69,7 @@ class Chords:
         if tied.any():
             wall &= [not tied[edge[1:-1]].any() for edge in edges]
         pairs = [sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)]
-        for _, to in images:
+        for to in images:
             image = np.array([numbers.get(_key(to[edge])[0], -1) for edge in edges])
             pairs.append(np.stack([np.arange(len(edges)), image], axis=1)[image >= 0])
         chord, count = joined_classes(np.ascontiguousarray(np.concatenate(pairs)), len(edges))
@@ -94,7 +94,7 @@ class Chords:
         """
         multiple = np.ones(self.count, dtype=np.intp)
         for k, edge in enumerate(self.edges):
-            own = sum(np.array_equal(distinct(to[edge]), distinct(edge)) for _, to in self.images)
+            own = sum(np.array_equal(distinct(to[edge]), distinct(edge)) for to in self.images)
             if own and self.wall[k] and edge[0] != edge[-1]:
                 loop = self.layout.mesh.domain.loops[self.layout.mesh.places.loop[edge[0]]]
                 own = 1 + len(corners_between(loop, *self.arcs(k)[[0, -1]].tolist())[0]) % 2

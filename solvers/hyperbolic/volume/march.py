@@ -12,6 +12,7 @@ The equations are in ``kernels/surfaces/step.c``, the settings tried while cells
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
@@ -47,6 +48,7 @@ __all__ = ["VolumeMarch", "march_surface"]
 FADE = 12.0  # cells over which the correction of first cells fades out along a line
 SWEEPS = 10  # of the smoothing of steps along lines
 _SLOWER = 2  # further marches by smaller steps where cells grow too much
+_POOR = 0.35  # least scaled Jacobian for which no other smoothing is tried
 WORST = 10  # folded cells named in the error message
 
 
@@ -81,7 +83,7 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
     grid = volume_grid(surface, volume.blocks, np.any(inside, axis=0))
     notes = [*surface.notes, *found]
     if tries > 1:
-        notes.append(f"{tries} marches were made: others left folded cells")
+        notes.append(f"{tries} marches were made: others left folded cells or worse ones")
     return Solution(
         grid,
         "hyperbolic",
@@ -94,13 +96,15 @@ def _best(
     surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, hollows: Hollows,
     steps: Floats, growth: float,
 ) -> tuple[_Volume, int]:  # fmt: skip
-    """Return the first volume without folded cells, or else the best, and the number of attempts.
+    """Return the first volume with cells no worse than `_POOR`, or else the best, and how many were made.
 
-    The first is marched again by smaller steps where its cells grow by more than `growth`.
+    Each is marched again by smaller steps where its cells grow by more than `growth`.
     """
     best: _Volume | None = None
-    attempts = attempts_for(concave=len(hollows.edges) > 0)
-    for tries, smoothing in enumerate(attempts, start=1):
+    most = (0, -math.inf, 0.0)
+    tries = 0
+    for smoothing in attempts_for(concave=len(hollows.edges) > 0):
+        tries += 1
         graph = march_graph(surface, planes, inside, hollows.distance, smoothing.splay, smoothing.boost)
 
         def marched(steps: Floats, graph: MarchGraph = graph, smoothing: Smoothing = smoothing) -> Floats:
@@ -109,12 +113,16 @@ def _best(
             return lines
 
         lines = marched(steps)
-        volume = _volume(surface, lines)
+        volume, worth = _volume(surface, lines), 0.0
         if volume.made == len(steps) and not volume.folded:
-            return _with_growth(surface, lines, marched, steps, growth) or volume, tries
-        if best is None or (volume.made, -volume.folded) > (best.made, -best.folded):
-            best = volume
-    return best or volume, len(attempts)
+            volume = _with_growth(surface, lines, marched, steps, growth) or volume
+            worth = _least_jacobian(volume.blocks)
+        found = min(volume.made, len(steps)), -volume.folded, worth
+        if best is None or found > most:
+            best, most = volume, found
+        if worth >= _POOR:
+            break
+    return best or volume, tries
 
 
 def _volume(surface: Surface, lines: Floats) -> _Volume:

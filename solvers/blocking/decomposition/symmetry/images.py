@@ -33,6 +33,11 @@ def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images
     return images
 
 
+def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list[Indices]:
+    """Return `images_of` without their mirrors."""
+    return [to for _, to in images_of(mesh, mirrors)]
+
+
 def agree(images: Images) -> bool:
     """Return whether images in the first two mirrors, at right angles, are the same in either order."""
     return len(images) < 2 or np.array_equal(images[0][1][images[1][1]], images[1][1][images[0][1]])

@@ -137,7 +137,7 @@ def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimi
     before = Chords.of(blocks.layout)
     even = refine(blocks.layout, np.full(before.count, max(EVEN, int(before.least.max()))), before)
     mesh, images = _symmetric(optimised(even.mesh), mirrors)
-    chords = Chords.of(replace(even, mesh=mesh), images)
+    chords = Chords.of(replace(even, mesh=mesh), [to for _, to in images])
     counts = chords.counts_for_cells(len(blocks.mesh.quads))
     if not alike:
         wanted = np.bincount(chords.chord, before.counts[before.chord]) / np.bincount(chords.chord)
