@@ -5,27 +5,31 @@ from typing import Any
 
 from meshonet.formats.stack import stack_of
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.stack import Stack, Tip
+from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
+from meshonet.solvers.rows.request import check_row_options, row_request
 from meshonet.solvers.stacking.request import stack_request
 
 
 def stack(
-    sections: str | Path | Stack, *, tip: Tip | None = None, surface: bool = False, **parameters: Any
+    sections: str | Path | Stack | Row, *, tip: Tip | None = None, surface: bool = False, **parameters: Any
 ) -> Grid:
-    """Return the volume grid around a wing or blade, or inside a duct, from cross-sections.
+    """Return the volume grid of a wing, a blade, a duct or a row of blades, from cross-sections.
 
     Parameters
     ----------
-    sections : str, Path or Stack
-        The stack of sections, or its TOML file.
+    sections : str, Path, Stack or Row
+        The stack of sections or the row of blades, or its TOML file.
     tip : {'round', 'flat', 'open'}, optional
         Shape of the tip of a wing; None is that of the stack.
     surface : bool, optional
         Return the patches of the surface instead of a volume.
     **parameters
         Fields of `meshonet.StackRequest`, such as ``around``, ``span``, ``first_cell``, ``y_plus``,
-        ``reynolds``, ``layers``, ``growth``, ``far_field``.
+        ``reynolds``, ``layers``, ``growth``, ``far_field``; for a row those
+        of `meshonet.RowRequest`: ``first_cell``, ``y_plus``, ``reynolds``, ``growth``, ``cells``.
 
     Returns
     -------
@@ -47,6 +51,10 @@ def stack(
     >>> len(stack(wing, around=49, span=9, surface=True).blocks)
     3
     """
-    what = (sections if isinstance(sections, Stack) else stack_of(str(sections))).with_tip(tip)
+    what = sections if isinstance(sections, Stack | Row) else stack_of(str(sections))
+    if isinstance(what, Row):
+        check_row_options(tip=tip, surface=surface)
+        return make_row(what, row_request(**parameters)).grid
+    what = what.with_tip(tip)
     request = stack_request(**parameters)
     return stack_surface(what, request)[0] if surface else make_stack(what, request).grid

@@ -33,7 +33,7 @@ def stack(
         help="File with at least two sections, or - for standard input. Each section of a wing or blade has "
         "an airfoil (a file or naca:2412), a chord, its position z and, where needed, x, y and twist, or "
         "sweep and dihedral. Sections of a duct have an outline instead: circle:RADIUS or a file with a "
-        "closed curve.",
+        "closed curve. A row of blades has profiles, hub and shroud instead.",
     )],
     files: VolumeFiles,
     run: o.RunOptions,
@@ -49,6 +49,9 @@ def stack(
         "--base", metavar="H",
         help="Smallest height of trailing edges, in chords of their section. Thinner edges of wings and "
         "blades are opened to this height. [default: 0.005]",
+    )] = None,
+    cells: Annotated[int | None, _sampling(
+        "--cells", metavar="N", help="Approximate number of cells of a blade row. [default: 500000]",
     )] = None,
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R",
@@ -87,14 +90,15 @@ def stack(
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
 ) -> int:
-    """Make volume grids of wings, blades and ducts from cross-sections.
+    """Make volume grids of wings, ducts and blade rows from cross-sections.
 
     The grid surrounds a wing or a blade. In a duct it fills the inside, from the first section to the last.
     """
     from meshonet_cli.tasks.volumes import write_stacks
 
     chosen = {
-        "around": around, "span": span, "base": base, "far_field": far_field, "first_cell": first_cell,
+        "around": around, "span": span, "base": base, "cells": cells, "far_field": far_field,
+        "first_cell": first_cell,
         "y_plus": y_plus, "reynolds": reynolds, "layers": layers, "growth": growth, "threads": threads,
         "revolve": revolve, "axis": o.axis_of(axis),
     }

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from meshonet.solvers.deformation.request import DeformRequest
     from meshonet.solvers.pipeline.request import GridRequest
     from meshonet.solvers.progress import HistoryRow
+    from meshonet.solvers.rows.request import RowRequest
     from meshonet.solvers.stacking.request import StackRequest
 
 
@@ -61,7 +62,7 @@ class Result:
 def judged(
     solution: Solution,
     seconds: dict[str, float],
-    request: GridRequest | StackRequest | DeformRequest,
+    request: GridRequest | StackRequest | RowRequest | DeformRequest,
     *,
     remedy: str,
     history: tuple[HistoryRow, ...] = (),

@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from blade_row import write_row
 from command_line import Meshonet, dataset, duct, wave
 from spatial_shapes import cubed_sphere, half_sphere
 
@@ -247,6 +248,11 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--around": (f"{WING} {MADE}", "OPTION 61", "nodes"),
         "--span": (f"{WING} {MADE}", "OPTION 11", "nodes"),
         "--base": (f"{WING} {MADE}", "OPTION .01", "nodes"),
+        "--cells": (
+            f"row.toml --first-cell .01 --growth 1.5 --cells 20000 {MADE}",
+            "OPTION 60000",
+            "nodes",
+        ),
         "--far-field": (f"{WING} {MADE}", "OPTION 7", "nodes"),
         "--tip": (f"{WING} --surface {MADE}", "OPTION flat", "nodes"),
         "--surface": (f"{WING} {MADE}", "OPTION", "nodes"),
@@ -381,6 +387,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "hump.csv").write_text("0,0\n1,0.3\n2,0\n2,1\n0,1\n")
     for name, span in (("wing", 2), ("short", 1)):
         (folder / f"{name}.toml").write_text(SECTIONS.format(span))
+    write_row(folder)
     moon = SECTIONS.format(1).replace("naca:0012", "moon.csv")
     (folder / "moon.toml").write_text(f'kind = "duct"\n{moon}')
     t = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)

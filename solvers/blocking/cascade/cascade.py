@@ -17,7 +17,7 @@ from meshonet.geometry.elementary import modulus, times
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.reach import MOST_CELLS, check_reach
 from meshonet.geometry.shapes.assembly import far_loop
-from meshonet.solvers.blocking.cascade.passage import Passage
+from meshonet.solvers.blocking.cascade.passage import NEAR, Passage
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.rings import Ring, march_ring
 from meshonet.solvers.blocking.request import CELLS
@@ -53,6 +53,9 @@ class Cascade:
     inlet, outlet : lengths of the passage upstream and downstream of the blade, in axial chords.
     settings : layers at the blade; the default is a few rows of equal cells.
     name : name of the blade.
+    near : distances upstream and downstream of the blade, in pitches, at which straight rows begin, if
+        inlet and outlet are that far away.
+    centre : centre of the map of the passage, inside the blade; the default is a point far from its surface.
     """
 
     blade: Loop
@@ -61,6 +64,8 @@ class Cascade:
     outlet: float = 1.0
     settings: LayerSettings | None = None
     name: str = ""
+    near: tuple[float, float] = (NEAR, NEAR)
+    centre: complex | None = None
 
     @property
     def opposite(self) -> bool:
@@ -142,7 +147,8 @@ class Cascade:
     @cached_property
     def passage(self) -> Passage:
         """The passage around the blade or its layers."""
-        return Passage.around(self.ring.front, self.left, *self.ends, self.name)
+        front = self.ring.front
+        return Passage.around(front, self.left, *self.ends, self.name, self.near, self.centre)
 
     @cached_property
     def rows_of_layers(self) -> int:

@@ -99,18 +99,19 @@ def _outside(
         smooth = replace(blade, corners=(), names=blade.names[:1])
         passage = replace(passage, domain=replace(passage.domain, loops=(smooth, *ends)))
     with timings.stage("first optimum"):
-        coarse = _optimised(template(passage, at_corners=corners == "at first"), FIRST, None)
+        coarse = passage_optimum(template(passage, at_corners=corners == "at first"), FIRST, None)
     with timings.stage("refine"):
         chords = Chords.of(coarse)
-        counts, times, metric = _counts(cascade, chords, cells, cell_size)
+        counts, times, metric = counts_of(cascade, chords, cells, cell_size)
         coarse = refine(coarse, counts, chords)
     with timings.stage("optimum"):
         for _ in range(PASSES):
-            coarse = _optimised(coarse, ITERATIONS, metric)
+            coarse = passage_optimum(coarse, ITERATIONS, metric)
     return coarse, times, metric
 
 
-def _optimised(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
+def passage_optimum(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
+    """Return the layout of a passage with its nodes where the functional is least, for sizes if given."""
     targets = metric.gradual(layout.mesh) if metric else None
     optimum = optimise(layout.mesh, iterations=iterations, targets=targets, weights=WEIGHTS)
     if not optimum.valid:
@@ -124,16 +125,16 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
     inner = heights_inside(layout, BLADE)
     rows = [ring_rows(mesh, BLADE, cascade.ring, cascade.rows_of_layers, cascade.layers, inner)]
     axis = np.array([passage.map.axis.real, passage.map.axis.imag])
-    for number, length, way in _straight(cascade):
+    for number, length, way in straight_rows(cascade):
         if length > 0.0:
             start = mesh.nodes[loop_nodes(mesh, number)]
-            steps = _steps(math.exp(log(heights_inside(layout, number)).mean()), length, metric.largest)
+            steps = row_steps(math.exp(log(heights_inside(layout, number)).mean()), length, metric.largest)
             nodes = start[:, None] + steps[:, None] * (way * axis)
             rows.append(Rows(number, nodes, np.zeros(len(start)), False))
     return rows
 
 
-def _straight(cascade: Cascade) -> list[tuple[int, float, float]]:
+def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
     """Return loop, length and direction of the rows to inlet and outlet."""
     passage = cascade.passage
     axial = passage.map.axial(passage.front.curve.points)
@@ -143,7 +144,7 @@ def _straight(cascade: Cascade) -> list[tuple[int, float, float]]:
     return [(INLET, before if before > some else 0.0, -1.0), (OUTLET, behind if behind > some else 0.0, 1.0)]
 
 
-def _steps(first: float, length: float, largest: float) -> Floats:
+def row_steps(first: float, length: float, largest: float) -> Floats:
     """Return distances from 0 to a length, of cells that grow from `first` to about `largest`."""
     cells = [min(first * ROW_GROWTH**0.5, length)]
     total = cells[0]
@@ -155,7 +156,7 @@ def _steps(first: float, length: float, largest: float) -> Floats:
     return np.asarray(steps)
 
 
-def _counts(
+def counts_of(
     cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
     """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
@@ -186,9 +187,9 @@ def _attached_cells(cascade: Cascade, chords: Chords, counts: Indices, metric: S
     for edge in np.flatnonzero(chords.wall):
         along[mesh.places.loop[chords.edges[edge][0]]] += counts[chords.chord[edge]]
     total = int(along[BLADE]) * cascade.rows_of_layers
-    for number, length, _ in _straight(cascade):
+    for number, length, _ in straight_rows(cascade):
         if length > 0.0:
             total += int(along[number]) * (
-                len(_steps(abs(cascade.left) / along[number], length, metric.largest)) - 1
+                len(row_steps(abs(cascade.left) / along[number], length, metric.largest)) - 1
             )
     return total

@@ -53,16 +53,20 @@ class Passage:
     outlet: float
 
     @classmethod
-    def around(cls, front: Loop, pitch: complex, inlet: float, outlet: float, name: str = "") -> Passage:
+    def around(
+        cls, front: Loop, pitch: complex, inlet: float, outlet: float, name: str = "",
+        near: tuple[float, float] = (NEAR, NEAR), centre: complex | None = None,
+    ) -> Passage:  # fmt: skip
         """Return the passage around a closed front; `pitch` points to the next blade, left of the flow.
 
-        `inlet` and `outlet` are the largest distances from the front at which blocks end.
+        `inlet` and `outlet` are the largest distances from the front at which blocks end, `near` their usual
+        distances in pitches; `centre` is that of the map.
         """
         points = front.curve.points
-        passage = PassageMap(pitch, inner_point(points))
+        passage = PassageMap(pitch, inner_point(points) if centre is None else centre)
         axial = passage.axial(points)
-        near = NEAR * abs(pitch)
-        first, last = float(axial.min()) - min(near, inlet), float(axial.max()) + min(near, outlet)
+        before, behind = min(near[0] * abs(pitch), inlet), min(near[1] * abs(pitch), outlet)
+        first, last = float(axial.min()) - before, float(axial.max()) + behind
         blade = Loop(_polygon(passage.forward(points)), front.corners, front.names)
         ends = [
             Loop(_polygon(passage.line(distance, _ROUND)), (), (side,))

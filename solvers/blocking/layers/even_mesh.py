@@ -52,12 +52,13 @@ def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:
 
     `held` (n,) nodes are fixed.
 
-    Other nodes on loops slide along them, except corners and nodes with a partner. `limit` is the logarithm
+    Other nodes on loops slide along them, except corners and periodic sides. `limit` is the logarithm
     of the largest ratio of neighbouring edges. If it cannot be reached, it is exceeded as little as good
     angles permit.
     """
     lines = consecutive_edges(mesh)
-    sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0) & (mesh.places.partner < 0)
+    sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0)
+    sliding[_periodic(mesh)] = False  # both nodes of a pair would have to move alike
     fixed = held | (mesh.wall_nodes & ~sliding)
     weight, before = EXCESS, np.inf
     for _ in range(ROUNDS):
@@ -72,6 +73,12 @@ def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:
         z, weight = _Patch.of(mesh, lines, z, free, _tangents(mesh, sliding & free), limit).evened(z, weight)
         mesh = on_loops(mesh.with_nodes(np.stack([z.real, z.imag], axis=1)), sliding & free)
     return mesh
+
+
+def _periodic(mesh: QuadMesh) -> Indices:
+    """Return the nodes of both periodic sides."""
+    images = np.flatnonzero(mesh.places.partner >= 0)
+    return np.concatenate([images, mesh.places.partner[images]])
 
 
 def _tangents(mesh: QuadMesh, sliding: Bools) -> Complexes:
