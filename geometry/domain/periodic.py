@@ -1,4 +1,4 @@
-"""Sides of a domain that are periodic: translated copies of each other, checked and matched by their names."""
+"""Periodic sides of a domain: translated copies of each other, checked and matched by their names."""
 
 from __future__ import annotations
 
