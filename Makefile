@@ -13,7 +13,7 @@ help:
 	@echo 'make test    the test suite; make test-fast: its core, in a minute'
 	@echo 'make test-clients  files written here, read by cgnscheck and OpenFOAM'
 	@echo 'make same    forty commands as other processors would run them: the same bits everywhere'
-	@echo 'make fuzz    every reader against hostile files, MINUTES=10 each; make kills: commands stopped at random'
+	@echo 'make fuzz    every reader and command against hostile files and options, MINUTES=10 each; make kills: commands stopped at random'
 	@echo 'make sanitize  kernels compiled to notice what they must not do, and the tests that run them'
 	@echo 'make lint    style, types and import contracts'
 	@echo 'make train   the shipped models again, from random shapes (resumable; about three hours on one core)'
@@ -102,12 +102,14 @@ sanitize: $(SANITIZED)/.built
 	@if grep -E -A 12 'runtime error: |AddressSanitizer' $(SANITIZED)/report; then exit 1; fi
 	@echo 'the sanitizers found nothing'
 
-# hostile files for MINUTES a reader, JOBS readers at a time; commands killed COUNT times
+# hostile files for MINUTES a reader, JOBS readers at a time, and hostile options and TOML for as long; commands
+# killed COUNT times
 MINUTES ?= 10
 JOBS ?= 1
 COUNT ?= 200
 fuzz: $(VENV)/.developing
 	$(BIN)/python benchmarks/fuzz.py --minutes $(MINUTES) --jobs $(JOBS)
+	$(BIN)/python benchmarks/fuzz_commands.py --minutes $(MINUTES)
 
 kills: $(VENV)/.developing
 	$(BIN)/python benchmarks/kills.py --count $(COUNT)
@@ -244,7 +246,7 @@ dist: wheel man
 
 man: $(VENV)/.installed
 	@mkdir -p dist
-	$(BIN)/python -m meshonet_cli.help.man > dist/meshonet.1
+	$(BIN)/python docs/command_pages.py > dist/meshonet.1
 
 clean:
 	rm -rf build demo *.egg-info $(VENV)/.installed $(VENV)/.developing $(VENV)/.documenting

@@ -45,8 +45,8 @@ number 6e6. *flap*: the flap of a section with slat and main element is rotated 
 either direction about a point near its leading edge, in a multi-block grid of about 25,000 cells with
 first-cell heights of 1e-5.
 
-- *deformations*: their number in brackets, of those with a valid new outline; {refused} others are left
-  out.
+- *deformations*: kind, with the number of deformations in brackets. Deformations whose new outline is not
+  valid are left out ({refused}).
 - *folded*: number of grids with folded cells, and the largest number of folded cells in one grid.
 - *first cell*: largest relative change of a first-cell height, over all wall nodes and deformations.
 - *angle*: largest increase of the largest cell corner angle of a grid, in degrees.

@@ -34,17 +34,17 @@ HEAD = """# GPU
 
 Use this page to find the speed of training and of batched neural operators on a GPU. For its use see
 [threads and GPUs](../guide/threads-and-gpu.md). `python benchmarks/bench_gpu.py --page
-docs/benchmarks/gpu.md` fills it in, in less than eight minutes:
+docs/benchmarks/gpu.md` measures these values in less than eight minutes:
 
-- training: shapes a second of `meshonet`, `fno2d` and `quad`, at two batch sizes, with and without
-  `--amp` and `--compile`, without the first epochs, and the most memory in use;
-- operators: grids a second of `airfoil-o`, `quad-general` and `hole-o` in batches, at 65 x 65 and 200 x 200
-  nodes, from boundaries in memory to nodes in memory, and the most memory in use;
-- equality: the largest distance of a node from that of the same operator on the CPU in double precision.
-  It has to be below 1e-10 of the domain.
+- *training*: shapes per second and peak memory of `meshonet`, `fno2d` and `quad`, for two batch sizes, with
+  and without `--amp` and `--compile`; the first epochs are not counted;
+- *operators*: grids per second and peak memory of `airfoil-o`, `quad-general` and `hole-o` in batches, with
+  65 x 65 and 200 x 200 nodes, from boundaries in memory to nodes in memory;
+- *equality*: the largest distance between the nodes on the GPU and those of the same operator on the CPU in
+  double precision. It must be below 1e-10 of the domain size.
 """
 
-NONE = "No GPU was available when this page was made: there are no figures yet."
+NONE = "No GPU was available when this page was made, so it has no values yet."
 EQUAL = 1e-10
 """The largest distance of nodes from those of the CPU."""
 

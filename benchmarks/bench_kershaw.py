@@ -30,7 +30,7 @@ HEAD = """# Kershaw's cube
 
 <!-- made by python benchmarks/bench_kershaw.py --page docs/benchmarks/kershaw.md -->
 
-Use this page to compare the minimiser found with `--energy shape`, and its CPU time, with TMOP, the mesh
+Use this page to compare grids made with `--energy shape`, and their CPU time, with those of TMOP, the mesh
 optimiser of [MFEM](https://mfem.org). The test case is Kershaw's map of the unit cube. It shears and
 compresses the cells in six layers; its parameter ε, the same for y and z, is 1 for the uniform grid, and
 smaller values compress the cells more.

@@ -28,12 +28,13 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids
+from meshonet.geometry.surface.hollows import hollows_of
 from meshonet.geometry.surface.surface import Surface, surface_of
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.hyperbolic.volume.graph import march_graph
 from meshonet.solvers.hyperbolic.volume.march import VolumeMarch, march_levels, march_surface
-from meshonet.solvers.hyperbolic.volume.settings import ATTEMPTS
-from meshonet.solvers.hyperbolic.volume.symmetry import in_planes, symmetry_planes
+from meshonet.solvers.hyperbolic.volume.settings import attempts_for
+from meshonet.solvers.hyperbolic.volume.symmetry import in_planes, symmetry_of
 
 HEAD = """# Volumes marched from surfaces: quality and time
 
@@ -151,10 +152,11 @@ def worst_growth(edges: Floats) -> float:
 
 def growth_as_marched(surface: Surface, march: VolumeMarch, attempt: int) -> float:
     """Return the worst growth of the march number `attempt`, before nodes are moved along lines."""
-    planes, inside = symmetry_planes(surface, march.symmetry)
+    planes, inside, _ = symmetry_of(surface, march.symmetry, march.distance(surface.size))
     nodes, steps = in_planes(surface, planes, inside), march.steps(surface.size)
-    smoothing = ATTEMPTS[attempt - 1]
-    graph = march_graph(surface, planes, inside, smoothing.splay, smoothing.boost)
+    hollows = hollows_of(surface)
+    smoothing = attempts_for(concave=len(hollows.edges) > 0)[attempt - 1]
+    graph = march_graph(surface, planes, inside, hollows.distance, smoothing.splay, smoothing.boost)
     levels = march_levels(surface, graph, nodes, steps, smoothing)
     return worst_growth(np.linalg.norm(np.diff(levels, axis=0), axis=1))
 

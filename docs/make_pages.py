@@ -13,11 +13,12 @@ import json
 from pathlib import Path
 from typing import Any
 
+from command_pages import reference
+
 from meshonet.api.models import models
-from meshonet.formats.catalogue import markdown
+from meshonet.formats.catalogue import rows
 from meshonet.geometry.families.family import FAMILIES, family
 from meshonet.solvers.neural.registry import HEADS, described, shipped
-from meshonet_cli.help.reference import reference
 
 DOCS = Path(__file__).parent
 REFERENCE = DOCS / "reference"
@@ -151,7 +152,9 @@ def said_of(path: Path) -> str:
 
 def formats_page() -> str:
     """Return reference/formats.md."""
-    return f"{FORMATS_HEAD}{markdown()}\n{FORMATS_REST}"
+    table = rows()
+    lines = [list(table[0]), ["---"] * len(table[0]), *(list(row.values()) for row in table)]
+    return FORMATS_HEAD + "".join(f"| {' | '.join(line)} |\n" for line in lines) + FORMATS_REST
 
 
 def models_page() -> str:
@@ -237,9 +240,9 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Variational grids have smaller cell corner angles than Winslow's grids. The network achieves\n"
-        f"{100 * gain['mean_gain']:.0f} % of this reduction in the mean over cells of each cell's largest\n"
-        f"angle, and {100 * gain['max_gain']:.0f} % in the largest angle of the grid.",
+        "Variational grids have smaller cell corner angles than Winslow's grids. The network\n"
+        f"achieves {100 * gain['mean_gain']:.0f} % of this reduction for the mean over all cells (of the\n"
+        f"largest angle of a cell), and {100 * gain['max_gain']:.0f} % for the largest angle of the grid.",
     ]
     return lines
 

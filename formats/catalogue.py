@@ -1,4 +1,4 @@
-"""The capabilities of all formats as a table: for terminals and for ``docs/reference/formats.md``."""
+"""The capabilities of all formats as a table."""
 
 from meshonet.formats.format import Format
 from meshonet.formats.registry import formats
@@ -10,12 +10,6 @@ _HEAD = ("format", "endings", "reads", "writes", "names", "3D", "blocks", "many"
 def rows() -> list[dict[str, str]]:
     """Return a row for each format, by the table's headings."""
     return [dict(zip(_HEAD, _row(record), strict=True)) for record in formats()]
-
-
-def markdown() -> str:
-    """Return the table in Markdown."""
-    lines = [_HEAD, ("---",) * len(_HEAD), *(_row(record) for record in formats())]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 def plain() -> str:

@@ -74,10 +74,10 @@ class Inputs:
     ----------
     words : the inputs.
     suffixes : endings of files that are taken from folders and archives.
-    pick : patterns (``naca*``), one of which a file's name, with or without its ending, must match to be
-        taken from a folder, an archive or a list; with a ``/`` its path there. Case does not matter.
-
-    shard : (k, n): `own` and `parts` take only every n-th input, from the k-th (from 1) on.
+    pick : patterns (``naca*``). Files in folders, archives and lists are used only if their name, with or
+        without extension, matches one of them; a pattern with a ``/`` is compared with the path. Case is
+        ignored.
+    shard : (k, n): `own` and `parts` yield only every n-th input, starting with the k-th, counted from 1.
 
     Raises InputError: standard input is named twice, or is a terminal; an invalid shard; patterns without a
     folder, archive or list to pick from.
@@ -156,7 +156,7 @@ class Inputs:
 
     @cached_property
     def _begun(self) -> int:
-        """How many inputs there are, of which no more than `_BEGINNING` are looked for."""
+        """Number of inputs; counting stops at `_BEGINNING`."""
         return len(list(islice(self, _BEGINNING)))
 
     def count(self) -> int | None:
@@ -172,7 +172,7 @@ class Inputs:
             yield entry, samples, 1 if samples is None else len(samples)
 
     def first(self) -> str:
-        """Return the first input; InputError where there is none."""
+        """Return the first input. Raises InputError: there is none."""
         first = next(iter(self))
         if isinstance(first, InputError):
             raise first

@@ -1,7 +1,7 @@
-"""Unstructured meshes that meshio writes: VTK's, surfaces for viewers, decks for solids. None are read.
+"""Unstructured meshes written by meshio: VTK, surfaces for viewers, input files of structural solvers.
 
-Seams are merged and cells counter-clockwise; formats of triangles get every quadrilateral cut along its
-shorter diagonal. https://github.com/nschloe/meshio
+These formats are not read. Seams are merged, and cells are counter-clockwise. For formats that only have
+triangles, every quadrilateral is divided along its shorter diagonal. https://github.com/nschloe/meshio
 """
 
 from collections.abc import Iterable
@@ -14,17 +14,17 @@ from meshonet.formats.mesh.unstructured import CELLS, Indices, Unstructured, uns
 from meshonet.geometry.blocks.grid import Grid
 
 _TRIANGLES = {"stl", "off"}
-"""Formats that have no quadrilaterals."""
+"""Formats without quadrilaterals."""
 _SETTINGS: dict[str, dict[str, object]] = {
     "stl": {"binary": True}, "ply": {"binary": True}, "abaqus": {"float_fmt": ".16e"},
     "medit": {"float_fmt": ".16e"},
     "xdmf": {"data_format": "XML"},
 }  # fmt: skip
-"""What meshio's writers are told so that no digit is lost."""
+"""Arguments of meshio's writers, for full precision."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids` in the format of meshio that `options` names."""
+    """Write the only grid of `grids` in the meshio format named by `options`."""
     import meshio
 
     (kind,) = options or {"stl"}
@@ -35,10 +35,10 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
 
 
 def write_vtu(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the only grid of `grids`: quads and lines, or of a volume hexahedra and quads.
+    """Write the only grid of `grids`: quadrilaterals and lines, or for a volume hexahedra and quadrilaterals.
 
-    The cell array ``part`` is 0 inside and counts the boundary's parts from 1, in the order of the grid's
-    sides south, east, north, west.
+    The cell array ``part`` is 0 inside. On the boundary it is the number of the patch, from 1, in the order
+    of the sides south, east, north, west.
     """
     import meshio
 

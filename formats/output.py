@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, whatever stops the program."""
+"""Atomic writing: an output file appears complete or not at all, even if the program is stopped."""
 
 import contextlib
 import errno
@@ -14,29 +14,28 @@ from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError
 
 PART_SUFFIX = ".meshonet-part"
-"""Ending of unfinished files, so that one left by a killed process can be recognised and removed."""
+"""Extension of unfinished files, by which a file left by a killed process is recognised and removed."""
 
 _PART = re.compile(
     rf"\.(?P<final>.*)\.(?P<machine>[0-9a-f]*-\d*)-(?P<process>\d+)-[0-9a-f]{{8}}{re.escape(PART_SUFFIX)}"
 )
-"""Name of an unfinished file: that of the finished one, its machine and process."""
+"""Name of an unfinished file: that of the finished one, and the machine and process that write it."""
 _swept: set[Path] = set()
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
-"""Errors of a disc that is full or may not be written to."""
+"""Errors of a disk that is full or read-only."""
 
 
 @contextlib.contextmanager
 def whole_file(destination: str, *, make_folder: bool = False, beside: bool = False) -> Iterator[Path]:
-    """Give a path to write to; what is there becomes `destination` when the block ends without an error.
+    """Return a context with a temporary path, which becomes `destination` if the block ends without an error.
 
-    The path lies beside the destination, so that the last step is one atomic rename; for ``-``
-    (standard output) and for devices and pipes it lies in the system's temporary folder and its bytes
-    are copied out at the end. On any exception, KeyboardInterrupt and SystemExit included, it is
-    removed and the destination is as it was. `make_folder` makes the destination's folder when it is missing;
-    `beside` says that other files will be written beside the path, which a stream has no room for.
+    The path is in the folder of the destination, so that the last step is one atomic rename. For ``-``
+    (standard output), devices and pipes it is in the system's temporary folder, and its bytes are copied at
+    the end. On any exception, including KeyboardInterrupt and SystemExit, it is removed and the destination
+    stays unchanged. `make_folder` creates a missing folder of the destination. `beside` announces further
+    files next to the path, which standard output cannot take.
 
-    Raises InputError: the destination is a folder, its folder is missing or may not be written, the disc is
-    full.
+    Raises InputError: the destination is a folder; its folder is missing or not writable; the disk is full.
 
     Examples
     --------
@@ -71,10 +70,10 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
 
 @contextlib.contextmanager
 def whole_folder(target: Path) -> Iterator[Path]:
-    """Give an empty folder beside `target` that takes its place, with all in it, when the block ends well.
+    """Return a context with an empty folder that replaces `target` if the block ends without an error.
 
-    A folder that is there already is swapped with the new one in one step where the system can do that,
-    and removed afterwards. On any exception the new one is removed and `target` is as it was.
+    An existing folder is exchanged with the new one in one step, where the system supports it, and then
+    removed. On any exception the new folder is removed and `target` stays unchanged.
     """
     _sweep(target.parent)
     part = _part_name(target)
@@ -93,7 +92,7 @@ def whole_folder(target: Path) -> Iterator[Path]:
 
 
 def _swapped(first: Path, second: Path) -> bool:
-    """Exchange two paths in one step; say whether the system could."""
+    """Exchange two paths in one step; return whether the system supports it."""
     import ctypes
 
     here, exchange = -100, 2  # AT_FDCWD, RENAME_EXCHANGE of linux/fs.h
@@ -112,7 +111,7 @@ def _remove(path: Path) -> None:
 
 @contextlib.contextmanager
 def _naming(name: str, only: set[int] | None = None) -> Iterator[None]:
-    """Turn an operating-system error (one of `only`) into one that names the destination."""
+    """Return a context in which operating-system errors (those in `only`) become errors with the `name`."""
     try:
         yield
     except OSError as error:
@@ -125,13 +124,13 @@ def _naming(name: str, only: set[int] | None = None) -> Iterator[None]:
 
 
 def final_name(part: Path) -> str:
-    """Return the name that the file at `part` will have, or has."""
+    """Return the name of the finished file for the temporary path `part`, or the name of a finished file."""
     match = _PART.fullmatch(part.name)
     return match["final"] if match else part.name
 
 
 def check_place(destination: Path, name: str) -> None:
-    """Raise InputError, called `name`, where no file can be: `destination` is a folder, or has none."""
+    """Raise InputError for `name` if `destination` is a folder, or its folder does not exist."""
     target = Path(os.path.realpath(destination))
     if target.is_dir():
         raise InputError("is a folder", "name a file in it", source=name)
@@ -156,10 +155,10 @@ def _part_name(target: Path) -> Path:
 
 @functools.cache
 def _machine() -> str:
-    """Return what tells the processes that this one can see from all others: boot and process namespace.
+    """Return an identifier of the boot and the process namespace, within which process numbers are unique.
 
-    Host names do not: machines that share a disc may be called alike, and so may containers. Empty where the
-    system does not say (it is Linux that does).
+    Host names are not sufficient, because machines that share a disk, and containers, may have equal names.
+    The result is empty if the system does not provide the identifier; Linux does.
     """
     try:
         boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip().replace("-", "")
@@ -169,9 +168,9 @@ def _machine() -> str:
 
 
 def _sweep(folder: Path) -> None:
-    """Remove what killed processes of this machine left unfinished in `folder`, once a process and folder.
+    """Remove unfinished files of killed processes of this machine in `folder`, once per process and folder.
 
-    Files of other machines and of earlier boots stay: whether their writers live cannot be seen from here.
+    Files of other machines and of earlier boots are kept, because their writers may still be running.
     """
     if folder in _swept or _machine() == "-":
         return

@@ -1,9 +1,9 @@
-"""Paths in space: points x, y, z, one a line, or lines and arcs in TOML.
+"""Paths in space: points x, y, z, one per line, or lines and arcs in TOML.
 
 ::
 
-    start = [0, 0, 0]          # where the path begins; may be left out
-    direction = [1, 0, 0]      # and where it leads; likewise
+    start = [0, 0, 0]          # first point of the path; optional
+    direction = [1, 0, 0]      # direction at the first point; optional
 
     [[pieces]]
     line = 2.0                 # length
@@ -11,9 +11,9 @@
     [[pieces]]
     arc = 90                   # degrees
     radius = 1.5
-    towards = [0, 1, 0]        # to which side
+    towards = [0, 1, 0]        # direction in which the arc bends
 
-A path through points is a smooth curve; one whose last point is its first is closed.
+A path through points is a smooth curve; it is closed if its last point equals the first.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ from meshonet.geometry.curves.path import Bend, Path, PiecedPath, SplinePath
 from meshonet.geometry.errors import InputError, in_source
 
 MOST_POINTS = 100_000
-"""A path of more points is a mistake."""
+"""Largest number of points; a longer path is taken for a mistake."""
 
 
 def path_of(text: str) -> Path:
-    """Return the path of a file, or of standard input for ``-``; its ending says whether it is TOML.
+    """Return the path of a file, or of standard input for ``-``; the extension determines whether it is TOML.
 
-    Raises InputError: a file that cannot be read; a line without three numbers, a key that is not known, a
-    value that does not fit, with the place.
+    Raises InputError, with the place: a file that cannot be read; a line without three numbers; an unknown
+    key; an invalid value.
     """
     source = open_source(text)
     with in_source(source.name):

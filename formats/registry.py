@@ -1,4 +1,4 @@
-"""Which format a file is in: by its name, by its ending, by its content."""
+"""Determines the format of a file by its name, its extension or its content."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -27,14 +27,14 @@ _DESIGNATIONS = {
     "naca:": "meshonet.geometry.shapes.airfoil.naca:naca",
     "circle:": "meshonet.geometry.shapes.circle:circle",
 }
-"""Words that begin the designation of a shape, and the function of what is behind them."""
+"""Prefixes of designations of shapes, and the functions that interpret the rest."""
 _LIKE_DESIGNATION = re.compile(r"([a-z]+)[\s:_-]*(\d[\w.-]*)", re.IGNORECASE)
 
 
 def format_named(name: str) -> Format:
-    """Return the format of a name: its own, with options (``gmsh:4.1,ascii``), an old name, or an ending.
+    """Return the format with the given name, which may have options (``gmsh:4.1,ascii``) or be an extension.
 
-    Raises InputError where there is no such format or option; the message lists those there are.
+    Raises InputError: no such format or option; the message lists the known ones.
     """
     word, _, options = name.lower().lstrip(".").partition(":")
     if word in _OLD_NAMES:
@@ -54,12 +54,15 @@ def format_named(name: str) -> Format:
 
 
 def formats() -> tuple[Format, ...]:
-    """Return every format."""
+    """Return all formats."""
     return tuple(TABLE.values())
 
 
 def format_of(source: Source, fmt: str | None = None) -> Format:
-    """Return the format of a source to be read; InputError where neither its ending nor its content tells."""
+    """Return the format of a source to be read.
+
+    Raises InputError: neither extension nor content determines it.
+    """
     if fmt:
         return format_named(fmt)
     claimed = BY_SUFFIX.get(source.suffix, [])
@@ -76,9 +79,9 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
 
 
 def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grids") -> Format:
-    """Return the format to write `path_text` in; standard output is HDF5 unless `fmt` says otherwise.
+    """Return the format in which to write `path_text`; standard output is HDF5 unless `fmt` is given.
 
-    Raises InputError: the ending is not known, or the format cannot be written with what `kind` says.
+    Raises InputError: an unknown extension, or a format that cannot store this `kind`.
     """
     if not path_text:
         remedy = "name a file, or - for standard output"
@@ -103,9 +106,9 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
 
 
 def picture_format(output: str, to_format: str | None = None) -> Format:
-    """Return the format of a picture by the ending of `output`; standard output (``-``) is a ``png``.
+    """Return the format of a picture by the extension of `output`; standard output (``-``) is ``png``.
 
-    Raises InputError: `output` is no picture.
+    Raises InputError: `output` is not a picture.
     """
     record = format_for_output(output, to_format or ("png" if output == "-" else None))
     if record.name not in ("png", "svg", "pdf", "html"):
@@ -113,14 +116,14 @@ def picture_format(output: str, to_format: str | None = None) -> Format:
     return record
 
 
-def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
+def read_shapes(text: str, fmt: str | None = None, *, surfaces: bool = False) -> Iterator[Shape]:
     """Return what can be sampled into boundaries: from a path, from ``-``, or a designation ``naca:2412``.
 
     The outer edges of a grid are boundaries, so a grid file serves too. Behind a record that cannot be read,
-    for which it raises, the iterator goes on with those that formats can still reach.
+    for which it raises, the iterator goes on with those that formats can still reach. With `surfaces` flat
+    patches of grids in space are surfaces, not grids in the plane.
 
-    Raises InputError: a source that cannot be opened, is of no known format, or is not right; named with its
-    place.
+    Raises InputError, with the place: a source that cannot be opened, has an unknown format or is invalid.
     """
     if is_designation(text):
         if fmt:
@@ -136,15 +139,23 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
     if record.read_grids is not None:
         from meshonet.formats.mesh.recover_topology import boundary_of
 
-        read = record.read_grids
+        read = partial(_surfaces, record.read_grids) if surfaces else record.read_grids
         return _Records(source, lambda: map(boundary_of, read(source)))
     raise _unreadable(record, source.name)
 
 
-def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
-    """Return the grids of a path or of ``-``; the iterator goes on behind a record as `read_shapes` does.
+def _surfaces(read: Callable[[Source], Iterator[Grid]], source: Source) -> Iterator[Grid]:
+    """Return grids of a source, flat patches as surfaces."""
+    from meshonet.formats.mesh.slices import surfaces_wanted
 
-    Raises InputError: as `read_shapes`; also a file that holds boundaries only.
+    with surfaces_wanted():
+        return iter(list(read(source)))
+
+
+def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
+    """Return an iterator over the grids of a path or of ``-``; like `read_shapes` it continues after errors.
+
+    Raises InputError: as `read_shapes`; also a file that has boundaries only.
     """
     if is_designation(text):
         remedy = f"make a grid of it first: meshonet infer {text} -o grid.vts"
@@ -166,12 +177,12 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
 
 
 def is_designation(text: str) -> bool:
-    """Return whether `text` is the designation of a shape, ``naca:2412`` or ``circle:0.5``, and no file."""
+    """Return whether `text` is the designation of a shape, ``naca:2412`` or ``circle:0.5``, not a file."""
     return text.lower().startswith(tuple(_DESIGNATIONS)) and not Path(text).exists()
 
 
 class _Records(Iterator[T]):
-    """The records of a source: names it in errors that do not, and turns the system's errors into ours."""
+    """Iterates over the records of a source; adds its name to errors, and converts errors of the system."""
 
     def __init__(self, source: Source, records: Callable[[], Iterator[T]]) -> None:
         self._source, self._read = source, records
@@ -193,7 +204,7 @@ class _Records(Iterator[T]):
 
 
 def _check_selection(source: Source, record: Format) -> None:
-    """Raise InputError where samples are selected of a file that is no dataset."""
+    """Raise InputError if samples are selected from a file that is not a dataset."""
     if record.name != "hdf5" and source.split:
         problem = f"{record.name} files do not say which samples are to {source.split}"
         raise InputError(problem, f"leave #{source.split} out", source=source.name)
@@ -207,10 +218,10 @@ def _known() -> str:
 
 
 def source_of(text: str) -> Source:
-    """Return the source of a name, as `open_source` does.
+    """Return the source with the given name, as `open_source`.
 
-    Raises InputError: as there; it knows designations that lack their colon, and formats that are only
-    written, whose files are empty, as OpenFOAM's cases have them.
+    Raises InputError: as `open_source`; with a special message for designations without a colon, and for
+    formats that can only be written.
     """
     try:
         return open_source(text)

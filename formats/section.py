@@ -1,4 +1,4 @@
-"""Cross-sections of what is swept: closed curves, domains, layouts, and planar grids, kept as they are."""
+"""Cross-sections for sweeping: closed curves, domains, layouts, and planar grids, which stay unchanged."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from meshonet.geometry.shapes.shape import Shape
 
 
 def read_sections(text: str, fmt: str | None = None) -> Iterator[Grid | Shape]:
-    """Yield the grids of a file, or the shapes of one without grids, of a layout and of a designation.
+    """Yield the grids of a file, or the shapes of a file without grids, of a layout or of a designation.
 
     Raises InputError: a file that cannot be read.
     """

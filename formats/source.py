@@ -1,4 +1,4 @@
-"""Where bytes come from: a file, standard input, or memory, under the name the user gave it."""
+"""Sources of bytes: a file, standard input or memory, with the name that the user gave."""
 
 import io
 import itertools
@@ -14,23 +14,23 @@ from meshonet.formats.archive import read_member, split_member
 from meshonet.geometry.errors import InputError, in_source, meant
 
 HEAD_BYTES = 65536
-"""How much of a file a format sees when it is asked whether the file is one of its own."""
+"""Number of bytes by which a format recognises its files."""
 _SELECTION = re.compile(
     r"(?P<split>train|test)|(?:(?P<kind>train|test),)?(?:(?P<number>\d{1,15})|(?P<range>\d{0,15}:\d{0,15}(?::[1-9]\d{0,14})?))"
 )
-"""What may stand behind ``#``: a split, a number, a range, or a split and one of these."""
+"""Text after ``#``: a split, a number, a range, or a split with one of these."""
 _MOST_NAMES = 10_000
-"""Names of files that are looked at for the nearest."""
+"""Largest number of file names that are compared to suggest one."""
 _LIKENESS = 0.75
-"""Of names of files, which share their endings."""
+"""Smallest similarity of a suggested file name; names share their extensions."""
 _MAPPED = 1 << 24
-"""Bytes from which a file is mapped into memory instead of read."""
+"""Size in bytes above which a file is mapped into memory instead of read."""
 _MOST_TEXT = 1 << 24
-"""Bytes of a text: an outline of a million points is a mistake."""
+"""Largest text file in bytes; more is taken for a mistake, for instance an outline of a million points."""
 _MOST_PIPED = 1 << 31
-"""Bytes of a stream, which are kept in memory."""
+"""Largest stream in bytes, which is kept in memory."""
 LARGEST = 1e150
-"""Coordinates in files must be below this, so that areas and their sums are finite."""
+"""Bound of coordinates in files, so that areas and their sums are finite."""
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,11 @@ class Source:
 
     Parameters
     ----------
-    name : what to call it in messages, printable.
+    name : printable name for messages.
     path : a regular file.
     data : the bytes themselves, for standard input, pipes and tests.
-    split : which samples of a dataset with a split to take, ``train`` or ``test``; empty takes all.
-    rows : which of these samples to take; None takes all.
+    split : split of a dataset from which samples are taken, ``train`` or ``test``; empty for all samples.
+    rows : selection among these samples; None for all.
     """
 
     name: str
@@ -54,45 +54,45 @@ class Source:
 
     @property
     def stem(self) -> str:
-        """File name without folder and ending; what a shape is called when its file does not say."""
+        """File name without folder and extension; the name of a shape if the file has none."""
         if self.path:
             return printable(self.path.stem)
         return "stdin" if self.name == "-" else Path(self.name).stem
 
     @property
     def suffix(self) -> str:
-        """File ending in lower case, dot included, or nothing."""
+        """Extension in lower case with its dot, or an empty text."""
         return (self.path or Path(self.name)).suffix.lower()
 
     @property
     def size(self) -> int:
-        """Length in bytes; every count that a header claims is compared with it before memory is taken."""
+        """Length in bytes; counts in a header are compared with it before memory is allocated."""
         return len(self.data) if self.data is not None else self._file().stat().st_size
 
     def read_bytes(self) -> bytes:
-        """Return everything."""
+        """Return all bytes."""
         return self.data if self.data is not None else self._file().read_bytes()
 
     def text_bytes(self) -> bytes:
-        """Return everything of a text. Raises InputError, before it is read: more than `_MOST_TEXT` bytes."""
+        """Return all bytes of a text file. Raises InputError before reading: more than `_MOST_TEXT` bytes."""
         if self.size > _MOST_TEXT:
             problem = f"{self.size >> 20} MB are too much for a text of points"
             raise InputError(problem, f"give a file below {_MOST_TEXT >> 20} MB", source=self.name)
         return self.read_bytes()
 
     def buffer(self) -> bytes | mmap.mmap:
-        """Return everything; of a large file its pages, which the system reads when they are looked at."""
+        """Return all bytes; a large file is mapped into memory."""
         if self.data is not None or self.size < _MAPPED:
             return self.read_bytes()
         with self.open() as stream:
             return mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
 
     def open(self) -> BinaryIO:
-        """Return a seekable binary stream; the caller closes it."""
+        """Return a seekable binary stream, which the caller must close."""
         return io.BytesIO(self.data) if self.data is not None else self._file().open("rb")
 
     def head(self, count: int = HEAD_BYTES) -> bytes:
-        """Return the first `count` bytes, or all when there are fewer."""
+        """Return the first `count` bytes, or all if there are fewer."""
         with self.open() as stream:
             return stream.read(count)
 
@@ -103,13 +103,14 @@ class Source:
 
 
 def open_source(text: str) -> Source:
-    """Return the source that a user named: a path, ``-`` for standard input, or ``FILE.zip/MEMBER``.
+    """Return the source with the given name: a path, ``-`` for standard input, or ``FILE.zip/MEMBER``.
 
-    ``FILE#test`` and ``FILE#train`` mean those samples of a dataset, ``FILE#7`` the one of that number (from
-    0 on), ``FILE#5:9`` and ``FILE#5::2`` those of a range, ``FILE#test,0:9`` both, unless there is a file
-    of that name. Standard input and pipes are read to their end, since formats need to look back and forth.
+    ``FILE#test`` and ``FILE#train`` select a split of a dataset, ``FILE#7`` the sample with index 7, counted
+    from 0, ``FILE#5:9`` and ``FILE#5::2`` a range, ``FILE#test,0:9`` a range of a split. A file whose name
+    contains the ``#`` takes precedence. Standard input and pipes are read to their end, because formats need
+    random access.
 
-    Raises InputError: no such file, a folder, a file that may not be read, nothing in it.
+    Raises InputError: no such file, a folder, a file that may not be read, an empty file.
     """
     split, rows = "", None
     if "#" in text:
@@ -131,7 +132,7 @@ def open_source(text: str) -> Source:
 def printable(text: str) -> str:
     r"""Return `text` with control characters and undecodable bytes written as escapes.
 
-    Names come from files and go to terminals; an escape sequence in one must not act there.
+    Names from files are printed on terminals, where an escape sequence must not take effect.
 
     Examples
     --------

@@ -1,27 +1,29 @@
-"""Stacks of sections in TOML: what ``meshonet stack`` reads.
+"""Stacks of cross-sections in TOML, the input of ``meshonet stack``.
 
 ::
 
     kind = "wing"              # wing, blade or duct
-    tip = "round"              # of a wing: round, flat or open
-    between = "linear"         # or smooth: cubics through three and more sections
-    tip_spacing = 0.001        # of a wing: last cells along the span, in chords of the last section
-    le_spacing = 0.002         # cells at leading edges, in chords of each section
-    te_spacing = 0.001         # and at trailing edges
+    tip = "round"              # tip of a wing: round, flat or open
+    between = "linear"         # interpolation: linear, or smooth by cubics through three or more sections
+    tip_spacing = 0.001        # length of a wing's last cells along the span, in chords of the last section
+    le_spacing = 0.002         # length of cells at leading edges, in chords of each section
+    te_spacing = 0.001         # length of cells at trailing edges, likewise
 
     [[sections]]               # the root
-    airfoil = "naca:2412"      # or a file, looked for beside this one
-    chord = 1.0                # in any unit, which is that of the grid
-    z = 0.0                    # along the span
+    airfoil = "naca:2412"      # or a file, relative to the folder of this one
+    chord = 1.0                # in the unit of the grid
+    z = 0.0                    # position along the span
 
     [[sections]]
     airfoil = "tip.dat"
     chord = 0.5
-    twist = -2.0               # degrees, nose up
-    about = 0.25               # chords behind the leading edge; [x, y] also sets a height
+    twist = -2.0               # degrees, positive nose up
+    about = 0.25               # centre of the twist, in chords behind the leading edge; or [x, y]
     z = 3.0
-    sweep = 20                 # degrees of the leading edge from the section before; or x = 1.09
-    dihedral = 5               # degrees, likewise; or y = 0.26
+    sweep = 20                 # sweep of the leading edge from the previous section in degrees; or x = 1.09
+    dihedral = 5               # dihedral from the previous section in degrees; or y = 0.26
+
+With ``kind = "row"`` it is a row of blades (`meshonet.formats.rows.read`).
 """
 
 from __future__ import annotations
@@ -29,33 +31,36 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from meshonet.formats.registry import is_designation, read_shapes
-from meshonet.formats.source import Source, open_source, printable
+from meshonet.formats.rows.read import read_row
+from meshonet.formats.section_shape import section_shape
+from meshonet.formats.source import Source, open_source
 from meshonet.formats.toml_table import Table, toml_table
-from meshonet.geometry.errors import InputError, in_source
+from meshonet.geometry.errors import in_source
+from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.section import QUARTER, Section
 from meshonet.geometry.sections.stack import BETWEEN, KINDS, TIPS, Stack
-from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
-from meshonet.geometry.shapes.outline import Outline
 
 _SPACINGS = "tip_spacing", "le_spacing", "te_spacing"
 _STEEPEST = 85.0
-"""Degrees of sweep and dihedral; at 90 the next section would be infinitely far away."""
+"""Largest sweep and dihedral in degrees; at 90 the next section would be infinitely far away."""
 
 
-def stack_of(text: str) -> Stack:
-    """Return the stack of a file, or of standard input for ``-``.
+def stack_of(text: str) -> Stack | Row:
+    """Return the stack or the row of a file, or of standard input for ``-``.
 
-    Raises InputError: a file that cannot be read or is no TOML; a key that is not known, or a value that does
-    not fit, with its place; a section's file that holds no airfoil or closed curve.
+    Raises InputError, with the place: a file that cannot be read or is not TOML; an unknown key; an invalid
+    value; a section whose file has no airfoil or closed curve.
     """
     return read_stack(open_source(text))
 
 
-def read_stack(source: Source) -> Stack:
-    """Return the stack of a source (see `stack_of`)."""
+def read_stack(source: Source) -> Stack | Row:
+    """Return the stack or the row of a source (see `stack_of`)."""
     with in_source(source.name):
         data = toml_table(source)
+        kind = data.word("kind", (*KINDS, "row"), "wing")
+        if kind == "row":
+            return read_row(data, source)
         data.only("kind", "tip", "between", *_SPACINGS, "name", "about", "sections")
         about = data.pair("about", QUARTER)
         sections: list[Section] = []
@@ -63,7 +68,7 @@ def read_stack(source: Source) -> Stack:
             sections.append(_section(row, about, sections, source.path.parent if source.path else Path()))
         return Stack(
             tuple(sections),
-            kind=data.word("kind", KINDS, "wing"),  # type: ignore[arg-type]
+            kind=kind,  # type: ignore[arg-type]
             tip=data.word("tip", TIPS, "round"),  # type: ignore[arg-type]
             between=data.word("between", BETWEEN, "linear"),  # type: ignore[arg-type]
             **{key: data.number(key) for key in _SPACINGS if key in data.data},
@@ -77,7 +82,7 @@ def _section(row: Table, about: tuple[float, float], before: list[Section], fold
     if before and not z > before[-1].z:
         raise row.error("z", f"{z:g} is not behind {before[-1].z:g}", "give sections in order of z")
     return Section(
-        _shape(row, folder),
+        section_shape(row, folder),
         row.positive("chord"),
         z,
         _along(row, "x", "sweep", z, before),
@@ -88,7 +93,7 @@ def _section(row: Table, about: tuple[float, float], before: list[Section], fold
 
 
 def _along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
-    """Return x or y of a section: its own, or by the angle of the line from the section before."""
+    """Return x or y of a section: the given value, or that given by an angle to the previous section."""
     if angle not in row.data:
         return row.number(direct, getattr(before[-1], direct) if before else 0.0)
     if direct in row.data:
@@ -99,23 +104,3 @@ def _along(row: Table, direct: str, angle: str, z: float, before: list[Section])
     if abs(degrees) > _STEEPEST:
         raise row.error(angle, f"{degrees:g} degrees", f"use -{_STEEPEST:g} to {_STEEPEST:g}")
     return float(getattr(before[-1], direct) + (z - before[-1].z) * math.tan(math.radians(degrees)))
-
-
-def _shape(row: Table, folder: Path) -> Airfoil | Outline:
-    """Return the shape of the file or designation that a section names."""
-    keys = [key for key in ("airfoil", "outline") if key in row.data]
-    remedy = "name one file, or a designation such as naca:2412"
-    if len(keys) != 1:
-        problem = "stands beside outline" if keys else "is missing"
-        raise row.error("airfoil", problem, remedy)
-    text = row.text(keys[0])
-    if not is_designation(text) and (folder / text).exists() and not (folder / text).is_file():
-        raise row.error(keys[0], f"{printable(text)} is no regular file", remedy)
-    try:
-        shapes = list(read_shapes(text if is_designation(text) else str(folder / text)))
-    except InputError as error:
-        where = ": ".join(filter(None, (error.source, error.place, error.problem)))
-        raise row.error(keys[0], where, error.remedy) from None
-    if len(shapes) != 1 or not isinstance(shapes[0], Airfoil | Outline):
-        raise row.error(keys[0], f"{printable(text)} is not one airfoil or closed curve", remedy)
-    return shapes[0]

@@ -1,9 +1,10 @@
-"""SU2's own mesh, ``.su2``: merged seams, counter-clockwise cells, a marker for every patch.
+"""SU2 meshes, ``.su2``: merged seams, counter-clockwise cells, one marker per patch.
 
-Written as text with 17 significant digits, nodes counted from 0; markers are words
-(`meshonet.formats.mesh.names`), since configuration files list them by name. How periodic markers are coupled
-stands there, so that a mesh of periodic sides begins with the line to copy. Of a mesh that is read, points,
-cells and the lines of the markers make boundaries. https://su2code.github.io/docs_v7/Mesh-File/
+Files are text with 17 significant digits; nodes are counted from 0. Marker names are single words
+(`meshonet.formats.mesh.names`), because configuration files list them by name. The transformation between
+periodic markers belongs into the configuration file; a mesh with periodic sides therefore starts with
+comments to copy there. Meshes that are read give boundaries, from points, cells and the edges of the markers.
+https://su2code.github.io/docs_v7/Mesh-File/
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -26,17 +27,17 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
 _KINDS = {2: "3", 4: "9", 8: "12"}
-"""VTK's numbers of lines, quadrilaterals and hexahedra by their nodes."""
+"""VTK's numbers of lines, quadrilaterals and hexahedra, by their number of nodes."""
 _NODES = {b"3": 2, b"5": 3, b"9": 4}
-"""Nodes of the kinds of cells that a plane mesh has, by VTK's numbers: lines, triangles, quadrilaterals."""
+"""Number of nodes of lines, triangles and quadrilaterals, by VTK's numbers."""
 _CUT = "the file is cut short: write it again"
-"""Remedy for a file that ends too soon."""
+"""Remedy for a truncated file."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the only grid of `grids`: quadrilaterals and lines under the names of its patches.
+    """Write the only grid of `grids`: quadrilaterals, and edges with the names of the patches as markers.
 
-    Of a volume, hexahedra and quadrilaterals.
+    A volume is written as hexahedra and quadrilaterals.
     """
     grid = only_one(grids, "a .su2 file")
     refuse_collapsed(grid, "a .su2 file")
@@ -58,7 +59,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 def _periodic(mesh: Unstructured, word: Mapping[str, str]) -> str:
     """Return, as comments, the lines of a configuration file that couple periodic markers.
 
-    SU2 takes them from there alone: two markers, centre and angles in degrees of the rotation, translation.
+    Each has two markers, centre and angles of the rotation in degrees, and the translation.
     """
     if not mesh.periodic:
         return ""
@@ -79,13 +80,13 @@ def _write_cells(stream: BinaryIO, nodes: Indices) -> None:
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes that the markers of a mesh enclose.
 
-    Raises InputError: no such mesh, one of three dimensions, markers that are no closed curves.
+    Raises InputError: no SU2 mesh; a three-dimensional mesh; markers that do not form closed curves.
     """
     yield from shapes_of(_Reader(source.read_bytes().split(b"\n")).surface(), source.stem)
 
 
 class _Reader:
-    """The lines of a mesh, keyword by keyword."""
+    """Reads the lines of a mesh, keyword by keyword."""
 
     def __init__(self, lines: list[bytes]) -> None:
         self._lines, self._at = lines, 0
@@ -132,7 +133,7 @@ class _Reader:
                 self._edges[self._tag] = np.concatenate([had, lines])
 
     def _elements(self, count: int) -> dict[int, Indices]:
-        """Return node numbers by the count of nodes of a cell."""
+        """Return node numbers, by the number of nodes of a cell."""
         if count == 0:
             return {}
         first = self._lines[self._at].split(None, 1) if self._at < len(self._lines) else []
@@ -169,7 +170,7 @@ class _Reader:
         return self._lines[self._at : self._at + count]
 
     def _rows(self, count: int) -> Floats:
-        """Return the numbers (count, m) of the next lines, which have equally many."""
+        """Return the numbers (count, m) in the next lines, which must have equally many."""
         lines = self._ahead(count)
         values = parsed(b"\n".join(lines))
         width = len(lines[0].split()) if lines else 2

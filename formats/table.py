@@ -1,4 +1,4 @@
-"""Every format that is read or written. Only the functions of those in use are loaded."""
+"""Table of all formats. Functions of a format are loaded when they are first used."""
 
 import re
 from collections.abc import Iterable
@@ -22,16 +22,16 @@ _MESHIO = {
     ".dato": "permas", ".post": "permas", ".mdpa": "mdpa", ".med": "med", ".vol": "netgen",
     ".xdmf": "xdmf", ".xmf": "xdmf",
 }  # fmt: skip
-"""meshio's names of what it writes for each ending."""
+"""meshio's name of the format for each extension."""
 
 
 def holds(marks: tuple[bytes, ...], head: bytes) -> bool:
-    """Say whether all of `marks` stand at the start of a file."""
+    """Return whether `head`, the start of a file, contains all `marks`."""
     return all(mark in head[:4096] for mark in marks)
 
 
 def begins(pattern: bytes, head: bytes) -> bool:
-    """Say whether the start of a file matches a regular expression."""
+    """Return whether `head`, the start of a file, matches a regular expression."""
     return re.match(pattern, head, re.DOTALL | re.IGNORECASE) is not None
 
 
@@ -45,12 +45,12 @@ def _format(name: str, endings: str, description: str, functions: str, **more: A
 
 
 def _write(write: Any, name: str, path: Path, grids: Iterable[Grid], *rest: Any, **more: Any) -> None:
-    """Write grids by `write`, of the format `name`, once each of them is one that the format can hold."""
+    """Write grids by the function `write` of the format `name`, which must be able to store each of them."""
     write(path, map(partial(_held, TABLE[name]), grids), *rest, **more)
 
 
 def _held(record: Format, grid: Grid) -> Grid:
-    """Return the grid, or raise InputError: the format cannot hold it."""
+    """Return the grid. Raises InputError: the format cannot store it."""
     name = record.name
     for kind in kinds_in_space(grid) if grid.form != "plane" else ():
         if kind not in record.space:
@@ -174,8 +174,12 @@ _FORMATS: tuple[Format, ...] = (
 TABLE: dict[str, Format] = {}
 """Formats by name."""
 BY_SUFFIX: dict[str, list[Format]] = {}
-"""Formats by ending. Where several share an ending, writing takes the first that can, and reading asks each
-whether the content is its own, so the strict ones stand first; the last one answers for what none knows."""
+"""Formats by extension.
+
+If several share an extension, the first one that can write is used for output. For input,
+
+each checks the content, strict formats first; the last one is used if none recognises it.
+"""
 for _record in _FORMATS:
     TABLE[_record.name] = _record
     for _suffix in _record.suffixes:

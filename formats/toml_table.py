@@ -1,4 +1,4 @@
-"""Tables of TOML, whose values are checked before they are used."""
+"""Tables of TOML. Values are checked before they are used."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from meshonet.formats.source import Source, printable
 from meshonet.geometry.errors import InputError
 
 _SHOWN = 40
-"""Characters of a value that an error shows."""
+"""Number of characters of a value that an error message shows."""
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table and where it stands, ``sections[1]``; InputError names the key of a value that does not fit."""
+    """A table and its place, such as ``sections[1]``; InputError names the key of an invalid value."""
 
     data: dict[str, Any]
     place: str = ""
@@ -26,13 +26,13 @@ class Table:
         return InputError(problem, remedy, place=f"{self.place}.{key}" if self.place else key)
 
     def only(self, *keys: str) -> None:
-        """Raise InputError for a key that is none of these."""
+        """Raise InputError for a key that is not one of `keys`."""
         for key in self.data:
             if key not in keys:
                 raise self.error(printable(key), "is not known", "use " + ", ".join(keys))
 
     def rows(self, key: str, least: int = 1) -> list[Table]:
-        """Return an array of tables with `least` or more."""
+        """Return an array of at least `least` tables."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows) or len(rows) < least:
             many = "one or more" if least == 1 else f"{least} or more"
@@ -40,13 +40,13 @@ class Table:
         return [Table(row, f"{key}[{k}]") for k, row in enumerate(rows)]
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Return a finite number, `default` where there is none."""
+        """Return a finite number, or `default` if the key is missing."""
         if key not in self.data and default is not None:
             return default
         return self._number(key, self.data.get(key))
 
     def positive(self, key: str) -> float:
-        """Return a number above 0, and so far above it that products with others are."""
+        """Return a positive number that is not so small that products with it underflow."""
         value = self.number(key)
         if not value > 0:
             raise self.error(key, f"{value:g} is not positive", "use more than 0")
@@ -63,7 +63,7 @@ class Table:
         return value
 
     def word(self, key: str, known: tuple[str, ...], default: str) -> str:
-        """Return one of the words that are `known`."""
+        """Return one of the `known` words."""
         value = self.text(key, default)
         if value not in known:
             raise self.error(key, f"{_shown(value)} is not known", "use " + ", ".join(known))
@@ -72,14 +72,14 @@ class Table:
     def vector(
         self, key: str, default: tuple[float, float, float] | None = None
     ) -> tuple[float, float, float]:
-        """Return three finite numbers, `default` where there are none."""
+        """Return three finite numbers, or `default` if the key is missing."""
         if key not in self.data and default is not None:
             return default
         x, y, z = self._numbers(key, 3)
         return x, y, z
 
     def pair(self, key: str, default: tuple[float, float]) -> tuple[float, float]:
-        """Return two finite numbers; a single one stands for itself and 0."""
+        """Return two finite numbers; a single number stands for itself and 0."""
         if key not in self.data:
             return default
         if not isinstance(self.data[key], list):
@@ -104,10 +104,7 @@ class Table:
 
 
 def toml_table(source: Source) -> Table:
-    """Return the top table of a source.
-
-    Raises InputError: it is no TOML; says where.
-    """
+    """Return the top-level table of a source. Raises InputError, with the place: it is not TOML."""
     try:
         return Table(tomllib.loads(source.text_bytes().decode("utf-8")))
     except (ValueError, RecursionError) as error:  # also integers of more digits than Python reads

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 
 class MeshonetError(Exception):
-    """Base class of every error that a user can cause or must be told of."""
+    """Base class of all errors with a message for the user."""
 
     exit_code = 2
 
@@ -108,7 +108,11 @@ def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
     "give --far-field as 'a-{index}'"
     """
     name = r"[a-z][a-z0-9_]*"
-    return re.sub(rf"\{{(\{{{name}\}})\}}|\{{({name})\}}", lambda match: match[1] or spelling(match[2]), text)
+    return re.sub(
+        rf"\{{(\{{{name}(?::[^{{}}]*)?\}})\}}|\{{({name})\}}",
+        lambda match: match[1] or spelling(match[2]),
+        text,
+    )
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@
     grid.quality()["max_angle"].max
     grid.write("naca0012.cgns")
 
-Functions are named after the commands of the program, and their parameters after its options, with
-underscores. What is here is loaded when it is first used: importing the package costs nothing.
+Functions have the names of the commands, and parameters those of the options, with underscores. Each name is
+loaded when it is first used, so that importing the package takes no time.
 """
 
 from importlib import import_module
@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.errors import SolverError as SolverError
     from meshonet.geometry.layout.layout import Layout as Layout
     from meshonet.geometry.quality.report import QualityReport as QualityReport
+    from meshonet.geometry.rows.row import Row as Row
     from meshonet.geometry.sections.section import Section as Section
     from meshonet.geometry.sections.stack import Stack as Stack
     from meshonet.geometry.spacing.sampling import Sampling as Sampling
@@ -60,6 +61,7 @@ if TYPE_CHECKING:
     from meshonet.solvers.pipeline.parameters import grid_request as grid_request
     from meshonet.solvers.pipeline.request import GridRequest as GridRequest
     from meshonet.solvers.pipeline.result import Result as Result
+    from meshonet.solvers.rows.request import RowRequest as RowRequest
     from meshonet.solvers.stacking.request import StackRequest as StackRequest
     from meshonet.solvers.sweeping.sweep import Sweep as Sweep
 
@@ -87,6 +89,7 @@ _MODULES = {
     "meshonet.geometry.layout.layout": ("Layout",),
     "meshonet.geometry.quality.report": ("QualityReport",),
     "meshonet.geometry.sections.section": ("Section",),
+    "meshonet.geometry.rows.row": ("Row",),
     "meshonet.geometry.sections.stack": ("Stack",),
     "meshonet.geometry.blocks.revolve": ("Revolution",),
     "meshonet.geometry.spacing.sampling": ("Sampling",),
@@ -95,6 +98,7 @@ _MODULES = {
     "meshonet.solvers.pipeline.parameters": ("grid_request",),
     "meshonet.solvers.pipeline.request": ("GridRequest",),
     "meshonet.solvers.pipeline.result": ("Result",),
+    "meshonet.solvers.rows.request": ("RowRequest",),
     "meshonet.solvers.stacking.request": ("StackRequest",),
     "meshonet.solvers.sweeping.sweep": ("Sweep",),
 }
@@ -103,7 +107,7 @@ __all__ = ["__version__", *_HOMES]
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name, loaded now (PEP 562)."""
+    """Return a public name, which is loaded at its first use (PEP 562)."""
     if name not in _HOMES:
         raise AttributeError(f"module 'meshonet' has no attribute {name!r}")
     value = globals()[name] = getattr(import_module(_HOMES[name]), name)

@@ -1,10 +1,10 @@
-"""Functions of upper rooms that methods in `geometry` call: `meshonet/__init__.py` puts them here.
+"""Functions of higher rooms that methods in `geometry` call; `meshonet/__init__.py` registers them here.
 
-So ``Grid.write`` is at hand wherever there is a grid, and `geometry` imports nothing from above.
+Thus ``Grid.write`` is available for every grid, although `geometry` imports nothing from higher rooms.
 """
 
 from collections.abc import Callable
 from typing import Any
 
 ABOVE: dict[str, Callable[..., Any]] = {}
-"""``write`` and ``measure``, each loaded when it is first called."""
+"""``write`` and ``measure``; each loads its module at the first call."""

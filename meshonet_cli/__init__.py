@@ -1,4 +1,4 @@
-"""The command line: words to calls."""
+"""The command line: from words to function calls."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""The program: ``meshonet``, or ``python -m meshonet_cli``."""
+"""The program ``meshonet``, or ``python -m meshonet_cli``."""
 
 import gc
 import sys
@@ -6,7 +6,7 @@ from typing import NoReturn
 
 
 def main() -> NoReturn:
-    """Run the command line; an interrupt while it is being loaded ends it as quietly as a later one."""
+    """Run the command line; an interrupt during loading ends it as silently as a later one."""
     try:
         from meshonet_cli.app import main as run
 

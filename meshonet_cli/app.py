@@ -31,7 +31,7 @@ from meshonet_cli.commands import COMMANDS, Command
 from meshonet_cli.terminal.stopping import LINES, hide_warnings, install
 
 INTERRUPTED, BAD_INPUT = 130, 2
-"""Exit codes: of Ctrl-C as shells have it, and of input that cannot be used."""
+"""Exit codes for Ctrl-C, by the convention of shells, and for invalid input."""
 _SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 
 
@@ -46,20 +46,20 @@ def options(
         bool, typer.Option("--version", help="Show the version and exit.", callback=_version, is_eager=True)
     ] = False,
 ) -> None:
-    """Structured grids from a boundary: algebraic, elliptic, and by neural operator."""
+    """Make structured grids from a boundary by algebraic, elliptic and other methods, or neural operators."""
 
 
 class Plain(typer.core.TyperCommand):
-    """A command whose usage line says ``GRID...``, where typer's says ``{GRID}``, and its help has groups."""
+    """A command with ``GRID...`` in its usage line, instead of typer's ``{GRID}``, and with option groups."""
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
-        """Return the words of the usage line; every argument of ours can be given more than once."""
+        """Return the words of the usage line; all arguments of our commands may be repeated."""
         pieces = super().collect_usage_pieces(ctx)
         words = [piece.strip("{}") for piece in pieces]
         return [word if word == "[OPTIONS]" or "..." in word else f"{word}..." for word in words]
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
-        """Write the arguments, then the options by groups."""
+        """Write the arguments, then the options by group."""
         from meshonet_cli.options.groups import GROUPS, IO  # which a list of all commands does not need
 
         groups: dict[str, list[tuple[str, str]]] = {"Arguments": [], **{group: [] for group in GROUPS}}
@@ -76,9 +76,9 @@ class Plain(typer.core.TyperCommand):
 
 
 def application(commands: Sequence[Command] = COMMANDS, *, overview: bool = False) -> Any:
-    """Return the parser of `commands`, or of the only one's words; an `overview` has names and summaries.
+    """Return the parser of `commands`, or of a single command; an `overview` has only names and summaries.
 
-    Commands are loaded for their options, which takes a tenth of a second for all of them.
+    Otherwise all commands are loaded for their options, which takes a tenth of a second.
     """
     app = typer.Typer(
         add_completion=len(commands) > 1,
@@ -172,7 +172,7 @@ def _explained(error: Exception, name: str) -> str:
 
 
 def _nearest(error: Exception, message: str) -> str:
-    """Return the parser's message with the nearest option or choice."""
+    """Return the parser's message with a suggestion of the nearest option or choice."""
     from meshonet.geometry.errors import meant
 
     if hasattr(error, "possibilities"):  # of those that there are, for an option that there is not
@@ -190,7 +190,7 @@ def _interrupted() -> int:
 
 
 def _unread() -> int:
-    """Return the exit code when whoever read our output has gone: that is no error of ours."""
+    """Return the exit code after the reader of the output has closed it, which is not an error."""
     _silence_stdout()
     return 0
 

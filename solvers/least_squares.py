@@ -1,4 +1,4 @@
-"""Sums of squares of residuals in few unknowns each, minimised by steps of Gauss-Newton."""
+"""Gauss-Newton steps for sums of squares of residuals that depend on few unknowns each."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from meshonet.solvers.sparse import SparsePattern
 
 @dataclass(frozen=True)
 class Residuals:
-    """Residuals of one kind, near where the unknowns are.
+    """Residuals of one kind, linearised at the current unknowns.
 
     Parameters
     ----------
-    derivatives : (k, m) by the unknowns of each.
-    weight : (k,) second derivatives of the sum by the residuals.
-    slope : (k,) first ones.
+    derivatives : (k, m) derivatives of each residual with respect to its m unknowns.
+    weight : (k,) second derivatives of the sum with respect to the residuals.
+    slope : (k,) first derivatives of the sum with respect to the residuals.
     """
 
     derivatives: Floats
@@ -30,12 +30,12 @@ class Residuals:
 
 
 class NormalEquations:
-    """The equations of a step, factored in an order that serves every step.
+    """The normal equations, with an elimination order that is used in every step.
 
     Parameters
     ----------
-    size : the unknowns, n.
-    kinds : for each kind of residuals the numbers (k, m) of the unknowns of each, -1 for what stays.
+    size : number of unknowns, n.
+    kinds : for each kind of residuals the indices (k, m) of the unknowns, -1 for values that are held fixed.
 
     >>> equations = NormalEquations(1, [np.array([[0], [0]])])
     >>> two = Residuals(np.array([[1.0], [1.0]]), np.ones(2), np.array([-1.0, -3.0]))
@@ -58,10 +58,10 @@ class NormalEquations:
         self._pattern = SparsePattern(size, np.concatenate(rows), np.concatenate(columns))
 
     def step(self, residuals: Sequence[Residuals], diagonal: Floats, slope: Floats) -> Floats:
-        """Return the moves (n,) of the unknowns.
+        """Return the changes (n,) of the unknowns.
 
-        `diagonal` (n,) and `slope` (n,) are second and first derivatives of what depends on one unknown.
-        Raises SolverError: the equations are singular.
+        `diagonal` (n,) and `slope` (n,) are second and first derivatives of the terms that depend on a single
+        unknown. Raises SolverError: the equations are singular.
         """
         values, right = [diagonal], -slope
         for unknowns, pairs, each in zip(self._kinds, self._pairs, residuals, strict=True):

@@ -1,4 +1,4 @@
-"""Cycles of iterations, for whoever listens while they run. Usually nobody does, and it costs nothing."""
+"""Reports the cycles of iterations to listeners; without listeners this costs no time."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ _listeners: Listeners[Cycle] = Listeners("cycles")
 
 
 def listening(listener: Listener) -> AbstractContextManager[None]:
-    """Call `listener` after every cycle that runs inside the block, in the thread of the cycle."""
+    """Return a context in which `listener` is called after every cycle, in the thread of the cycle."""
     return _listeners.added(listener)
 
 
 def listened_to() -> bool:
-    """Return whether anybody listens."""
+    """Return whether there are listeners."""
     return bool(_listeners)
 
 
@@ -51,7 +51,7 @@ def cycle_ended(
     method: str, nodes: Floats, number: int, residual: float, change: float | None = None,
     functional: float | None = None,
 ) -> None:  # fmt: skip
-    """Call the listeners after a cycle of `method` that left the grid as `nodes` (ni, nj, 2)."""
+    """Call the listeners after a cycle of `method` with the resulting `nodes` (ni, nj, 2)."""
     if not _listeners:
         return
     counts = nodes.shape[0], nodes.shape[1]
@@ -75,7 +75,7 @@ class HistoryRow:
 
 
 class History:
-    """A listener that keeps the cycles of one solve."""
+    """A listener that records the cycles of one solution."""
 
     def __init__(self) -> None:
         self._rows: list[HistoryRow] = []
@@ -83,7 +83,7 @@ class History:
         self._attempt = 0
 
     def __call__(self, cycle: Cycle) -> None:
-        """Keep a cycle."""
+        """Record a cycle."""
         last = self._rows[-1] if self._rows else None
         if last is None or (last.ni, last.nj) != (cycle.ni, cycle.nj):
             self._attempt = 0
@@ -94,7 +94,10 @@ class History:
         )
 
     def of(self, solution: Solution) -> tuple[HistoryRow, ...]:
-        """Return the rows of the method of `solution`; for one without cycles, a row of its result."""
+        """Return the rows of the method of `solution`.
+
+        For a method without cycles, one row with its result.
+        """
         rows = tuple(row for row in self._rows if row.method == solution.method)
         if rows:
             return rows

@@ -1,4 +1,4 @@
-"""What a solver returns: the grid, how the solve ended and what it took."""
+"""Result of a solver: the grid, the outcome of the computation, and its cost."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -15,7 +15,7 @@ P = ParamSpec("P")
 
 
 class Outcome(Enum):
-    """How a solve ended; the value is what to try next, empty when nothing is amiss."""
+    """How a computation ended; the value is advice on what to try next, empty after success."""
 
     DONE = ""
     UNCONVERGED = "the iteration stopped short of its tolerance: allow more {max_cycles} or a larger {tol}"
@@ -23,7 +23,7 @@ class Outcome(Enum):
 
     @property
     def message(self) -> str:
-        """What to try next, with parameters by their names in Python."""
+        """Advice on what to try next, with parameters by their names in Python."""
         return spelled(self.value)
 
 
@@ -34,16 +34,16 @@ class Solution:
     Parameters
     ----------
     grid : the grid.
-    method : what made it: ``tfi``, ``winslow``, ``operator`` ...
-    model : name of the operator, when one was used.
-    outcome : how the solve ended.
-    residual : norm of the residual over that of the TFI start, when the method has one.
-    cycles : cycles on the finest level, when the method has them.
-    path : the stages after the method itself, e.g. the guard's ``("repair",)``.
+    method : name of the method: ``tfi``, ``winslow``, ``operator`` ...
+    model : name of the neural operator, if one was used.
+    outcome : how the computation ended.
+    residual : norm of the residual relative to that of the TFI grid, if the method has one.
+    cycles : number of cycles on the finest level, if the method has them.
+    path : stages after the method itself, such as ``("repair",)`` of the guard.
     seconds : wall-clock seconds by stage.
-    notes : sentences a user should read, e.g. that a restart was needed.
-    boundary : of the grid, when it is not the one that was given: a march ends at a far field of its own.
-    first_cells : heights of first cells that were asked for, by side, in the unit of the boundary.
+    notes : sentences for the user, for example about a restart.
+    boundary : boundary of the grid if it differs from the given one: marching ends at its own far field.
+    first_cells : prescribed first-cell heights by side, in the unit of the boundary.
     """
 
     grid: Grid
@@ -60,7 +60,7 @@ class Solution:
 
 
 def timed(solve: Callable[P, Solution]) -> Callable[P, Solution]:
-    """Have a function say in its solution how many seconds it took, as the stage ``grid``."""
+    """Return `solve` with the seconds of each call in its solution, as the stage ``grid``."""
 
     @wraps(solve)
     def run(*args: P.args, **kwargs: P.kwargs) -> Solution:

@@ -1,4 +1,4 @@
-"""Sparse symmetric systems of equations, factored without pivoting."""
+"""Sparse symmetric linear systems, factored without pivoting."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from meshonet.kernels._native import sparse_analyse, sparse_factor, sparse_multi
 
 
 class SparsePattern:
-    """Where a symmetric matrix has entries, and the order in which its unknowns are eliminated.
+    """Positions of the entries of a symmetric matrix, and the elimination order of its unknowns.
 
-    It is made once and serves every matrix with these entries. The order is one of approximate minimum degree
-    (Amestoy, Davis, Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886-905).
+    One pattern serves all matrices with these entries. The order is approximate minimum degree (Amestoy,
+    Davis, Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886-905).
 
     Parameters
     ----------
-    size : rows, n.
-    rows, columns : (m,) place of each entry, (i, j) standing for (j, i) too: give one of the two. Entries
-        at the same place add up.
+    size : number of rows, n.
+    rows, columns : (m,) position of each entry. (i, j) includes (j, i), so only one of the two may be given.
+        Entries at the same position are added.
 
     >>> pattern = SparsePattern(2, np.array([0, 0, 1]), np.array([0, 1, 1]))
     >>> pattern.factor(np.array([2.0, 1.0, 2.0])).solve(np.array([3.0, 3.0])).tolist()
@@ -38,16 +38,16 @@ class SparsePattern:
 
     @property
     def fill(self) -> int:
-        """Entries of the factor below its diagonal."""
+        """Number of entries of the factor below its diagonal."""
         return int(self._arrays[4][-1])
 
     def matrix(self, values: Floats) -> SparseMatrix:
-        """Return the matrix whose entries have these values (m,)."""
+        """Return the matrix with these values (m,) of the entries."""
         summed = np.bincount(self._slot, np.asarray(values, dtype=np.float64), self._entries)
         return SparseMatrix(self, np.asarray(summed, dtype=np.float64))
 
     def factor(self, values: Floats) -> Factor:
-        """Return the factors of the matrix whose entries have these values (m,); see `SparseMatrix`."""
+        """Return the factors of the matrix with these values (m,) of the entries; see `SparseMatrix`."""
         return self.matrix(values).factor()
 
 
@@ -57,20 +57,20 @@ class SparseMatrix:
 
     pattern: SparsePattern
     values: Floats
-    """Of the distinct entries, in an order of the pattern's own."""
+    """Values of the distinct entries, in the internal order of the pattern."""
 
     def times(self, x: Floats) -> Floats:
-        """Return A x of x (n,) or (n, k)."""
+        """Return the product A x, where x is (n,) or (n, k)."""
         columns = np.ascontiguousarray(x, dtype=np.float64).reshape(self.pattern.size, -1)
         product = np.empty_like(columns)
         sparse_multiply(self.pattern._arrays, self.values, columns, product)
         return product.reshape(np.shape(x))
 
     def factor(self) -> Factor:
-        """Return A = P^T L D L^T P, as positive definite and quasi-definite matrices have it.
+        """Return A = P^T L D L^T P, which exists for positive definite and quasi-definite matrices.
 
-        A quasi-definite matrix is ((K, C^T), (C, -E)), K and E positive definite: Vanderbei, SIAM J. Optim. 5
-        (1995) 100-113.
+        A quasi-definite matrix is ((K, C^T), (C, -E)) with positive definite K and E: Vanderbei, SIAM J.
+        Optim. 5 (1995) 100-113.
 
         Raises SolverError: a pivot is zero or not finite.
         """
@@ -86,16 +86,16 @@ class Factor:
 
     pattern: SparsePattern
     arrays: tuple[NDArray[np.intc], Floats, Floats]
-    """Rows and numbers of L, column by column, without the ones of its diagonal, and pivots (n,)."""
+    """Row indices and values of L, column by column, without its unit diagonal, and pivots (n,)."""
 
     def solve(self, right: Floats) -> Floats:
-        """Return x of A x = right, both (n,) or (n, k)."""
+        """Return the solution x of A x = right, both (n,) or (n, k)."""
         x = np.array(right, dtype=np.float64, order="C").reshape(self.pattern.size, -1)
         sparse_solve(self.pattern._arrays, self.arrays, x)
         return x.reshape(np.shape(right))
 
     def refine(self, matrix: SparseMatrix, right: Floats, steps: int) -> Floats:
-        """Return the solution for a matrix close to A, by `steps` of iterative refinement."""
+        """Return the solution for a matrix close to A, after `steps` of iterative refinement."""
         x = self.solve(right)
         for _ in range(steps):
             x += self.solve(right - matrix.times(x))

@@ -1,4 +1,7 @@
-"""Stages of long work, and steps of these, for whoever watches. Usually nobody does, and it costs nothing."""
+"""Reports the stages of a long computation, and their steps, to watchers.
+
+Without watchers this costs no time.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ Event = TypeVar("Event")
 
 
 class Listeners(Generic[Event]):
-    """Functions of an event, of the thread that they were added in."""
+    """Functions that are called with an event, separate for each thread."""
 
     def __init__(self, name: str) -> None:
         self._all: ContextVar[tuple[Callable[[Event], None], ...]] = ContextVar(name, default=())
@@ -27,13 +30,13 @@ class Listeners(Generic[Event]):
         return bool(self._all.get())
 
     def __call__(self, event: Event) -> None:
-        """Call them all."""
+        """Call all of them."""
         for listener in self._all.get():
             listener(event)
 
     @contextlib.contextmanager
     def added(self, listener: Callable[[Event], None]) -> Iterator[None]:
-        """Have `listener` among them inside the block."""
+        """Return a context in which `listener` is one of them."""
         token = self._all.set((*self._all.get(), listener))
         try:
             yield
@@ -43,7 +46,7 @@ class Listeners(Generic[Event]):
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage that has begun, or gone on by a step."""
+    """A stage that has started or advanced by a step."""
 
     name: str  # as in the seconds by stage of results
     unit: str = ""  # what its steps are, such as level
@@ -56,18 +59,18 @@ _watchers: Listeners[Stage] = Listeners("stages")
 
 
 def watching(watcher: Watcher) -> contextlib.AbstractContextManager[None]:
-    """Call `watcher` with every stage that is reached inside the block, in the thread that reaches it."""
+    """Return a context in which `watcher` is called at the start of every stage, in its thread."""
     return _watchers.added(watcher)
 
 
 def reached(name: str, unit: str = "", done: int = 0, count: int = 0) -> None:
-    """Call the watchers: the stage `name` begins, or has `done` so many of `count` steps."""
+    """Call the watchers: the stage `name` starts, or has completed `done` of `count` steps."""
     _watchers(Stage(name, unit, count, lambda: done))
 
 
 @contextlib.contextmanager
 def stage(name: str, seconds: dict[str, float]) -> Iterator[None]:
-    """Call the watchers: the stage `name` begins; what the block takes is added to its `seconds`."""
+    """Return a context for the stage `name`: watchers are called, and its time is added to `seconds`."""
     reached(name)
     begun = time.perf_counter()
     yield
@@ -76,9 +79,9 @@ def stage(name: str, seconds: dict[str, float]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def filling(name: str, unit: str, marks: Floats) -> Iterator[None]:
-    """Call the watchers about a block that overwrites `marks` (steps,) one by one, as kernels do in one call.
+    """Return a context in which a kernel overwrites `marks` (steps,) one by one; watchers are called.
 
-    For watchers the marks are NaN until then; after the block `done` does not look at them any more.
+    Until then the marks are NaN. After the context `done` does not read them any more.
     """
     if not _watchers:
         yield

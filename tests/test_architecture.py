@@ -14,10 +14,10 @@ from pathlib import Path
 import grimp
 import numpy as np
 import pytest
+from command_pages import reference
 
 from meshonet import __version__
 from meshonet_cli.commands import COMMANDS
-from meshonet_cli.help.reference import reference
 from meshonet_cli.options.sampling import TopologyName
 
 ROOT = Path(__file__).parents[1]

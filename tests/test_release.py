@@ -8,9 +8,9 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from command_pages import man_page
 
 import meshonet
-from meshonet_cli.help.man import man_page
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]

@@ -8,10 +8,10 @@ HEAD = """
 Read this page to see which claims of the paper are confirmed: Xiao, Chen, Peng, Wang, Liu, *MeshONet: A Generalizable
 and Efficient Operator Learning Method for Structured Mesh Generation*, arXiv 2501.11937.
 
-All figures come from `meshonet` commands: `make paper` samples the six families, solves, trains, infers and measures;
-`examples/paper/Makefile` is the recipe. The models are described in [paper models](../../theory/paper-models.md). The
-paper measures quality by the largest included angle and shows it as colour maps without numbers. Its claims are
-therefore quoted in words beside our figures.
+All values come from `meshonet` commands: `make paper` samples the six families of shapes, solves for their grids, trains
+the networks, evaluates them and measures the results. The commands are in `examples/paper/Makefile`. The models are
+described in [paper models](../../theory/paper-models.md). The paper measures quality by the largest included angle of a
+cell and shows it as colour maps without numbers. Its claims are therefore quoted in words next to our values.
 """
 
 STANDS = """
@@ -19,15 +19,16 @@ STANDS = """
 """
 
 CLAIMS = """
-**Quality**: the largest included angle of MeshONet's grids, averaged over the test grids, compared with TFI and the PDE
-solver. Lower is better. As in the paper, the true boundary is pasted over the network's output. The network's boundary
-has an error, and where it exceeds the height of the first row, pasting folds the cells there. `meshonet-hard` meets the
-boundary exactly and needs no pasting. *Repaired* is the output of `infer` with its defaults, in which folded cells are
-repaired.
+**Quality**: the table compares the largest included angle of MeshONet's grids, averaged over the test grids, with those
+of transfinite interpolation (TFI) and of the PDE solver. Lower is better. As in the paper, the boundary nodes of the
+network's output are replaced by the true ones (*boundary pasted*). If the error of the network at the boundary exceeds
+the height of the first row, this folds cells. `meshonet-hard` matches the boundary exactly. *Repaired* grids are the
+output of `infer` with its default options, which repair folded cells.
 """
 
-LOWEST = """The paper claims that MeshONet's loss is below that of its four modified baselines by orders of magnitude.
-Here all models see the same shapes equally often, with the same schedule. Values are mean and spread over the seeds.
+LOWEST = """The paper claims that MeshONet's loss is orders of magnitude below that of its four modified baselines.
+Here all models are trained on the same shapes, equally often, with the same learning-rate schedule. Values are mean and
+spread over the random seeds.
 
 """
 
@@ -35,63 +36,66 @@ QUALITY = """
 ## Quality, case by case
 
 Each case has 36 shapes of 101 x 101 nodes: 30 for training and 6 for tests, as in the paper. *Interpolation* tests the
-middle of the range and trains on both ends. *Extrapolation* tests one end. *Random* tests random positions. All figures
-are of test grids, compared with the converged Winslow solution. *Boundary error* is the largest distance of a boundary
-node from its place before pasting. Angles are in degrees.
+middle of the parameter range and trains on both ends. *Extrapolation* tests one end of the range. *Random* tests random
+parameters. All values are those of test grids. *Relative L2* is the distance from the converged Winslow solution,
+*boundary error* the largest distance of a boundary node of the network's output from the true one. Angles are in
+degrees.
 
-The PDE rows are the grids from which the models learn. On the wrench, Winslow's equations fold 4 to 18 cells of each
-grid at the two corners of 270 degrees, and these are repaired. `meshonet-hard` has a trained trunk, and on wrench and
-airfoil modes of the training grids ([why](../../theory/paper-models.md#meshonet-hard)).
+The rows *PDE* are the grids from which the models learn. For the wrench, Winslow's equations fold 4 to 18 cells of each
+grid at the two corners of 270 degrees; these cells are repaired. `meshonet-hard` has a trained trunk network, and for
+wrench and airfoil modes computed from the training grids ([reasons](../../theory/paper-models.md#meshonet-hard)).
 """
 
 PAPER = {
-    "arch": "The paper claims quality above TFI and PDE, interpolated and extrapolated.",
-    "hexagon": "The paper claims quality above TFI and PDE, interpolated and extrapolated.",
-    "wrench": "The paper claims quality equal to TFI and above PDE; extrapolated, slightly below TFI.",
-    "semicircle": "The paper (random positions) says that quality is not always above the traditional methods.",
-    "airfoil": "The paper claims quality equal to PDE and above TFI; extrapolated, slightly below PDE.",
-    "hole": "The paper (random positions) claims quality above the traditional methods.",
+    "arch": "The paper claims that the quality is better than that of TFI and PDE, in interpolation and extrapolation.",
+    "hexagon": "The paper claims that the quality is better than that of TFI and PDE, in interpolation and extrapolation.",
+    "wrench": "The paper claims that the quality equals TFI and is better than PDE; in extrapolation slightly worse than TFI.",
+    "semicircle": "The paper states, for random positions, that the quality is not always better than that of traditional methods.",
+    "airfoil": "The paper claims that the quality equals PDE and is better than TFI; in extrapolation slightly worse than PDE.",
+    "hole": "The paper claims, for random positions, that the quality is better than that of traditional methods.",
 }
 
 RACE = """
 ## Loss on one budget
 
-All models see the same shapes equally often, with the same schedule and the same random points in each step. Values are
-mean ± spread over the seeds. The paper reports, in a figure over 100,000 iterations, that MeshONet's loss is lowest by
-orders of magnitude. The loss of `meshonet-hard` is relative to the correction that it learns and cannot be compared; its
-error can. `fno2d` learns from every second node in each direction, because the full square takes four times as long; its
-output is interpolated to 101 x 101 nodes by splines.
+All models are trained on the same shapes, equally often, with the same learning-rate schedule and the same random points
+in each step. Values are mean ± spread over the random seeds. A figure of the paper, over 100,000 iterations, shows
+MeshONet's loss orders of magnitude below the others. The loss of `meshonet-hard` refers only to the correction that it
+learns; compare its error instead. `fno2d` learns from every second node in each direction, because all nodes would take
+four times as long. Its output is interpolated to 101 x 101 nodes by splines.
 """
 
 PHYSICS = """
 ## Physics-informed networks
 
-Each geometry needs its own network (5,122 parameters), so its training time is its generation time. This one learns the
-arch of the refinement table at 101 x 101 nodes. Its output is compared with the converged Winslow solution. The paper
-gives no figures for these networks; it calls them as good as the PDE solver, and not general.
+These networks, with 5,122 parameters, are trained for a single geometry, so that the training time is the time to
+generate a grid. Here the geometry is the arch of the refinement table with 101 x 101 nodes. The output is compared with
+the converged Winslow solution. The paper gives no values for these networks; it says that they are as good as the PDE
+solver but do not generalise.
 """
 
 TIME = """
 ## Mesh refinement
 
-Seconds from boundary nodes in memory to grid nodes in memory. The shape is an arch that no model was trained on; one
-thread on {machine}. The paper's MeshONet ran on an RTX 4090. The paper's
-speed-up of four orders of magnitude is over a PDE solver that takes 140 s for 100 x 100 nodes. Over a multigrid solver
-there is no such speed-up.
+The table gives seconds from boundary nodes in memory to grid nodes in memory. The shape is an arch that was not used in
+training. Our times are those of one thread on {machine}. The paper's MeshONet ran on an RTX 4090. The
+paper reports a speed-up of four orders of magnitude, relative to a PDE solver that takes 140 s for 100 x 100 nodes.
+Relative to a multigrid solver there is no such speed-up.
 """
 
 MAPS = """
 ## Maps of the largest included angle
 
-The first test shape of each case.
+The maps show the first test shape of each case.
 """
 
 SETTINGS = """
 ## Training
 
-Adam with a rate of 0.001, multiplied by 0.9 every fifteenth of the epochs (for `meshonet-hard` on wrenches: 0.003 with a
-cosine schedule). A step has 30 shapes and 1000 random points inside and 200 on the boundary (a quarter of that for the
-modes of `meshonet-hard`). The weights of the loss are 900 and 1000 (`meshonet`). The budget of each run:
+The optimiser is Adam with a learning rate of 0.001, which is multiplied by 0.9 after each fifteenth of the epochs;
+`meshonet-hard` on wrenches uses 0.003 with a cosine schedule. A step uses 30 shapes, with 1000 random points inside and
+200 on the boundary (a quarter of these for `meshonet-hard` with modes). The loss of `meshonet` has the weights 900 and
+1000. The table gives the epochs and times of each run.
 """
 
 SECONDS = {

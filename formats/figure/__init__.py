@@ -1,1 +1,1 @@
-"""Pictures of grids, drawn by matplotlib."""
+"""Pictures, interactive pages and quality reports of grids. Pictures are drawn by matplotlib."""

@@ -1,4 +1,4 @@
-"""What is drawn of grids of many blocks: outlines, irregular vertices, grid lines across connections."""
+"""Features of multi-block grids in a picture: block outlines, irregular vertices, continuous grid lines."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _FEW, _MANY = "#f2b705", "#e4572e"
-"""Colours of vertices where fewer than four cells meet, and more."""
+"""Colours of vertices at which fewer than four and more than four cells meet."""
 
 Lines = tuple[tuple[int, int], tuple[bool, bool]]
-"""How many-th lines i = const and j = const are drawn, and whether they are counted from the last."""
+"""Steps between drawn lines i = const and j = const, and whether they are counted from the last line."""
 
 
 def lines_of_blocks(
     grid: Grid, singles: Sequence[Grid], parts: Sequence[CellsInView | None], pixels: float, every: int | None
 ) -> list[Lines]:
-    """Return the lines to draw of each block, chosen alike where they run on from block to block.
+    """Return the lines to draw in each block, such that lines continue from block to block.
 
-    `singles` are the blocks as grids of their own, `parts` what is in view of each.
+    `singles` are the blocks as grids of one block, `parts` the cells of each block that are in view.
     """
     steps = [[every or 1, every or 1] for _ in singles]
     flips = [[False, False] for _ in singles]
@@ -47,7 +47,7 @@ def lines_of_blocks(
 
 
 def outline_blocks(ax: Axes, grid: Grid) -> None:
-    """Draw the sides of all blocks, those of the outer boundary stronger."""
+    """Draw the sides of all blocks, with thicker lines on the outer boundary."""
     from matplotlib.collections import LineCollection
 
     sides = [block.face(side) for block in grid.blocks for side in SIDES]
@@ -57,7 +57,7 @@ def outline_blocks(ax: Axes, grid: Grid) -> None:
 
 
 def mark_vertices(ax: Axes, grid: Grid) -> None:
-    """Draw a dot at every irregular inner vertex, and say what its colour means."""
+    """Draw a dot at every irregular interior vertex, and a legend of the colours."""
     points, cells = irregular_points(grid)
     kinds = (cells < 4, _FEW, "3 cells meet"), (cells > 4, _MANY, "5 or more cells meet")
     for among, colour, label in kinds:
@@ -69,6 +69,6 @@ def mark_vertices(ax: Axes, grid: Grid) -> None:
 
 
 def shown_counts(grid: Grid) -> str:
-    """Return the blocks and cells of a grid in words."""
+    """Return the numbers of blocks and cells of a grid as text."""
     cells = sum(int(np.prod([count - 1 for count in block.counts])) for block in grid.blocks)
     return f"{len(grid.blocks)} block{'s' * (len(grid.blocks) > 1)}, {cells} cells"

@@ -1,7 +1,7 @@
-"""A picture of a grid in the plane. Only this room imports matplotlib.
+"""Pictures of planar grids. Only `formats.figure` imports matplotlib.
 
-A picture has far fewer pixels than a fine grid has cells, so cells are coloured in blocks of about a
-pixel, each with the worst value in it, and only every k-th grid line is drawn.
+A fine grid has far more cells than a picture has pixels. Cells are therefore coloured in groups of about one
+pixel, each with the worst value in the group, and only every k-th grid line is drawn.
 """
 
 from __future__ import annotations
@@ -41,16 +41,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _NAME = 48
-"""Letters of a grid's name that fit above a view."""
+"""Number of letters of a grid's name that fit above a view."""
 
 
 def draw(
     grid: Grid, colouring: Colouring | None = None, zoom: Box | None = None, every: int | None = None
 ) -> Figure:
-    """Return a figure of `grid`, of its part in `zoom` if given: lines only, or cells coloured too.
+    """Return a figure of `grid`, or of its part in `zoom`; without `colouring` only grid lines are drawn.
 
-    Of a grid around a small body, one view near it and one of the whole. Each `every`-th grid line is drawn;
-    None chooses. Raises InputError for a zoom that shows nothing.
+    A grid around a small body gets two views: one near the body and one of the whole grid. Every `every`-th
+    grid line is drawn; None selects the step by the resolution. Raises InputError: a `zoom` without cells.
     """
     if grid.topology == "blocks":
         planar(grid)
@@ -101,7 +101,7 @@ def _visible(grid: Grid, singles: list[Grid], view: Box) -> list[CellsInView | N
 
 
 def _views(grid: Grid) -> list[Box]:
-    """Return what to show: the whole, and before it the surroundings of a body that is small in it."""
+    """Return the boxes to show: the whole grid, and before it the surroundings of a relatively small body."""
     whole = _whole(grid)
     pad = 0.02 * max(whole[1] - whole[0], whole[3] - whole[2])
     whole = (whole[0] - pad, whole[1] + pad, whole[2] - pad, whole[3] + pad)
@@ -125,7 +125,7 @@ def _whole(grid: Grid) -> Box:
 
 
 def _shown(colouring: Colouring | None, parts: list[CellsInView | None]) -> list[NDArray[Any]]:
-    """Return the values of cells in view."""
+    """Return the values of the cells in view."""
     if colouring is None:
         return []
     return [
@@ -136,13 +136,13 @@ def _shown(colouring: Colouring | None, parts: list[CellsInView | None]) -> list
 
 
 def colour_bar(bar: Axes, colours: ScalarMappable, label: str, extend: str = "neither") -> None:
-    """Draw the scale of colours."""
+    """Draw the colour scale."""
     bar.figure.colorbar(colours, cax=bar, extend=extend).set_label(label, color=INK, size=9)
     bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
 
 
 def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | None]:
-    """Return a figure with one axes a view, equally high side by side, and one for the colour bar."""
+    """Return a figure with one axes per view, side by side with equal height, and one for the colour bar."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -170,7 +170,7 @@ def frame(views: Sequence[Box], bar: bool) -> tuple[Figure, list[Axes], Axes | N
 
 
 def step_words(steps: list[int]) -> str:
-    """Return in words which lines are drawn, of ascending steps; nothing where all are.
+    """Return the ascending `steps` of drawn lines as text; empty if all lines are drawn.
 
     >>> step_words([1, 5]), step_words([2]), step_words([1])
     ('every 1st to 5th line', 'every 2nd line', '')
@@ -182,7 +182,7 @@ def step_words(steps: list[int]) -> str:
 
 
 def note(ax: Axes, text: str) -> None:
-    """Write a line of text, if any, into the lower right corner."""
+    """Write a line of text into the lower right corner; nothing if it is empty."""
     if not text:
         return
     paper = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 2.0}
@@ -191,12 +191,12 @@ def note(ax: Axes, text: str) -> None:
 
 
 def _drawn_lines(xi: int, eta: int) -> str:
-    """Return in words which lines are drawn, of different steps."""
+    """Return the steps of the drawn lines along ξ and η as text."""
     return f"every {_ordinal(xi)}xi and {_ordinal(eta)}eta line"
 
 
 def _ordinal(k: int) -> str:
-    """Return ``3rd `` and the like; nothing for 1."""
+    """Return an ordinal such as ``3rd `` with a space; empty for 1."""
     if k == 1:
         return ""
     last = k % 10 if k % 100 not in (11, 12, 13) else 0

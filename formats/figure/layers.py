@@ -1,4 +1,4 @@
-"""What a picture of a grid is made of: coloured cells, grid lines, outlines; and what is in view."""
+"""Elements of a picture of a planar grid: coloured cells, grid lines and outlines; and the cells in view."""
 
 from __future__ import annotations
 
@@ -17,29 +17,31 @@ if TYPE_CHECKING:
     from matplotlib.collections import QuadMesh
 
 Box = tuple[float, float, float, float]
-"""x0, x1, y0, y1 in the grid's unit."""
+"""x0, x1, y0, y1 in the unit of the grid."""
 
 DOTS = 160
-"""Dots an inch of a picture."""
+"""Dots per inch of a picture."""
 INK = "#1b2733"
 _BODY = "#e8eaed"
 _LINE_GAP = 6.0
-"""Least distance between neighbouring grid lines drawn, pixels, in the middle of what fills the picture."""
+"""Smallest distance in pixels between drawn grid lines, in the middle of the cells that fill the picture."""
 _BLOCK = 1.0
-"""Least size of a coloured block of cells, pixels."""
+"""Smallest size in pixels of a coloured group of cells."""
 _SAMPLE = 200_000
-"""Cells looked at to choose the distance of lines."""
+"""Number of cells that are examined to select the step between drawn lines."""
 
 
 @dataclass(frozen=True)
 class Colouring:
-    """Values (ni-1, nj-1) of the cells, of each block in a tuple if there are many, and how to show them.
+    """Values of the cells, and the colours that show them.
 
     Parameters
     ----------
+    values : cell values (ni-1, nj-1); for several blocks a tuple with one array per block.
     label : quantity and unit, for the colour bar.
-    limits : values at the two ends of the colours; None takes the 1st and 99th percentile in view.
-    worst_is_low : small values are the bad ones and keep the strong colours.
+    limits : values at the two ends of the colour scale; None selects the 1st and 99th percentile of the cells
+        in view.
+    worst_is_low : whether small values are bad and get the strong colours.
     """
 
     values: NDArray[Any] | tuple[NDArray[Any], ...]
@@ -54,17 +56,17 @@ class Colouring:
 
     @property
     def scale(self) -> str:
-        """Matplotlib's name of the colours."""
+        """Name of the colour map in matplotlib."""
         return "YlGnBu_r" if self.worst_is_low else "YlGnBu"
 
     @property
     def worst(self) -> np.ufunc:
-        """What makes one value of those of several cells."""
+        """Function that reduces the values of several cells to the worst one."""
         return np.minimum if self.worst_is_low else np.maximum
 
 
 def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tuple[float, float]:
-    """Return the values at both ends of the colours, for the values that are `shown`."""
+    """Return the values at both ends of the colour scale for the values in view, `shown`."""
     if colouring is None:
         return 0.0, 1.0
     if colouring.limits:
@@ -76,7 +78,7 @@ def limits_of(colouring: Colouring | None, shown: Sequence[NDArray[Any]]) -> tup
 
 
 class CellsInView(NamedTuple):
-    """The index ranges of cells in view, and which of them are: mask (i1-i0, j1-j0)."""
+    """Index ranges of the cells in view, and a mask (i1-i0, j1-j0) of those that are."""
 
     i0: int
     i1: int
@@ -86,7 +88,7 @@ class CellsInView(NamedTuple):
 
 
 def in_view(grid: Grid, box: Box) -> CellsInView | None:
-    """Return the cells whose bounding box meets `box`, or None when none does."""
+    """Return the cells whose bounding boxes intersect `box`, or None if there are none."""
     meets = _meets(grid.x, box[0], box[1]) & _meets(grid.y, box[2], box[3])
     columns, rows = np.flatnonzero(meets.any(axis=1)), np.flatnonzero(meets.any(axis=0))
     if not len(columns):
@@ -104,9 +106,11 @@ def paint(
     limits: tuple[float, float],
     colouring: Colouring,
 ) -> QuadMesh:
-    """Colour the cells of `part`, a block of cells where they are below a pixel, by the worst value in it.
+    """Colour the cells of `part`.
 
-    `values` (ni-1, nj-1) are those of all cells.
+    Cells smaller than a pixel are grouped and get the worst value of their group.
+
+    `values` (ni-1, nj-1) are the values of all cells of the block.
     """
     nodes = grid.nodes[part.i0 : part.i1 + 1, part.j0 : part.j1 + 1]
     shown = values[part.i0 : part.i1, part.j0 : part.j1]
@@ -128,9 +132,9 @@ def rule(
     faint: bool,
     flipped: tuple[bool, bool] = (False, False),
 ) -> None:
-    """Draw every k-th grid line and the last ones; `steps` are k of the lines i = const and j = const.
+    """Draw every k-th grid line and the last ones; `steps` are k for the lines i = const and j = const.
 
-    Where `flipped`, these are counted from the last one.
+    Directions that are `flipped` are counted from the last line.
     """
     from matplotlib.collections import LineCollection
 
@@ -144,7 +148,7 @@ def rule(
 
 
 def outline(ax: Axes, grid: Grid) -> None:
-    """Draw the outer edges stronger, and fill the body that an O or C grid goes around."""
+    """Draw the outer edges with thicker lines, and fill the body inside an O or C grid."""
     ends = () if grid.periodic else (grid.nodes[0], grid.nodes[-1])
     for edge in (grid.nodes[:, 0], grid.nodes[:, -1], *ends):
         ax.plot(edge[:, 0], edge[:, 1], color=INK, linewidth=0.9, zorder=4)
@@ -154,7 +158,7 @@ def outline(ax: Axes, grid: Grid) -> None:
 
 
 def body(grid: Grid) -> Floats:
-    """Return the nodes (n, 2) of the part named ``wall`` on the south side, or of that whole side."""
+    """Return the nodes (n, 2) of the patch ``wall`` on the south side, or of the whole side."""
     for part in grid.patches:
         if part.side == "south" and part.name == "wall":
             return grid.nodes[part.start : part.stop + 1, 0]
@@ -164,13 +168,13 @@ def body(grid: Grid) -> Floats:
 def reduced(
     by: np.ufunc, values: NDArray[Any], columns: NDArray[np.intp], rows: NDArray[np.intp]
 ) -> NDArray[Any]:
-    """Return `values` joined over blocks that start at `columns` and `rows` (last entries: the ends)."""
+    """Return `values` reduced by `by` over the groups between consecutive `columns` and `rows`."""
     joined: NDArray[Any] = by.reduceat(by.reduceat(values, columns[:-1], axis=0), rows[:-1], axis=1)
     return joined
 
 
 def _meets(coordinate: Floats, low: float, high: float) -> NDArray[np.bool_]:
-    """Say for each cell (ni-1, nj-1) whether its span of one coordinate (ni, nj) meets [low, high]."""
+    """Return for each cell (ni-1, nj-1) whether one coordinate (ni, nj) has values in [low, high]."""
     least = np.minimum(coordinate[1:], coordinate[:-1])
     most = np.maximum(coordinate[1:], coordinate[:-1])
     inside = np.minimum(least[:, 1:], least[:, :-1]) <= high
@@ -179,7 +183,7 @@ def _meets(coordinate: Floats, low: float, high: float) -> NDArray[np.bool_]:
 
 
 def _extents(nodes: Floats, mask: NDArray[np.bool_], axis: int) -> Floats:
-    """Return the largest edge in view of each layer of cells along `axis`, in the grid's unit."""
+    """Return the longest edge in view of each layer of cells along `axis`, in the unit of the grid."""
     step = np.diff(nodes, axis=axis)
     length = np.hypot(step[..., 0], step[..., 1])
     edge = length[:, :-1] if axis == 0 else length[:-1]
@@ -188,7 +192,7 @@ def _extents(nodes: Floats, mask: NDArray[np.bool_], axis: int) -> Floats:
 
 
 def _blocks(sizes: Floats) -> NDArray[np.intp]:
-    """Return node indices, first and last included, that cut `sizes` (n,) at about every `_BLOCK`."""
+    """Return node indices, including both ends, that divide `sizes` (n,) into groups of about `_BLOCK`."""
     marks = np.floor(np.concatenate([[0.0], np.cumsum(np.minimum(sizes, _BLOCK))]) / _BLOCK)
     # size 0 is out of view, and never in a block with others, whose corners it would drag away
     new = (np.diff(marks[:-1]) > 0) | np.diff(sizes > 0)
@@ -196,7 +200,7 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
 
 
 def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """Return distances (n,) of neighbouring lines i = const and j = const, each with the areas there."""
+    """Return the distances (n,) of neighbouring lines i = const and j = const, and the areas of the cells."""
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)
     i, j = i[::stride] + part.i0, j[::stride] + part.j0
@@ -207,9 +211,9 @@ def line_gaps(grid: Grid, part: CellsInView) -> tuple[tuple[Floats, Floats], tup
 
 
 def line_step(length: Floats, area: Floats, pixels: float) -> int:
-    """Return how many-th lines keep `_LINE_GAP` where half of the coloured area lies, from `line_gaps`.
+    """Return the step k between drawn lines that keeps them `_LINE_GAP` apart in half of the coloured area.
 
-    It is the next of 1, 2, 5, 10, 20, 50 ...
+    k is one of 1, 2, 5, 10, 20, 50 ...; `length` and `area` are those of `line_gaps`.
     """
     length = length * pixels
     order = np.argsort(length)
@@ -223,7 +227,7 @@ def line_step(length: Floats, area: Floats, pixels: float) -> int:
 
 
 def _every(start: int, stop: int, step: int, count: int, *, flipped: bool = False) -> list[int]:
-    """Return the multiples of `step` from `start` to `stop`, and the last line when it is in view."""
+    """Return the multiples of `step` from `start` to `stop`, and the last line if it is in view."""
     if flipped:
         last = count - 1
         return [last - k for k in _every(last - stop, last - start, step, count)]

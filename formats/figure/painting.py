@@ -1,4 +1,4 @@
-"""Sheets in space painted from the back to the front: quadrilaterals in the light, and outlines of blocks."""
+"""Painting of surfaces in space, from back to front: shaded quadrilaterals and block outlines."""
 
 from __future__ import annotations
 
@@ -19,15 +19,17 @@ if TYPE_CHECKING:
 Mask: TypeAlias = NDArray[np.bool_]
 
 _GAP = 5.0
-"""Pixels between drawn lines, about."""
+"""Approximate distance between drawn lines in pixels."""
 _LIGHT = np.array([-0.36, 0.48, 0.8])
-"""Where light comes from, to the right, upwards and towards the viewer."""
+"""Direction towards the light in the axes of the picture: right, up, towards the viewer."""
 _FORWARD = 0.004
-"""How far outlines are moved towards the viewer, in sizes of the picture, to be seen on their blocks."""
+"""Shift of outlines towards the viewer, relative to the size of the picture, so that blocks do not hide
+them.
+"""
 
 
 def steps_of(sheet: CellSheet, axes: Floats, pixels: float, every: int | None) -> tuple[int, int]:
-    """Return how many cells along both directions are drawn as one."""
+    """Return how many cells along each direction are drawn as one."""
     if every:
         return every, every
     flat = sheet.nodes @ axes[:2].T * pixels
@@ -41,7 +43,7 @@ def steps_of(sheet: CellSheet, axes: Floats, pixels: float, every: int | None) -
 
 @dataclass(frozen=True, eq=False)
 class Painted:
-    """Quadrilaterals (n, 4, 2) and outlines (m, 2, 2), how far in front they are, and colours (n, 4)."""
+    """Quadrilaterals (n, 4, 2), outlines (m, 2, 2), their depths, and colours (n, 4)."""
 
     quads: Floats
     depth: Floats
@@ -54,7 +56,7 @@ def painted(
     sheet: CellSheet, mask: Mask, steps: tuple[int, int], axes: Floats, colouring: Colouring | None,
     limits: tuple[float, float],
 ) -> Painted:  # fmt: skip
-    """Return the cells of a sheet in `mask` (n-1, m-1), `steps` of them as one, as seen along `axes`."""
+    """Return the cells of a sheet in `mask` (n-1, m-1), projected along `axes` and grouped by `steps`."""
     import matplotlib as mpl
 
     marks = [
@@ -87,7 +89,7 @@ def painted(
 
 
 def paint(ax: Axes, painted: Sequence[Painted]) -> None:
-    """Draw quadrilaterals and outlines of blocks from the back to the front."""
+    """Draw quadrilaterals and block outlines from back to front."""
     from matplotlib.collections import PolyCollection
 
     quads, colours, depth, outline, front = (
@@ -110,5 +112,5 @@ def paint(ax: Axes, painted: Sequence[Painted]) -> None:
 
 
 def faint_ink(alpha: float) -> tuple[float, ...]:
-    """Return the colour of lines with an opacity from 0 to 1."""
+    """Return the colour of lines with the opacity `alpha`, 0 to 1."""
     return (*(int(INK[k : k + 2], 16) / 255 for k in (1, 3, 5)), alpha)

@@ -1,4 +1,4 @@
-"""A grid drawn to a file, ``.png``, ``.svg`` or ``.pdf``, its cells coloured by a quality metric."""
+"""Pictures of grids as files: ``.png``, ``.svg`` or ``.pdf``, with cells coloured by a quality metric."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -17,9 +17,9 @@ from meshonet.geometry.quality.metrics import ALL_NAMES, metric_of
 
 @dataclass(frozen=True)
 class Picture(View):
-    """How a grid is drawn: what of it, and the `metric` that colours its cells; None draws lines only.
+    """How a grid is drawn: the view, and the `metric` that colours its cells; None draws lines only.
 
-    Raises InputError: as `View`; a metric that is none.
+    Raises InputError: as `View`; an unknown metric.
     """
 
     metric: str | None = "max_angle"
@@ -33,7 +33,8 @@ class Picture(View):
     def draw(self, kind: str, path: Path | BinaryIO, grids: Iterable[Grid], dots: int = DOTS) -> None:
         """Draw the only grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``, or as an ``html`` page.
 
-        Pages go to a path only, pictures also to an open file; `dots` are those an inch of a ``png``.
+        Pages need a path, pictures may also be written to an open file. `dots` are dots per inch of a
+        ``png``.
         """
         from meshonet.formats.figure.page.page import write_page
 
@@ -58,9 +59,9 @@ def write(
     view: View | None = None,
     dots: int = DOTS,
 ) -> None:
-    """Draw `grid` into a file of `kind` ``png``, ``svg`` or ``pdf``; the same input gives the same bytes.
+    """Draw `grid` into a file of `kind` ``png``, ``svg`` or ``pdf``; equal input gives equal bytes.
 
-    Raises InputError: a view that shows nothing, or that grids in the plane do not have.
+    Raises InputError: a view without cells, or a view in space of a planar grid.
     """
     import matplotlib as mpl
 
@@ -81,5 +82,5 @@ def write(
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, kind: str) -> None:
-    """Draw the only grid of `grids`, lines only."""
+    """Draw the only grid of `grids` without colours."""
     write(path, only_one(grids, f"a .{kind} file"), kind)

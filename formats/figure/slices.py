@@ -1,9 +1,9 @@
-"""Slices of volumes: layers of a constant index, and cuts by a plane of a constant coordinate.
+"""Slices of volumes: grid surfaces of constant index, and sections by a plane of constant coordinate.
 
 ::
 
-    k=0   the layer k = 0 of every block, a surface      x=.5   the polygons in which the plane
-          of quadrilaterals; k=-1 is the last one               cuts cells, 3 to 6 corners each
+    k=0   the nodes with k = 0 of every block, a surface     x=.5   the polygons in which the plane
+          of quadrilaterals; k=-1 is the last surface               intersects cells, 3 to 6 corners each
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 _SPEC = re.compile(r"\s*([ijkxyz])\s*=\s*([-+.\w]+)\s*", re.ASCII)
-"""A slice as users write it: a direction and a number."""
+"""A slice as text: a direction and a number."""
 _MOST = 12
-"""Edges of a cell, each of which a plane may cut."""
+"""Number of edges of a cell, each of which a plane may cross."""
 
 
 @dataclass(frozen=True)
 class Slice:
-    """A slice of a volume: direction 0 to 2, and an index or a coordinate along it."""
+    """A slice of a volume: a direction, 0 to 2, and an index or a coordinate along it."""
 
     direction: int
     index: int | None = None
@@ -41,7 +41,10 @@ class Slice:
 
 
 def parse_slice(text: str) -> Slice:
-    """Return the slice that ``i=10``, ``k=-1`` or ``x=.5`` means; InputError for what is none."""
+    """Return the slice described by a text such as ``i=10``, ``k=-1`` or ``x=.5``.
+
+    Raises InputError: other texts.
+    """
     match = _SPEC.fullmatch(text)
     try:
         if match and match[1] in "ijk":
@@ -57,16 +60,16 @@ def parse_slice(text: str) -> Slice:
 
 @dataclass(frozen=True, eq=False)
 class CellSheet:
-    """A lattice of nodes (n, m, 3) in space and the values (n-1, m-1) of its cells, if they have any."""
+    """A lattice of nodes (n, m, 3) in space, and optional values (n-1, m-1) of its cells."""
 
     nodes: Floats
     values: Floats | None
 
 
 def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet]:
-    """Return the layer of an index of every block that has it; a cell beside it gives the value.
+    """Return the grid surface of constant index in every block that has this index.
 
-    Raises InputError: no block has the index.
+    Its values are those of the adjacent cells. Raises InputError: no block has the index.
     """
     index = at.index or 0
     sheets = []
@@ -87,16 +90,19 @@ def layers(grid: Grid, at: Slice, values: list[Floats] | None) -> list[CellSheet
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Polygons (n, 12, 2) in which a plane cuts cells, last corners repeated, and the cells' values (n,)."""
+    """Polygons (n, 12, 2), in which a plane intersects cells, and the values (n,) of the cells.
+
+    Polygons with fewer than twelve corners repeat the last one.
+    """
 
     polygons: Floats
     values: Floats | None
 
 
 def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
-    """Return where a plane of a constant coordinate cuts the cells of the blocks of a grid.
+    """Return the intersection of a plane of constant coordinate with the cells of all blocks of a grid.
 
-    Raises InputError: it cuts none.
+    Raises InputError: the plane intersects no cell.
     """
     polygons, shown = [], []
     for number, block in enumerate(grid.blocks):
@@ -115,13 +121,16 @@ def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
 
 
 _CORNERS = np.array(list(product((0, 1), repeat=3)))
-"""Corners of a cell, as steps along i, j and k."""
+"""Corners of a cell as offsets along i, j and k."""
 _EDGES = np.array([(a, b) for a in range(8) for b in range(a) if bin(a ^ b).count("1") == 1])
-"""Pairs of corners that an edge joins."""
+"""Pairs of corners that are joined by an edge."""
 
 
 def _crossed(distance: Floats) -> NDArray[np.intp]:
-    """Return (n, 3) indices of the cells with nodes on both sides, of distances (ni, nj, nk) from a plane."""
+    """Return indices (n, 3) of cells with nodes on both sides of a plane.
+
+    `distance` (ni, nj, nk) is signed.
+    """
     low = high = distance >= 0
     for axis in range(3):
         first, last = (slice(None),) * axis + (slice(-1),), (slice(None),) * axis + (slice(1, None),)
@@ -130,7 +139,7 @@ def _crossed(distance: Floats) -> NDArray[np.intp]:
 
 
 def _polygons(corners: Floats, at: Slice) -> Floats:
-    """Return the polygons (n, 12, 2) in which the plane cuts cells with corners (n, 8, 3)."""
+    """Return the polygons (n, 12, 2) in which the plane intersects cells with corners (n, 8, 3)."""
     distance = corners[..., at.direction] - at.coordinate
     a, b = _EDGES.T
     part = np.divide(

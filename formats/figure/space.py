@@ -1,7 +1,7 @@
-"""Pictures of volumes and surfaces: walls and patches seen from a direction, layers, and cuts by a plane.
+"""Pictures of volumes and surfaces: walls and patches from a direction, grid surfaces, and plane sections.
 
-Surfaces are projected in parallel and painted from the back to the front. Cells below a few pixels are drawn
-in blocks of several, each with the worst value in it; flat layers are drawn as grids in the plane are.
+Surfaces are drawn in parallel projection, from back to front. Cells smaller than a few pixels are drawn in
+groups, each with the worst value in the group. Plane grid surfaces are drawn like planar grids.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _FLAT = 1e-9
-"""Extent of a flat layer across itself, in its size."""
+"""Largest extent of a plane grid surface along its normal, relative to its size."""
 
 
 def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure:
-    """Return a figure of a volume or surface, its cells coloured by the values of `colouring`, if given.
+    """Return a figure of a volume or surface; `colouring`, if given, has the values of its cells.
 
-    Raises InputError: a slice of a surface, or one that the grid does not have; a zoom that shows nothing, or
-    of another kind.
+    Raises InputError: a slice of a surface, or one that the grid does not have; a zoom without cells, or of
+    another dimension.
     """
     values = [np.asarray(part) for part in colouring.parts] if colouring else None
     where = view.part
@@ -59,7 +59,7 @@ def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure
 
 
 def _surface(grid: Grid, values: list[Floats] | None) -> list[CellSheet]:
-    """Return the patches of a surface, or the walls of a volume, all of its outer boundary without any."""
+    """Return the patches of a surface, or the walls of a volume; its whole boundary if it has no walls."""
     if grid.form == "surface":
         return [CellSheet(block.nodes, values[k] if values else None) for k, block in enumerate(grid.blocks)]
     sheets = []
@@ -72,9 +72,9 @@ def _surface(grid: Grid, values: list[Floats] | None) -> list[CellSheet]:
 
 
 def _flattened(sheets: Sequence[CellSheet]) -> tuple[list[Floats] | None, int]:
-    """Return the nodes (n, m, 2) of sheets that are in one plane of two axes, and the axis across it.
+    """Return the nodes (n, m, 2) of sheets in one plane normal to an axis, and this axis.
 
-    There are none where the sheets are not in one such plane.
+    The nodes are None if the sheets are not in one such plane.
     """
     every = np.concatenate([sheet.nodes.reshape(-1, 3) for sheet in sheets])
     extent = np.ptp(every, axis=0)
@@ -85,7 +85,7 @@ def _flattened(sheets: Sequence[CellSheet]) -> tuple[list[Floats] | None, int]:
 
 
 def _seen(grid: Grid, sheets: Sequence[CellSheet], colouring: Colouring | None, view: View) -> Figure:
-    """Return a picture of sheets from a direction."""
+    """Return a picture of sheets seen from a direction."""
     axes = view.axes
     inside = [_within(sheet, view.zoom) for sheet in sheets]
     shown = [
@@ -122,7 +122,7 @@ def _seen(grid: Grid, sheets: Sequence[CellSheet], colouring: Colouring | None, 
 
 
 def _within(sheet: CellSheet, zoom: tuple[float, ...] | None) -> Any:
-    """Say for each cell (n-1, m-1) whether it is in the box of `zoom`."""
+    """Return for each cell (n-1, m-1) whether it is in the box `zoom`."""
     shape = [count - 1 for count in sheet.nodes.shape[:2]]
     if zoom is None:
         return np.ones(shape, dtype=bool)
@@ -139,7 +139,7 @@ def _within(sheet: CellSheet, zoom: tuple[float, ...] | None) -> Any:
 def _cut_figure(
     grid: Grid, polygons: Cut, colouring: Colouring | None, view: View, zoom: Box | None
 ) -> Figure:
-    """Return a picture of the polygons in which a plane cuts cells."""
+    """Return a picture of the polygons in which a plane intersects cells."""
     from matplotlib.collections import PolyCollection
 
     points = polygons.polygons
@@ -171,7 +171,7 @@ def _cut_figure(
 def _finish(
     ax: Axes, bar: Axes | None, grid: Grid, colouring: Colouring | None, limits: tuple[float, float]
 ) -> None:
-    """Add title and scale."""
+    """Add title and colour scale."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -181,14 +181,14 @@ def _finish(
 
 
 def _emptiest(points: Floats, box: Box) -> tuple[float, float]:
-    """Return the corner of the picture, but for the lower right one, with the fewest of `points` (n, 2)."""
+    """Return the corner of the picture with the fewest `points` (n, 2), excluding the lower right one."""
     part = np.stack([(points[:, k] - box[2 * k]) / (box[2 * k + 1] - box[2 * k]) for k in (0, 1)], axis=1)
     corners = (0.0, 0.0), (0.0, 1.0), (1.0, 1.0)
     return min(corners, key=lambda corner: int((np.abs(part - corner) < 0.2).all(axis=1).sum()))
 
 
 def _triad(ax: Axes, axes: Floats, corner: tuple[float, float]) -> None:
-    """Draw where x, y and z point, in a corner of the picture."""
+    """Draw the directions of x, y and z in a corner of the picture."""
     extent = ax.get_window_extent()
     x, y = (abs(55 - part * size) for part, size in zip(corner, (extent.width, extent.height), strict=True))
     place: dict[str, Any] = {"xycoords": "axes pixels", "textcoords": "axes pixels"}

@@ -1,4 +1,4 @@
-"""The part of a grid that a picture shows, and the direction that it is seen from."""
+"""The part of a grid that a picture shows, and the direction of view."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 
 SEEN_FROM = (-125.0, 25.0)
-"""Azimuth and elevation in degrees that a surface is seen from unless said otherwise."""
+"""Default azimuth and elevation in degrees."""
 
 
 @dataclass(frozen=True)
 class View:
-    """What of a grid is drawn.
+    """The part of a grid that is drawn, and the direction of view.
 
     Parameters
     ----------
-    zoom : x0, x1, y0, y1 of a flat picture; of one in space with z0, z1, where what is outside is left out.
-    every : draw every so many-th line; None chooses by the resolution of the picture.
-    slice : of a volume, ``i=10``, ``k=-1`` or ``x=.5``; None draws its walls, or all of its outer boundary
-        without any.
-    seen_from : azimuth and elevation in degrees, of pictures in space; None is `SEEN_FROM`.
+    zoom : x0, x1, y0, y1 for planar pictures, with z0, z1 for pictures in space; cells outside are not drawn.
+    every : step between drawn lines; None selects it by the resolution of the picture.
+    slice : slice of a volume: ``i=10``, ``k=-1`` or ``x=.5``; None draws the walls, or the whole boundary of
+        a volume without walls.
+    seen_from : azimuth and elevation in degrees, for pictures in space; None is `SEEN_FROM`.
 
-    Raises InputError: a slice that is none, a box without extent, `every` below 1.
+    Raises InputError: an unknown form of slice, a box without extent, `every` below 1.
     """
 
     zoom: tuple[float, ...] | None = None
@@ -53,12 +53,12 @@ class View:
 
     @property
     def part(self) -> Slice | None:
-        """The slice."""
+        """The parsed slice."""
         return parse_slice(self.slice) if isinstance(self.slice, str) else self.slice
 
     @property
     def axes(self) -> Floats:
-        """Unit vectors (3, 3) to the right, upwards and towards the viewer."""
+        """Unit vectors (3, 3) that point to the right, upwards and towards the viewer."""
         azimuth, elevation = np.radians(self.seen_from or SEEN_FROM)
         level = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
         towards = np.cos(elevation) * level + [0.0, 0.0, np.sin(elevation)]
@@ -67,16 +67,18 @@ class View:
 
 
 def check_flat(view: View) -> None:
-    """Raise InputError for what only grids in space have: a slice, a direction that they are seen from."""
+    """Raise InputError for settings that only grids in space have: a slice, a direction of view."""
     for name, value in (("slice", view.slice), ("seen_from", view.seen_from)):
         if value is not None:
             raise InputError("the grid is in the plane", f"leave {{{name}}} out", parameter=name)
 
 
 def flat_box(zoom: tuple[float, ...] | None, across: int | None = None) -> Box | None:
-    """Return the box of a flat picture: of one in space, that of the directions other than `across`.
+    """Return the box of a planar picture.
 
-    Raises InputError: a box in space for a grid in the plane.
+    From a box in space, its extent in the directions other than `across`.
+
+    Raises InputError: a box in space for a planar grid.
     """
     if zoom is None:
         return None

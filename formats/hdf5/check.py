@@ -272,7 +272,7 @@ def check_heaps(source: Source) -> None:
 
 
 def _check_texts(data: h5py.Dataset, source: Source) -> None:
-    """Raise InputError when a text of a (n,) dataset of them claims to be longer than the file."""
+    """Raise InputError if a text in a dataset (n,) of texts has a length above that of the file."""
     if not data.id.get_type().is_variable_str() or data.id.get_create_plist().get_nfilters():
         return
     pieces = [(data.id.get_offset() or 0, data.id.get_storage_size())]

@@ -24,7 +24,7 @@ _AGAIN = "repeat the command that made it, with {skip_existing}"
 
 
 class Failed(NamedTuple):
-    """A member that could not be made: its input, its name, the error, and whether to try it again."""
+    """A sample that could not be made: its input, its name, the error, and whether to try it again."""
 
     text: str
     member: str

@@ -1,17 +1,18 @@
-"""Datasets in parts: files ``out/part-00000.h5``, each a dataset, and the index ``out.h5`` over all of them.
+"""Datasets in parts: files ``out/part-00000.h5`` and so on, each a dataset, and the index ``out.h5`` of them.
 
 A part is written atomically, and describes how it was made:
 
 ========== ========================================================================================
-request    attribute: digest of the settings of all parts
+request    attribute: digest of the settings, equal in all parts
 part_size  attribute: number of inputs of each part but the last
-size       attribute: counts of nodes and topology, in words
+size       attribute: node counts and topology as text
 inputs     dataset of texts: digests of the inputs
-failed     dataset of texts: JSON lists ``[input, member, error, again]`` of members it lacks
+failed     dataset of texts: JSON lists ``[input, member, error, again]``, one for each sample that could
+           not be made; `again` says whether to try it again
 ========== ========================================================================================
 
-``out.h5`` has the attributes of the first part and an HDF5 virtual dataset for each of the parts' datasets,
-which concatenates their rows, by relative paths. It can be written again from the parts at any time.
+``out.h5`` has the attributes of the first part. For each dataset of the parts it has an HDF5 virtual dataset,
+which concatenates their rows and refers to the parts by relative paths. It can be rebuilt from the parts.
 https://docs.hdfgroup.org/archive/support/HDF5/docNewFeatures/NewFeaturesVirtualDatasetDocs.html
 """
 

@@ -28,10 +28,10 @@ T = TypeVar("T")
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Return an iterator over the boundaries; of grids, over their outer edges as stored.
+    """Return an iterator over the boundaries, or over the stored outer edges of grids.
 
-    Of multi-block grids it returns the domains. An invalid sample raises InputError, after which the iterator
-    continues.
+    For multi-block grids it returns the domains. An invalid sample raises InputError, after which the
+    iterator continues.
     """
     return map(call, samples_read(source, _boundary))
 

@@ -23,18 +23,18 @@ if TYPE_CHECKING:
     import h5py
 
 BLOCK = 1 << 22
-"""Bytes of samples that are held back to be written together."""
+"""Bytes of samples that are collected before they are written together."""
 TEXTS = ("names", "split", "parts", "provenance")
-"""Datasets of texts, one a sample."""
+"""Datasets of texts, one text per sample."""
 CHUNK = 1 << 14
-"""Bytes up to which rows of several samples share a chunk."""
+"""Largest row, in bytes, that shares a chunk with other samples."""
 Kind = Literal["meshonet-boundary", "meshonet-grid"]
 
 
 class Writer:
-    """A dataset being written, sample by sample (`writing`).
+    """A dataset that is written sample by sample (see `writing`).
 
-    Raises InputError when a sample differs from the first one in size or topology.
+    Raises InputError: a sample differs from the first one in size or topology.
     """
 
     def __init__(self, file: h5py.File, kind: Kind) -> None:
@@ -48,7 +48,7 @@ class Writer:
         self._first: tuple[str, ...] = ()
 
     def append(self, sample: Boundary | Grid) -> None:
-        """Add a grid to a file of grids, else a boundary."""
+        """Add a grid to a dataset of grids, or a boundary to one of boundaries."""
         self._check_size(sample)
         arrays = _arrays_of(sample)
         if self._count == 0 and isinstance(sample, Grid):
@@ -79,7 +79,7 @@ class Writer:
             self.flush()
 
     def _check_size(self, sample: Boundary | Grid) -> None:
-        """Raise InputError when a sample is not as the first one, which the file's attributes describe."""
+        """Raise InputError if a sample differs from the first one in size or topology."""
         several = _is_of_blocks(sample)
         size = size_of(sample)
         connections = connections_text(sample.connections) if several else ""
@@ -95,7 +95,7 @@ class Writer:
             )
 
     def _hold(self, name: str, value: Floats | str) -> None:
-        """Keep the entry of this sample for the next block; a text of nothing has none."""
+        """Keep the entry of this sample for the next block."""
         if isinstance(value, str):
             if not value and name not in self._data and name not in self._held:
                 return
@@ -107,7 +107,7 @@ class Writer:
         self._held.setdefault(name, []).append((self._count, value))
 
     def note(self, facts: Mapping[str, str], digests: Sequence[str], failed: Sequence[str]) -> None:
-        """Say of what the samples were made: facts, digests of inputs, texts on inputs that failed.
+        """Write how the samples were made: facts, digests of inputs, and texts about failed samples.
 
         Attributes are texts of fixed length, which are read without a search for damage.
         """
@@ -122,7 +122,7 @@ class Writer:
             self._file.create_dataset("failed", data=list(failed), dtype=h5py.string_dtype())
 
     def flush(self) -> None:
-        """Write what is held back."""
+        """Write the collected samples."""
         held, self._held, self._bytes = self._held, {}, 0
         for name, entries in held.items():
             data = self._row(name)
@@ -136,7 +136,7 @@ class Writer:
             data[where] = np.array([value for _, value in entries], dtype=object if name in TEXTS else None)
 
     def _row(self, name: str) -> h5py.Dataset:
-        """Return the dataset of a name, made when it is first needed."""
+        """Return the dataset `name`, created at the first call."""
         import h5py
 
         if name not in self._data:
@@ -154,7 +154,7 @@ class Writer:
 
 
 def _put(data: h5py.Dataset, row: int, value: Floats) -> None:
-    """Write a sample, a large one chunk by chunk, which h5py brings into the order of the file."""
+    """Write a sample; a large one chunk by chunk, because h5py converts its memory order."""
     step = data.chunks[1] if value.ndim else 1
     if not value.ndim or step >= len(value):
         data[row] = value
@@ -165,7 +165,7 @@ def _put(data: h5py.Dataset, row: int, value: Floats) -> None:
 
 @contextlib.contextmanager
 def writing(path: Path, kind: Kind) -> Iterator[Writer]:
-    """Give the writer of a new dataset; what was appended is in the file however the block is left."""
+    """Return a context with the writer of a new dataset, in which appended samples survive an exception."""
     with created(path) as file:
         writer = Writer(file, kind)
         try:
@@ -175,12 +175,12 @@ def writing(path: Path, kind: Kind) -> Iterator[Writer]:
 
 
 def write_boundaries(path: Path, boundaries: Iterable[Boundary]) -> None:
-    """Write boundaries of one size and topology, each as it comes."""
+    """Write boundaries of the same size and topology, one at a time."""
     _write(path, "meshonet-boundary", boundaries)
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write grids of one size and topology, each as it comes."""
+    """Write grids of the same size and topology, one at a time."""
     _write(path, "meshonet-grid", grids)
 
 

@@ -1,4 +1,4 @@
-"""Layouts of blocks as JSON: the loops of a domain, vertices, edges with their curves, and four-sided faces.
+"""Block layouts as JSON: the loops of a domain, vertices, edges with their curves, and four-sided faces.
 
 ::
 
@@ -17,6 +17,6 @@ are the points where a smooth curve may bend. A loop that is no wall but the fro
 around the wall, has ``"front": true``. Points and places of edges are those of the nodes between the
 ends; points of a face are the nodes inside, j fastest. The sides of a face run along i or j; an edge that is
 run through backwards has the number -1 - k, as arcs have in TopoJSON (https://github.com/topojson). Vertices
-and edges on a periodic side name their ``partner``, and the layout has ``periodic``: the arc lengths of both
-stretches and the shift.
+and edges on a periodic side may name their ``partner``, and the layout has ``periodic``: for each pair of
+stretches of the outer loop the arc lengths of both, the shift and the names.
 """

@@ -1,4 +1,4 @@
-"""Reading layouts, whose values are all checked before they are used."""
+"""Reads layouts from JSON. All values are checked before they are used."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from meshonet.formats.source import Source, open_source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.curve import Curve
-from meshonet.geometry.domain.domain import Domain, Periodic
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.domain.places import arc_at, cells_at
 from meshonet.geometry.errors import InputError, in_place, in_source
 from meshonet.geometry.layout.lattice import lattice_quads
@@ -28,13 +29,13 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.shapes.domain_shape import DomainShape
 
 MOST_BYTES = 256 << 20
-"""A larger file would take many times its size in memory."""
+"""Largest file in bytes; parsing takes many times its size in memory."""
 
 
 def read_layout(source: Source) -> Layout:
     """Return the layout of a file.
 
-    Raises InputError: no JSON, no layout, or one whose parts do not fit together; with the place.
+    Raises InputError, with the place in the file: no JSON, no layout, or parts that do not fit together.
     """
     if source.size > MOST_BYTES:
         raise InputError(f"{source.size >> 20} MB are too much for a layout", "give a file below 256 MB")
@@ -49,10 +50,7 @@ def read_layout(source: Source) -> Layout:
         raise InputError(problem, f"this program reads version {VERSION}")
     file = Values(data)
     loops = tuple(_loop(values) for values in file.rows("loops"))
-    periodic = None
-    if "periodic" in data:
-        sides = file.row("periodic")
-        periodic = Periodic(sides.pair("first"), sides.pair("second"), sides.pair("shift"))
+    periodic = _periodic(file) if "periodic" in data else ()
     domain = Domain(loops, printable(file.text("name")), periodic=periodic)
     layout = _LayoutNodes(domain, file.rows("vertices"), file.rows("edges"), file.rows("faces")).layout()
     fronts = [k for k, values in enumerate(file.rows("loops")) if values.data.get("front") is True]
@@ -60,14 +58,17 @@ def read_layout(source: Source) -> Layout:
 
 
 def layout_of(text: str) -> Layout:
-    """Return the layout of the file `text`, or of standard input for ``-``; InputError as `read_layout`."""
+    """Return the layout of the file `text`, or of standard input for ``-``.
+
+    Raises InputError as `read_layout`.
+    """
     source = open_source(text)
     with in_source(source.name):
         return read_layout(source)
 
 
 def read_shapes(source: Source) -> Iterator[DomainShape]:
-    """Yield the domain of a layout, which is made with its blocks."""
+    """Yield the domain of a layout as a shape that keeps its blocks."""
     layout = read_layout(source)
     yield DomainShape(layout.mesh.domain, layout=layout)
 
@@ -75,6 +76,18 @@ def read_shapes(source: Source) -> Iterator[DomainShape]:
 def read_grids(source: Source) -> Iterator[Grid]:
     """Yield the blocks of a layout as a coarse grid."""
     yield to_grid(read_layout(source), source.stem)
+
+
+def _periodic(file: Values) -> tuple[Periodic, ...]:
+    rows = [file.row("periodic")] if isinstance(file.data["periodic"], dict) else file.rows("periodic")
+    pairs = []
+    for values in rows:
+        names = values.texts("names") if "names" in values.data else ["periodic1", "periodic2"]
+        if len(names) != 2:
+            raise values.error("names no two sides")
+        both = printable(names[0]), printable(names[1])
+        pairs.append(Periodic(values.pair("first"), values.pair("second"), values.pair("shift"), both))
+    return tuple(pairs)
 
 
 def _loop(values: Values) -> Loop:
@@ -96,7 +109,7 @@ def _loop(values: Values) -> Loop:
 
 
 class _LayoutNodes:
-    """All nodes: vertices, then those between the ends of edges, then those inside faces."""
+    """Table of all nodes: vertices, then nodes between the ends of edges, then interior nodes of faces."""
 
     def __init__(
         self, domain: Domain, vertices: list[Values], edges: list[Values], faces: list[Values]
@@ -136,7 +149,7 @@ class _LayoutNodes:
     def _add(
         self, nodes: Floats, loop: int = -1, arc: Floats | None = None, cells: Any = 0, partner: int = -1
     ) -> Indices:
-        """Add nodes (n, 2), those on a loop with their places, and return their numbers."""
+        """Add nodes (n, 2), with their arc lengths if they are on a loop, and return their numbers."""
         n = len(nodes)
         self.nodes.append(nodes)
         self.loop.append(np.full(n, loop, dtype=np.intp))
@@ -166,7 +179,7 @@ class _LayoutNodes:
         return array
 
     def _edge(self, values: Values, count: int) -> Indices:
-        """Return the nodes of an edge, those between its ends added."""
+        """Return the nodes of an edge, after adding those between its ends."""
         ends = [values.entry("vertices", k, 2, count) for k in (0, 1)]
         if "loop" in values.data:
             number, loop = self._loop(values)
@@ -182,13 +195,13 @@ class _LayoutNodes:
         return np.concatenate([ends[:1], inner, ends[1:]]).astype(np.intp)
 
     def _line(self, values: Values, number: Any) -> Indices:
-        """Return the nodes of an edge, the other way round for a number -1 - k."""
+        """Return the nodes of an edge, in reverse order for a number -1 - k."""
         if type(number) is not int or not -len(self.lines) <= number < len(self.lines):
             raise values.error(f"names edge {printable(str(number))[:20]} of {len(self.lines)}")
         return self.lines[number] if number >= 0 else self.lines[-1 - number][::-1]
 
     def _face(self, values: Values) -> Indices:
-        """Return the lattice (ni, nj) of a face, the nodes inside added."""
+        """Return the lattice (ni, nj) of a face, after adding the interior nodes."""
         south, east, north, west = (self._side(values, side) for side in ("south", "east", "north", "west"))
         ni, nj = len(south), len(west)
         if len(north) != ni or len(east) != nj:
@@ -207,7 +220,7 @@ class _LayoutNodes:
         return block
 
     def _side(self, values: Values, side: str) -> Indices:
-        """Return the nodes of a side, its edges one after the other."""
+        """Return the nodes of a side, which consists of consecutive edges."""
         numbers = values.data.get(side)
         if not isinstance(numbers, list) or not numbers:
             raise values.error(f"has no edges on {side}")

@@ -1,4 +1,4 @@
-"""Values of a JSON object, checked before they are used."""
+"""Values of a JSON object. They are checked before they are used."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class Values:
-    """A JSON object and where it stands, ``faces[3]``; InputError is raised for values that do not fit."""
+    """A JSON object and its place, such as ``faces[3]``; invalid values raise InputError."""
 
     data: dict[str, Any]
     place: str = ""
@@ -24,7 +24,7 @@ class Values:
         return InputError(problem, "write the layout again", place=self.place)
 
     def rows(self, key: str) -> list[Values]:
-        """Return the objects of a list that is not empty."""
+        """Return the objects of a non-empty list."""
         rows = self.data.get(key)
         if not isinstance(rows, list) or not rows or not all(isinstance(row, dict) for row in rows):
             raise self.error(f"{key} are no list of objects")
@@ -45,32 +45,32 @@ class Values:
         return value
 
     def texts(self, key: str) -> list[str]:
-        """Return texts that are not empty."""
+        """Return non-empty texts."""
         values = self.data.get(key)
         if not isinstance(values, list) or not all(isinstance(each, str) and each for each in values):
             raise self.error(f"{key} are no texts")
         return values
 
     def count(self, key: str, *, default: int | None = None) -> int:
-        """Return a whole number from 0 on."""
+        """Return an integer that is not negative."""
         value = self.data.get(key, default)
         if type(value) is not int or not 0 <= value < 1 << 31:
             raise self.error(f"{key} is no count")
         return value
 
     def number(self, key: str, below: int) -> int:
-        """Return a whole number from 0 to below a limit."""
+        """Return an integer from 0 to `below` - 1."""
         return self._below(key, self.data.get(key), below)
 
     def numbers(self, key: str, below: int) -> list[int]:
-        """Return whole numbers from 0 to below a limit."""
+        """Return integers from 0 to `below` - 1."""
         values = self.data.get(key)
         if not isinstance(values, list):
             raise self.error(f"{key} are no list")
         return [self._below(key, value, below) for value in values]
 
     def entry(self, key: str, k: int, of: int, below: int) -> int:
-        """Return entry `k` of a list of `of` whole numbers from 0 to below a limit."""
+        """Return entry `k` of a list of `of` integers from 0 to `below` - 1."""
         values = self.data.get(key)
         if not isinstance(values, list) or len(values) != of:
             raise self.error(f"{key} are not {of} numbers")
@@ -99,7 +99,7 @@ class Values:
         return float(array[0]), float(array[1])
 
     def points(self, key: str, *, least: int = 1, one: bool = False) -> Floats:
-        """Return points (n, 2), `least` or more; with `one`, a point as (1, 2)."""
+        """Return at least `least` points (n, 2); with `one`, a single point as (1, 2)."""
         array = self.array(self.data.get(key), key)
         array = array[None] if one else array.reshape(0, 2) if not array.size else array
         if array.ndim != 2 or array.shape[1] != 2 or len(array) < least:

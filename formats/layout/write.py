@@ -1,4 +1,4 @@
-"""Writing layouts: every node stands once, at a vertex, on an edge or in a face."""
+"""Writes layouts; every node occurs once, at a vertex, on an edge or in a face."""
 
 import json
 from collections.abc import Iterable
@@ -15,11 +15,11 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 
 NAME, VERSION = "meshonet-layout", 1
-"""What a file of layouts says that it is."""
+"""Format and version in the file."""
 
 
 def write_layouts(path: Path, layouts: Iterable[Layout]) -> None:
-    """Write the only one of `layouts`; InputError where there are several."""
+    """Write the only layout of `layouts`. Raises InputError: there are several."""
     first, *others = layouts
     if others:
         remedy = "write one file each ({output} 'name-{{index}}.json')"
@@ -28,7 +28,7 @@ def write_layouts(path: Path, layouts: Iterable[Layout]) -> None:
 
 
 def as_text(layout: Layout) -> str:
-    """Return the JSON of a layout, a line for each loop, vertex, edge and face."""
+    """Return the JSON of a layout, with one line per loop, vertex, edge and face."""
     parts = []
     for key, value in as_dict(layout).items():
         rows = isinstance(value, list) and value and isinstance(value[0], dict)
@@ -42,7 +42,7 @@ def _dumped(value: Any) -> str:
 
 
 def as_dict(layout: Layout) -> dict[str, Any]:
-    """Return a layout as what JSON can hold (`meshonet.formats.layout`)."""
+    """Return a layout as a dictionary for JSON (`meshonet.formats.layout`)."""
     domain = layout.mesh.domain
     drawn = _WrittenLayout(layout)
     facts: dict[str, Any] = {
@@ -54,8 +54,10 @@ def as_dict(layout: Layout) -> dict[str, Any]:
         "vertices": [drawn.vertex(int(node)) for node in layout.vertices],
         "edges": drawn.edges, "faces": drawn.faces,
     }  # fmt: skip
-    if domain.periodic is not None:
-        facts["periodic"] = {name: list(value) for name, value in vars(domain.periodic).items()}
+    if domain.periodic:
+        facts["periodic"] = [
+            {name: list(value) for name, value in vars(each).items()} for each in domain.periodic
+        ]
     return facts
 
 
@@ -69,7 +71,7 @@ def _loop(loop: Loop) -> dict[str, Any]:
 
 
 class _WrittenLayout:
-    """The edges and faces of a layout as they are written."""
+    """The edges and faces of a layout in the form of the file."""
 
     def __init__(self, layout: Layout) -> None:
         self.nodes, self.places, self.loops = layout.mesh.nodes, layout.mesh.places, layout.mesh.domain.loops
@@ -107,7 +109,7 @@ class _WrittenLayout:
         return facts
 
     def _sides(self, block: Indices) -> dict[str, list[int]]:
-        """Return the numbers of the edges of each side, which is cut at vertices."""
+        """Return the indices of the edges of each side, which is divided at vertices."""
         lines = {"south": block[:, 0], "east": block[-1], "north": block[:, -1], "west": block[0]}
         return {
             side: [self._numbered(line[a : b + 1]) for a, b in pairwise(np.flatnonzero(self.is_vertex[line]))]

@@ -1,1 +1,1 @@
-"""What unstructured meshes and structured grids have in common: names, loops, patches, recovered topology."""
+"""Functions that the formats of unstructured meshes and structured grids share."""

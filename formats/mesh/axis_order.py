@@ -1,4 +1,4 @@
-"""Arrays between the order of files (first index fastest) and that of memory (last index fastest)."""
+"""Conversion between the array order of files (first index fastest) and of memory (last index fastest)."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats
 
 _ROWS = 16
-"""Rows copied at a time, so that what is read and what is written stays in the cache."""
+"""Number of rows copied at a time, so that source and destination stay in the cache."""
 
 
 def first_fastest(values: NDArray[Any], dtype: str | np.dtype[Any]) -> NDArray[Any]:
-    """Return `values` (ni, nj) or (ni, nj, nk) flat, i fastest, as numbers of `dtype`."""
+    """Return `values` (ni, nj) or (ni, nj, nk) as a flat array of type `dtype`, i fastest."""
     return np.ascontiguousarray(values.T, dtype).reshape(-1)
 
 
 def nodes_of(coordinates: Sequence[NDArray[Any]]) -> Floats:
-    """Return nodes (..., d) of float64 in planar layout (`meshonet.geometry.arrays`) from d coordinates."""
+    """Return float64 nodes (..., d) from d coordinates, in planar layout (`meshonet.geometry.arrays`)."""
     nodes = np.empty((len(coordinates), *coordinates[0].shape))
     for row, values in zip(nodes, coordinates, strict=True):
         for start in range(0, values.shape[1], _ROWS):

@@ -1,9 +1,9 @@
-"""Cells and faces of a lattice of node numbers, in the orders that mesh formats have in common.
+"""Cells and faces of a lattice of node numbers, in the node order that mesh formats share.
 
 ::
 
-      3-----2        7-----6        faces point out of the block: with j right of i and k up,
-      |     |       /|    /|        0 1 2 3 of a side runs counter-clockwise seen from outside
+      3-----2        7-----6        normals of faces point out of the block: the nodes 0 1 2 3 of
+      |     |       /|    /|        a face run counter-clockwise, seen from outside
       0-----1      4-----5 |
                    | 3---|-2
                    |/    |/
@@ -22,7 +22,7 @@ Indices = NDArray[np.int64]
 
 
 def cells_of(number: Indices) -> Indices:
-    """Return the nodes (m, 4 or 8) of the cells of a block of node numbers (ni, nj) or (ni, nj, nk)."""
+    """Return the nodes (m, 4 or 8) of the cells of a block with node numbers (ni, nj) or (ni, nj, nk)."""
     if number.ndim == 2:
         return _flat(_around(number))
     below, above = _around(number[:, :, :-1]), _around(number[:, :, 1:])
@@ -30,7 +30,7 @@ def cells_of(number: Indices) -> Indices:
 
 
 def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
-    """Return numbers from 0 on for the cells of blocks with these counts of nodes, i fastest."""
+    """Return consecutive cell numbers, from 0, for blocks with the given node counts, i fastest."""
     shapes = [tuple(n - 1 for n in count) for count in counts]
     ends = np.cumsum([0, *(int(np.prod(shape)) for shape in shapes)])
     return [
@@ -40,9 +40,9 @@ def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
 
 
 def faces_of(side_numbers: Indices, side: Side) -> Indices:
-    """Return the edges (k, 2) or quadrilaterals (k, 4) of a part of a side, of node numbers (n,) or (n, m).
+    """Return the edges (k, 2) or quadrilaterals (k, 4) of a part of a side with node numbers (n,) or (n, m).
 
-    The domain is on the left of edges; the normals of quadrilaterals point out of it.
+    The domain is on the left of edges; normals of quadrilaterals point out of it.
     """
     if side_numbers.ndim == 1:
         rows = np.stack([side_numbers[:-1], side_numbers[1:]], axis=-1)
@@ -52,16 +52,16 @@ def faces_of(side_numbers: Indices, side: Side) -> Indices:
 
 
 def points_out(side: Side) -> bool:
-    """Say whether the first direction of a side of a volume times its second points out of the block."""
+    """Return whether the cross product of the two directions of a side points out of a volume."""
     axis, end = PLACES[side]
     return (axis == 1) == (end == 0)
 
 
 def _around(number: Indices) -> list[Indices]:
-    """Return the four nodes of each cell along the first two directions of a lattice, one after the other."""
+    """Return the four nodes around each cell along the first two directions of a lattice."""
     return [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]]
 
 
 def _flat(corners: list[Indices]) -> Indices:
-    """Return one row for each cell, the first index fastest."""
+    """Return one row per cell, the first index fastest."""
     return np.stack([corner.ravel(order="F") for corner in corners], axis=-1)

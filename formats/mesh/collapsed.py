@@ -1,9 +1,9 @@
-r"""Degenerate sides of volumes: those that collapse to a line, as at an axis, or to a point, as at a pole.
+r"""Degenerate sides of volumes: they collapse to a line, as at an axis, or to a point, as at a pole.
 
 ::
 
-      +---+          the nodes of a side that lie on each other are one; the cells at it have six nodes
-     /|    \         or five then, and faces three, and faces of no area are none
+      +---+          coincident nodes of a side get one number; cells there have six or five nodes,
+     /|    \         their faces three, and faces without area are omitted
     + |     +
      \|    /
       +---+
@@ -24,7 +24,7 @@ Indices = NDArray[np.int64]
 
 
 def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, NDArray[np.bool_]]]:
-    """Yield block, side, direction of it, and which edges along that, (n-1, m) or (n, m-1), are points."""
+    """Yield block, side, direction, and a mask (n-1, m) or (n, m-1) of edges without length."""
     for number, block in enumerate(grid.blocks):
         for side in sides_of(block.counts) if len(block.counts) == 3 else ():
             face = block.face(side)
@@ -35,10 +35,9 @@ def collapsed_edges(grid: Grid) -> Iterator[tuple[int, Side, int, NDArray[np.boo
 
 
 def with_collapsed(grid: Grid, numbers: list[Indices]) -> list[Indices]:
-    """Return the numbers of the nodes of all blocks, those that a side has in one place as one.
+    """Return node `numbers` of all blocks in which coincident neighbours on a side share a number.
 
-    They have no gaps, as those that come in, which are returned themselves where there is no such side. Nodes
-    are in one place where they are equal and neighbours.
+    The numbers have no gaps. Without degenerate sides the given arrays are returned.
     """
     edges = list(collapsed_edges(grid))
     if not edges:
@@ -55,7 +54,7 @@ def with_collapsed(grid: Grid, numbers: list[Indices]) -> list[Indices]:
 
 
 def refuse_collapsed(grid: Grid, what: str) -> None:
-    """Raise InputError for volumes with a side whose nodes lie on each other, which `what` cannot hold."""
+    """Raise InputError for a volume with degenerate sides, which the format `what` cannot store."""
     for block, side, direction, same in collapsed_edges(grid):
         place = [int(index) for index in np.argwhere(same)[0]]
         axes = [name for axis, name in enumerate("ijk") if axis != PLACES[side][0]]

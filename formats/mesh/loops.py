@@ -1,7 +1,7 @@
-"""Closed curves out of edges in any order and direction, with the name that each edge has.
+"""Closed curves from named edges in any order and direction.
 
-They give default names to the outer edges of a grid of blocks: the outermost curve is ``outer``, those around
-bodies are ``body``, ``body2`` and so on.
+Also default names for the outer edges of a multi-block grid: the outermost curve is ``outer``, the curves
+around bodies are ``body``, ``body2`` and so on.
 """
 
 from __future__ import annotations
@@ -24,29 +24,29 @@ from meshonet.geometry.polygon.corners import Indices
 
 @dataclass(frozen=True)
 class EdgeLoop:
-    """A closed curve: point numbers (n,) in order, the last one joined to the first, and each edge's name."""
+    """A closed curve: point numbers (n,) in order, and the names of the edges from point to point."""
 
     nodes: Indices
     names: tuple[str, ...]
 
     def reversed(self) -> EdgeLoop:
-        """Return it the other way round, from the same point."""
+        """Return the curve in the opposite direction, starting at the same point."""
         return EdgeLoop(np.roll(self.nodes[::-1], 1), self.names[::-1])
 
     def begun_at(self, place: int) -> EdgeLoop:
-        """Return it from its node number `place` on."""
+        """Return the curve starting at its point with the index `place`."""
         return EdgeLoop(np.roll(self.nodes, -place), (*self.names[place:], *self.names[:place]))
 
     @property
     def changes(self) -> list[int]:
-        """Places where the name changes."""
+        """Indices of points at which the name changes."""
         return [k for k in range(len(self.names)) if self.names[k] != self.names[k - 1]]
 
 
 def closed_loops(edges: Mapping[str, Indices], points: Floats) -> list[EdgeLoop]:
-    """Return the closed curves of named edges (k, 2), each from its first edge on and in its direction.
+    """Return the closed curves formed by named edges (k, 2), each in the direction of its first edge.
 
-    Raises InputError: a point where one edge ends, or more than two meet.
+    Raises InputError: a point at which only one edge ends, or more than two.
     """
     ends = np.concatenate([np.empty((0, 2), np.int64), *edges.values()])
     names = [name for name, rows in edges.items() for _ in range(len(rows))]
@@ -78,7 +78,7 @@ def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[EdgeLo
 
 
 def with_loop_names(grid: Grid) -> Grid:
-    """Return a grid of planar blocks with patches on all its outer edges."""
+    """Return a planar grid with patches on all its outer edges."""
     outer = grid.outer_patches()
     unnamed = [
         p
@@ -102,7 +102,7 @@ def with_loop_names(grid: Grid) -> Grid:
 
 
 def _titles(grid: Grid, numbers: list[Indices], outer: list[Patch]) -> dict[int, str]:
-    """Return the name of the line that each outer node is on; periodic sides are parts of lines too."""
+    """Return the name of the curve of each outer node; periodic sides are parts of curves too."""
     ends = [(p.block, p.side, p.start, p.stop) for p in outer]
     for each in grid.connections:
         if each.transform:

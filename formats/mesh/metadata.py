@@ -1,4 +1,4 @@
-"""Topology, name, patches and provenance of a grid as texts, for formats that can hold text."""
+"""Topology, name, patches and provenance of a grid as texts, for formats that can store text."""
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
@@ -10,17 +10,17 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import kind_of
 
 Facts: TypeAlias = Mapping[str, Sequence[str]]
-"""Texts by the name of what they say."""
+"""Texts by key."""
 
 
 def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]]:
-    """Return the topology, name, parts and provenance of `grid` as lists of texts by name.
+    """Return topology, name, patches and provenance of `grid` as lists of texts by key.
 
-    `grid_with` makes a grid from them. A part reads ``side start stop name``; kinds are those of parts, where
-    names do not say them, and across what they span along the second direction of a side. What is empty is
-    left out. Of a grid of blocks they are those of one `block`, the first of which has the connections and
-    the provenance; with the grid's `number` in its file, by which its blocks know each other,
-    `grid_of_blocks` makes a grid. An extruded grid has those of its plane, so that it is read as that again.
+    `grid_with` restores the grid from them. A patch is ``side start stop name``; its kind is added if the
+    name does not imply it, and so is its range along the second direction of a side. Empty entries are
+    omitted. For a multi-block grid, the texts describe one `block`; the first block has the connections and
+    the provenance. The `number` of the grid in its file identifies blocks of the same grid for
+    `grid_of_blocks`. An extruded grid gets the texts of its planar grid, so that it is read as a planar grid.
     """
     space = grid.form != "plane"
     if space:
@@ -60,7 +60,7 @@ def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]
 
 
 def plain(value: object) -> object:
-    """Turn numpy's numbers and arrays into what JSON can say, and anything else into its text."""
+    """Return a value as JSON can represent it: NumPy's numbers and arrays as Python's, others as text."""
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 

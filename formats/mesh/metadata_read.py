@@ -1,4 +1,4 @@
-"""Grids of their nodes and the texts that `meshonet.formats.mesh.metadata` makes."""
+"""Restores grids from nodes and the texts that `meshonet.formats.mesh.metadata` makes."""
 
 import json
 from collections.abc import Sequence
@@ -23,20 +23,20 @@ from meshonet.geometry.errors import InputError
 
 
 def number_of_grid(facts: Facts) -> int | None:
-    """Return the number, in its file, of the grid of several blocks that one with `facts` belongs to."""
+    """Return the number, in its file, of the multi-block grid to which the block with `facts` belongs."""
     words = facts["block"][0].split() if facts.get("block") else []
     return int(words[0]) if len(words) == 2 and all(w.isdecimal() and len(w) < 9 for w in words) else None
 
 
 def says_in_space(facts: Facts) -> bool:
-    """Say whether the facts of a block are those of one in space."""
+    """Return whether the facts describe a three-dimensional block."""
     return list(facts.get("coordinates", ())) == ["3"]
 
 
 def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
-    """Return the nodes of a block of x, y[, z], each (n1, n2, n3), that its facts say is in space or a plane.
+    """Return the nodes of a block from x, y[, z], each (n1, n2, n3), planar or in space as its facts say.
 
-    Raises InputError: it is no plane and not said to be in space.
+    Raises InputError: the block is not planar, and its facts do not say that it is three-dimensional.
     """
     if not says_in_space(facts):
         return planar(coordinates)
@@ -44,9 +44,9 @@ def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
 
 
 def grid_of_blocks(blocks: Sequence[tuple[Floats, Facts]], name: str = "") -> Grid:
-    """Return the grid of blocks, each its nodes and facts, in the order that the facts say.
+    """Return the grid of blocks, each given by nodes and facts, in the order that the facts give.
 
-    Raises InputError: a block is missing or there twice; connections that do not fit the nodes.
+    Raises InputError: a missing or repeated block; connections that do not match the nodes.
     """
     rows = sorted(
         ((int(facts["block"][0].split()[1]), nodes, facts) for nodes, facts in blocks), key=itemgetter(0)
@@ -69,11 +69,12 @@ def _grid(blocks: Sequence[tuple[Floats, Facts]], name: str) -> Grid:
 
 
 def grid_with(nodes: Floats, facts: Facts, name: str = "") -> Grid:
-    """Return the grid of `nodes` and the facts of its file; without a topology it is recovered, in the plane.
+    """Return the grid of `nodes` with the facts of its file.
 
-    A block of a grid of several is one by itself, without the connections.
+    A missing topology is recovered for planar grids.
 
-    `name` is its name when the facts do not say; other facts than `facts_of` makes are passed over.
+    A block of a multi-block grid becomes a grid of its own, without the connections. `name` is used if the
+    facts have no name. Unknown facts are ignored.
     """
     if says_in_space(facts):
         alone = number_of_grid(facts) is None
@@ -97,7 +98,7 @@ def _provenance(facts: Facts) -> dict[str, Any]:
 
 
 def _parts(facts: Facts) -> list[Patch]:
-    """Return the patches of a block, of the kinds that the facts say or else the names."""
+    """Return the patches of a block, with the kinds that the facts or the names give."""
     patches = [_part(text) for text in facts.get("parts", ())]
     spans = facts.get("across", ())
     if len(spans) == len(patches):

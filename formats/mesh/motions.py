@@ -1,6 +1,6 @@
-"""The rigid motion between two joined sides: none, a translation or a rotation.
+"""The rigid motion between two connected sides: none, a translation or a rotation.
 
-It is found from the nodes, since conventions of files differ in its sign.
+It is computed from the nodes, because file formats differ in the sign.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.linear import nearest_rotation
 
 LOOSE = 1e-3
-"""Joined nodes may differ by this part of the shortest edge along their side."""
+"""Largest distance of connected nodes, relative to the shortest edge along their side."""
 _DIGITS = range(1, 18)
-"""Significant digits that a shift may have been written with."""
+"""Possible numbers of significant digits of a translation in a file."""
 
 
 def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
-    """Return a connection of `blocks` with the motion between its sides, if there is any.
+    """Return a connection of `blocks` with the motion between its sides.
 
-    Raises InputError: sides of other counts, nodes that no shift or rotation makes the same.
+    Raises InputError: sides with different node counts; nodes that no translation or rotation makes coincide.
     """
     own, donor = connection.nodes(lambda block, side: blocks[block].face(side))
     if own.shape != donor.shape:
@@ -46,9 +46,10 @@ def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
 
 
 def like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    """Return a periodic connection with one of `motions` where its own is alike, or else add it to them.
+    """Return a periodic connection with the nearly equal motion of `motions`; without one its own is added.
 
-    Periodic sides of one motion, or its inverse, have the very same one, so that they agree where they meet.
+    All periodic sides with the same motion, or its inverse, thus have bitwise the same motion, so that they
+    agree where they meet.
     """
     for known in motions:
         for each in (connection, connection.reversed()):
@@ -59,7 +60,7 @@ def like_others(connection: Connection, motions: list[Motion]) -> Connection:
 
 
 def _motions(own: Floats, donor: Floats) -> Iterator[Motion]:
-    """Yield what may carry nodes (n, d) to others: nothing, a shift, a rotation."""
+    """Yield candidates for the motion from nodes `own` (n, d) to `donor`: none, a translation, a rotation."""
     yield Motion()
     shift = (donor - own).mean(axis=0).tolist()
     for digits in _DIGITS:  # one that was meant makes the very nodes
@@ -75,9 +76,9 @@ def _motions(own: Floats, donor: Floats) -> Iterator[Motion]:
 
 
 def _turn(own: Floats, donor: Floats) -> tuple[tuple[float, ...], ...]:
-    """Return the rows of the rotation matrix between two sides of nodes (n, d), none of sides of no size.
+    """Return the rows of the rotation matrix between sides of nodes (n, d), none for sides without extent.
 
-    In space the rotation of least squares.
+    In space it is the least-squares rotation.
     """
     if own.shape[1] == 2:
         here, there = (nodes[-1] - nodes[0] for nodes in (own, donor))

@@ -1,4 +1,4 @@
-"""Names and kinds of patches in the form that files of flow solvers require."""
+"""Names and kinds of patches in the form that the files of flow solvers require."""
 
 import re
 from collections.abc import Container, Iterable, Sequence
@@ -10,10 +10,10 @@ from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
 def words(
     names: Iterable[str], limit: int = 64, taken: Iterable[str] = (), *, letter: bool = False
 ) -> dict[str, str]:
-    """Return a word of ASCII letters, digits and ``_.+-`` for each of `names`, all different.
+    """Return a different word of ASCII letters, digits and ``_.+-`` for each of `names`.
 
-    In case files a blank, a comma or a bracket ends a name. A word has at most `limit` characters, is none of
-    `taken`, and starts with a letter where `letter` says so.
+    In case files a blank, a comma or a bracket ends a name. A word has at most `limit` characters, is not one
+    of `taken`, and starts with a letter if `letter` is set.
 
     >>> words(["wall", "no-slip wall", "no-slip,wall", "Ω"])
     {'wall': 'wall', 'no-slip wall': 'no-slip_wall', 'no-slip,wall': 'no-slip_wall-2', 'Ω': 'part'}
@@ -32,7 +32,7 @@ def words(
 
 
 def unused(stem: str, used: Container[str], limit: int = 64) -> str:
-    """Return `stem`, or with a number behind it in at most `limit` characters where it is one of `used`."""
+    """Return `stem`, with a number appended if it is one of `used`, in at most `limit` characters."""
     word, count = stem, 1
     while word in used:
         count += 1
@@ -41,14 +41,14 @@ def unused(stem: str, used: Container[str], limit: int = 64) -> str:
 
 
 def kind_said(name: str, word: str, known: Sequence[tuple[str, Kind]]) -> Kind:
-    """Return the kind of a patch called `name`: as that says, or else as the file's `word` for it begins."""
+    """Return the kind of a patch: the one implied by its `name`, else the one for the file's `word`."""
     by_word: Kind = next((kind for sign, kind in known if word.startswith(sign)), "other")
     by_name = kind_of(name)
     return by_word if by_name == "other" else by_name
 
 
 def kinds(grid: Grid, patches: Iterable[Patch]) -> dict[str, Kind]:
-    """Return the kind of boundary of each name of `patches`; an unnamed one of a body is a wall."""
+    """Return the kind of boundary for each name of `patches`; an unnamed patch of a body is a wall."""
     kind: dict[str, Kind] = {}
     for patch in patches:
         body = grid.around_body and patch.side == "south" and patch.kind in ("other", "interface")

@@ -1,10 +1,10 @@
-"""The boundary of a grid as named faces, each with the cell behind it; periodic ones as pairs, row by row.
+"""The boundary of a grid as named faces, each with its cell; periodic faces in pairs, row by row.
 
 ::
 
-    name      a ---> b        own edges, the domain on their left
+    name      a ---> b        edges of one side, with the domain on their left
                                   + motion
-    partner   b' <-- a'       row k of the one goes with row k of the other, the other way round
+    partner   b' <-- a'       row k corresponds to row k of the first side, in the opposite direction
 
 In space, rows are quadrilaterals a b c d whose normals point out of the domain, and a' d' c' b'.
 """
@@ -12,7 +12,6 @@ In space, rows are quadrilaterals a b c d whose normals point out of the domain,
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -20,26 +19,26 @@ import numpy as np
 from meshonet.formats.mesh.cell_faces import cell_numbers, faces_of
 from meshonet.formats.mesh.names import unused
 from meshonet.geometry.blocks.block import Range, face_of
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection, Motion, cells_at
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.outer_patches import owners_of
 from meshonet.geometry.polygon.corners import Indices
 
 _SAME = 1e-9
-"""Motions are the same when they differ by no more, shifts as part of their size."""
+"""Largest difference of motions that count as equal; for translations relative to their length."""
 _OPPOSITE = {2: [1, 0], 4: [0, 3, 2, 1]}
-"""Places in a row of the nodes that the partner's row, of so many nodes, has one after the other."""
+"""Order of the nodes in the partner's row, by the number of nodes per row."""
 
 
 class NamedFaces(NamedTuple):
-    """Faces (k, 2 or 4) of node numbers, and the number (k,) of the cell behind each."""
+    """Faces (k, 2 or 4) of node numbers, and the number (k,) of the cell of each face."""
 
     faces: Indices
     cells: Indices
 
 
 class PeriodicPair(NamedTuple):
-    """Faces under a name, and those of the partner, to which `motion` carries them."""
+    """Faces with a name, and the corresponding faces of the partner, to which `motion` maps them."""
 
     name: str
     partner: str
@@ -54,7 +53,7 @@ class PeriodicPair(NamedTuple):
 
     @property
     def nodes(self) -> Indices:
-        """(n, 2) each node of the first side and its partner, once."""
+        """(n, 2) pairs of a node of the first side and its partner, each once."""
         opposite = self.opposite.faces[:, _OPPOSITE[self.faces.shape[1]]]
         rows = np.stack([self.faces.ravel(), opposite.ravel()], axis=1)
         return np.asarray(np.unique(rows, axis=0))
@@ -63,10 +62,10 @@ class PeriodicPair(NamedTuple):
 def outer_parts(
     grid: Grid, numbers: Sequence[Indices]
 ) -> tuple[dict[str, NamedFaces], tuple[PeriodicPair, ...]]:
-    """Return the outer faces by name, those of periodic pairs last, and these pairs.
+    """Return the outer faces by name, those of periodic pairs last, and the periodic pairs.
 
-    `numbers` are those of the nodes of each block. Faces that connections join belong to no part; an outer
-    one that nobody named is called by its side.
+    `numbers` are the node numbers of each block. Connected faces belong to no part. Unnamed outer faces get
+    the name of their side.
     """
     cells = cell_numbers([block.counts for block in grid.blocks])
     pieces: dict[str, list[NamedFaces]] = {}
@@ -89,10 +88,10 @@ def outer_parts(
 def periodic_pairs(
     grid: Grid, numbers: Sequence[Indices], cells: Sequence[Indices], taken: Iterable[str]
 ) -> list[PeriodicPair]:
-    """Return the pairs of periodic sides of blocks whose nodes and `cells` have these numbers.
+    """Return the pairs of periodic sides of blocks with the given node `numbers` and `cells` numbers.
 
-    Connections of one motion and one pair of names make one pair; without names they are called periodic1 and
-    periodic2, and so on, and never as those `taken` by other faces.
+    Connections with the same motion and the same names form one pair. Unnamed pairs are called periodic1 and
+    periodic2 and so on, but never by a name in `taken`.
     """
     motions: list[Motion] = []
     by_motion: dict[tuple[int, str, str], list[tuple[NamedFaces, NamedFaces]]] = {}
@@ -118,7 +117,7 @@ def periodic_pairs(
 
 
 def _known(motion: Motion, motions: list[Motion]) -> tuple[int, bool]:
-    """Return the number of a motion among those known, which it may join, and whether it goes back there."""
+    """Return the index of a motion in `motions`, appended if new, and whether it is the inverse of it."""
     for number, known in enumerate(motions):
         for backwards, like in ((False, motion), (True, motion.inverse())):
             if known.alike(like, _SAME):
@@ -131,29 +130,19 @@ def _parts(
     connection: Connection, numbers: Sequence[Indices], cells: Sequence[Indices]
 ) -> tuple[NamedFaces, NamedFaces]:
     """Return the faces of both sides of a connection, the donor's the other way round, and the cells."""
-    faces = [faces_of(nodes, connection.side) for nodes in both_sides(connection, numbers)]
-    behind = [rows.ravel(order="F") for rows in both_sides(cellwise(connection), cells)]
+    faces = [faces_of(nodes[..., 0], connection.side) for nodes in connection.pairs(numbers)]
+    behind = [rows.ravel(order="F") for rows in cells_beside(connection, cells)]
     return NamedFaces(faces[0], behind[0]), NamedFaces(faces[1][:, _OPPOSITE[faces[1].shape[1]]], behind[1])
 
 
-def both_sides(connection: Connection, numbers: Sequence[Indices]) -> tuple[Indices, Indices]:
-    """Return what `numbers` of all blocks are on both sides of a connection, in one order."""
-    plain = replace(connection, transform=None)
-    own, donor = plain.nodes(lambda block, side: face_of(numbers[block][..., None], side))
+def cells_beside(connection: Connection, cells: Sequence[Indices]) -> tuple[Indices, Indices]:
+    """Return what `cells` of all blocks are beside both sides of a connection, in one order."""
+    own, donor = cells_at(connection, lambda block, side: face_of(cells[block][..., None], side))
     return own[..., 0], donor[..., 0]
 
 
-def cellwise(connection: Connection) -> Connection:
-    """Return a connection with ranges of cells instead of nodes."""
-    own, donor = (
-        tuple((first, last - 1) for first, last in span)
-        for span in (connection.range, connection.donor_range)
-    )
-    return replace(connection, range=own, donor_range=donor)
-
-
 def donor_range(each: Connection) -> Range:
-    """Return the donor's range, first and last node swapped along directions that are opposed."""
+    """Return the range of the donor; first and last node are exchanged along opposite directions."""
     span = list(each.donor_range)
     for way in each.orientation:
         if way < 0:
@@ -162,7 +151,7 @@ def donor_range(each: Connection) -> Range:
 
 
 def patch_on(grid: Grid, connection: Connection) -> str:
-    """Return the name that all patches on the first side of a connection share, if they cover it."""
+    """Return the common name of all patches on the first side of a connection, if they cover it."""
     own = [patch for patch in grid.patches if patch.block == connection.block]
     counts = grid.blocks[connection.block].counts
     owners = owners_of(own, counts, (), connection.side)

@@ -13,15 +13,17 @@ from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.shapes.spatial_shape import SpatialShape, in_space
 
 _SEAM = 1e-6
-"""Sides are joined when they differ by no more than this part of their first step."""
+"""Largest distance between joined sides, relative to their first edge."""
 
 
 def boundary_of(grid: Grid) -> Shape:
-    """Return the four outer edges of `grid`, with its topology, parts and name; of many blocks, their domain.
+    """Return the four outer edges of `grid`, with its topology, patches and name.
 
-    The blocks can be used again where each shares whole sides. A grid in space is a shape as it is.
+    For many blocks, their domain.
 
-    Raises InputError: the edges are no boundary, e.g. two neighbouring nodes are the same point; as
+    The blocks can be used again if all of them share whole sides. A three-dimensional grid is a shape itself.
+
+    Raises InputError: the edges are not a boundary, for example because two neighbouring nodes coincide; as
     `layout_of`.
     """
     if in_space(grid):
@@ -40,12 +42,12 @@ def boundary_of(grid: Grid) -> Shape:
 
 
 def recovered(nodes: Floats, name: str = "") -> Grid:
-    """Return the grid of nodes whose file says nothing about topology or orientation.
+    """Return the grid of `nodes` (ni, nj, 2), which must be `usable`, without information from a file.
 
-    Left-handed nodes get i reversed. Columns 0 and ni-1 that are the same, to a millionth of the first
-    step, make an O grid; rows 0 and nj-1 that are the same too, once turned by a quarter so that i runs
-    around. The smaller of the two loops is the body and becomes the south side. A side that comes back
-    along its own first nodes becomes the south side of a C grid. `nodes` are (ni, nj, 2), and `usable`.
+    Index i of left-handed nodes is reversed. If columns 0 and ni-1 coincide within a millionth of the first
+    edge, the grid is an O grid. So it is if rows 0 and nj-1 coincide; i and j are then exchanged. The smaller
+    of the two closed sides is the body and becomes the south side. If the last nodes of a side coincide with
+    its first nodes in reverse order, it is a C grid, and this side becomes the south side.
     """
     nodes = right_handed(usable(nodes))
     if not _closed(nodes) and _closed(_quarter_turn(nodes)):
@@ -65,10 +67,10 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
 
 
 def usable(nodes: Floats) -> Floats:
-    """Return `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3) as they are.
+    """Return `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3) unchanged.
 
-    Raises InputError: one node along a direction; a coordinate that is not finite, or so large that products
-    of two are not.
+    Raises InputError: only one node along a direction; a coordinate that is not finite, or so large that
+    products overflow.
     """
     if min(nodes.shape[:-1]) < 2:
         counts = " x ".join(map(str, nodes.shape[:-1]))
@@ -82,9 +84,9 @@ def usable(nodes: Floats) -> Floats:
 
 
 def right_handed(nodes: Floats) -> Floats:
-    """Return `nodes` (ni, nj, 2), i reversed when their area is negative.
+    """Return `nodes` (ni, nj, 2), with i reversed if their signed area is negative.
 
-    The signed areas of the cells add up to that of the outline, so only the outline is looked at.
+    The signed area is computed from the outline, which equals the sum over all cells.
     """
     return nodes[::-1] if is_left_handed(nodes) else nodes
 
@@ -96,7 +98,7 @@ def is_left_handed(nodes: Floats) -> bool:
 
 
 def known_topology(text: str) -> Topology:
-    """Return `text` as a topology; InputError where it is none."""
+    """Return `text` as a topology. Raises InputError: it is none."""
     for topology in TOPOLOGIES:
         if text == topology:
             return topology
@@ -104,12 +106,12 @@ def known_topology(text: str) -> Topology:
 
 
 def _closed(nodes: Floats) -> bool:
-    """Say whether column ni-1 of `nodes` (ni, nj, 2) lies on column 0, to rounding in the file's digits."""
+    """Return whether columns ni-1 and 0 of `nodes` (ni, nj, 2) coincide within the digits of a file."""
     gap = np.abs(nodes[-1] - nodes[0]).max(axis=1)
     step = np.abs(nodes[1] - nodes[0]).max(axis=1)
     return len(nodes) > 3 and bool((gap <= _SEAM * step).all())
 
 
 def _quarter_turn(nodes: Floats) -> Floats:
-    """Return `nodes` with i running where j ran; right-handed stays right-handed."""
+    """Return `nodes` with i and j exchanged; right-handed nodes stay right-handed."""
     return np.swapaxes(nodes, 0, 1)[:, ::-1]

@@ -1,4 +1,4 @@
-"""Whether the blocks of a three-dimensional file are a grid in the plane, volumes, or surfaces.
+"""Decides whether the blocks of a three-dimensional file are a planar grid, volumes or surfaces.
 
 The rule, for all blocks of a file together:
 
@@ -6,11 +6,14 @@ The rule, for all blocks of a file together:
   other shifted along one coordinate (a layer one cell thick), is a slice.
 - Where all blocks are slices across the same coordinate at the same places, the file holds a grid in the
   plane: that coordinate and the index across are left out.
-- Else a block with one plane of nodes is a surface patch, any other one a volume.
+- Else, and always within `surfaces_wanted`, a block with one plane of nodes is a surface patch, any other one
+  a volume.
 - Index i is reversed in the plane and in volumes where their directions are left-handed.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -24,14 +27,27 @@ from meshonet.geometry.blocks.handedness import signed_volume
 from meshonet.geometry.errors import InputError, in_place
 
 _SAME = 1e-6
-"""Two planes are copies, and a coordinate constant, to this part of the grid's size (float32 holds 1e-7)."""
+"""Tolerance for equal planes and constant coordinates, relative to the grid's size (float32 has 1e-7)."""
+
+
+_SURFACES = ContextVar("_SURFACES", default=False)
+
+
+@contextmanager
+def surfaces_wanted() -> Iterator[None]:
+    """Within it flat patches are read as surfaces, with all three coordinates."""
+    token = _SURFACES.set(True)
+    try:
+        yield
+    finally:
+        _SURFACES.reset(token)
 
 
 @dataclass(frozen=True)
 class IndexedNodes:
-    """Nodes of a block (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3), and which index of its file i, j, k were.
+    """Nodes (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3) of a block, and the file's index for each of i, j, k.
 
-    `reversed` says that i runs against its index, counted from its last node.
+    `reversed` says that i runs against its index in the file.
     """
 
     nodes: Floats
@@ -40,7 +56,7 @@ class IndexedNodes:
 
 
 class _Slice(NamedTuple):
-    """A slice: index across it, coordinates within it, coordinate across it and its values, size."""
+    """A slice: its normal index, the coordinates in it, the constant coordinate and its values, its size."""
 
     axis: int
     kept: tuple[int, ...]
@@ -50,19 +66,17 @@ class _Slice(NamedTuple):
 
 
 def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[IndexedNodes]:
-    """Return the nodes of all blocks of a file by the rule above; `places` are what errors call them.
+    """Return the nodes of all blocks of a file by the rule above; `places` name them in error messages.
 
-    The coordinates x, y[, z] of a block are (n1, n2, n3) each, of any unit, number type and memory order;
-    they are copied once.
-
-    Raises InputError: a block without cells.
+    The coordinates x, y[, z] of a block are arrays (n1, n2, n3) of any number type and memory order. They are
+    copied once. Raises InputError: a block without cells.
     """
     with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
         slices = []
         for coordinates, place in zip(blocks, places or [""] * len(blocks), strict=True):
             with in_place(place):
                 slices.append(_slice_of(coordinates))
-        if _in_one_plane(slices):
+        if _in_one_plane(slices) and not _SURFACES.get():
             planes = [_plane(block, each) for block, each in zip(blocks, slices, strict=True) if each]
             return [
                 replace(each, nodes=each.nodes[::-1], reversed=True) if is_left_handed(each.nodes) else each
@@ -72,9 +86,9 @@ def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> 
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:
-    """Return nodes (ni, nj, 2) of a block that its file calls plane, however many copies it is of a plane.
+    """Return nodes (ni, nj, 2) of a block that is planar by its file, with one or more copies of a plane.
 
-    Raises InputError: it is no slice.
+    Raises InputError: the block is not a slice.
     """
     with np.errstate(all="ignore"):
         cut = _slice_of(coordinates, most=max(coordinates[0].shape))
@@ -104,7 +118,7 @@ def _in_space(coordinates: Sequence[Floats]) -> IndexedNodes:
 
 
 def _in_one_plane(slices: Sequence[_Slice | None]) -> bool:
-    """Say whether all blocks are slices at the same places."""
+    """Return whether all blocks are slices at the same positions."""
     first, *rest = slices
     if first is None:
         return False
@@ -118,7 +132,7 @@ def _in_one_plane(slices: Sequence[_Slice | None]) -> bool:
 
 
 def _slice_of(coordinates: Sequence[Floats], most: int = 2) -> _Slice | None:
-    """Return the slice that a block of at most `most` planes is, None if it is not a slice."""
+    """Return the slice that a block with at most `most` planes represents, None if it is not a slice."""
     dims = coordinates[0].shape
     if sum(count > 1 for count in dims) < 2:
         problem = f"a grid of {'x'.join(map(str, dims))} nodes has no cells"
@@ -138,12 +152,15 @@ def _slice_of(coordinates: Sequence[Floats], most: int = 2) -> _Slice | None:
 
 
 def _at(values: NDArray[Any], axis: int, index: int) -> NDArray[Any]:
-    """Return plane `index` of (n1, n2, n3) along `axis`, a view."""
+    """Return a view of plane `index` of (n1, n2, n3) along `axis`."""
     return values[(slice(None),) * axis + (index,)]
 
 
 def _flat(plane: list[Floats], axis: int) -> _Slice | None:
-    """Return the slice that a plane of nodes is, the last of the coordinates that are constant left out."""
+    """Return the slice that a plane of nodes represents.
+
+    If several coordinates are constant, the last is dropped.
+    """
     spans = [float(np.ptp(values)) for values in plane]
     size = max(spans)
     if len(plane) == 2:
@@ -156,7 +173,7 @@ def _flat(plane: list[Floats], axis: int) -> _Slice | None:
 
 
 def _copies(first: list[Floats], next_plane: list[Floats], axis: int, before: _Slice | None) -> _Slice | None:
-    """Return the slice that planes of nodes are: all flat across one coordinate, the others the same."""
+    """Return the slice that two planes represent: both constant in one coordinate and equal in the others."""
     size = max(float(np.ptp(values)) for values in first)
     for flat in (2, 1, 0):
         if flat >= len(first) or (before and before.flat != flat):

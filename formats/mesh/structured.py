@@ -1,7 +1,7 @@
-"""Grids from the structured blocks of a file, their named faces and interfaces, in the plane or in space.
+"""Grids from the structured blocks, named faces and interfaces of a file, planar or in space.
 
-A file may say where blocks are joined and what is a boundary; what it does not say is found by position. So
-is the motion of a periodic interface, since conventions of files differ in its sign.
+Interfaces and boundaries that the file does not state are found by position. The motion of a periodic
+interface is always computed from the nodes, because file formats differ in its sign.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ from meshonet.geometry.errors import in_place
 
 @dataclass(frozen=True)
 class FileBlock:
-    """A block of a file: x, y[, z], each (n1, n2, n3), of any number type, its name, its place in messages.
+    """A block of a file: coordinates x, y[, z], each (n1, n2, n3), its name, and its place for messages.
 
-    `iblank` says how many nodes have which mark, where there are marks; `facts` are what `facts_of` made.
+    `iblank` counts the nodes of each iblank value, if the file has any; `facts` are those made by `facts_of`.
     """
 
     coordinates: Sequence[Floats]
@@ -47,7 +47,10 @@ class FileBlock:
 
 
 def described_grids(blocks: Iterable[FileBlock], name: str) -> Iterator[Grid]:
-    """Yield the grids of blocks whose facts say their topology, those of a grid of several side by side."""
+    """Yield the grids of blocks whose facts state their topology.
+
+    Blocks of a multi-block grid follow each other.
+    """
     for number, group in groupby(blocks, key=lambda block: number_of_grid(block.facts)):
         read = ((block, in_place(block.place)(_described)(block)) for block in group)
         if number is not None:
@@ -63,9 +66,9 @@ def _described(block: FileBlock) -> Floats:
 
 
 def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Grid:
-    """Return the grid of a file of one block, by its facts where it has any.
+    """Return the grid of a file with one block, using its facts if there are any.
 
-    Raises InputError: as `grids_of_file`; facts that do not fit.
+    Raises InputError: as `grids_of_file`; facts that do not match the nodes.
     """
     if facts.get("topology"):
         return grid_with(nodes_by_facts(coordinates, facts), facts, name)
@@ -79,14 +82,13 @@ def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Gri
 def grids_of_file(
     blocks: Sequence[FileBlock], faces: Sequence[Face], pairs: Sequence[Pair], name: str
 ) -> Iterator[Grid]:
-    """Yield the grids of the blocks of a file called `name`, by the rule of `meshonet.formats.mesh.slices`.
+    """Yield the grids of the blocks of a file `name`, by the rule of `meshonet.formats.mesh.slices`.
 
-    Blocks that touch are one grid, and so are all patches of surface; each of the others is one by itself.
-    Several grids are called by their block where that has a name, else by `name` and a number, in the order
-    of their first blocks. Outer edges of a planar grid of several blocks that have no name get one
-    (`meshonet.formats.mesh.loops`).
+    Blocks that touch form one grid, and so do all surface patches; every other block is a grid of its own. If
+    there are several grids, each is named after its block, or by `name` and a number, in the order of their
+    first blocks. Unnamed outer edges of a planar multi-block grid get names (`meshonet.formats.mesh.loops`).
 
-    Raises InputError: a block without cells, nodes that are not usable, pairs that do not lie on each other.
+    Raises InputError: a block without cells; nodes that are not usable; interfaces that do not coincide.
     """
     if blocks:
         read = lattices([block.coordinates for block in blocks], [block.place for block in blocks])
@@ -130,10 +132,10 @@ def _grids(
 def _stated(
     pairs: Sequence[Pair], read: Sequence[IndexedNodes], blocks: Sequence[Block]
 ) -> tuple[list[Connection], list[Patch]]:
-    """Return the connections that a file states, once though most stand there twice, and periodic patches.
+    """Return the connections that a file states, each once although most files state them twice, and patches.
 
-    These are of sides whose pairs are called so. Periodic connections of one motion, or its inverse, get the
-    very same one, so that they agree where they meet.
+    The patches are those of periodic sides with a name. Periodic connections with the same motion, or its
+    inverse, get bitwise the same motion, so that they agree where they meet.
     """
     stated: dict[object, Connection] = {}
     names: dict[object, str] = {}
@@ -161,7 +163,7 @@ def _stated(
 
 
 def _groups(blocks: Sequence[Block], connections: Sequence[Connection]) -> list[list[int]]:
-    """Return the numbers of the blocks of each grid: connected ones, and all patches of surface."""
+    """Return the indices of the blocks of each grid: connected blocks, and all surface patches together."""
     label = list(range(len(blocks)))
     surface = [k for k, block in enumerate(blocks) if block.nodes.shape[2:] == (3,)]
     joined = [(each.block, each.donor) for each in connections] + [(surface[0], k) for k in surface]
@@ -178,7 +180,7 @@ def _joined(
     connections: Sequence[Connection],
     patches: Sequence[Patch],
 ) -> Grid:
-    """Return the grid of the blocks of a `group`; the provenance has their names and the counts of iblank."""
+    """Return the grid of the blocks of a `group`; its provenance has their names and the counts of iblank."""
     number = {block: k for k, block in enumerate(group)}
     own = tuple(
         replace(each, block=number[each.block], donor=number[each.donor])
@@ -196,7 +198,7 @@ def _joined(
 
 
 def _alone(grid: Grid) -> Grid:
-    """Return the grid of a block that touches no other, its topology recovered, its patches along."""
+    """Return the grid of a block without neighbours, with recovered topology and its patches."""
     if any(each.transform for each in grid.connections):
         return with_loop_names(grid)
     nodes, patches = grid.blocks[0].nodes, grid.patches

@@ -1,7 +1,7 @@
-"""Boundaries out of unstructured meshes and drawings: closed curves of named edges.
+"""Boundaries from unstructured meshes and drawings: closed curves of named edges.
 
-One curve is the outline of a domain or a body; curves within another one are the holes of a domain; several
-beside each other are a shape each.
+A single curve is the outline of a domain or a body. Curves inside another curve are holes of a domain. Curves
+next to each other are separate shapes.
 """
 
 from collections.abc import Iterator
@@ -28,20 +28,20 @@ from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, 
 from meshonet.geometry.shapes.shape import Shape
 
 MOST_EDGES = 400_000
-"""A longer boundary is a mistake."""
+"""Largest number of edges; a longer boundary is taken for a mistake."""
 NAMELESS = "boundary"
-"""What edges without a name are called beside others that have one."""
+"""Name of edges without a name if other edges have names."""
 
 
 @dataclass(frozen=True)
 class MeshBoundary:
-    """What a mesh of points (n, 2) says of its boundary.
+    """Boundary information of a mesh of points (n, 2).
 
     Parameters
     ----------
-    edges : (k, 2) point numbers by name; an empty name stands for none. Without any, those edges count that
-        one cell alone has.
-    cells : (m, 3 or 4) point numbers, kind by kind.
+    edges : (k, 2) point numbers by name; the empty name stands for edges without one. If there are no edges,
+        the edges that belong to only one cell are used.
+    cells : (m, 3 or 4) point numbers, one array per kind of cell.
     """
 
     points: Floats
@@ -50,13 +50,13 @@ class MeshBoundary:
 
 
 def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
-    """Yield the shapes that the closed curves of `surface` make.
+    """Yield the shapes that the closed curves of `surface` form.
 
-    A four-sided domain whose opposite sides have equal counts keeps its nodes, as do a body and a far field
-    with an O grid between them. The corners are those of the cells, or else where names change four times;
-    the first edge of the file is on the south side.
+    The nodes of a four-sided domain are kept if opposite sides have equal counts; so are those of a body and
+    a far field with an O grid between them. Corners come from the cells, or from names that change four
+    times; the south side contains the first edge of the file.
 
-    Raises InputError: edges that are no closed curves, curves within curves.
+    Raises InputError: edges that do not form closed curves; curves inside a hole.
     """
     edges = surface.edges or {"": _free_edges(surface.cells)}
     count = sum(map(len, edges.values()))
@@ -79,7 +79,7 @@ def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
 
 
 def _free_edges(cells: list[Indices]) -> Indices:
-    """Return the edges (k, 2) that one cell alone has, the cell on their left."""
+    """Return the edges (k, 2) that belong to only one cell, with the cell on their left."""
     rings = [np.stack([rows, np.roll(rows, -1, axis=1)], axis=-1).reshape(-1, 2) for rows in cells]
     if not rings:
         return np.empty((0, 2), np.int64)
@@ -89,7 +89,7 @@ def _free_edges(cells: list[Indices]) -> Indices:
 
 
 def _with_holes(outer: EdgeLoop, holes: list[EdgeLoop], surface: MeshBoundary, name: str) -> Shape:
-    """Return the domain of curves; the nodes of an O grid are kept, west and east with them."""
+    """Return the domain of closed curves; if they bound an O grid, its nodes are kept, including the seam."""
     points = surface.points
     if len(holes) == 1 and len(outer.nodes) == len(holes[0].nodes):
         inner, around = (
@@ -105,7 +105,7 @@ def _with_holes(outer: EdgeLoop, holes: list[EdgeLoop], surface: MeshBoundary, n
 
 
 def _ring(loop: EdgeLoop, points: Floats) -> PolygonRing:
-    """Return a curve with its corners: where it turns, and where its edges change their name."""
+    """Return a curve with its corners: points at which it turns, or the names of its edges change."""
     ring, names = points[loop.nodes], [printable(name) for name in loop.names]
     if len(set(names)) == 1:
         return PolygonRing(ring, None, names[:1] if names[0] else ())
@@ -115,7 +115,7 @@ def _ring(loop: EdgeLoop, points: Floats) -> PolygonRing:
 
 
 def _cut(inner: EdgeLoop, outer: EdgeLoop, surface: MeshBoundary) -> list[int]:
-    """Return the nodes from the first of `inner` to the far field along the cells, where they lead there."""
+    """Return the nodes of a grid line from the first node of `inner` to the far field, if there is one."""
     if len(surface.cells) != 1 or surface.cells[0].shape[1] != 4:
         return []
     cut = _line_across(surface.cells[0], int(inner.nodes[0]), len(surface.points))
@@ -123,10 +123,10 @@ def _cut(inner: EdgeLoop, outer: EdgeLoop, surface: MeshBoundary) -> list[int]:
 
 
 def _line_across(quads: Indices, start: int, count: int) -> list[int]:
-    """Return the nodes from boundary node `start` straight across to the other boundary, or nothing.
+    """Return the nodes of a grid line from boundary node `start` to the other boundary, or nothing.
 
-    Straight on means, where four of the `quads` (m, 4) meet, into the edge that has no cell in common with
-    the one come from. `count` is that of all nodes.
+    At a node where four of the `quads` (m, 4) meet, the line continues along the edge that shares no cell
+    with the previous edge. `count` is the number of all nodes.
     """
     order = np.argsort(quads.ravel(), kind="stable") // 4
     begin = np.concatenate([[0], np.cumsum(np.bincount(quads.ravel(), minlength=count))])
@@ -185,7 +185,7 @@ def _domain(loop: EdgeLoop, surface: MeshBoundary, name: str) -> Shape:
 
 
 def _corners(loop: EdgeLoop, surface: MeshBoundary) -> list[int] | None:
-    """Return the four corners of a domain as places of `chain`, when there are four."""
+    """Return the four corners of a domain as indices along `loop`, or None if there are not four."""
     quads = [rows for rows in surface.cells if rows.shape[1] == 4]
     if len(quads) == 1 and len(surface.cells) == 1:
         met = np.bincount(quads[0].ravel(), minlength=len(surface.points))[loop.nodes]
@@ -196,7 +196,7 @@ def _corners(loop: EdgeLoop, surface: MeshBoundary) -> list[int] | None:
 
 
 def _labelled(shape: Shape, loops: list[EdgeLoop], points: Floats) -> Shape:
-    """Return `shape` with the names of the edges it was made of, if they have any."""
+    """Return `shape` with the names of the edges from which it was made."""
     if not any(any(loop.names) for loop in loops):
         return shape
     ends = [np.stack([loop.nodes, np.roll(loop.nodes, -1)], axis=1) for loop in loops]
@@ -205,7 +205,10 @@ def _labelled(shape: Shape, loops: list[EdgeLoop], points: Floats) -> Shape:
 
 
 def flat(points: Floats) -> Floats:
-    """Return x, y (n, 2) of points (n, 2 or 3); InputError where they lie in no plane z = constant."""
+    """Return x, y (n, 2) of points (n, 2 or 3).
+
+    Raises InputError: they do not lie in a plane z = constant.
+    """
     if points.shape[1] > 2 and len(points):
         z = points[:, 2]
         if not np.ptp(z) <= 1e-6 * max(float(np.ptp(points[:, :2])), 1e-300):

@@ -1,7 +1,7 @@
-"""A structured grid as an unstructured one: seams merged, cells and named faces by node number.
+"""A structured grid as an unstructured mesh: merged seams, cells and named faces by node number.
 
-The nodes of all blocks make one table, in which those that connections say are the same stand once. Nothing
-else is merged: two walls that touch stay two.
+The nodes of all blocks form one table, in which connected nodes occur once. No other nodes are merged: two
+walls that touch keep their own nodes.
 """
 
 from collections.abc import Sequence
@@ -19,21 +19,21 @@ from meshonet.geometry.blocks.shared_nodes import shared_nodes
 
 Indices: TypeAlias = NDArray[np.int64]
 CELLS = {2: "line", 4: "quad", 8: "hexahedron"}
-"""meshio's names of cells by their count of nodes."""
+"""meshio's names of cells by their number of nodes."""
 
 
 @dataclass(frozen=True)
 class Unstructured:
-    """Nodes without doubles, quadrilaterals or hexahedra, and the named boundary.
+    """Nodes without duplicates, quadrilaterals or hexahedra, and the named boundary.
 
     Parameters
     ----------
-    points : (n, 2 or 3), unit of the grid.
-    cells : (m, 4) node numbers, counter-clockwise for a right-handed grid, or (m, 8), those of the bottom so
-        and then those above them; i fastest.
-    faces : of each named part (k, 2) edges with the domain on their left, or (k, 4) quadrilaterals whose
-        normals point out of it; periodic ones last.
-    periodic : pairs of names among `faces` whose rows face each other.
+    points : (n, 2 or 3), in the unit of the grid.
+    cells : (m, 4) node numbers, counter-clockwise for a right-handed grid; or (m, 8), the bottom face in this
+        order, then the top face. i is fastest.
+    faces : named parts of the boundary: edges (k, 2) with the domain on their left, or quadrilaterals (k, 4)
+        whose normals point out of it; periodic parts are last.
+    periodic : pairs of names in `faces` whose rows correspond to each other.
     """
 
     points: Floats
@@ -43,10 +43,10 @@ class Unstructured:
 
 
 def unstructured(grid: Grid) -> Unstructured:
-    """Return `grid`, all of whose blocks have the same count of directions, with connected nodes merged.
+    """Return `grid` with connected nodes merged; all its blocks must have the same dimension.
 
-    Faces inside the domain (interfaces, the cut, the wake) belong to no part; an outer one that nobody named
-    is called by its side.
+    Faces inside the domain (interfaces, the seam, the wake) belong to no part. Unnamed outer faces get the
+    name of their side.
     """
     numbers = node_numbers(grid)
     parts, pairs = outer_parts(grid, numbers)
@@ -56,7 +56,7 @@ def unstructured(grid: Grid) -> Unstructured:
 
 
 def points_of(grid: Grid, numbers: Sequence[Indices]) -> Floats:
-    """Return the nodes (n, d) of a grid whose nodes have these numbers, each once."""
+    """Return the nodes (n, d) of a grid in the order of node `numbers`, each once."""
     count = 1 + max(int(number.max()) for number in numbers)
     points = np.empty((count, grid.blocks[0].nodes.shape[-1]))
     for number, block in zip(numbers, grid.blocks, strict=True):
@@ -65,14 +65,14 @@ def points_of(grid: Grid, numbers: Sequence[Indices]) -> Floats:
 
 
 def with_z(points: Floats) -> Floats:
-    """Return points (n, 2) in the plane z = 0, those of (n, 3) as they are."""
+    """Return points (n, 2) in the plane z = 0; points (n, 3) are returned unchanged."""
     return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
 
 
 def node_numbers(grid: Grid) -> list[Indices]:
-    """Return the number of every node (ni, nj) or (ni, nj, nk) of each block; nodes that are one share it.
+    """Return the number of every node (ni, nj) or (ni, nj, nk) of each block; connected nodes share a number.
 
-    Numbers ascend from 0 without gaps in the order of blocks, i fastest.
+    Numbers start at 0 and have no gaps, in the order of the blocks, i fastest.
     """
     labels = shared_nodes([block.counts for block in grid.blocks], grid.connections)
     flat = np.concatenate([label.ravel(order="F") for label in labels])

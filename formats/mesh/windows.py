@@ -1,7 +1,7 @@
-"""Parts of block faces by the indices of a file, and the parts of sides that they are in the blocks read.
+"""Ranges of block faces in the indices of a file, converted to ranges of sides of the blocks that were read.
 
-A file counts the nodes of a block by three indices. The block that was read may have an index less, and may
-have the first one reversed (`meshonet.formats.mesh.slices`).
+A file has three indices for the nodes of a block. The block that was read may have only two, and its first
+index may be reversed (`meshonet.formats.mesh.slices`).
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from meshonet.geometry.errors import InputError
 
 Triple: TypeAlias = tuple[int, int, int]
 _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.items()}
-"""Sides by the direction that they are an end of, and which end."""
+"""Sides by direction and end of this direction."""
 
 
 class FaceWindow(NamedTuple):
-    """A part of a face of a block: its first and last node, counted from 0 by the three indices of the file.
+    """A range of a face of a block: its first and last node, from 0, by the three indices of the file.
 
-    The last node may come before the first one, as files have it where two windows are joined.
+    The last node may precede the first one, as in files that describe connected ranges.
     """
 
     block: int
@@ -34,7 +34,7 @@ class FaceWindow(NamedTuple):
 
 
 class Face(NamedTuple):
-    """A part of a face that is called something."""
+    """A range of a face with a name."""
 
     window: FaceWindow
     name: str
@@ -42,9 +42,9 @@ class Face(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two parts of faces that are joined, and what the file calls that.
+    """Two connected ranges of faces, and the name of the connection in the file.
 
-    `partner` has the index of the donor that lies along each index of the own block.
+    For each index of the own block, `partner` is the donor's index along it.
     """
 
     own: FaceWindow
@@ -54,7 +54,7 @@ class Pair(NamedTuple):
 
 
 class SidePart(NamedTuple):
-    """A part of a side; for each of its directions the index of the file, and 1 or -1 as that one ran."""
+    """A range of a side, and for each of its directions the index of the file and its sign, 1 or -1."""
 
     side: Side
     range: Range
@@ -63,9 +63,9 @@ class SidePart(NamedTuple):
 
 
 def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | None:
-    """Return the part of a side that a window is, None for an edge or for all of a plane block.
+    """Return the range of a side that a window describes; None for an edge, or for all of a planar block.
 
-    Raises InputError: there is no such block, or it does not reach so far.
+    Raises InputError: a block that does not exist, or an index out of its range.
     """
     if not 0 <= window.block < len(lattices):
         problem = f"a face of block {window.block + 1} is named and there are {len(lattices)}"
@@ -93,7 +93,7 @@ def part_of(window: FaceWindow, lattices: Sequence[IndexedNodes]) -> SidePart | 
 
 
 def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
-    """Return the patch that a face is; None and raises as `part_of`."""
+    """Return the patch that a face describes; None and errors as for `part_of`."""
     part = part_of(face.window, lattices)
     if part is None:
         return None
@@ -103,9 +103,9 @@ def patch_of(face: Face, lattices: Sequence[IndexedNodes]) -> Patch | None:
 
 
 def connection_of(pair: Pair, lattices: Sequence[IndexedNodes]) -> Connection | None:
-    """Return the connection that a pair is, without a motion; None and raises as `part_of`.
+    """Return the connection that a pair describes, without a motion; None and errors as for `part_of`.
 
-    Also raises InputError: indices that do not lie on each other.
+    Also raises InputError: indices that do not correspond.
     """
     here, there = part_of(pair.own, lattices), part_of(pair.donor, lattices)
     if here is None or there is None:

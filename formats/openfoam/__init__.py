@@ -1,1 +1,1 @@
-"""OpenFOAM's mesh of a case, ``constant/polyMesh``, of volumes or of planes one cell thick."""
+"""OpenFOAM meshes, ``constant/polyMesh``, of volumes or of planar grids one cell thick."""

@@ -1,7 +1,8 @@
-"""All faces of the cells of a grid in the order that OpenFOAM wants.
+"""All faces of the cells of a grid, in the order that OpenFOAM requires.
 
-Those between cells come first, by their owner, the lower cell, and then by the neighbour: upper-triangular
-order. Outer faces follow, patch by patch. https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
+Interior faces come first, ordered by owner (the cell with the lower number), then by neighbour: the
+upper-triangular order. Outer faces follow, patch by patch.
+https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.mesh.cell_faces import cell_numbers
-from meshonet.formats.mesh.periodic import NamedFaces, both_sides, cellwise
+from meshonet.formats.mesh.periodic import NamedFaces, cells_beside
 from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -20,9 +21,9 @@ from meshonet.kernels._native import inner_faces
 Labels = NDArray[np.int32]
 Indices = NDArray[np.int64]
 _LEAST = 3
-"""Nodes of a face."""
+"""Smallest number of nodes of a face."""
 MOST_LABELS = 2**31 - 1
-"""Labels are of 32 bits, and so is the count of the nodes of all faces."""
+"""Largest label, and largest total number of nodes of all faces, in 32 bits."""
 
 
 class Faces(NamedTuple):
@@ -30,9 +31,9 @@ class Faces(NamedTuple):
 
     Parameters
     ----------
-    nodes : (f, 4) point numbers; the normal points out of the owner. Two that follow each other may be one.
-    owner : (f,) cell behind each face; the lower of two.
-    neighbour : (g,) cell before each of the g inner faces, which come first.
+    nodes : (f, 4) point numbers; the normal points out of the owner. Consecutive nodes may be equal.
+    owner : (f,) cell on the inner side of each face; of two cells the one with the lower number.
+    neighbour : (g,) the other cell of each of the g interior faces, which come first.
     """
 
     nodes: Labels
@@ -41,9 +42,9 @@ class Faces(NamedTuple):
 
 
 def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, NamedFaces]) -> Faces:
-    """Return the faces of a grid of volumes whose nodes have these `numbers`, outer ones as `parts` has them.
+    """Return the faces of a volume grid with node `numbers`; outer faces are those of `parts`.
 
-    Raises InputError: more than 32 bits count; a cell that is its own neighbour.
+    Raises InputError: too many labels for 32 bits; a cell that is its own neighbour.
     """
     cells = cell_numbers([block.counts for block in grid.blocks])
     count = sum(each.size for each in cells)
@@ -70,13 +71,13 @@ def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, NamedF
 
 
 def whole(nodes: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
-    """Say which faces (f, 4) have an area: at least three nodes, and none that lie across on each other."""
+    """Return which faces (f, 4) have an area: three different nodes, and no equal opposite ones."""
     several = (nodes != np.roll(nodes, -1, axis=1)).sum(axis=1) >= _LEAST
     return np.asarray(several & (nodes[:, 0] != nodes[:, 2]) & (nodes[:, 1] != nodes[:, 3]))
 
 
 def without_collapsed(faces: Faces, parts: Mapping[str, NamedFaces]) -> tuple[Faces, dict[str, NamedFaces]]:
-    """Return faces and parts without those that are no more than a line, and without parts that lose all."""
+    """Return faces and parts without degenerate faces, and without parts that have no other faces."""
     keep, inner = whole(faces.nodes), len(faces.neighbour)
     kept = {name: (part, whole(part.faces)) for name, part in parts.items()}
     left = Faces(faces.nodes[keep], faces.owner[keep], faces.neighbour[keep[:inner]])
@@ -84,13 +85,16 @@ def without_collapsed(faces: Faces, parts: Mapping[str, NamedFaces]) -> tuple[Fa
 
 
 def _beyond(grid: Grid, cells: Sequence[Indices]) -> list[list[Labels]]:
-    """Return the neighbour at each face of the sides of each block, -1 at the boundary, i or j fastest."""
+    """Return the neighbour at each face of the sides of each block, -1 at the boundary.
+
+    The first index is fastest.
+    """
     table = [[np.full(face_of(own, side).shape, -1) for side in PLACES] for own in cells]
     sides = list(PLACES)
     for each in grid.connections:
         if each.transform is None:
             for way in (each, each.reversed()):
-                _, donor = both_sides(cellwise(way), cells)
+                _, donor = cells_beside(way, cells)
                 part = tuple(slice(*span) for span in way.range)
                 table[way.block][sides.index(way.side)][part] = donor
     return [[np.ascontiguousarray(side.T, np.int32) for side in block] for block in table]

@@ -1,7 +1,7 @@
-"""The files of a ``polyMesh``: lists of points, faces and labels under OpenFOAM's headers, text or binary.
+"""The files of a ``polyMesh``: lists of points, faces and labels with OpenFOAM's headers, text or binary.
 
-Binary ones are those of a little-endian machine with labels of 32 bits and scalars of 64, which every build
-reads by what the header says. https://doc.openfoam.com/2312/fundamentals/input-types/dictionaries/
+Binary files are little-endian, with labels of 32 and scalars of 64 bits, as stated in the header; every build
+of OpenFOAM reads them. https://doc.openfoam.com/2312/fundamentals/input-types/dictionaries/
 """
 
 from collections.abc import Iterator
@@ -18,13 +18,13 @@ from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
 
 _ARCH = '    arch        "LSB;label=32;scalar=64";\n'
-"""Header entry that says what numbers of a binary file are."""
+"""Header entry with the number formats of a binary file."""
 
 
 def head(
     kind: str, name: str, note: str = "", place: str = "constant/polyMesh", *, binary: bool = False
 ) -> str:
-    """Return the header of a file of the class `kind`."""
+    """Return the header of a file with the class `kind`."""
     remark = f'    note        "{note}";\n' if note else ""
     form = f"binary;\n{_ARCH}" if binary else "ascii;\n"
     return (
@@ -50,14 +50,14 @@ def write_mesh(folder: Path, points: Floats, faces: Faces, *, binary: bool) -> N
 
 @contextmanager
 def _list(path: Path, kind: str, note: str = "", *, binary: bool) -> Iterator[BinaryIO]:
-    """Give the stream of a list whose header is written."""
+    """Return a context with the stream of a list whose header is written."""
     with path.open("wb") as stream:
         stream.write(head(kind, path.name, note, binary=binary).encode("ascii"))
         yield stream
 
 
 def _write_faces(path: Path, nodes: NDArray[np.int32], *, binary: bool) -> None:
-    """Write faces of four nodes, or three where two are one; binary as where each begins, then all nodes."""
+    """Write faces of four nodes, or three if two are equal; binary as start indices, then all nodes."""
     kind = "faceCompactList" if binary else "faceList"
     own = nodes != np.roll(nodes, -1, axis=1)
     sizes = own.sum(axis=1)
@@ -85,7 +85,7 @@ def _put(stream: BinaryIO, values: NDArray[Any], _: str = "") -> None:
 
 
 def _rows(stream: BinaryIO, rows: NDArray[Any], form: str) -> None:
-    """Write a list as text, an entry of the given form a line."""
+    """Write a list as text, one entry of the format `form` per line."""
     stream.write(f"{len(rows)}\n(\n".encode("ascii"))
     write_rows(stream, form, rows.reshape(len(rows), -1))
     stream.write(b")\n")

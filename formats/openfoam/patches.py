@@ -1,4 +1,4 @@
-"""The patches of a case: names, types, and how cyclic ones come together."""
+"""The patches of an OpenFOAM case: names, types, and the transformations of cyclic patches."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -16,17 +16,17 @@ from meshonet.geometry.blocks.patches import Kind
 from meshonet.geometry.blocks.screw import screw_of
 
 PLANES = ""
-"""Key, which no name is, of the part that the two planes of a grid one cell thick make."""
+"""Key, different from all names, of the two planes of a grid one cell thick."""
 EMPTY = "frontAndBack"
-"""Title of their patch, of type ``empty``."""
+"""Name of the patch of these planes, whose type is ``empty``."""
 _TYPES: dict[Kind, str] = {"wall": "wall", "symmetry": "symmetry", "wedge": "wedge"}
-"""OpenFOAM's types of patches; kinds that are not here are ``patch``."""
+"""OpenFOAM's types of patches; other kinds are ``patch``."""
 _FLAT = 1e-15
-"""A symmetry plane is one whose unit normals differ by no more, squared (symmetryPlanePolyPatch.C)."""
+"""Largest squared difference of unit normals in a symmetry plane (symmetryPlanePolyPatch.C)."""
 
 
 class CasePatch(NamedTuple):
-    """Outer faces that lie behind each other in the list of faces; `more` are further entries."""
+    """Consecutive outer faces in the list of faces; `more` are additional entries."""
 
     name: str
     kind: str
@@ -35,9 +35,10 @@ class CasePatch(NamedTuple):
 
 
 def with_empty_planes(grid: Grid, parts: Mapping[str, NamedFaces]) -> dict[str, NamedFaces]:
-    """Return `parts` with bottoms and tops as one, `PLANES`, the last, where the grid is a plane's.
+    """Return `parts` with bottoms and tops merged into the last part, `PLANES`, if the grid is planar.
 
-    That is so where all blocks are one cell thick between symmetry planes: solvers then leave k out.
+    This is the case if all blocks are one cell thick between symmetry planes. Solvers then ignore the
+    direction k.
     """
     outer = grid.outer_patches()
     ends = {patch.name for patch in outer if patch.side in ("bottom", "top")}
@@ -57,7 +58,7 @@ def with_empty_planes(grid: Grid, parts: Mapping[str, NamedFaces]) -> dict[str, 
 def patches_of(
     grid: Grid, parts: Mapping[str, NamedFaces], pairs: Sequence[PeriodicPair], points: Floats
 ) -> list[CasePatch]:
-    """Return title, type and further entries of the patch of each part; periodic sides are ``cyclic``."""
+    """Return name, type and additional entries of the patch of each part; periodic sides are ``cyclic``."""
     kind = kinds(grid, grid.outer_patches())
     word = words((name for name in parts if name != PLANES), taken=[EMPTY], letter=True)
     patches = {PLANES: CasePatch(EMPTY, "empty", 0)}
@@ -75,7 +76,7 @@ def patches_of(
 
 
 def write_boundary(path: Path, patches: Sequence[CasePatch], start: int) -> None:
-    """Write names, types and face counts of the patches, whose faces begin at number `start`."""
+    """Write names, types and face counts of the patches, whose faces start at number `start`."""
     text = f"{head('polyBoundaryMesh', 'boundary')}{len(patches)}\n(\n"
     for patch in patches:
         entries = "".join(f"        {entry}\n" for entry in patch.more)
@@ -86,7 +87,7 @@ def write_boundary(path: Path, patches: Sequence[CasePatch], start: int) -> None
 
 
 def _is_flat(corners: Floats) -> bool:
-    """Say whether the normals of faces (k, 4, 3) are the same."""
+    """Return whether all faces (k, 4, 3) have the same normal."""
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     length = np.sqrt((normal**2).sum(axis=1))
     unit = normal / np.where(length > 0, length, 1.0)[:, None]
@@ -94,7 +95,7 @@ def _is_flat(corners: Floats) -> bool:
 
 
 def _transform(motion: Motion) -> tuple[str, ...]:
-    """Return how the faces of a cyclic patch come to its neighbour's."""
+    """Return the entries that transform the faces of a cyclic patch to those of its neighbour."""
     screw = screw_of(motion)
     if screw.angle:
         axis = "transform       rotational;", f"rotationAxis    {_vector(screw.axis)};"

@@ -1,8 +1,8 @@
-"""OpenFOAM's mesh of a case: ``constant/polyMesh`` of a grid of volumes, or of a plane one, one cell thick.
+"""OpenFOAM meshes, ``constant/polyMesh``, of a volume grid, or of a planar grid as one layer of cells.
 
-The file named, ``case/case.foam``, is the empty one by which ParaView opens a case; the mesh goes into the
-folder around it. Where ``system`` lacks one of the three dictionaries without which no tool of OpenFOAM
-looks at a mesh, a bare one is written. https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
+The output file, ``case/case.foam``, is empty; ParaView uses it to open a case. The mesh is written into its
+folder. OpenFOAM's tools need three dictionaries in ``system`` to read a mesh; minimal ones are written if
+they are missing. https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
 """
 
 from collections.abc import Iterable
@@ -28,17 +28,17 @@ _DICTIONARIES = {
     "fvSchemes": "gradSchemes {}\ndivSchemes {}\nlaplacianSchemes {}\n",
     "fvSolution": "",
 }
-"""Least entries of the dictionaries without which OpenFOAM's tools do not start."""
+"""Minimal entries of the dictionaries without which OpenFOAM's tools do not start."""
 _SMALL = 1 << 16
-"""Cells up to which a mesh is text, which people can read, unless options say otherwise."""
+"""Largest number of cells for which a mesh is written as readable text, unless options say otherwise."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids` around `path`, which is left empty.
+    """Write the only grid of `grids` into the folder of `path`, an empty file.
 
-    A plane one, or one that is one cell thick between symmetry planes, has these as a patch ``empty``. Cells
-    at sides that are a line or a point are prisms and pyramids. The mesh that is there is replaced when the
-    new one is whole.
+    The planes of a planar grid, or of one layer of cells between symmetry planes, become a patch of type
+    ``empty``. Cells at sides that collapse to a line or point are prisms and pyramids. An existing mesh is
+    replaced when the new one is complete.
     """
     grid = only_one(grids, "a case")
     low, high = grid.box

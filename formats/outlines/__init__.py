@@ -1,1 +1,1 @@
-"""Closed curves out of drawings and vector geometry."""
+"""Closed curves from drawings and vector geometry."""

@@ -1,7 +1,7 @@
-"""Outlines from DXF drawings, ``.dxf``, through ezdxf (extra ``dxf``): names are those of the layers.
+"""Outlines from DXF drawings, ``.dxf``, read by ezdxf (extra ``dxf``); names are those of the layers.
 
-Lines, polylines, arcs, circles, ellipses and splines of the model space are joined where their ends meet;
-curved ones become chords. https://ezdxf.mozman.at
+Lines, polylines, arcs, circles, ellipses and splines of the model space are joined at coincident ends. Curves
+are approximated by chords. https://ezdxf.mozman.at
 """
 
 import io
@@ -24,7 +24,7 @@ _KINDS = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes that the curves of a drawing enclose.
 
-    Raises InputError: ezdxf is not installed; no such drawing; curves that do not close.
+    Raises InputError: ezdxf is not installed; no DXF drawing; curves that are not closed.
     """
     try:
         from ezdxf import path
@@ -58,7 +58,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
 
 
 def _lines(curves: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
-    """Return layer and points (n, 2) of each curve, chords in place of what is curved."""
+    """Return layer and points (n, 2) of each curve, which is approximated by chords."""
     curves = [(layer, curve) for layer, curve in curves if len(curve)]
     if not curves:
         return []

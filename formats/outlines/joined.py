@@ -1,4 +1,4 @@
-"""Curves of a drawing joined where their ends meet."""
+"""Joins the curves of a drawing at coincident ends."""
 
 import numpy as np
 
@@ -9,15 +9,15 @@ from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.errors import InputError
 
 MOST_BYTES = 64 << 20
-"""Larger drawings take too long to read: no outline needs so many curves."""
+"""Largest drawing that is read; no outline needs as many curves."""
 SAG = 1e-5
-"""Largest distance of a chord from its curve, in extents."""
+"""Largest distance of a chord from its curve, relative to the extent."""
 _MEET = 1e-6
-"""How far apart, in extents, two ends may lie and still meet."""
+"""Largest distance of two ends that are joined, relative to the extent."""
 
 
 def extent_checked(points: Floats) -> float:
-    """Return the extent of points (n, 2) of curves; InputError where it is none, or not finite."""
+    """Return the extent of points (n, 2). Raises InputError: it is zero or not finite."""
     extent = extent_of(points)
     if not (np.abs(points) < LARGEST).all() or extent == 0:
         raise InputError("its curves have no size, or one that is not finite", "check the drawing")
@@ -25,7 +25,7 @@ def extent_checked(points: Floats) -> float:
 
 
 def joined(lines: list[tuple[str, Floats]]) -> MeshBoundary:
-    """Return curves, each a name and points (n, 2), as edges between points, ends that meet being one point.
+    """Return curves, each a name and points (n, 2), as edges between points; coincident ends are one point.
 
     Raises InputError: too many points.
     """

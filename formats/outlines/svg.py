@@ -1,9 +1,8 @@
-"""Outlines from SVG drawings, ``.svg``: names are the ids of elements, or of the groups that they are in.
+"""Outlines from SVG drawings, ``.svg``; names are the ids of elements, or of the groups that contain them.
 
-Paths of lines, Bezier curves and arcs, and the basic shapes, are joined where their ends meet; curved ones
-become chords. As in drawings, y points downwards in the file and upwards here. What is clipped, hidden or
-used again by reference is not looked at. Data of paths are read by fontTools.
-https://www.w3.org/TR/SVG2/paths.html
+Basic shapes and paths of lines, Bezier curves and arcs are joined at coincident ends. Curves are approximated
+by chords. y points downwards in the file and upwards in the result. Clipping, visibility and ``use`` elements
+are ignored. Path data are parsed by fontTools. https://www.w3.org/TR/SVG2/paths.html
 """
 
 from __future__ import annotations
@@ -30,32 +29,32 @@ if TYPE_CHECKING:
 
 Point: TypeAlias = tuple[float, float]
 Affine: TypeAlias = tuple[Floats, Floats]
-"""A map of points (n, 2): matrix (2, 2) that they are multiplied by from the left, and shift (2,)."""
+"""An affine map of points (n, 2): matrix (2, 2), applied from the left, and translation (2,)."""
 
 _STEP = re.compile(r"\s*,?\s*(matrix|translate|scale|rotate|skewX|skewY)\s*\(([^()]*)\)\s*")
-"""One of the steps of an attribute ``transform``."""
+"""One of the transformations in an attribute ``transform``."""
 _GROUPS = ("svg", "g", "a", "switch")
-"""Elements whose members are drawn where they stand."""
+"""Elements whose children are drawn in place."""
 _MOST_NESTED = 100
-"""Groups in groups."""
+"""Largest depth of nested groups."""
 
 
 @dataclass(frozen=True)
 class _Curve:
-    """A piece of a path over t from 0 to 1: its `hull` (k, 2), its points, its greatest second derivative."""
+    """A piece of a path, t from 0 to 1: `hull` (k, 2), points, and a bound of the second derivative."""
 
     hull: Floats
     at: Callable[[Floats], Floats]
     bend: float = 0.0
 
     def chords(self, sag: float) -> Floats:
-        """Return points (n, 2), both ends among them, whose chords leave the curve by no more than `sag`."""
+        """Return points (n, 2), including both ends, whose chords deviate from the curve by at most `sag`."""
         count = max(1, math.ceil(math.sqrt(min(self.bend / (8.0 * sag), float(MOST_EDGES) ** 2))))
         return self.at(np.linspace(0.0, 1.0, count + 1))
 
 
 class _Pen:
-    """Collects the stretches of a path, which fontTools draws."""
+    """Collects the pieces of a path from fontTools."""
 
     def __init__(self) -> None:
         self.stretches: list[list[_Curve]] = []
@@ -89,14 +88,14 @@ class _Pen:
         self._here = to
 
     def closePath(self) -> None:
-        """Do nothing: a line to the start is drawn."""
+        """Do nothing, because fontTools draws the line to the start."""
 
     def endPath(self) -> None:
-        """Leave an open path open."""
+        """Do nothing, so that an open path stays open."""
 
 
 def _bezier(points: Floats, t: Floats) -> Floats:
-    """Return places (n, 2) of a curve by de Casteljau's construction."""
+    """Return points (n, 2) of a Bezier curve by de Casteljau's algorithm."""
     rows, u = list(points[:, None]), t[:, None]
     while len(rows) > 1:
         rows = [(1.0 - u) * a + u * b for a, b in pairwise(rows)]
@@ -104,7 +103,10 @@ def _bezier(points: Floats, t: Floats) -> Floats:
 
 
 def _arc(a: Floats, b: Floats, rx: float, ry: float, degrees: float, large: bool, sweep: bool) -> _Curve:
-    """Return the arc of an ellipse from `a` to `b` (SVG 2, appendix B.2.4): too small a one is enlarged."""
+    """Return the elliptical arc from `a` to `b` (SVG 2, appendix B.2.4).
+
+    Radii that are too small are enlarged.
+    """
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     axes = np.array([[rx * c, rx * s], [-ry * s, ry * c]])
     half = 0.5 * (a - b)
@@ -133,7 +135,7 @@ def _arc(a: Floats, b: Floats, rx: float, ry: float, degrees: float, large: bool
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes that the curves of a drawing enclose.
 
-    Raises InputError: no such drawing; curves that do not close.
+    Raises InputError: no SVG drawing; curves that are not closed.
     """
     from xml.etree.ElementTree import ParseError, fromstring
 
@@ -166,7 +168,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
 def _drawn(
     element: Element, outer: Affine, name: str, depth: int
 ) -> Iterator[tuple[str, Affine, list[_Curve]]]:
-    """Yield name, map and pieces of each stretch of the paths of an element and those in it."""
+    """Yield name, transformation and pieces of each path of an element and its children."""
     from fontTools.svgLib.path.parser import parse_path
 
     if depth > _MOST_NESTED:
@@ -183,7 +185,7 @@ def _drawn(
 
 
 def _data(tag: str, element: Element) -> str:
-    """Return the data of the path that an element is; nothing for one that is none."""
+    """Return the path data of an element; empty for elements without a path."""
     if tag == "path":
         return element.get("d", "")
     if tag in ("polyline", "polygon"):
@@ -212,7 +214,7 @@ def _data(tag: str, element: Element) -> str:
 
 
 def _mapped(steps: str, outer: Affine) -> Affine:
-    """Return a map behind the steps of an attribute ``transform``."""
+    """Return the transformation `outer` combined with the `steps` of an attribute ``transform``."""
     end = 0
     for step in _STEP.finditer(steps):
         if step.start() != end:

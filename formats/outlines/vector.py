@@ -1,10 +1,11 @@
-"""Domains and outlines from vector geometry: WKT (one geometry a file or a line) and GeoJSON.
+"""Domains and outlines from vector geometry: WKT (one geometry per file or line) and GeoJSON.
 
 A polygon is a domain, with its holes; a closed line is a body, or an outline with corners; two open lines are
 the walls of a channel, four the edges of a domain, and a line ``# name`` above one of WKT names it.
 Collections hold several. A third coordinate is dropped. Properties of a GeoJSON feature besides ``name``:
-``names``, for each ring one name or a list of one for each stretch between corners, and ``corners``, for each
-ring a list of numbers of its points, counted from 0.
+``names``, for each ring one name or a list of one for each stretch between corners; ``corners``, for each
+ring a list of numbers of its points, counted from 0; and ``periodic``, pairs of names of sides of the outer
+ring that are translated copies of each other.
 https://www.ogc.org/standards/sfa , https://www.rfc-editor.org/rfc/rfc7946
 """
 
@@ -29,12 +30,12 @@ if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
 _ASK = "give a POLYGON or a closed LINESTRING"
-"""Remedy for what is no outline."""
+"""Remedy for a geometry that is not an outline."""
 
 
 @dataclass(frozen=True)
 class _Geometry:
-    """A geometry: its name, its place in the file, and the properties of its rings."""
+    """A geometry with its name, its place in the file, and the properties of its rings."""
 
     name: str
     place: str
@@ -45,7 +46,7 @@ class _Geometry:
 def read_wkt(source: Source) -> Iterator[Shape]:
     """Yield the shapes of a WKT file.
 
-    Raises InputError: text that is no WKT, a geometry that is no outline; with its line.
+    Raises InputError, with the line: text that is not WKT; a geometry that is not an outline.
     """
     geometries = _geometries(_text(source))
     drawn = [_Geometry(source.stem, place, each, {"name": called}) for place, each, called in geometries]
@@ -53,10 +54,10 @@ def read_wkt(source: Source) -> Iterator[Shape]:
 
 
 def read_geojson(source: Source) -> Iterator[Shape]:
-    """Yield the shapes of a GeoJSON file, called by the property ``name`` of their features.
+    """Yield the shapes of a GeoJSON file, named by the property ``name`` of their features.
 
-    Raises InputError: text that is no GeoJSON, a geometry that is no outline, properties that do not fit its
-    rings; with the number of its feature.
+    Raises InputError, with the number of the feature: text that is not GeoJSON; a geometry that is not an
+    outline; properties that do not match the rings.
     """
     from shapely.errors import ShapelyError
     from shapely.geometry import shape
@@ -88,9 +89,9 @@ def read_geojson(source: Source) -> Iterator[Shape]:
 
 
 def _geometries(text: str) -> list[tuple[str, BaseGeometry, str]]:
-    """Return place, geometry and name of a text that is one geometry, or else of each of its lines.
+    """Return place, geometry and name of a text with one geometry, or of each of its lines.
 
-    A line ``# name`` names the next one.
+    A line ``# name`` gives the name of the next line.
     """
     from shapely import from_wkt
     from shapely.errors import ShapelyError
@@ -115,7 +116,7 @@ def _geometries(text: str) -> list[tuple[str, BaseGeometry, str]]:
 
 
 def _named(drawn: list[_Geometry], stem: str) -> Iterator[Shape]:
-    """Yield the shapes of what is drawn, numbered where several share a name; of open lines, one."""
+    """Yield the shapes of geometries, numbered if several share a name; open lines form a single shape."""
     edges = _edges(drawn)
     if len(edges) == 4 or (len(edges) == 2 and all(edge.is_wall for edge in edges)):
         yield (four_edges if len(edges) == 4 else channel)(edges, stem)
@@ -133,7 +134,7 @@ def _named(drawn: list[_Geometry], stem: str) -> Iterator[Shape]:
 
 
 def _edges(drawn: list[_Geometry]) -> list[DrawnEdge]:
-    """Return open lines as edges with their names; nothing where there is something else too."""
+    """Return open lines as edges with their names; empty if there are other geometries too."""
     edges = []
     for each in drawn:
         for line in getattr(each.geometry, "geoms", [each.geometry]):
@@ -146,7 +147,7 @@ def _edges(drawn: list[_Geometry]) -> list[DrawnEdge]:
 
 
 def _shape(drawn: _Geometry, rings: list[Any], name: str) -> Shape:
-    """Return the domain of a polygon, or the body or outline that a closed line is."""
+    """Return the domain of a polygon, or the body or outline of a closed line."""
     points = [_points(ring)[:-1] for ring in rings]
     if rings[0].geom_type == "LineString":
         return domain_or_body(Outline(points[0], name))
@@ -158,11 +159,24 @@ def _shape(drawn: _Geometry, rings: list[Any], name: str) -> Shape:
             for k, (ring, own, label) in enumerate(zip(points, corners, names, strict=True), start=1)
         ],
         name,
+        periodic=_periodic(drawn.properties.get("periodic")),
     )
 
 
+def _periodic(values: Any) -> list[tuple[str, str]]:
+    """Return the pairs of names that the property ``periodic`` holds."""
+    pairs = [] if values is None else values
+    if not isinstance(pairs, list) or not all(
+        isinstance(pair, list) and len(pair) == 2 and all(isinstance(name, str) for name in pair)
+        for pair in pairs
+    ):
+        remedy = 'give e.g. [["left", "right"], ["bottom", "top"]]'
+        raise InputError("property 'periodic' holds no pairs of names", remedy)
+    return [(printable(a.strip()), printable(b.strip())) for a, b in pairs]
+
+
 def _of_rings(properties: Mapping[str, Any], key: str, count: int) -> list[Any]:
-    """Return what a property says of each ring, None where there is none."""
+    """Return the values of a property for each ring, None if it is missing."""
     values = properties.get(key)
     if values is None:
         return [None] * count
@@ -233,7 +247,7 @@ def _features(data: Any) -> list[tuple[Mapping[str, Any], Any]]:
 
 def _text(source: Source) -> str:
     try:
-        return source.read_bytes().decode("utf-8-sig")
+        return source.text_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError("is not UTF-8 text", "save it as UTF-8", place=f"byte {error.start}") from None
 

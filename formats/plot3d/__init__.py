@@ -1,4 +1,4 @@
-"""Plot3D grids, read in every layout, and NASA's neutral map file beside them.
+"""Plot3D grids in all layouts, and NASA's neutral map files next to them.
 
 https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
 """
@@ -20,21 +20,27 @@ CHOICES = (
     ("whole", "planes"),
     ("span-k", "span-i", "span-j"),
 )
-"""What a Plot3D file does not say of itself, of each row one word; the first is what is written by default.
+"""Properties of a Plot3D file that it does not state itself: one word from each row.
 
-``single`` has no count of blocks in front; ``iblank`` an integer a node behind the coordinates; ``planes`` x,
-y and z of one k after the other in place of all x, all y, all z; ``span-i`` the planes of a grid that is
-repeated in z along the first index, as FUN3D and NASA have it, ``span-j`` along the second.
+The first is the default.
+
+``single`` files have no count of blocks. ``iblank`` files have an integer per node after the coordinates.
+With ``planes``, x, y and z of one plane k follow each other; with ``whole``, all x, all y and all z.
+``span-i`` puts the planes of a grid that is repeated in z along the first index, as for FUN3D and NASA;
+``span-j`` along the second.
 """
 
 _INTEGER_LINE = re.compile(rb"\s*(?:\d+(?:\*\d+)?[ \t,]*)+\r?\n")
-"""The first line of a text: the count of blocks, or dims."""
+"""First line of a text file: the number of blocks, or node counts."""
 _INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")
-"""The first word of a text: a whole number, perhaps repeated."""
+"""First word of a text file: an integer, possibly with a repeat count."""
 
 
 def sniff(head: bytes) -> bool:
-    """Say whether `head` starts with the dims of a Plot3D grid; a whole file must also fit them."""
+    """Return whether `head` starts with the node counts of a Plot3D grid.
+
+    A whole file is also checked for its size.
+    """
     textual = is_text(head)
     if textual and not _INTEGER_FIRST.match(head):
         return False
@@ -53,5 +59,5 @@ def sniff(head: bytes) -> bool:
 
 
 def is_text(head: bytes) -> bool:
-    """Say whether `head` is text; binary integers below 2^24 always have a zero byte."""
+    """Return whether `head` is text; binary integers below 2^24 always have a zero byte."""
     return b"\0" not in head[:64]

@@ -1,6 +1,6 @@
-"""Plot3D as bytes: C binary or Fortran records, either byte order, float32 or float64.
+"""Binary Plot3D files: C binary or Fortran records, either byte order, float32 or float64.
 
-Once the lengths of records are taken away, both kinds are the same stream: integers of 4 bytes, then floats,
+Without the lengths of records, both are the same stream: integers of 4 bytes, then floating-point numbers,
 then the integers of iblank.
 """
 
@@ -14,17 +14,16 @@ from meshonet.formats.plot3d.stream import Stream, broken_record, unframed
 from meshonet.geometry.errors import InputError
 
 _LONGEST = 100_000
-"""Nodes along an index up to which dims are plausible enough to be named in an error."""
+"""Largest node count along an index that is named in an error message as a possible header."""
 _ORDERS = {"<": "little", ">": "big"}
-"""Byte orders in words."""
+"""Names of byte orders."""
 
 
 def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return every layout whose length in bytes is exactly the file's; planes only if they are `wanted`.
+    """Return all layouts with exactly the length of the file, including planes only if they are `wanted`.
 
-    Fortran records that are one a plane say themselves that they are.
-
-    Raises InputError: no layout is.
+    Fortran records of one plane each are recognised as planes without that. Raises InputError: no layout
+    fits.
     """
     fitting: list[Candidate] = []
     tried: list[tuple[int, str]] = []
@@ -42,7 +41,7 @@ def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidat
 
 
 def _misfit(data: memoryview, tried: list[tuple[int, str]]) -> InputError:
-    """Return what is wrong with a file that no layout fits: where its records break, or what is nearest."""
+    """Return the error for a file that no layout fits: the first broken record, or the nearest layout."""
     remedy = "the file is cut short, or is something else: name its format with {from_format}"
     for order in "<>":
         problem = broken_record(data, order)
@@ -54,7 +53,10 @@ def _misfit(data: memoryview, tried: list[tuple[int, str]]) -> InputError:
 
 
 def _fitting(stream: Stream, order: str, wanted: Options, tried: list[tuple[int, str]]) -> list[Candidate]:
-    """Return the layouts of a stream's length; adds to `tried` lengths and names of those of its header."""
+    """Return the layouts with the length of a stream.
+
+    Lengths and names of all layouts are appended to `tried`.
+    """
     count = min(len(stream) // 4, MOST_INTEGERS)
     integers = np.frombuffer(stream.take(0, 4 * count), np.dtype(order + "i4"))
 
@@ -80,7 +82,7 @@ def _fitting(stream: Stream, order: str, wanted: Options, tried: list[tuple[int,
 
 
 def _forms(stream: Stream, layout: FileLayout, wanted: Options) -> list[bool]:
-    """Return whether the coordinates of a block may stand whole (False), or plane by plane (True)."""
+    """Return the possible forms of a block's coordinates: whole (False), plane by plane (True)."""
     if layout.axes < 3:
         return [False]
     # a record for each plane of a single block; of three planes it may as well be one for each coordinate

@@ -1,9 +1,9 @@
-"""The ways a Plot3D grid file can be laid out, and which of them a file's numbers fit.
+"""The possible layouts of a Plot3D grid file, and the selection of the one that fits.
 
-A file is a header of integers, ``[count] ni nj [nk]`` for every block, and then for every block all x,
-all y, [all z] and [iblank], i fastest. Nothing in it says whether there is a count, a third direction or
-an iblank array, so every layout is tried and those whose length is exactly the file's are kept; of these the
-one is read whose cells are the most regular. https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
+A file has a header of integers, ``[count] ni nj [nk]`` for every block. Then for every block all x, all y,
+[all z] and [iblank] follow, i fastest. The file does not state whether it has a count, a third direction or
+an iblank array. Every layout is therefore tried, those with exactly the length of the file are kept, and the
+one with the most regular cells is used. https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
 """
 
 from __future__ import annotations
@@ -25,22 +25,22 @@ from meshonet.geometry.errors import InputError
 
 Dims = tuple[int, ...]
 Header = Callable[[int], "int | None"]
-"""Returns header integer k, or None past the end or where the number is no integer."""
+"""Function that returns header integer k; None beyond the end, or for a number that is not an integer."""
 _MOST_BLOCKS = 100_000
-"""A header that counts more blocks is none of Plot3D."""
+"""Largest plausible number of blocks."""
 _MOST_FLAGS = 1000
-"""An iblank array of more different values is none."""
+"""Largest plausible number of different iblank values."""
 _JUDGED = 100
-"""Nodes along each index whose cells are looked at to tell readings apart."""
+"""Number of nodes along each index that are used to compare layouts."""
 _LESS_LIKELY = 0.1
-"""How much less regular a surface counts than a grid in the plane."""
+"""Amount by which the regularity of a surface is reduced in the comparison with a planar grid."""
 MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS
-"""Integers of the longest header."""
+"""Number of integers in the longest header."""
 
 
 @dataclass(frozen=True)
 class FileLayout:
-    """One way to read a file: whether a count stands first, 2 or 3 axes, whether iblank follows, all dims."""
+    """A layout of a file: with or without a block count, 2 or 3 axes, with or without iblank, node counts."""
 
     counted: bool
     axes: int
@@ -49,23 +49,23 @@ class FileLayout:
 
     @property
     def header(self) -> int:
-        """Integers before the first coordinate."""
+        """Number of integers before the first coordinate."""
         return int(self.counted) + self.axes * len(self.dims)
 
     def starts(self, real: int = 1, integer: int = 1) -> list[int]:
-        """Return where each block starts and the last one ends, of numbers of these sizes."""
+        """Return the start of each block, and the end of the last one, for the given sizes of numbers."""
         node = self.axes * real + integer * int(self.iblank)
         return list(
             itertools.accumulate((node * prod(dims) for dims in self.dims), initial=integer * self.header)
         )
 
     def length(self, real: int = 1, integer: int = 1) -> int:
-        """Return the length of the file, of numbers of these sizes."""
+        """Return the length of the file for the given sizes of numbers."""
         return self.starts(real, integer)[-1]
 
 
 def layouts(integer: Header) -> Iterator[FileLayout]:
-    """Yield the layouts whose header is plausible: a sensible count, every dimension at least 1."""
+    """Yield the layouts with a plausible header: a reasonable count, and every dimension at least 1."""
     for counted, axes in itertools.product((True, False), (3, 2)):
         blocks = integer(0) if counted else 1
         if blocks is None or not 1 <= blocks <= _MOST_BLOCKS:
@@ -89,14 +89,14 @@ def _dims(integer: Header, blocks: int, axes: int, start: int) -> tuple[Dims, ..
 
 @dataclass(frozen=True)
 class Candidate:
-    """A layout that fits the file's length, and the numbers of the file in it.
+    """A layout with the length of the file, and the numbers of the file in this layout.
 
     Parameters
     ----------
     stream : all numbers of the file.
-    real, integer : number types of coordinates, and of dims and iblank.
-    planes : whether the arrays of a block stand plane by plane.
-    numbers, kind : the number type and byte order, for messages and as options of the format.
+    real, integer : number types of coordinates, and of node counts and iblank.
+    planes : whether the arrays of a block are stored plane by plane.
+    numbers, kind : number type and byte order, for messages and as options of the format.
     """
 
     layout: FileLayout
@@ -115,19 +115,22 @@ class Candidate:
         return self.kind | {count, f"{self.layout.axes}d", iblank, "planes" if self.planes else "whole"}
 
     def arrays(self, block: int) -> list[NDArray[Any]]:
-        """Return the coordinates of a block, flat; views of those that stand whole."""
+        """Return the coordinates of a block as flat arrays, which are views if the block is stored whole."""
         axes = self.layout.axes
         rows = [self._numbers(at, axes * n, self.real).reshape(axes, -1) for at, n in self._planes(block)]
         return list(rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1))
 
     def flags(self, block: int) -> NDArray[Any]:
-        """Return the iblank array of a block, flat."""
+        """Return the flat iblank array of a block."""
         size = self.layout.axes * self.real.itemsize
         flags = [self._numbers(at + size * n, n, self.integer) for at, n in self._planes(block)]
         return flags[0] if len(flags) == 1 else np.concatenate(flags)
 
     def _planes(self, block: int) -> list[tuple[int, int]]:
-        """Return where the arrays of each plane of a block start, and its nodes; one entry for whole ones."""
+        """Return the start of the arrays of each plane of a block, and its number of nodes.
+
+        One entry if stored whole.
+        """
         start, end = self._starts[block : block + 2]
         planes = self.layout.dims[block][2] if self.planes else 1
         nodes = prod(self.layout.dims[block]) // planes
@@ -142,11 +145,11 @@ class Candidate:
 
     @property
     def blocks(self) -> range:
-        """The numbers of its blocks, from 0 on."""
+        """Indices of its blocks."""
         return range(len(self.layout.dims))
 
     def iblank(self, block: int) -> dict[str, int]:
-        """Return how many nodes of a block have which value, nothing where there is no iblank array."""
+        """Return the number of nodes of a block with each iblank value; empty without an iblank array."""
         if not self.layout.iblank:
             return {}
         values, counts = _tallied(self.flags(block))
@@ -156,7 +159,7 @@ class Candidate:
         return {f"{value:.0f}": int(count) for value, count in zip(values, counts, strict=True)}
 
     def size(self, block: int) -> tuple[int, int, int]:
-        """Return the nodes of a block along all three indices."""
+        """Return the node counts of a block along all three indices."""
         ni, nj, nk = (*self.layout.dims[block], 1)[:3]
         return ni, nj, nk
 
@@ -165,11 +168,12 @@ class Candidate:
         return [values.reshape(self.size(block), order="F") for values in self.arrays(block)]
 
     def regularity(self) -> float:
-        """Return the share of cells that lie as the others do; negative when it makes no sense.
+        """Return the fraction of cells with the prevailing orientation; negative for impossible values.
 
-        The right reading of a file has nearly all its cells one way round; a wrong one is noise. Of readings
-        that are alike, one in the plane is the likelier: the iblank array of a plane grid makes a surface.
-        Large volumes are judged by their first nodes along each index.
+        In the right layout nearly all cells have the same orientation, in a wrong one their orientations are
+        random. If two layouts are similarly regular, a planar one is more likely, because the iblank array of
+        a planar grid can look like a third coordinate. For large volumes only the first nodes along each
+        index are used.
         """
         for block in self.blocks:
             if not all(_sane(values) for values in self.arrays(block)):
@@ -186,12 +190,12 @@ class Candidate:
 
 
 def best(candidates: list[Candidate]) -> Candidate:
-    """Return the most regular of some candidates (at least one), the earlier one among equals."""
+    """Return the most regular candidate, the first one if several are equal."""
     return candidates[0] if len(candidates) == 1 else max(candidates, key=Candidate.regularity)
 
 
 def _sane(values: NDArray[Any]) -> bool:
-    """Say whether `values` can be coordinates: finite, and no specks as integers read as floats are."""
+    """Return whether `values` can be coordinates: finite, and not tiny like integers read as floats."""
     with np.errstate(invalid="ignore"):  # a wrong reading meets signalling NaN
         largest = max(abs(float(values.min())), abs(float(values.max())))
     return bool(np.isfinite(largest)) and (largest == 0 or 1e-30 < largest < 1e30)
@@ -203,7 +207,7 @@ def _is_iblank(values: NDArray[Any]) -> bool:
 
 
 def _tallied(flags: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the values of an iblank array in ascending order, and how often each stands."""
+    """Return the values of an iblank array in ascending order, and the number of occurrences of each."""
     low, high = float(flags.min()), float(flags.max())
     if not high - low <= _MOST_BLOCKS:
         return np.unique(flags, return_counts=True)
@@ -213,10 +217,12 @@ def _tallied(flags: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def regular_cells(nodes: Floats) -> tuple[int, int]:
-    """Return how many cells lie as most others do, and how many there are, of (ni, nj, 2) or in space.
+    """Return the number of cells with the prevailing orientation and of all cells.
 
-    In the plane and in volumes these are the cells of the prevailing sign of area or volume; on a surface the
-    pairs of neighbours whose normals differ by less than a right angle.
+    `nodes` are planar or in space.
+
+    In the plane and in volumes the orientation is the sign of area or volume. On a surface, pairs of
+    neighbours are counted whose normals differ by less than a right angle.
     """
     if nodes.shape[2:] == (3,):
         normal = _cross(*_diagonals(nodes))

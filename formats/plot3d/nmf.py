@@ -1,10 +1,10 @@
-"""NASA's neutral map file, ``.nmf``: which stretch of a Plot3D block is what, and where blocks join.
+"""NASA's neutral map file, ``.nmf``: boundary conditions and connections of the blocks of a Plot3D file.
 
-It goes with a Plot3D file of the same grid, plane, of volumes or of surfaces. Faces are 1, 2
-at k = 1, kmax; 3, 4 at i = 1, imax; 5, 6 at j = 1, jmax; their two ranges run over the next indices in cyclic
-order (i, j), (j, k), (k, i). Of two joined faces the second's ranges run as the first's, or are swapped.
-Names of patches stand in comments before their rows. Periodic sides, which the format does not define, are
-rows of type PERIODIC that else are as those of interfaces.
+It belongs to a Plot3D file of the same grid, planar or in space. Faces have numbers: 1 and 2 at k = 1 and
+kmax, 3 and 4 at i = 1 and imax, 5 and 6 at j = 1 and jmax. The two ranges of a face run along the following
+indices in cyclic order: (i, j), (j, k), (k, i). The ranges of the second of two connected faces are in the
+order of the first, or exchanged. Names of patches are in comments before their rows. The format does not
+define periodic sides; they are rows of type PERIODIC, otherwise like those of interfaces.
 https://crumsey.github.io/turbmodels/nmf_documentation.html
 """
 
@@ -27,13 +27,15 @@ from meshonet.geometry.blocks.patches import Kind, kind_of
 from meshonet.geometry.errors import InputError
 
 PART = "# part: "
-"""Begins the comment that names the patch of the next row; before two names, that of its donor."""
+"""Start of the comment with the patch name of the next row, or with the names of both sides of a
+connection.
+"""
 FACES = (3, 5, 1)
-"""Number of the face where each index is 1; the next number is that where it is greatest."""
+"""Number of the face where each index is 1; the next number is the face where it is largest."""
 _TYPES: dict[Kind, str] = {
     "wall": "VISCOUS", "farfield": "FARFIELD", "inlet": "INFLOW", "outlet": "OUTFLOW", "symmetry": "SYMMETRY",
 }  # fmt: skip
-"""Types of boundary in the map; other patches have their name as type."""
+"""Boundary types of the map; other patches have their name as type."""
 _RULE = "# " + "=" * 78
 
 
@@ -43,7 +45,10 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
-    """Write the map of all blocks of `grids`; their third direction, if any, is the index `span`."""
+    """Write the map of all blocks of `grids`.
+
+    The third direction of the file, if any, is the index `span`.
+    """
     dims: list[list[int]] = []
     rows: list[str] = []
     for grid in grids:
@@ -60,7 +65,7 @@ def write_map(path: Path, grids: Sequence[Grid], span: int = 2) -> None:
 
 
 class _Rows:
-    """The rows of one grid, whose blocks are counted from `before` on."""
+    """The rows of one grid, whose first block has the number `before` + 1."""
 
     def __init__(self, grid: Grid, before: int, span: int) -> None:
         self._grid, self._before = grid, before
@@ -93,9 +98,9 @@ class _Rows:
         return [*(f"{PART}{name}" for name in names if all(names)), f"PERIODIC {own} {donor} {swap}"]
 
     def _window(self, block: int, side: Side, part: Range) -> tuple[str, int]:
-        """Return block, face and ranges of a part of a side, and which direction the first range is of.
+        """Return block, face and ranges of a part of a side, and the direction of the first range.
 
-        The ranges of a face run along the two indices that follow its own in cyclic order.
+        The ranges of a face are along the two indices that follow its own in cyclic order.
         """
         fixed, end = PLACES[side]
         axis = self._axes[fixed]
@@ -110,26 +115,26 @@ _KINDS: tuple[tuple[str, Kind], ...] = (
     ("viscous", "wall"), ("wall", "wall"), ("tangency", "wall"), ("inviscid", "wall"), ("farfield",
     "farfield"), ("inflow", "inlet"), ("outflow", "outlet"), ("back_pressure", "outlet"), ("sym", "symmetry"),
 )  # fmt: skip
-"""Kinds of boundary by the start of the map's word for them."""
+"""Kinds of boundary by the first letters of the map's types."""
 _NOTHING = ("unprocessed", "collapsed", "pole", "patched", "overset")
-"""Types of rows that say nothing of a face that is used here."""
+"""Row types without information about a face that is used here."""
 _MOST_BYTES = 1 << 26
-"""A larger file is no map: it would have a million rows."""
+"""Largest file that is read; a larger one would have a million rows."""
 _REMEDY = "write the map again, or take it away"
-"""Remedy for a map that does not fit."""
+"""Remedy for a map that does not match its grid."""
 
 
 class Map(NamedTuple):
-    """What a map says of blocks: named faces, and pairs that are joined."""
+    """Content of a map: named faces, and connected pairs."""
 
     faces: list[Face]
     pairs: list[Pair]
 
 
 def read_map(path: Path, dims: Sequence[tuple[int, int, int]]) -> Map:
-    """Return what the map at `path` says of blocks with `dims`.
+    """Return the content of the map at `path`, for blocks with node counts `dims`.
 
-    Raises InputError: it cannot be read, or is of blocks of other sizes.
+    Raises InputError: it cannot be read, or belongs to blocks of other sizes.
     """
     name = printable(path.name)
     try:
@@ -170,7 +175,7 @@ def _read(lines: list[tuple[int, str]], dims: Sequence[tuple[int, int, int]]) ->
 
 
 def _row(known: Map, line: str, names: list[str], dims: Sequence[tuple[int, int, int]]) -> None:
-    """Add what one row says: a face, or two that are joined."""
+    """Add the face or the connected pair of a row."""
     words = line.split()
     title = words[0].strip("'\"")
     numbers = [int(word) for word in words[1:13] if word.lstrip("-").isdigit()]
@@ -195,7 +200,7 @@ def _row(known: Map, line: str, names: list[str], dims: Sequence[tuple[int, int,
 
 
 def _window(numbers: Sequence[int], dims: Sequence[tuple[int, int, int]]) -> FaceWindow:
-    """Return the window that block, face and two ranges are; ValueError where there is no such face."""
+    """Return the window given by block, face and two ranges. Raises ValueError: there is no such face."""
     number, face, *spans = numbers
     fixed = _fixed(face)
     if not 1 <= number <= len(dims) or len(spans) != 4:
@@ -211,5 +216,5 @@ def _window(numbers: Sequence[int], dims: Sequence[tuple[int, int, int]]) -> Fac
 
 
 def _fixed(face: int) -> int:
-    """Return the index that is constant on a face of this number."""
+    """Return the index that is constant on a face with this number."""
     return FACES.index(face if face % 2 else face - 1)

@@ -1,4 +1,4 @@
-"""Reading Plot3D grids of any layout, which their length and their cells tell."""
+"""Reads Plot3D grids in any layout, which is recognised by the file's length and its cells."""
 
 from collections.abc import Iterator
 
@@ -12,19 +12,21 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, in_place
 
 _WRITTEN_ONLY = {"span-i", "span-j", "span-k"}
-"""Options that say nothing of how a file is read."""
+"""Options that only apply to writing."""
 
 
 def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:
-    """Yield the grids of the blocks, right-handed: those that touch are one, others one each.
+    """Yield the grids of the blocks, right-handed.
 
-    `meshonet.formats.mesh.slices` says which files are grids in the plane; all surface patches of a file in
-    space are one grid. Where blocks join, and what their sides are, stands in a neutral map file beside the
-    file, or else is found by position; of a plane block alone the topology is recovered from its nodes. Where
-    there is an iblank array, the provenance says how many nodes have which value. `options` say what is known
-    of the layout.
+    Blocks that touch form one grid, others are grids of their own.
 
-    Raises InputError where none fits the file's length, or a block has no cells.
+    `meshonet.formats.mesh.slices` decides which files are planar grids. All surface patches of a file form
+    one grid. Connections and boundary conditions are read from a neutral map file next to the file, or else
+    found by position. The topology of a single planar block is recovered from its nodes. If the file has an
+    iblank array, the provenance has the number of nodes with each value. `options` are known properties of
+    the layout.
+
+    Raises InputError: no layout has the length of the file; a block without cells.
     """
     wanted = options - _WRITTEN_ONLY
     if is_text(source.head()):

@@ -8,13 +8,13 @@ from collections.abc import Iterator, Sequence
 from itertools import accumulate
 
 _MOST_RECORDS = 400_000
-"""More records, a hundred thousand blocks of some arrays, are a wrong reading."""
+"""Largest plausible number of records, several per block."""
 _LONGEST_HEADER = 1 << 21
-"""Bytes of a first record of dims."""
+"""Largest first record in bytes, which has the node counts."""
 
 
 class Stream:
-    """Bytes of a file in their order, without the length words of records; what is taken is no copy."""
+    """The bytes of a file without the lengths of records, accessed without copying."""
 
     def __init__(self, pieces: Sequence[memoryview], records: int = 0) -> None:
         self._pieces, self.records = pieces, records
@@ -24,7 +24,7 @@ class Stream:
         return self._starts[-1]
 
     def take(self, start: int, count: int) -> memoryview:
-        """Return `count` bytes from `start` on; a copy only where they lie in several records."""
+        """Return `count` bytes from `start`; they are copied only if they span several records."""
         k = bisect_right(self._starts, start) - 1
         at = start - self._starts[k]
         if at + count <= len(self._pieces[k]) or not count:
@@ -37,10 +37,10 @@ class Stream:
 
 
 def unframed(data: memoryview, order: str) -> Stream | None:
-    """Return what is in the records of a Fortran file, None when the length words do not lead to its end.
+    """Return the content of the records of a Fortran file; None if the record lengths do not lead to its end.
 
-    Each record stands between its length twice. gfortran splits one of more than 2 GiB: a negative first word
-    says that more follows.
+    The length of each record is stored before and after it. gfortran divides records of more than 2 GiB: a
+    negative first length means that the record continues.
     """
     pieces: list[memoryview] = []
     records, more, end = 0, False, 0
@@ -53,7 +53,10 @@ def unframed(data: memoryview, order: str) -> Stream | None:
 
 
 def broken_record(data: memoryview, order: str) -> str:
-    """Return what is wrong with the first record that breaks off; nothing if the first is none of dims."""
+    """Return a description of the first incomplete record.
+
+    Empty if the first record has no plausible length.
+    """
     for count, (at, length, _, whole) in enumerate(_records(data, order), start=1):
         if count == 1 and (length % 4 or not 0 < length <= _LONGEST_HEADER or not whole):
             return ""
@@ -65,7 +68,7 @@ def broken_record(data: memoryview, order: str) -> str:
 
 
 def _records(data: memoryview, order: str) -> Iterator[tuple[int, int, bool, bool]]:
-    """Yield of each record start, length, whether it is continued, and whether its two lengths agree."""
+    """Yield for each record start and length, whether it continues, and whether its lengths are equal."""
     word, at = struct.Struct(order + "i"), 0
     while at + 4 <= len(data):
         first = word.unpack_from(data, at)[0]

@@ -1,4 +1,4 @@
-"""Plot3D as text: free format, commas, repeat counts ``r*v`` (in the dims too), Fortran ``D`` exponents."""
+"""Plot3D as text: free format, commas, repeat counts ``r*v`` (in the header too), Fortran ``D`` exponents."""
 
 import re
 
@@ -12,19 +12,19 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 
 _FREE_FORMAT = bytes.maketrans(b",;dDqQ\x1a\v\f", b"  eeee   ")
-"""Separators and exponent letters of Fortran as those of C."""
+"""Conversion of Fortran's separators and exponent letters to those of C."""
 _NUMBER = re.compile(rb"([+-]?(?:\d+\.?\d*|\.\d+))(?:e?([+-]\d{1,4})|e(\d{1,4}))?", re.IGNORECASE)
 """A number whose exponent may lack its letter."""
 _MOST_NODES = 1e12
-"""Dims beyond are no dims."""
+"""Largest plausible node count."""
 _MOST_REPEATED = 4
-"""Numbers a byte of file, repeats expanded; constant planes and iblank stay far below."""
+"""Largest plausible number of values per byte of the file, after repeat counts are expanded."""
 
 
 def candidates(data: bytes, wanted: Options = frozenset()) -> list[Candidate]:
-    """Return every layout that has as many numbers as the file; planes only if they are `wanted`.
+    """Return all layouts with as many numbers as the file, including planes only if they are `wanted`.
 
-    Raises InputError: a word that is no number; no layout fits.
+    Raises InputError: a word that is not a number; no layout fits.
     """
     values = _numbers(data)
 
@@ -61,7 +61,10 @@ def _misfit(tried: list[FileLayout], numbers: int) -> InputError:
 
 
 def _numbers(data: bytes) -> Floats:
-    """Return every number of the file, repeats expanded; unusual spellings are read word by word."""
+    """Return all numbers of the file, with repeat counts expanded.
+
+    Unusual notations are read word by word.
+    """
     values, stop = leading_numbers(data)
     if stop == len(data):
         return values
@@ -80,7 +83,7 @@ def _numbers(data: bytes) -> Floats:
 
 
 def _repeats(text: bytes) -> tuple[bytes, np.ndarray[tuple[int], np.dtype[np.int64]]]:
-    """Return `text` with every ``r*v`` as ``v``, and how often each word stands."""
+    """Return `text` with every ``r*v`` replaced by ``v``, and the repeat count of each word."""
     words = text.split()
     counts = np.ones(len(words), np.int64)
     for k, word in enumerate(words):
@@ -93,7 +96,7 @@ def _repeats(text: bytes) -> tuple[bytes, np.ndarray[tuple[int], np.dtype[np.int
 
 
 def _spelled(word: bytes, data: bytes) -> bytes:
-    """Return `word` with the exponent letter that Fortran drops before three digits: 0.1234-102."""
+    """Return `word` with the exponent letter that Fortran omits before three digits, as in 0.1234-102."""
     match = _NUMBER.fullmatch(word)
     if match is None:
         raise _not_a_number(word, data)

@@ -1,6 +1,6 @@
-"""Writing Plot3D: plane grids, volumes and surfaces.
+"""Writes Plot3D files of planar grids, volumes and surfaces.
 
-With 17 significant digits or float64, so that no wall cell is lost to rounding.
+Numbers have 17 significant digits or are float64, so that thin wall cells are not lost to rounding.
 """
 
 import math
@@ -23,13 +23,13 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.spatial_shape import in_space
 
 _LINE = 4
-"""Numbers a line of text."""
+"""Number of values per line of text."""
 
 
 class StoredBlock:
-    """A block as Plot3D stores it: dims, and x, y[, z], the first index fastest.
+    """A block as stored in Plot3D: node counts, and x, y[, z], the first index fastest.
 
-    In `space`, plane nodes (ni, nj, 2) have z = 0.
+    `in_space` adds z = 0 to planar nodes (ni, nj, 2).
     """
 
     def __init__(self, nodes: Floats, options: Options, *, space: bool) -> None:
@@ -43,7 +43,7 @@ class StoredBlock:
         self._span, self.dims = _span(options), tuple(dims)
 
     def arrays(self) -> Iterator[NDArray[Any]]:
-        """Yield each coordinate flat; one at a time, so that a second grid is never in memory."""
+        """Yield the flat coordinates one at a time, so that memory never holds a second grid."""
         for values in self._coordinates:
             solid = values.ndim == 3
             yield first_fastest(np.moveaxis(values, 2, self._span) if solid else values, self._dtype)
@@ -52,18 +52,19 @@ class StoredBlock:
 
     @property
     def nodes(self) -> int:
-        """The count of nodes."""
+        """Number of nodes."""
         return math.prod(self.dims)
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the blocks of `grids`; plane ones without z, or with z = 0 if there are others.
+    """Write the blocks of `grids`; planar blocks without z, or with z = 0 if others are three-dimensional.
 
-    The third direction of volumes is the index of the file that `options` say. A neutral map file beside the
-    file says where blocks join, and what is what: of a grid alone, and of several where one has blocks.
+    `options` select the file's index for the third direction of volumes. Connections and boundary conditions
+    are written to a neutral map file next to the file, if there is one grid, or one of several has several
+    blocks.
 
-    Raises InputError: there is no grid; several in a file without a count; a block that no Fortran record
-    can hold; z where there is none.
+    Raises InputError: no grid; several grids in a file without a count; a block that is too large for a
+    Fortran record; 2D was requested for a three-dimensional grid.
     """
     if "planes" in options:
         raise InputError("planes are read and not written", "leave the word out")
@@ -89,18 +90,18 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
 
 
 def _span(options: Options) -> int:
-    """Return the index of the file that the third direction of volumes is."""
+    """Return the file's index for the third direction of volumes."""
     return 0 if "span-i" in options else 1 if "span-j" in options else 2
 
 
 def map_of(path: Path) -> Path | None:
-    """Return where the neutral map of the file at `path` is, or goes; none of a stream."""
+    """Return the path of the neutral map of the file at `path`; None for streams."""
     name = final_name(path)
     return None if name.endswith(PART_SUFFIX) else path.with_name(name).with_suffix(".nmf")
 
 
 def _put_text(stream: BinaryIO, blocks: Sequence[StoredBlock], options: Options) -> None:
-    """Write text: the count of blocks, the dims of each on a line, then the numbers."""
+    """Write text: the number of blocks, the node counts of each in a line, then the coordinates."""
     head = [] if "single" in options else [str(len(blocks))]
     head += [" ".join(map(str, block.dims)) for block in blocks]
     stream.write(("\n".join(head) + "\n").encode())
@@ -119,7 +120,7 @@ def _put_lines(stream: BinaryIO, field: str, values: NDArray[Any]) -> None:
 
 
 def _put_bytes(stream: BinaryIO, blocks: Sequence[StoredBlock], options: Options) -> None:
-    """Write C binary, or Fortran records: count, dims, one record a block, each between its length twice."""
+    """Write C binary or Fortran records: count, node counts, one record per block between its lengths."""
     framed = "fortran" in options
 
     def frame(size: int) -> bytes:
@@ -150,7 +151,7 @@ def _order(options: Options) -> str:
 
 
 def _real(options: Options) -> np.dtype[Any]:
-    """Return the number type; text is made of float64."""
+    """Return the number type; text is written from float64."""
     if not options & {"binary", "fortran"}:
         return np.dtype(np.float64)
     return np.dtype(_order(options) + ("f4" if "float32" in options else "f8"))

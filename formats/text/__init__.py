@@ -1,1 +1,1 @@
-"""Text files of coordinates: airfoils and lists of points; and numbers as text."""
+"""Text files of coordinates: airfoils and lists of points; conversion of numbers to and from text."""

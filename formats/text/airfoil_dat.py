@@ -1,11 +1,12 @@
-"""Airfoil coordinate files, in the many forms in which they are published.
+"""Airfoil coordinate files in the various published forms.
 
-Selig's order (trailing edge, upper side, leading edge, lower side, trailing edge), Lednicer's (a line with
-two counts, then both surfaces from the leading edge), either of them backwards or without counts, from any
-start; both surfaces from the trailing edge; a name line, an MSES line of four numbers, prose before and
-behind the data or none of these; columns x y, n x y, x y z, x upper lower, or both surfaces side by side. The
-unit and the position stay as they are.
-https://m-selig.ae.illinois.edu/ads/coord_database.html
+- Order of points: Selig's (trailing edge, upper side, leading edge, lower side, trailing edge) or Lednicer's
+  (a line with two counts, then both surfaces from the leading edge). Both may be reversed, lack the counts,
+  or start at another point. Both surfaces may also start at the trailing edge.
+- Header: a name, an MSES line of four numbers, prose before and after the data, or nothing.
+- Columns: x y, n x y, x y z, x upper lower, or both surfaces side by side.
+
+Unit and position are not changed. https://m-selig.ae.illinois.edu/ads/coord_database.html
 """
 
 import re
@@ -23,18 +24,18 @@ from meshonet.geometry.notes import Change
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 MOST_POINTS = 20_000
-"""An airfoil of more points is a mistake."""
+"""Largest number of points; more are taken for a mistake."""
 _ASK = "give an airfoil as lines of x y from the trailing edge round to it again, or in Lednicer's order"
-"""Remedy for what is no airfoil."""
+"""Remedy for a file that is not an airfoil."""
 
 
 def read_shapes(source: Source) -> Iterator[Airfoil]:
-    """Yield the airfoil of a file; InputError, with its line, where there is none."""
+    """Yield the airfoil of a file. Raises InputError, with the line: there is none."""
     yield parse(decode(source.text_bytes()), source.name, source.stem)
 
 
 def parse(text: str, source: str, stem: str = "") -> Airfoil:
-    r"""Return the airfoil that the text of the file `source` describes; `stem` is its name where it has none.
+    r"""Return the airfoil that the text of the file `source` describes; `stem` is the default of its name.
 
     >>> parse("Plate\n1 0\n.5 .05\n0 0\n.5 -.05\n1 0\n", "plate.dat").name
     'Plate'
@@ -53,12 +54,12 @@ def parse(text: str, source: str, stem: str = "") -> Airfoil:
 
 
 def sniff(head: bytes) -> bool:
-    """Say whether `head` is text most of whose lines are pairs of numbers."""
+    """Return whether `head` is text in which most lines are pairs of numbers."""
     return mostly_rows(head, (2,), least=4)
 
 
 def _name(lines: list[Line], first: int) -> str:
-    """Return the first text above line `first` of the data, or what stands there as a number."""
+    """Return the first text above line `first` of the data, or a number in its place."""
     for line in lines[: first - 1]:
         title = " ".join(line.text.strip("#!%*/ \t").split())
         if title:
@@ -67,7 +68,7 @@ def _name(lines: list[Line], first: int) -> str:
 
 
 def _data(lines: list[Line]) -> tuple[list[Line], list[int], Line | None]:
-    """Return the rows that are coordinates, where among them a new block starts, and Lednicer's counts."""
+    """Return the rows with coordinates, the indices of the first rows of blocks, and Lednicer's counts."""
     blocks = table(lines)
     rows = list(chain.from_iterable(blocks))
     if len(rows) > MOST_POINTS:
@@ -91,9 +92,9 @@ def _data(lines: list[Line]) -> tuple[list[Line], list[int], Line | None]:
 
 
 def _of_width(blocks: list[list[Line]], usual: int) -> list[list[Line]]:
-    """Return blocks without rows of other counts of numbers.
+    """Return blocks without rows that have another number of values.
 
-    A longer row among the data has a remark behind it, above the data it is a heading of its own.
+    A longer row within the data ends in a remark; above the data it is a heading.
     """
     third = [line.number for block in blocks for line in block if len(line.values) == usual][:3][-1]
     fits = [
@@ -104,12 +105,12 @@ def _of_width(blocks: list[list[Line]], usual: int) -> list[list[Line]]:
 
 
 def _points(rows: list[Line]) -> Floats:
-    """Return the first two numbers of rows (n, 2)."""
+    """Return the first two numbers of rows as points (n, 2)."""
     return np.array([line.values[:2] for line in rows])
 
 
 def _is_apart(blocks: list[list[Line]], lines: list[Line]) -> bool:
-    """Say whether the last block is apart from the data: by prose, or because it lies elsewhere."""
+    """Return whether the last block does not belong to the data: prose precedes it, or it lies elsewhere."""
     before, last = blocks[-2][-1], blocks[-1][0]
     if any(line.kind not in ("blank", "gap") for line in lines[before.number : last.number - 1]):
         return sum(map(len, blocks[:-1])) >= 10
@@ -118,18 +119,18 @@ def _is_apart(blocks: list[list[Line]], lines: list[Line]) -> bool:
 
 
 def _outside(point: Floats, points: Floats, by: float = 1.0) -> bool:
-    """Say whether a point (2,) lies more than the extent of the others, times `by`, outside their box."""
+    """Return whether a point (2,) is outside the box of `points` by more than `by` times its extent."""
     low, high = points.min(axis=0), points.max(axis=0)
     reach = by * float((high - low).max())
     return bool((point < low - reach).any() or (point > high + reach).any())
 
 
 def _without_heading(rows: list[Line], starts: list[int]) -> tuple[list[Line], list[int], Line | None]:
-    """Return rows and starts of blocks without rows of numbers above the data that are no coordinates.
+    """Return rows and starts of blocks without leading rows of numbers that are not coordinates.
 
-    Those are Lednicer's counts, which are returned too, and names or conditions that happen to be numbers:
-    they lie far outside the rest, or are whole numbers, unlike the rest, and begin with 0 or stand far from
-    the points next to them.
+    These are Lednicer's counts, which are also returned, and names or conditions that consist of numbers.
+    They are far outside of the other points; or they are integers unlike the other rows, start with 0 or are
+    far from the next points.
     """
     counts = None
     for k in reversed(range(min(4, len(rows) - 4))):
@@ -148,21 +149,21 @@ def _without_heading(rows: list[Line], starts: list[int]) -> tuple[list[Line], l
 
 
 def _unlike(rows: list[Line], rest: Floats, point: Floats, named: bool) -> bool:
-    """Say whether a first row of whole numbers is unlike the others: a number with a 0 in front, or apart."""
+    """Return whether a first row of integers differs from the others: it starts with 0, or is far away."""
     apart = float(np.hypot(*(rest[[0, -1]] - point).T).min())
     fractions = sum("." in line.text for line in rows[1:])
     return fractions > 0.8 * len(rest) and (named or apart > 0.2 * extent_of(rest))
 
 
 def _are_counts(line: Line, least: int, most: int) -> bool:
-    """Say whether `line` can be Lednicer's: two whole numbers from 2 on whose sum lies in the given range."""
+    """Return whether `line` can be Lednicer's counts: two integers above 1 with a sum in the given range."""
     upper, lower = line.values[:2]
     whole = upper == int(upper) and lower == int(lower)
     return whole and min(upper, lower) >= 2 and least <= upper + lower <= most
 
 
 def _wrong_counts(counts: Line, points: int, upper: int) -> tuple[str, ...]:
-    """Return a note when a file announces other counts of points than its two surfaces have."""
+    """Return a note if the counts in the file differ from those of its two surfaces."""
     first, both = counts.values[0], sum(counts.values[:2])
     if (upper or first) == first and points == both:
         return ()
@@ -172,7 +173,7 @@ def _wrong_counts(counts: Line, points: int, upper: int) -> tuple[str, ...]:
 
 
 def _columns(rows: list[Line]) -> tuple[Floats, list[int]]:
-    """Return points (n, 2) and the row each stands in, from tables of two or more columns."""
+    """Return points (n, 2) from tables with two or more columns, and the row of each point."""
     width, index = min(map(len, map(attrgetter("values"), rows))), list(range(len(rows)))
     if width == 2:
         return _points(rows), index
@@ -199,13 +200,13 @@ def _monotone(x: Floats) -> bool:
 
 
 def _once_around(points: Floats, index: list[int], starts: list[int]) -> tuple[Floats, list[int], int]:
-    """Return the points in one run around the section, the row of each, and how many the first surface has.
+    """Return the points in one run around the section, the row of each, and the number on the first surface.
 
-    Either they run so already, and 0 stands for the first surface, or they are two surfaces that both start
-    at the same edge, the first of which is then to be reversed. The division is where a block starts or at
-    the widest step; what gives the shortest way round is right. It starts at the edge where both end, the
-    trailing one in Lednicer's order; where that lies ahead, at smaller x, at the other: only a sharp edge
-    would tell it without.
+    Either they already are one run; the number is then 0. Or they are two surfaces that start at the same
+    edge, of which the first must be reversed; they are divided where a block starts or at the longest step,
+    whichever gives the shorter outline. The run starts at the edge where both surfaces end: the trailing edge
+    in Lednicer's order. If this edge is at smaller x, the run starts at the other one, because otherwise only
+    sharp edges could be recognised.
     """
     n = len(points)
     steps = np.hypot(*np.diff(points, axis=0).T)
@@ -227,7 +228,7 @@ def _way_round(points: Floats) -> float:
 
 
 def _check_run(points: Floats, numbers: list[int]) -> None:
-    """Raise when the points go more than once around, or one lies far from both its neighbours."""
+    """Raise InputError if the points go around more than once, or one is far from both its neighbours."""
     steps = np.diff(points, axis=0, append=points[:1])
     length = np.hypot(steps[:, 0], steps[:, 1])
     extent = float(np.hypot(*np.ptp(points, axis=0)))

@@ -1,7 +1,8 @@
-"""Tables of numbers written as text, and read, by compiled code.
+"""Compiled conversion of tables of numbers to and from text.
 
-Compiled, since Python's own formatting takes longer than all the rest: an 800 x 800 grid is written as SU2's
-text in 0.4 s instead of 2.5 s, as Plot3D's in 0.1 s instead of 1.2 s, and numbers are read in 0.1 us each.
+Python's own formatting would take longer than everything else. The compiled one writes an 800 x 800 grid as
+SU2 text in 0.4 s instead of 2.5 s, as Plot3D text in 0.1 s instead of 1.2 s, and reads numbers in 0.1 us
+each.
 """
 
 import warnings
@@ -16,13 +17,13 @@ from meshonet.geometry.arrays import Floats
 from meshonet.kernels._native import FLOAT_BYTES, INTEGER_BYTES, count_words, put_rows, take_numbers
 
 _ROWS = 1 << 13
-"""Rows turned into text at a time: their text stays in the second-level cache."""
+"""Number of rows converted at a time, so that their text stays in the second-level cache."""
 
 
 def write_rows(stream: BinaryIO, form: str, rows: NDArray[Any]) -> None:
-    r"""Write every row of `rows` (n, m), its numbers in the places of the fields of `form`, and a line end.
+    r"""Write each row of `rows` (n, m) as a line of the format `form`.
 
-    These are m times ``%d`` for whole numbers, or ``%e`` for floats with 17 significant digits.
+    The format has m fields: ``%d`` for integers, or ``%e`` for floats with 17 significant digits.
 
     >>> from io import BytesIO
     >>> stream = BytesIO()
@@ -42,7 +43,7 @@ def write_rows(stream: BinaryIO, form: str, rows: NDArray[Any]) -> None:
 
 
 def parsed(text: bytes) -> Floats | None:
-    """Return the numbers of blank-separated `text`, or None when there is something else in it.
+    """Return the numbers of blank-separated `text`; None if there is anything else in it.
 
     >>> parsed(b"1 2.5 -3e2").tolist(), parsed(b"1 two")
     ([1.0, 2.5, -300.0], None)
@@ -57,10 +58,10 @@ def parsed(text: bytes) -> Floats | None:
 
 
 def leading_numbers(text: bytes | mmap, most: int | None = None, start: int = 0) -> tuple[Floats, int]:
-    """Return the numbers of `text` from byte `start` on, at most so many, and where what is left starts.
+    """Return at most `most` numbers of `text` from byte `start` on, and the position after them.
 
-    They are in Fortran's free format, and end at a word that is no number, or that needs another reader: not
-    finite, subnormal, repeated.
+    The numbers are in Fortran's free format. They end at a word that is not a number, or that needs another
+    reader (not finite, subnormal, or with a repeat count).
 
     >>> values, stop = leading_numbers(b"1 2.5, -3d2 0.4-101 end")
     >>> values.tolist(), stop

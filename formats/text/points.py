@@ -1,14 +1,16 @@
-"""Lists of points: closed curves, or the edges of a domain in four or two blocks divided by blank lines.
+"""Lists of points: closed curves, or the edges of a domain in four or two blocks separated by blank lines.
 
-Columns are divided by commas, semicolons, blanks or tabs; a header line and lines that start with ``#`` are
-allowed; a third column is z and is left out. An open curve is closed by a straight line.
+Columns are separated by commas, semicolons, blanks or tabs. A header line and lines that start with ``#`` are
+allowed. A third column is z and is ignored. An open curve is closed by a straight line.
 
-Four blocks are edges in any order and direction as long as they meet; the first is south. Where opposite
-edges have equal counts, the points are the nodes of the boundary as they stand; otherwise curves to sample.
-Two blocks that lead from one place to another are the walls of a channel, whose ends straight lines join. A
-line ``# name`` above each block names the sides.
-A single curve that ends in one trailing edge is taken for an airfoil. Several closed curves are divided by
-blank lines, or each repeats its first point; those in another one are holes in the domain that it bounds.
+Four blocks are edges in any order and direction if their ends meet; the first is south. If opposite edges
+have equal counts, the points are used as boundary nodes; otherwise the curves are sampled. Two open blocks
+side by side are the walls of a channel, whose ends are joined by straight lines. A line ``# name`` above each
+block names the sides.
+
+A single curve that ends in one trailing edge is taken for an airfoil. Several closed curves are separated by
+blank lines, or each repeats its first point. Curves inside another curve are holes of the domain that it
+bounds.
 """
 
 from collections.abc import Iterator
@@ -30,16 +32,16 @@ from meshonet.geometry.shapes.shape import Shape
 
 AnyOutline = TypeVar("AnyOutline", bound=Outline | Airfoil)
 MOST_POINTS = 100_000
-"""A curve of more points is a mistake."""
+"""Largest number of points of a curve; more are taken for a mistake."""
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shapes of a file; InputError, with its line, where there is none."""
+    """Yield the shapes of a file. Raises InputError, with the line: there is none."""
     yield from parse(decode(source.text_bytes()), source.name, source.stem)
 
 
 def parse(text: str, source: str, stem: str = "") -> list[Shape]:
-    r"""Return the shapes that the text of a list of points describes, called `stem` or else as `source`.
+    r"""Return the shapes that the text of a list of points describes, with the name `stem`, or else `source`.
 
     >>> (square,) = parse("x,y\n0,0\n1,0\n1,1\n0,1\n", "square.csv")
     >>> square.name, square.topology
@@ -74,7 +76,7 @@ def parse(text: str, source: str, stem: str = "") -> list[Shape]:
 
 
 def sniff(head: bytes) -> bool:
-    """Say whether `head` is text of which most lines are two or three numbers."""
+    """Return whether `head` is text in which most lines are two or three numbers."""
     return mostly_rows(head, (1, 2, 3), least=3)
 
 
@@ -84,7 +86,7 @@ def _with_notes(shape: AnyOutline, notes: tuple[str, ...]) -> AnyOutline:
 
 
 def _edges(blocks: list[list[Line]], lines: list[Line]) -> list[DrawnEdge]:
-    """Return the edges that blocks are, called as the ``# name`` above each says where all have one."""
+    """Return blocks as edges, with the names in the lines ``# name`` above them if all have one."""
     above = [lines[block[0].number - 2].text.strip() if block[0].number > 1 else "" for block in blocks]
     names = [printable(text.strip("#").strip()) if text.startswith("#") else "" for text in above]
     return [
@@ -100,7 +102,7 @@ def _closed(rows: list[Line]) -> bool:
 
 
 def _rings(rows: list[Line]) -> list[list[Line]]:
-    """Return the closed curves that follow each other in a block, each ending with its first point, or it."""
+    """Return the closed curves in a block, each ending with its first point or at the end of the block."""
     rings, start = [], 0
     while start < len(rows):
         first = rows[start].values[:2]
@@ -113,7 +115,7 @@ def _rings(rows: list[Line]) -> list[list[Line]]:
 
 
 def _domains(rings: list[list[Line]], name: str, notes: tuple[str, ...]) -> list[Shape]:
-    """Return the domain of each ring that lies in no other; the rings in it are its holes."""
+    """Return the domain of each ring that is not inside another one; rings inside it are its holes."""
     few = next((ring for ring in rings if len(ring) < 3), None)
     if few is not None:
         problem, place = f"{len(rings)} blocks of points, one of {len(few)}", f"line {few[0].number}"

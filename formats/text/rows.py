@@ -1,8 +1,8 @@
-"""Lines of a text file of coordinates: which are numbers, which are prose, which are damaged.
+"""Lines of a text file of coordinates, classified as numbers, prose or damaged.
 
-One number may be written as ``0.5``, ``.5``, ``5e-1``, ``5.0D-01``, ``(0.5)``, ``0,5`` (with blanks, tabs or
-semicolons between columns) or run into the next one, ``0.5-0.01``. Blanks, tabs, commas and semicolons
-separate columns.
+A number may be written as ``0.5``, ``.5``, ``5e-1``, ``5.0D-01``, ``(0.5)``, ``0,5`` (if blanks, tabs or
+semicolons separate columns), or without a separator from the next one, ``0.5-0.01``. Blanks, tabs, commas and
+semicolons separate columns.
 """
 
 import re
@@ -18,42 +18,49 @@ from meshonet.geometry.notes import Change
 Kind = Literal["blank", "text", "row", "noted", "gap", "broken", "damaged"]
 
 MOST_BYTES = 16 * 2**20
-"""A larger file is not read: an outline of a million points is a mistake."""
+"""Largest file that is read; larger ones are taken for a mistake."""
 
 MOST_LINES = 300_000
-"""Likewise, so that a file of nothing but line ends is refused at once."""
+"""Largest number of lines, so that a file of line ends is rejected at once."""
 
 _REMEMBERED = 200_000
-"""Characters of a text whose lines are kept for the next reader."""
+"""Longest text, in characters, whose lines are kept for the next reader."""
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?"
-"""A number as C or Fortran write it."""
+"""A number in the notation of C or Fortran."""
 _ONE = re.compile(_NUMBER)
 _FUSED = re.compile(r"([+-]?\d*\.\d+(?:[eEdD][+-]?\d+)?)([+-]\d*\.\d+(?:[eEdD][+-]?\d+)?)")
-"""Two numbers whose columns run into each other."""
+"""Two numbers without a separator."""
 _COMMA = re.compile(r"[+-]?(?:\d*,)?\d+(?:[eEdD][+-]?\d+)?")
 """A number with a decimal comma."""
 _SPLIT = re.compile(r"[\s,;]+")
-"""What stands between columns."""
+"""Separators of columns."""
 _PLACEHOLDER = re.compile(r"[._?-]{2,}|-")
-"""Dots or dashes where a number should be."""
+"""Dots or dashes in place of a number."""
 _MEANT = re.compile(
     r"[+-]?(?:nan|inf(?:inity)?|\*{2,}|(?=[^.]*\.?\w*\d)[\dOolI]*\.[\w.]*(?:e[+-]?\w+)?|\d+(?:_\d+)+)",
     re.IGNORECASE,
 )
-"""A word that was meant as a number: not finite, Fortran's stars, digits and a point with something else."""
+"""A word that was probably meant as a number: not finite, Fortran's stars, or digits with other
+characters.
+"""
 _HTML = re.compile(r"</?[a-z!][^<>]*>|&#?\w+;", re.IGNORECASE)
 """A tag or an entity."""
 _REMARK = re.compile(r"\s(?:#|!|//|<-).*$|^\s*(?:#|!|//).*$")
 
 
 class Line(NamedTuple):
-    """One line: its number from 1, its kind, its values if it is a row, its text.
+    """One line: its number from 1, its kind, its values if it is a row, and its text.
 
-    Kinds: ``row`` is numbers only, two or more; ``noted`` is two numbers and then words; ``gap`` begins with
-    a number and has dots where the next should be; ``damaged`` begins with two words that were meant as
-    numbers, and one cannot be read (``1.0 nan``, ``1.0 ****``, ``1.0 O.O0``); ``broken`` begins with a number
-    and has nothing or something else there, or the other way round; the rest is ``text``.
+    The kinds are:
+
+    - ``row``: two or more numbers and nothing else;
+    - ``noted``: two numbers, then words;
+    - ``gap``: a number, then dots in place of the next;
+    - ``damaged``: two words that were meant as numbers, of which one is invalid (``1.0 nan``, ``1.0 ****``,
+      ``1.0 O.O0``);
+    - ``broken``: a number followed by nothing or something else, or the reverse;
+    - ``text``: all others.
     """
 
     number: int
@@ -63,9 +70,9 @@ class Line(NamedTuple):
 
 
 def decode(data: bytes) -> str:
-    r"""Return the text of bytes: UTF-8 or UTF-16 with its mark, UTF-8, or else Latin-1, which takes any byte.
+    r"""Return the text of bytes: UTF-8 or UTF-16 with a byte-order mark, UTF-8, or else Latin-1.
 
-    Raises InputError: more than `MOST_BYTES`, or bytes that no text has.
+    Raises InputError: more than `MOST_BYTES`, or bytes that occur in no text.
 
     Examples
     --------
@@ -109,7 +116,7 @@ def _lines(text: str) -> tuple[Line, ...]:
 
 
 def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
-    """Say whether four fifths of the rows of `head`, at least `least`, have `counts` numbers."""
+    """Return whether four fifths of the rows of `head`, at least `least`, have `counts` of values."""
     try:
         lines = read_lines(decode(head))
     except InputError:
@@ -122,12 +129,12 @@ def mostly_rows(head: bytes, counts: tuple[int, ...], least: int) -> bool:
 
 
 def table(lines: list[Line]) -> list[list[Line]]:
-    """Return the rows of a text in blocks, as blank lines and prose divide them.
+    """Return the rows of a text in blocks, which are separated by blank lines and prose.
 
-    Two numbers with words behind them are a row where they stand beside one. `left_out` names the lines
-    beside rows that are not among them.
+    Two numbers followed by words are a row if they are next to one. `left_out` lists the lines next to rows
+    that are ignored.
 
-    Raises InputError: a damaged line with no prose between it and the next row, or a broken one between two
+    Raises InputError: a damaged line without prose between it and the next row; a broken line between two
     rows.
     """
     kinds: list[Kind] = ["blank", *map(attrgetter("kind"), lines), "blank"]
@@ -147,7 +154,7 @@ def table(lines: list[Line]) -> list[list[Line]]:
 
 
 def _next_kind(kinds: list[Kind], k: int, step: int) -> Kind:
-    """Return the kind of the next line above or below `k` that is a row or prose."""
+    """Return the kind of the next line in direction `step` from line `k` that is a row or prose."""
     while 0 < (k := k + step) < len(kinds) - 1:
         if kinds[k] in ("row", "text"):
             return kinds[k]
@@ -155,9 +162,9 @@ def _next_kind(kinds: list[Kind], k: int, step: int) -> Kind:
 
 
 def left_out(lines: list[Line]) -> tuple[str, ...]:
-    """Return a note for each line beside a row that begins like one and has no second number.
+    """Return a note for each line next to a row that starts with a number but has no second one.
 
-    And for each of HTML between rows, which a page that was saved as a file has where rows may be missing.
+    HTML between rows also gets a note, because rows may be missing in a saved web page.
     """
     kinds: list[Kind] = ["blank", *(line.kind for line in lines), "blank"]
     rows = [line.number for line in lines if line.kind == "row"] or [0]
@@ -192,7 +199,7 @@ def _line(number: int, text: str) -> Line:
 
 
 def _words(text: str) -> list[str]:
-    """Return the words between separators; a comma inside a number is its decimal point where no point is."""
+    """Return the words between separators; a comma inside a number without a point is a decimal comma."""
     blank = re.split(r"[\s;]+", text.strip(" \t,;"))
     if len(blank) > 1 and "," in text and "." not in text and all(map(_COMMA.fullmatch, blank)):
         return [word.replace(",", ".") for word in blank]

@@ -1,1 +1,1 @@
-"""VTK's files: XML structured grids, single and as blocks, legacy structured grids, unstructured grids."""
+"""VTK files: XML structured grids, multi-block and legacy structured grids."""

@@ -20,9 +20,9 @@ _KINDS = {
 }  # fmt: skip
 """NumPy's number types by VTK's names."""
 CUT = "the file is cut short or its sizes are wrong: write it again"
-"""The remedy where a file ends too soon."""
+"""Remedy for a truncated file."""
 _MOST_SHRINKING = 1 << 15
-"""LZMA shrinks zeros some ten thousand times, zlib a thousand; a claim far beyond is refused."""
+"""Largest plausible compression ratio; LZMA reaches about ten thousand for zeros, zlib a thousand."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Encoding:
 
 @dataclass(frozen=True)
 class Encoded:
-    """One array of a file: its VTK type, how many numbers it must have (None: any), and where they are."""
+    """One array of a file: its VTK type, its expected number of values (None: any), and its position."""
 
     kind: str
     count: int | None
@@ -49,9 +49,9 @@ class Encoded:
 
 
 def decode(array: Encoded, encoding: Encoding) -> NDArray[Any]:
-    """Return the numbers of `array` (count,), viewing the file's bytes where it can.
+    """Return the values of `array` (count,), as a view of the file's bytes if possible.
 
-    Raises InputError: unknown type or form, fewer or more numbers than there should be, LZ4.
+    Raises InputError: an unknown type or form; another number of values than expected; LZ4 compression.
     """
     if array.kind not in _KINDS:
         raise InputError(f"number type {array.kind[:40]!r} is not known", "write Float64 or Float32")
@@ -85,7 +85,7 @@ def _ascii(array: Encoded, dtype: np.dtype[Any]) -> NDArray[Any]:
 
 
 def _unbase64(text: bytes) -> bytes:
-    """Decode base64 that may be several pieces in a row (length words, data), each with its padding."""
+    """Decode base64 text that may consist of several pieces (length words, data), each with its padding."""
     text = b"".join(text.split())
     try:
         return b"".join(base64.b64decode(piece, validate=True) for piece in re.findall(rb"[^=]+=*", text))
@@ -94,7 +94,7 @@ def _unbase64(text: bytes) -> bytes:
 
 
 def _words(raw: memoryview, first: int, count: int, encoding: Encoding) -> list[int]:
-    """Return length words `first` to `first + count` at the start of an array."""
+    """Return the length words `first` to `first + count` at the start of an array."""
     dtype = np.dtype(encoding.order + encoding.header)
     if len(raw) < (first + count) * dtype.itemsize:
         raise InputError("its length words are missing", CUT)
@@ -111,7 +111,10 @@ def _sized(raw: memoryview, size: int | None, encoding: Encoding) -> memoryview:
 
 
 def _decompressed(raw: memoryview, size: int | None, encoding: Encoding) -> bytearray:
-    """Return `size` bytes; the words say: block count, block size, last block size, compressed sizes."""
+    """Return `size` decompressed bytes.
+
+    The header has block count, block size, last block size, compressed sizes.
+    """
     inflate = _inflater(encoding.compressor)
     count, block, last = _words(raw, 0, 3, encoding)
     claimed = (count - 1 if last else count) * block + last
@@ -134,7 +137,7 @@ def _decompressed(raw: memoryview, size: int | None, encoding: Encoding) -> byte
 
 
 def _inflater(compressor: str) -> Callable[[memoryview, int], bytes]:
-    """Return the function (packed bytes, most bytes to give back) -> bytes of a compressor."""
+    """Return the decompression function of a compressor: (compressed bytes, largest result) -> bytes."""
     if compressor == "vtkZLibDataCompressor":
         return lambda packed, most: zlib.decompressobj().decompress(packed, most)
     if compressor == "vtkLZMADataCompressor":

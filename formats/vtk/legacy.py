@@ -1,6 +1,6 @@
-"""Legacy VTK structured grids, ``.vtk``, binary (big endian) or text; read with or without field data.
+"""Legacy VTK structured grids, ``.vtk``, binary (big endian) or text, with or without field data.
 
-Topology, name, parts and provenance go into a FIELD of bytes, which VTK and meshio pass over.
+Topology, name, patches and provenance are written as a FIELD of bytes, which VTK and meshio skip.
 https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
 """
 
@@ -30,15 +30,15 @@ _KINDS = {
     "vtktypeint64": "i8", "vtkidtype": "i8",
     "short": "i2", "unsigned_short": "u2", "char": "i1", "unsigned_char": "u1",
 }  # fmt: skip
-"""NumPy's number types by the names of legacy files, in lower case."""
+"""NumPy's number types by the type names of legacy files, in lower case."""
 _LINE = 4096
-"""Bytes of the longest line that is read as one."""
+"""Largest number of bytes that are read as one line."""
 _WORD = re.compile(rb"\S")
-"""Where the next line that is not blank begins."""
+"""Start of the next line that is not blank."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the only grid of `grids`, of one block; text has 17 digits."""
+    """Write the only grid of `grids`, which must have one block; text has 17 digits."""
     grid, text = only_one(grids, "a .vtk file"), "ascii" in options
     ni, nj, nk = (*grid.blocks[0].counts, 1)[:3]
     with path.open("wb") as stream:
@@ -57,9 +57,9 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
 
 
 def _write_facts(stream: BinaryIO, grid: Grid, *, text: bool) -> None:
-    """Write topology, name and parts as a FIELD of UTF-8 bytes, one text a line.
+    """Write topology, name and patches as a FIELD of UTF-8 bytes, one text per line.
 
-    VTK has strings here too, but meshio cannot read a file that holds them.
+    VTK also has string fields, but meshio cannot read files with them.
     """
     facts = {name: "\n".join(texts).encode() for name, texts in facts_of(grid).items()}
     stream.write(f"FIELD FieldData {len(facts)}\n".encode())
@@ -70,7 +70,7 @@ def _write_facts(stream: BinaryIO, grid: Grid, *, text: bool) -> None:
 
 
 class _Cursor:
-    """Bytes read front to back."""
+    """Reads bytes sequentially."""
 
     def __init__(self, data: bytes | mmap) -> None:
         self.data, self.at = data, 0
@@ -104,7 +104,7 @@ class _Cursor:
         return values
 
     def bytes(self, count: int) -> memoryview:
-        """Return the next `count` bytes, a view."""
+        """Return a view of the next `count` bytes."""
         if count > len(self.data) - self.at:
             raise InputError(f"should have {count} more bytes and is too short", CUT)
         self.at += count
@@ -114,7 +114,7 @@ class _Cursor:
 def read_grids(source: Source) -> Iterator[Grid]:
     """Yield the grid of a legacy ``.vtk`` file.
 
-    Raises InputError: not such a file, another dataset than STRUCTURED_GRID, damaged.
+    Raises InputError: another format; a dataset other than STRUCTURED_GRID; a damaged file.
     """
     cursor = _Cursor(source.buffer())
     try:
@@ -155,7 +155,7 @@ def _read(cursor: _Cursor) -> tuple[list[Floats], dict[str, list[str]]]:
 
 
 def _field(cursor: _Cursor, count: int, *, text: bool) -> dict[str, list[str]]:
-    """Return the texts of a FIELD, which are strings or UTF-8 bytes, and pass over its numbers."""
+    """Return the texts of a FIELD, stored as strings or UTF-8 bytes; its numbers are skipped."""
     facts: dict[str, list[str]] = {}
     for _ in range(count):
         name, components, tuples, kind = cursor.line().split()
@@ -184,14 +184,14 @@ def _numbers(cursor: _Cursor, kind: str, count: int, *, text: bool) -> NDArray[A
 
 
 def _raw_line(cursor: _Cursor) -> str:
-    """Return the next line, blank or not."""
+    """Return the next line, which may be blank."""
     end = cursor.data.find(b"\n", cursor.at)
     start, cursor.at = cursor.at, (end if end >= 0 else len(cursor.data)) + 1
     return cursor.data[start : cursor.at - 1].decode("latin-1").strip()
 
 
 def _counted(cursor: _Cursor) -> memoryview:
-    """Return a string behind its length in 1, 2, 4 or 8 bytes; the first two bits say in how many."""
+    """Return a string stored after its length in 1, 2, 4 or 8 bytes; the first two bits give their number."""
     first = cursor.bytes(1)
     width = {3: 1, 2: 2, 1: 4, 0: 8}[first[0] >> 6]
     length = int.from_bytes(bytes(first) + cursor.bytes(width - 1), "big") & ((1 << (8 * width - 2)) - 1)

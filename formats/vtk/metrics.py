@@ -1,4 +1,4 @@
-"""Grids with every quality metric as cell data: one block in a ``.vts`` file, many in a ``.vtm``."""
+"""Grids with all quality metrics as cell data: ``.vts`` files of one block, ``.vtm`` files of several."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -17,9 +17,11 @@ from meshonet.geometry.quality.metrics import metrics_of as metrics_of_cells
 
 
 def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> None:
-    """Write the only grid of `grids` to `path`, a ``.vtm`` file where there may be `many` blocks.
+    """Write the only grid of `grids` to `path`.
 
-    Raises InputError: many blocks and a file of one.
+    With `many` to a ``.vtm`` file, which may have several blocks.
+
+    Raises InputError: several blocks for a file of one.
     """
     if many:
         vtm.write_grids(path, grids, cell_data=metrics_of)
@@ -31,7 +33,7 @@ def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> N
 
 
 def metrics_of(grid: Grid) -> list[dict[str, NDArray[Any]]]:
-    """Return for each block every metric, and ``folded``, of its cells (ni-1, nj-1[, nk-1]) by name."""
+    """Return for each block the metrics and ``folded`` of its cells (ni-1, nj-1[, nk-1]), by name."""
     every = {metric.name: per_cell_of_blocks(grid, metric.name) for metric in metrics_of_cells(grid)}
     of_blocks: list[dict[str, NDArray[Any]]] = []
     for number, block in enumerate(grid.blocks):

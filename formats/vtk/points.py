@@ -1,4 +1,4 @@
-"""Points and names as files of VTK have them."""
+"""Points and names in the form of VTK files."""
 
 import math
 from collections.abc import Iterator
@@ -11,13 +11,13 @@ from meshonet.formats.source import printable
 from meshonet.geometry.arrays import Floats
 
 _BLOCK_NODES = 1 << 15
-"""Nodes laid out at a time: 24 bytes each stay in the second-level cache."""
+"""Number of nodes converted at a time; at 24 bytes each they stay in the second-level cache."""
 
 
 def points_of(nodes: Floats, dtype: str) -> Iterator[NDArray[Any]]:
-    """Yield nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) as points (n, 3), i fastest, some rows at a time.
+    """Yield nodes (ni, nj, 2 or 3) or (ni, nj, nk, 3) as points (n, 3), i fastest, several rows at a time.
 
-    Nodes in the plane get z = 0.
+    Planar nodes get z = 0.
     """
     *counts, coordinates = nodes.shape
     last = len(counts) - 1
@@ -30,7 +30,7 @@ def points_of(nodes: Floats, dtype: str) -> Iterator[NDArray[Any]]:
 
 
 def escaped(text: str) -> str:
-    """Return `text` for an XML attribute; xml.sax has this too, behind 30 ms of network modules."""
+    """Return `text` for an XML attribute; the same function of xml.sax takes 30 ms to import."""
     for plain, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;")):
         text = text.replace(plain, entity)
     return printable(text)

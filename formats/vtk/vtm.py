@@ -1,9 +1,8 @@
-"""VTK multi-block files, ``.vtm``: an index beside a folder ``NAME_blocks`` with a ``.vts`` a block.
+"""VTK multi-block files, ``.vtm``: an index, and a folder ``NAME_blocks`` with one ``.vts`` file per block.
 
-A grid of several blocks is a ``Block`` in the index, and its blocks say which grid they belong to; a grid of
-one block stands there by itself and says that it is whole. Blocks that other programs wrote do not say it:
-where they touch they make one grid.
-https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
+A multi-block grid is a ``Block`` in the index, and its files state the grid to which they belong. A grid of
+one block is listed without a ``Block``. Files of other programs do not state this; blocks of theirs that
+touch form one grid. https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
 import re
@@ -27,15 +26,15 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, in_place
 
 CellData: TypeAlias = Callable[[Grid], Sequence[Mapping[str, NDArray[Any]]]]
-"""Gives values of the cells of each block of a grid, by name (`meshonet.formats.vtk.vts.write`)."""
+"""Function from a grid to cell values of each block, by name (`meshonet.formats.vtk.vts.write`)."""
 _OURS = re.compile(r"block-\d+\.vts")
 """Names of the files that this package writes into the folder."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = None) -> None:
-    """Write every grid of `grids`, with data of its cells.
+    """Write all `grids`, with optional cell data.
 
-    Raises InputError: there is no grid; the folder of the blocks holds something else, which would be lost.
+    Raises InputError: no grid; the folder of the blocks has other files, which would be lost.
     """
     folder = path.with_name(f"{Path(final_name(path)).stem}_blocks")
     if folder.is_dir() and not all(_OURS.fullmatch(entry.name) for entry in folder.iterdir()):
@@ -70,13 +69,13 @@ def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = 
 
 
 _MOST_BYTES = 16 << 20
-"""An index of more bytes would name some hundred thousand blocks."""
+"""Largest index that is read; a larger one would list some hundred thousand blocks."""
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grids that the ``.vts`` make which the index names, in its folder or below.
+    """Yield the grids in the ``.vts`` files of the index, which must be in its folder or below.
 
-    Raises InputError: no such index; a file that is not below its folder, is missing or no ``.vts``.
+    Raises InputError: no such index; a file outside of its folder, a missing file, or not a ``.vts`` file.
     """
     from xml.etree import ElementTree
 
@@ -102,7 +101,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
 
 def _grids(blocks: Iterator[FileBlock], stem: str) -> Iterator[Grid]:
-    """Yield the grids that this package wrote, then those made of blocks that other programs wrote."""
+    """Yield the grids written by this package, then those formed by blocks of other programs."""
     foreign: list[FileBlock] = []
     for own, group in groupby(blocks, key=lambda block: bool(block.facts.get("topology"))):
         if own:

@@ -1,8 +1,7 @@
-"""Writing VTK XML structured grids, ``.vts``.
+"""Writes VTK XML structured grids, ``.vts``.
 
-Written raw appended, little endian, float64, with 64-bit lengths: the form that is quickest to write and that
-every VTK reads. Topology, name, parts and provenance go into FieldData, which VTK shows and nothing stumbles
-over.
+Arrays are raw appended, little endian, float64, with 64-bit lengths: the form that is fastest to write and
+that all VTK versions read. Topology, name, patches and provenance are FieldData, which VTK displays.
 https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
@@ -36,7 +35,7 @@ _HEAD = """\
   </StructuredGrid>
   <AppendedData encoding="raw">
    _"""
-"""The XML before the appended numbers."""
+"""The XML before the appended data."""
 
 
 def write(
@@ -49,8 +48,8 @@ def write(
 ) -> None:
     """Write one block of a grid.
 
-    `cell_data` has values (ni-1, nj-1) or (ni-1, nj-1, nk-1) by name; `facts` are those of a block of several
-    (`meshonet.formats.mesh.metadata.facts_of`).
+    `cell_data` has values (ni-1, nj-1) or (ni-1, nj-1, nk-1) by name. For a block of a multi-block grid,
+    `facts` are its texts (`meshonet.formats.mesh.metadata.facts_of`).
     """
     nodes = grid.blocks[block].nodes
     cells = dict(cell_data or {})
@@ -70,7 +69,7 @@ def write(
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the only grid of `grids`, of one block."""
+    """Write the only grid of `grids`, which must have one block."""
     write(path, only_one(grids, "a .vts file"))
 
 
@@ -84,22 +83,18 @@ def _head(dims: tuple[int, int, int], facts: Facts, cells: Mapping[str, NDArray[
         arrays.append(f"        <{tag}/>")
         offset += 8 + values.nbytes
     cell_data = ["      <CellData>", *arrays, "      </CellData>"] if arrays else ["      <CellData/>"]
-    lines = (*_field_data(facts), f'    <Piece Extent="{extent}">', "      <PointData/>", *cell_data)
-    return _HEAD.format(extent=extent, lines="\n".join(lines))
-
-
-def _field_data(facts: Facts) -> list[str]:
-    """Return the FieldData element; VTK spells strings as signed bytes, each string ended by a zero."""
-    lines = ["    <FieldData>"]
+    field_data = []  # VTK spells strings as signed bytes, each string ended by a zero
     for name, texts in facts.items():
         codes = " ".join(map(str, np.frombuffer("\0".join([*texts, ""]).encode(), np.int8)))
         tag = f'Array type="String" Name="{name}" NumberOfTuples="{len(texts)}" format="ascii"'
-        lines.append(f"      <{tag}>{codes}</Array>")
-    return [*lines, "    </FieldData>"]
+        field_data.append(f"      <{tag}>{codes}</Array>")
+    field_data = ["    <FieldData>", *field_data, "    </FieldData>"]
+    lines = (*field_data, f'    <Piece Extent="{extent}">', "      <PointData/>", *cell_data)
+    return _HEAD.format(extent=extent, lines="\n".join(lines))
 
 
 def _cell_values(name: str, values: NDArray[Any], nodes: Floats) -> NDArray[Any]:
-    """Return per-cell `values` as VTK lays them out: the first index fastest, 8 bytes each."""
+    """Return cell `values` in VTK's order, the first index fastest, with 8 bytes each."""
     cells = tuple(count - 1 for count in nodes.shape[:-1])
     if values.shape != cells:
         raise InputError(f"cell array {name!r} has shape {values.shape}", f"give {cells}")

@@ -1,4 +1,4 @@
-"""Reading ``.vts``: the XML around the arrays, which `meshonet.formats.vtk.arrays` decodes."""
+"""Reads ``.vts`` files: the XML; its arrays are decoded by `meshonet.formats.vtk.arrays`."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
 
 Extent = tuple[int, int, int, int, int, int]
 _MOST_NODES = 1 << 40
-"""A grid that claims more is damaged: its nodes would take 24 TB."""
+"""Largest plausible number of nodes; their coordinates would take 24 TB."""
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grid of a ``.vts`` file, in the plane or in space (`meshonet.formats.mesh.slices`).
+    """Yield the grid of a ``.vts`` file, planar or three-dimensional (`meshonet.formats.mesh.slices`).
 
-    Raises InputError: not such a file, damaged, compressed with LZ4.
+    Raises InputError: another format; a damaged file; LZ4 compression.
     """
     coordinates, facts = read_block(source)
     yield grid_of_block(coordinates, facts, source.stem)
 
 
 def read_block(source: Source) -> tuple[list[Floats], Facts]:
-    """Return x, y, z (ni, nj, nk) each and what the file says of them; raises as `read_grids`."""
+    """Return x, y, z, each (ni, nj, nk), and the texts of the file. Raises as `read_grids`."""
     raw = source.buffer()
     root, start, end = _parsed(raw)
     dataset = _child(root, "StructuredGrid")
@@ -53,7 +53,7 @@ def read_block(source: Source) -> tuple[list[Floats], Facts]:
 
 
 def _parsed(raw: bytes | mmap) -> tuple[Element, int, int]:
-    """Return the XML and where the appended bytes, which are not XML, start and end."""
+    """Return the XML, and the start and end of the appended bytes, which are not XML."""
     from xml.etree.ElementTree import ParseError, fromstring
 
     tag = raw.find(b"<AppendedData")
@@ -143,7 +143,7 @@ def _extent(element: Element, name: str) -> Extent:
 
 
 def _dims(extent: Extent) -> tuple[int, int, int]:
-    """Return (nk, nj, ni), slowest first as in memory."""
+    """Return (nk, nj, ni), the slowest index first."""
     i0, i1, j0, j1, k0, k1 = extent
     return k1 - k0 + 1, j1 - j0 + 1, i1 - i0 + 1
 
@@ -156,7 +156,7 @@ def _child(element: Element, name: str) -> Element:
 
 
 def _texts(array: Element, encoding: Encoding) -> list[str]:
-    """Return the strings of an array, each ended by 0; none of a damaged one, which is no loss."""
+    """Return the strings of an array, each ended by 0; empty for a damaged array, which is not essential."""
     try:
         if array.get("format") == "ascii":
             codes = bytes(int(word) % 256 for word in (array.text or "").split())

@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats, Side, Topology
 from meshonet.geometry.blocks.block import Range, face_counts, face_of, part_of, sides_of
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.linear import solve
 
 Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
 """Returns the nodes of a side of a block, given its number."""
@@ -62,6 +61,8 @@ class Motion:
         """
         if not self.turn:
             return 0.0, np.zeros(2)
+        from meshonet.geometry.linear import solve  # which few grids need
+
         turn = np.array(self.turn)
         angle = math.atan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
         return angle, solve(np.eye(2) - turn, self.translation) if angle else np.zeros(2)

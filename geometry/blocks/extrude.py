@@ -64,7 +64,7 @@ def thickened(grid: Grid, nodes: Sequence[Floats], ends: tuple[End, End] | None)
     """
     planar(grid)
     planes = nodes[0].shape[2]
-    connections = [_thick(each, planes) for each in grid.connections]
+    connections = [thick(each, planes) for each in grid.connections]
     patches = _renamed(_with_walls(grid), [name for name, _ in ends or ()])
     for number, block in enumerate(grid.blocks):
         i, j = (n - 1 for n in block.counts)
@@ -127,7 +127,7 @@ def _renamed(patches: Sequence[Patch], ends: Sequence[str]) -> list[Patch]:
     return [replace(patch, name=new.get(patch.name, patch.name)) for patch in patches]
 
 
-def _thick(each: Connection, planes: int) -> Connection:
+def thick(each: Connection, planes: int) -> Connection:
     """Return a connection of planar blocks over all planes."""
     whole = (0, planes - 1)
     ranges = (*each.range, whole), (*each.donor_range, whole)

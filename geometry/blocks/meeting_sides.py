@@ -148,7 +148,7 @@ def _edges(corners: Floats) -> Floats:
 
 
 def _extended(corners: Floats) -> NDArray[np.bool_]:
-    """Say for each cell of a side whether it has an extent: an edge a length, a quadrilateral an area."""
+    """Return for each cell of a side whether it has an extent: length of edges, area of quadrilaterals."""
     shape = corners.shape[: (corners.ndim - 1) // 2]
     flat = corners.reshape(-1, *corners.shape[len(shape) :])
     longest = _edges(flat).max(axis=1)

@@ -1,32 +1,98 @@
 """Cubic splines through tables of values at any knots."""
 
+from typing import Any
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import solve_tridiagonal
+
+
+class CubicTable:
+    """The cubic spline through `values` (n, ...) at rising `knots` (n,).
+
+    Not-a-knot: the third derivative is continuous at the second and at the last but one knot. 2 knots give a
+    straight line, 3 a parabola. Values at knots are bitwise kept. Outside of the knots the first and the last
+    cubic go on. de Boor, A Practical Guide to Splines (1978), chapter IV.
+    """
+
+    def __init__(self, values: Floats, knots: Floats) -> None:
+        self.values, self.knots = values, knots
+        self.bends = _bends(values.reshape(len(knots), -1), knots).reshape(values.shape)
+
+    def _pieces(self, places: Floats) -> Indices:
+        return np.clip(np.searchsorted(self.knots, places, side="right") - 1, 0, len(self.knots) - 2)
+
+    def __call__(self, places: Floats) -> Floats:
+        """Return all columns (p, ...) at the same places (p,)."""
+        first = self._pieces(places)
+        return self._values(first, places, first, self.values.ndim - 1)
+
+    def each(self, places: Floats) -> Floats:
+        """Return each column (p, m, ...) of values (n, m, ...) at places (p, m) of its own."""
+        first = self._pieces(places)
+        column = np.arange(places.shape[1])
+        return self._values((first, column), places, first, self.values.ndim - 2)
+
+    def slope(self, places: Floats) -> Floats:
+        """Return the derivatives (p, ...) of all columns at the same places (p,)."""
+        first = self._pieces(places)
+        return self._slopes(first, places, first, self.values.ndim - 1)
+
+    def each_slope(self, places: Floats) -> Floats:
+        """Return the derivative (p, m, ...) of each column at places (p, m) of its own."""
+        first = self._pieces(places)
+        column = np.arange(places.shape[1])
+        return self._slopes((first, column), places, first, self.values.ndim - 2)
+
+    def integrals(self) -> Floats:
+        """Return the integrals (n, ...) from the first knot to each knot."""
+        h = np.diff(self.knots).reshape(-1, *(1,) * (self.values.ndim - 1))
+        mean, bend = self.values[:-1] + self.values[1:], self.bends[:-1] + self.bends[1:]
+        pieces = h * (0.5 * mean - h * h * bend / 24.0)
+        return np.concatenate([np.zeros_like(self.values[:1]), np.cumsum(pieces, axis=0)])
+
+    def unit_cubics(self) -> Floats:
+        """Return the coefficients (4, n - 1, ...), by rising power of t from 0 to 1 in each piece."""
+        h = np.diff(self.knots).reshape(-1, *(1,) * (self.values.ndim - 1))
+        begin, end = self.bends[:-1] * h**2, self.bends[1:] * h**2
+        rise = np.diff(self.values, axis=0)
+        first = rise - (2.0 * begin + end) / 6.0
+        return np.stack([self.values[:-1], first, begin / 2.0, (end - begin) / 6.0])
+
+    def _values(self, at: Any, places: Floats, first: Indices, more: int) -> Floats:
+        h, t, start, stop, begin, end = self._parts(at, places, first, more)
+        bend = (2.0 - t) * begin + (1.0 + t) * end
+        inner = start + t * (stop - start) - t * (1.0 - t) * h**2 / 6.0 * bend
+        return np.asarray(np.where(t == 1.0, stop, inner))
+
+    def _slopes(self, at: Any, places: Floats, first: Indices, more: int) -> Floats:
+        h, t, start, stop, begin, end = self._parts(at, places, first, more)
+        left = 1.0 - t
+        return np.asarray(
+            (stop - start) / h + h / 6.0 * ((3.0 * t * t - 1.0) * end - (3.0 * left * left - 1.0) * begin)
+        )
+
+    def _parts(self, at: Any, places: Floats, first: Indices, more: int) -> tuple[Floats, ...]:
+        after = (at[0] + 1, at[1]) if isinstance(at, tuple) else at + 1
+        shape = (*places.shape, *(1,) * more)
+        h = self.knots[first + 1] - self.knots[first]
+        t = ((places - self.knots[first]) / h).reshape(shape)
+        tables = self.values[at], self.values[after], self.bends[at], self.bends[after]
+        return (h.reshape(shape), t, *tables)
 
 
 def cubic_spline(values: Floats, knots: Floats, places: Floats) -> Floats:
     """Return the cubic spline (p, ...) through `values` (n, ...) at rising `knots` (n,), at `places` (p,).
 
-    Not-a-knot: the third derivative is continuous at the second and at the last but one knot. 2 knots give a
-    straight line, 3 a parabola. Values at knots are bitwise kept. de Boor, A Practical Guide to Splines
-    (1978), chapter IV.
+    See `CubicTable`.
 
     >>> knots = np.array([0.0, 1.0, 3.0, 4.0, 6.0])
     >>> float(cubic_spline(knots**3, knots, np.array([2.0]))[0])
     8.0
     """
-    n = len(knots)
-    table = values.reshape(n, -1)
-    bends = _bends(table, knots)
-    first = np.clip(np.searchsorted(knots, places, side="right") - 1, 0, n - 2)
-    h = (knots[first + 1] - knots[first])[:, None]
-    t = ((places - knots[first]) / h[:, 0])[:, None]
-    before, after = table[first], table[first + 1]
-    bend = (2.0 - t) * bends[first] + (1.0 + t) * bends[first + 1]
-    result = np.where(t == 1.0, after, before + t * (after - before) - t * (1.0 - t) * h**2 / 6.0 * bend)
-    return result.reshape(len(places), *values.shape[1:])
+    return CubicTable(values, knots)(places)
 
 
 def _bends(values: Floats, knots: Floats) -> Floats:

@@ -78,11 +78,8 @@ class Curve:
             along = straight[:, None]
             first, last = np.where(along, chord, first), np.where(along, chord, last)
         self._cubic = cubics(ends[:-1], chord, first, last)
-        self._measure(len(h))
-
-    def _measure(self, intervals: int) -> None:
-        """Tabulate arc length and the slopes of its inverse."""
-        inner, speed = np.empty((intervals, len(_INNER))), np.empty((intervals, len(_EDGES)))
+        # tables of arc length and of the slopes of its inverse
+        inner, speed = np.empty((len(h), len(_INNER))), np.empty((len(h), len(_EDGES)))
         curve_speeds(self._cubic, _INNER, inner)
         curve_speeds(self._cubic, _EDGES, speed)
         pieces = product(inner.reshape(-1, 3), _WEIGHTS)

@@ -8,19 +8,10 @@ from functools import cached_property
 
 from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.domain.ring import ring_loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
-
-
-@dataclass(frozen=True)
-class Periodic:
-    """Two stretches of the outer loop, of which the second is the first moved by `shift`."""
-
-    first: tuple[float, float]
-    """Arc lengths where the first stretch starts and ends, in the direction of the loop."""
-    second: tuple[float, float]
-    shift: tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,8 +26,8 @@ class Domain:
         Name of the shape in the input.
     notes : tuple of str, optional
         Sentences for users on what a reader skipped in the file.
-    periodic : Periodic, optional
-        Two stretches of the outer loop that are periodic.
+    periodic : tuple of Periodic, optional
+        Pairs of stretches of the outer loop that are periodic.
 
     Raises
     ------
@@ -47,7 +38,7 @@ class Domain:
     loops: tuple[Loop, ...]
     name: str = ""
     notes: tuple[str, ...] = ()
-    periodic: Periodic | None = None
+    periodic: tuple[Periodic, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.loops:

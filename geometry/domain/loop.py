@@ -27,6 +27,7 @@ class Loop:
         A polygon is followed exactly (``Curve(..., straight=...)``), an airfoil is a spline between corners.
     corners : ascending indices of the points that are corners. A grid has a node at each.
     names : one name for the whole loop, or one for each stretch between corners.
+    cells : number of cells that should meet at each corner; empty where the angles say it.
 
     Raises InputError: a corner index that is out of range; the wrong number of names.
     """
@@ -36,6 +37,7 @@ class Loop:
     names: tuple[str, ...] = ("outer",)
     places: tuple[str, ...] = field(default=(), repr=False)
     """Where each point stands in its source, for messages; may be empty."""
+    cells: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         n = len(self.curve.points)
@@ -76,6 +78,8 @@ class Loop:
     @cached_property
     def corner_cells(self) -> NDArray[np.intp]:
         """Number of cells (c,) that should meet at each corner, 1 to 4: about one per 90 degrees."""
+        if self.cells:
+            return np.array(self.cells, dtype=np.intp)
         return np.clip(np.round(self.corner_angles / 90.0), 1, 4).astype(np.intp)
 
     def at(self, arc: Floats) -> Floats:

@@ -125,7 +125,7 @@ def _far(rng: np.random.Generator) -> BodyCurve:
 
 
 def _stretched(z: Complexes, most: float, rng: np.random.Generator) -> Complexes:
-    """Return the curve stretched along one axis by up to `most`; one in three is left as it is."""
+    """Return the curve stretched along one axis by up to `most`; one in three is not changed."""
     ratio = math.exp(rng.uniform(0.0, 0.5 * math.log(most))) if rng.random() < 2 / 3 else 1.0
     return times(z.real * ratio + 1j * z.imag / ratio, exp(2j * np.pi * rng.random()))
 

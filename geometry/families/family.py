@@ -109,15 +109,15 @@ def wrench(opening: float, ni: int, nj: int) -> Boundary:
 
     ::
 
-             .          .         the opening w is the width of the jaw, centred at x = 1/2, from y = 1 to
-             0.6;
-           .' |        | '.       its lips stand 0.05 outside it at y = 1.15
-         .'   |   w    |   '.
-        |     |________|     |    those at the bottom of the jaw turn by 270 degrees inside the domain, where
-        '--------------------'    elliptic grids fold
+             .          .         The opening w is the width of the jaw, centred at x = 1/2; the jaw
+           .' |        | '.       extends from y = 1 down to 0.6, and its lips end at y = 1.15, 0.05
+         .'   |   w    |   '.     outside of it. At the two lower corners of the jaw the angle inside
+        |     |________|     |    the domain is 270 degrees; elliptic grids fold there.
+        '--------------------'
 
-    The kinks lie on the same nodes for every opening, those that nearly equal steps give at 0.3. The boundary
-    nodes thus depend smoothly on the opening, as interpolation between training cases requires.
+    The kinks are on the same nodes for every opening: those that nearly equal steps give for an opening of
+    0.3. The boundary nodes thus depend smoothly on the opening, as interpolation between training cases
+    requires.
     """
     south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(_jaw(opening), ni, like=_jaw(0.3))
     return _upright(south, north, nj, f"wrench-{opening:.6g}")

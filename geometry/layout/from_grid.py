@@ -19,8 +19,9 @@ from meshonet.geometry.blocks.meeting_sides import AROUND
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import node_table
 from meshonet.geometry.curves.curve import Curve
-from meshonet.geometry.domain.domain import Domain, Periodic
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
@@ -163,12 +164,12 @@ def _pairs(grid: Grid, numbers: tuple[Indices, ...]) -> tuple[Floats, Indices, I
 
 def _period(
     grid: Grid, numbers: tuple[Indices, ...], rings: list[_Ring], loops: tuple[Loop, ...]
-) -> Periodic | None:
+) -> tuple[Periodic, ...]:
     shift, first, second = _pairs(grid, numbers)
     if not len(first):
-        return None
+        return ()
     stretches = [_stretch(rings[0], loops[0], nodes) for nodes in (first, second)]
-    return Periodic(stretches[0], stretches[1], (float(shift[0]), float(shift[1])))
+    return (Periodic(stretches[0], stretches[1], (float(shift[0]), float(shift[1]))),)
 
 
 def _stretch(ring: _Ring, loop: Loop, nodes: Indices) -> tuple[float, float]:

@@ -110,10 +110,37 @@ class QuadMesh:
         """(n,) whether the number of quads at a node is not four, or on the boundary not two."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
+    @cached_property
+    def of_quads(self) -> dict[object, object]:
+        """What others have derived of the quads alone; meshes of the same quads share it."""
+        return {}
+
     def aspects(self, lengths: Floats) -> Floats:
         """Return aspect ratios (m,): geometric mean of sides 1-2, 3-0 over 0-1, 2-3, of `lengths` (e,)."""
         sides = lengths[self.edge_of]
         return np.asarray(np.sqrt(sides[:, 1] * sides[:, 3] / (sides[:, 0] * sides[:, 2])))
+
+    @property
+    def tied(self) -> NDArray[np.bool_]:
+        """(n,) whether a node has a partner or is one: nodes of periodic sides, which move freely."""
+        tied = self.places.partner >= 0
+        tied[self.places.partner[tied]] = True
+        return tied
+
+    def shifts(self, images: Indices) -> Floats:
+        """Return the period (k, 2) by which each of the nodes `images` (k,) is moved from its partner."""
+        known = np.array([each.shift for each in self.domain.periodic] or [(0.0, 0.0)])
+        way = self.nodes[images] - self.nodes[self.places.partner[images]]
+        off = np.hypot(*(way[:, None] - known).transpose(2, 0, 1))
+        return np.asarray(known[off.argmin(axis=1)])
+
+    def beside_partners(self, nodes: Floats) -> Floats:
+        """Return `nodes` (n, 2), those with a partner where it is, moved by the period."""
+        images = np.flatnonzero(self.places.partner >= 0)
+        if images.size and self.domain.periodic:
+            nodes = nodes.copy()
+            nodes[images] = nodes[self.places.partner[images]] + self.shifts(images)
+        return nodes
 
     def with_nodes(self, nodes: Floats, arc: Floats | None = None) -> QuadMesh:
         """Return the same quads with nodes (n, 2) and, if given, boundary arc lengths (n,) replaced."""
@@ -123,6 +150,7 @@ class QuadMesh:
     def with_places(self, nodes: Floats, places: Places) -> QuadMesh:
         """Return the same quads with nodes (n, 2) and their places on the boundary replaced."""
         moved = replace(self, nodes=nodes, places=places)
-        known = ("_sides", "on_wall", "wall_nodes", "valence", "irregular")  # these depend on the quads alone
+        known = ("_sides", "on_wall", "wall_nodes", "valence", "irregular", "of_quads")
+        # these depend on the quads alone
         moved.__dict__.update({name: self.__dict__[name] for name in known if name in self.__dict__})
         return moved

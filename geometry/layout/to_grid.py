@@ -6,17 +6,20 @@ and the other edges become patches with the names of the domain's loops.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch, kind_of
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.periodic_sides import matched_nodes, sides_of
 from meshonet.geometry.layout.shared_sides import Line, connection_of, key_of, shared, shared_in_part
+from meshonet.geometry.polygon.corners import Indices
 
 _SIDES: tuple[Side, ...] = ("south", "north", "west", "east")
 
@@ -27,25 +30,30 @@ def to_grid(layout: Layout, name: str = "") -> Grid:
     Raises InputError (from `Grid`): a layout whose neighbouring blocks do not share nodes.
     """
     domain = layout.mesh.domain
-    nodes = _with_partners(layout)
     lines = [
         (number, side, line)
         for number, block in enumerate(layout.blocks)
         for side, line in zip(_SIDES, (block[:, 0], block[:, -1], block[0], block[-1]), strict=True)
     ]
+    patches: list[Patch] = []
     connections, open_lines = shared(lines)
+    partner = layout.mesh.places.partner
+    nodes = layout.mesh.beside_partners(layout.mesh.nodes)
     periodic, alone = _periodic(layout, open_lines)
+    if any((partner[line[2][1:-1]] >= 0).any() for line in alone):  # blocks on both sides end elsewhere
+        nodes, periodic = matched_nodes(layout.mesh), []
+        across, sides, alone = _across(layout, open_lines)
+        connections, patches = connections + across, patches + sides
     partly, walls = shared_in_part(alone)
     connections += partly
-    patches = [patch for line, start in walls for patch in _patches(layout, line, start)]
+    patches += [patch for line, start in walls for patch in _patches(layout, line, start)]
     patches += [
         Patch(f"periodic{2 - first}", side, 0, len(line) - 1, block=block, kind="periodic")
         for joined in periodic
         for first, (block, side, line) in ((1, joined[0]), (0, joined[1]))
     ]
     if periodic:
-        shift = domain.periodic.shift if domain.periodic else (0.0, 0.0)
-        partner = layout.mesh.places.partner
+        shift = domain.periodic[0].shift if domain.periodic else (0.0, 0.0)
         connections += [
             connection_of(own, (*donor[:2], partner[donor[2]]), Motion(shift)) for own, donor in periodic
         ]
@@ -53,15 +61,29 @@ def to_grid(layout: Layout, name: str = "") -> Grid:
     return Grid(blocks, tuple(patches), tuple(connections), name or domain.name)
 
 
-def _with_partners(layout: Layout) -> Floats:
-    """Return the nodes, with periodic partners moved to be an exact shift of each other."""
-    nodes, partner, domain = layout.mesh.nodes, layout.mesh.places.partner, layout.mesh.domain
-    moved = partner >= 0
-    if not moved.any() or domain.periodic is None:
-        return nodes
-    nodes = nodes.copy()
-    nodes[moved] = Motion(domain.periodic.shift)(nodes[partner[moved]])
-    return nodes
+def _across(layout: Layout, lines: list[Line]) -> tuple[list[Connection], list[Patch], list[Line]]:
+    """Return the connections and patches of periodic sides, part by part, and the lines of other sides."""
+    connections, patches, rest = [], [], lines
+    for each, first, second in sides_of(layout.mesh):
+        own, opposite = (_along(rest, chain) for chain in (first, second))
+        of = np.full(len(layout.mesh.nodes), -1, dtype=np.intp)
+        of[second] = first
+        moved = [(block, side, of[nodes]) for block, side, nodes in opposite]
+        joined, _ = shared_in_part([*own, *moved])
+        connections += [replace(one, transform=Motion(each.shift)) for one in joined]
+        patches += [
+            Patch(name, side, 0, len(nodes) - 1, block=block, kind="periodic")
+            for name, along in zip(each.names, (own, opposite), strict=True)
+            for block, side, nodes in along
+        ]
+        taken = {id(line) for line in (*own, *opposite)}
+        rest = [line for line in rest if id(line) not in taken]
+    return connections, patches, rest
+
+
+def _along(lines: list[Line], chain: Indices) -> list[Line]:
+    """Return the lines of which all nodes are in a chain of them."""
+    return [line for line in lines if np.isin(line[2], chain).all()]
 
 
 def _periodic(layout: Layout, lines: list[Line]) -> tuple[list[tuple[Line, Line]], list[Line]]:

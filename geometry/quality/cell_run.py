@@ -13,7 +13,7 @@ from meshonet.kernels._native import measure_cells
 PERCENTS = (1.0, 99.0)
 """Percentiles that are asked for."""
 FEW = 1 << 22
-"""Cells up to which the values of all metrics are in memory together."""
+"""Cells up to which the values of all metrics are in memory together; of more, those of some metrics."""
 NONE = slice(0)
 """No metrics."""
 

@@ -27,7 +27,6 @@ primitiveMeshTools.C and primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from itertools import chain
 from typing import TypeAlias
 
 import numpy as np
@@ -39,7 +38,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import arctan2, cos
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.checkmesh_solid import cell_at, cells_of, solid_faces
-from meshonet.geometry.quality.growth import Extreme, Tally, beyond_seam, strips
+from meshonet.geometry.quality.growth import Extreme, Tally, strips
 
 FACES = ("non_orthogonality", "face_skewness", "box_ratio")
 """Figures of `FaceMeasures`."""
@@ -67,14 +66,15 @@ def faces(grid: Grid) -> FaceMeasures:
     """
     if grid.form == "volume":
         return _of_volume(grid)
-    if grid.topology != "blocks":
-        only = (((i, 0), _box_ratio(part)) for i, part in strips(grid.nodes, 1))
-        return _summed(chain(_inside(grid), _outside(grid)), only)
     if grid.form == "surface":
         problem = f"a surface has no faces between cells, of which {', '.join(FACES)} are"
         raise InputError(problem, "make a volume of it, or judge it by other figures")
-    boxes = (((number, 0, 0), _box_ratio(block.nodes)) for number, block in enumerate(grid.blocks))
-    return _summed(_of_blocks(grid), boxes)
+    boxes = (
+        ((number, i, 0), _box_ratio(part))
+        for number, block in enumerate(grid.blocks)
+        for i, part in strips(block.nodes, 1)
+    )
+    return _summed(_of_blocks(grid), boxes, alone=grid.topology != "blocks")
 
 
 def _of_volume(grid: Grid) -> FaceMeasures:
@@ -96,14 +96,17 @@ def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, 
 
 
 def _of_blocks(grid: Grid) -> Iterator[Values]:
-    """Yield the measures of the faces of several planar blocks."""
+    """Yield the measures of the faces of planar blocks."""
     for number, block in enumerate(grid.blocks):
-        yield from _within(block.nodes, (number,))
+        yield from _within(block.nodes, number)
     yield from _across(grid)
     yield from _outer(grid)
 
 
-def _summed(faces: Iterable[Values], box_ratios: Iterable[tuple[tuple[int, ...], Floats]]) -> FaceMeasures:
+def _summed(
+    faces: Iterable[Values], box_ratios: Iterable[tuple[tuple[int, ...], Floats]], *, alone: bool = False
+) -> FaceMeasures:
+    """Return the statistics of measures; the places of a block that is `alone` are without its number."""
     angles, cosines, skews, boxes = Tally(), Tally(), Tally(), Tally()
     for place, angle, skew in faces:
         skews.add(place, skew)
@@ -115,26 +118,18 @@ def _summed(faces: Iterable[Values], box_ratios: Iterable[tuple[tuple[int, ...],
     largest, cosine = angles.extreme, cosines.extreme
     if largest and cosine:
         largest = replace(largest, mean=math.degrees(math.acos(min(1.0, max(-1.0, cosine.mean)))))
-    return FaceMeasures(largest, skews.extreme, boxes.extreme)
+    found = largest, skews.extreme, boxes.extreme
+    return FaceMeasures(*(replace(each, at=each.at[1:]) if each and alone else each for each in found))
 
 
-def _inside(grid: Grid) -> Iterator[Values]:
-    """Yield the measures of the inner faces of a single block."""
-    yield from _within(beyond_seam(grid), (), grid.nodes)
-    wake = grid.wake
-    if wake:
-        first, last = centroids(grid.nodes[: wake + 1, :2]), centroids(grid.nodes[-wake - 1 :, :2])[::-1]
-        yield (0, 0), *_between(last, first, grid.nodes[1 : wake + 1, :1], grid.nodes[:wake, :1])
-
-
-def _within(nodes: Floats, at: tuple[int, ...], once: Floats | None = None) -> Iterator[Values]:
-    """Yield inner faces of block `at`: across xi those of `nodes`, across eta those of `once` if given."""
+def _within(nodes: Floats, number: int) -> Iterator[Values]:
+    """Yield the inner faces of a block."""
     for i, block in strips(nodes, 2):
         centre = centroids(block)
-        yield (*at, i, 0), *_between(centre[:-1], centre[1:], block[1:-1, :-1], block[1:-1, 1:])
-    for i, block in strips(nodes if once is None else once, 1):
+        yield (number, i, 0), *_between(centre[:-1], centre[1:], block[1:-1, :-1], block[1:-1, 1:])
+    for i, block in strips(nodes, 1):
         centre = centroids(block)
-        yield (*at, i, 0), *_between(centre[:, :-1], centre[:, 1:], block[1:, 1:-1], block[:-1, 1:-1])
+        yield (number, i, 0), *_between(centre[:, :-1], centre[:, 1:], block[1:, 1:-1], block[:-1, 1:-1])
 
 
 def _across(grid: Grid) -> Iterator[Values]:
@@ -152,19 +147,8 @@ def _across(grid: Grid) -> Iterator[Values]:
         yield cell_at(grid, each.block, each.side, (each.range[0][0],)), angle, skew
 
 
-def _outside(grid: Grid) -> Iterator[Values]:
-    """Yield the faces on the outer boundary of a single block."""
-    nodes, wake = grid.nodes, grid.wake
-    body = nodes[wake : grid.ni - wake]
-    yield (wake, 0), None, _at_boundary(centroids(body[:, :2]), body[:-1, :1], body[1:, :1])
-    yield (0, grid.nj - 2), None, _at_boundary(centroids(nodes[:, -2:]), nodes[:-1, -1:], nodes[1:, -1:])
-    if not grid.periodic:
-        yield (0, 0), None, _at_boundary(centroids(nodes[:2]), nodes[:1, :-1], nodes[:1, 1:])
-        yield (grid.ni - 2, 0), None, _at_boundary(centroids(nodes[-2:]), nodes[-1:, :-1], nodes[-1:, 1:])
-
-
 def _outer(grid: Grid) -> Iterator[Values]:
-    """Yield the faces on the outer boundary of several blocks."""
+    """Yield the faces on the outer boundary."""
     for patch in grid.outer_patches():
         rows = rows_at(grid, patch, 2)
         skew = _at_boundary(centroids(rows.swapaxes(0, 1))[:, 0], rows[0, :-1], rows[0, 1:])

@@ -119,7 +119,7 @@ def _figure(extreme: Extreme | None) -> Figure | None:
 
 
 def _closed(lines: Floats) -> bool:
-    """Say whether lines (n, m, 3) along the first axis end where they begin."""
+    """Return whether lines (n, m, 3) along the first axis end where they begin."""
     return bool((norms(lines[-1] - lines[0]) <= _SAME * norms(np.ptp(lines, axis=0))).all())
 
 

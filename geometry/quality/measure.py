@@ -5,7 +5,6 @@ volumes have eight corners (`meshonet.geometry.quality.volumes`); cells of surfa
 relative to their own normals (`meshonet.geometry.quality.surfaces`).
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +14,7 @@ from meshonet.geometry.arrays import Floats, as_planar, norms, percentiles_of
 from meshonet.geometry.blocks.block import form_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
-from meshonet.geometry.quality.cell_run import FEW, NONE, PERCENTS, CellRun, run_over
+from meshonet.geometry.quality.cell_run import FEW, PERCENTS, CellRun, run_over
 from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS, metric_of, metrics_of
 from meshonet.geometry.summary import Quality, Summary
 from meshonet.geometry.threads import threads_for
@@ -126,21 +125,24 @@ def _compiled(grid: Grid, percentiles: bool) -> Quality:
 
         return measure_blocks(grid, count_folded_in(grid), percentiles=percentiles)
     cells = (grid.ni - 1) * (grid.nj - 1)
-    run = _run(grid, slice(None) if percentiles and cells <= FEW else NONE)
+    together = max(1, FEW * len(QUAD_METRICS) // cells) if percentiles else 0
+    run = _run(grid, slice(together))
     metrics = {}
     for k, metric in enumerate(QUAD_METRICS):
         low, mean, high = (float(value) for value in run.table[k])
         i, j = run.where[k, 0 if metric.worst == "min" else 1]
         ends: list[float | None] = [None, None]
         if percentiles:
-            values = run.values[k] if len(run.values) else per_cell(grid, metric.name)
-            ends = [*percentiles_of(values, PERCENTS)]
+            if k and k % together == 0:
+                run = _run(grid, slice(k, k + together))
+            ends = [*percentiles_of(run.values[k % together], PERCENTS)]
         metrics[metric.name] = Summary(low, mean, high, (int(i), int(j)), *ends)
     return Quality(cells, count_folded(grid.nodes), metrics)
 
 
 def _run(grid: Grid, kept: slice) -> CellRun:
-    return run_over(grid.x, grid.y, kept, periodic=grid.periodic, wake=grid.wake)
+    x, y = _planes(grid.nodes)
+    return run_over(x, y, kept, periodic=grid.periodic, wake=grid.wake)
 
 
 def angles(nodes: Floats) -> tuple[float, float]:
@@ -192,6 +194,6 @@ def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
     return [cells[NAMES.index(name)] for cells in metrics_of_blocks(grid)]
 
 
-def _planes(nodes: Floats) -> Sequence[Floats]:
+def _planes(nodes: Floats) -> tuple[Floats, Floats]:
     planar = as_planar(nodes)
     return planar[..., 0], planar[..., 1]

@@ -77,6 +77,9 @@ class DomainShape:
 
         Raises InputError: it cannot be a single block, or the error of its shape as one.
         """
+        if self.domain.periodic:
+            remedy = "make many blocks of it with infer or solve-pde"
+            raise InputError("a domain with periodic sides is not one block", remedy)
         if self.one is None:
             remedy = "let infer or solve-pde find its blocks"
             raise InputError(f"{described(self.domain)} is not one block", remedy)

@@ -152,8 +152,8 @@ class Outline:
     def _sharpest_corners(self) -> tuple[int, ...]:
         """Return the four sharpest corners, counter-clockwise; the lowest edge is between the first two.
 
-        Of equally sharp ones (to a degree) those nearest to the corners of the bounding box are taken. With
-        fewer than four, they are the points of the outline closest to the corners of the box.
+        Among corners that are equally sharp to a degree, those nearest to the corners of the bounding box are
+        used. If there are fewer than four, they are the points closest to the corners of the box.
         """
         p = self.curve.points
         middle, half = 0.5 * (p.max(axis=0) + p.min(axis=0)), 0.5 * np.maximum(np.ptp(p, axis=0), 1e-300)

@@ -11,6 +11,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.periodic import with_periodic_sides
 from meshonet.geometry.domain.ring import ring_loop
 from meshonet.geometry.errors import in_place
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -32,10 +33,14 @@ class PolygonRing:
     places: Sequence[str] = ()
 
 
-def polygon_shape(rings: Sequence[PolygonRing], name: str = "", notes: tuple[str, ...] = ()) -> DomainShape:
+def polygon_shape(
+    rings: Sequence[PolygonRing], name: str = "", notes: tuple[str, ...] = (),
+    periodic: Sequence[tuple[str, str]] = (),
+) -> DomainShape:  # fmt: skip
     """Return the domain inside the first of the `rings` and outside of the others.
 
-    Raises InputError: as `ring_loop`; with several rings, its place says which.
+    `periodic` are pairs of names of periodic sides. Raises InputError: as `ring_loop`; with several rings,
+    its place says which; as `with_periodic_sides`.
     """
     loops = []
     for number, ring in enumerate(rings):
@@ -44,7 +49,9 @@ def polygon_shape(rings: Sequence[PolygonRing], name: str = "", notes: tuple[str
             loops.append(
                 ring_loop(ring.points, hole=number > 0, corners=ring.corners, names=names, places=ring.places)
             )
-    domain = Domain(tuple(loops), name, notes)
+    domain = with_periodic_sides(Domain(tuple(loops), name, notes), periodic)
+    if periodic:
+        return DomainShape(domain)
     named = any(ring.names for ring in rings)
     if len(loops) == 1:
         given = rings[0].corners is not None

@@ -1,4 +1,4 @@
-/* How far inside what a grid misses of its edges is felt; the formula stands in resample/quad.py. */
+/* Corrects a grid whose edges differ from given ones; the correction decays inwards (formula in resample/quad.py). */
 #pragma once
 #include <math.h>
 #include <stddef.h>

@@ -1,5 +1,6 @@
 /* Walks over a surface of triangles. Corner c = 3 f + i is corner i of triangle f; edge c goes from corner i to the next
-   one of f and is shared with triangle neighbour[c], of which it is edge across[c]; both are -1 at a wall. */
+   corner of f. The triangle on the other side is neighbour[c], in which it has the number across[c]; both are -1 at a
+   wall. */
 #pragma once
 #include <stddef.h>
 

@@ -1,10 +1,10 @@
-/* Who meets whom in a mesh of quads, and the blocks and chords that it falls into.
+/* Adjacency in a mesh of quads, and its blocks and chords.
 
-   Half-edge 4 q + i runs from corner i of quad q, counter-clockwise, to the next; its twin is the same edge as the quad on
-   the other side sees it. A line of the mesh goes straight through a regular node: two edges on, around a corner, across.
+   Half-edge 4 q + i runs from corner i of quad q, counter-clockwise, to the next; its twin is the same edge in the quad on
+   the other side. A line of the mesh continues straight through a regular node:
 
-            d                  h arrives at b; next(h) leaves b; its twin comes back to b in the quad across,
-       q2   |   .              and next of that leaves b straight on, to d.
+            d                  h arrives at b; next(h) leaves b; its twin returns to b in the adjacent quad,
+       q2   |   .              and the next half-edge of that continues straight from b to d.
      -------b-------
        q    |   .
             a  */

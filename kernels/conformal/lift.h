@@ -1,4 +1,4 @@
-/* The conformal lift of a body's wall; see lift.py for the maps and what decides them. */
+/* Conformal map of a body's wall to the strip; see lift.py for the maps and the choice among them. */
 #pragma once
 #include <stddef.h>
 

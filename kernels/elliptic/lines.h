@@ -1,6 +1,6 @@
 /* Zebra line relaxation along eta and along xi, both colours in one pass over memory: a group of lines of the second
-   colour follows as soon as its neighbours of the first are done. Members of a team have groups of their own; the
-   first of their second colour waits for the neighbour's last of the first. */
+   colour is relaxed as soon as the adjacent lines of the first colour are done. Each thread has its own groups; its first
+   line of the second colour waits for the last line of the first colour of the neighbouring thread. */
 #pragma once
 #include "stencil.h"
 #include "team.h"

@@ -1,5 +1,5 @@
-/* What the functional of functional.h, over blocks, and that of quads/energy.c, over quads of shared nodes, are made of:
-   the terms of one corner of a cell, and the logarithm of a length. */
+/* Terms that the functionals of functional.h (blocks) and quads/energy.c (quads with shared nodes) have in common: those of
+   one corner of a cell, and the logarithm of a length. */
 #pragma once
 #include "elementary.h"
 #include <stdint.h>

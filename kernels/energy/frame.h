@@ -1,9 +1,9 @@
-/* The preconditioner of a descent: gradients turned into the frame of each node, divided as in spectral.h, and turned
-   back. Frames are the steps along xi, so that a move in them counts in cells.
+/* The preconditioner of a minimisation: gradients are rotated and scaled to the frame of each node, divided as in
+   spectral.h, and transformed back. The frame is the step along xi, so that displacements are measured in cells.
 
-   The transforms know neither how the softest moves, p = ψ_ξ with q = -ψ_η, couple both coordinates, nor how cells
-   differ: the smoothest ones would come last. So to P comes S H⁻¹ Sᵀ, with S splines from the inner nodes of a coarse
-   grid and H the Hessian there (hessian.h), as a banded Cholesky factor. */
+   The spectral part P neglects the coupling of both coordinates in the softest modes, p = ψ_ξ with q = -ψ_η, and the
+   variation of cells, so that smooth errors would converge last. S H⁻¹ Sᵀ is therefore added to P, with S splines from the
+   inner nodes of a coarse grid and H the Hessian there (hessian.h), as a banded Cholesky factor. */
 #pragma once
 #include "hessian.h"
 #include "spectral.h"
@@ -209,13 +209,7 @@ static void restrict_share(void *data, Member member)
                        p->blocks + k * SPACE * SPACE);
 }
 
-static void space_share(void *data, Member member)
-{
-    const Preconditioning *p = data;
-    ptrdiff_t first, last;
-    team_share(p->d->spectrum.mi, member, &first, &last);
-    add_space(p, first, last);
-}
+TEAM_ROWS(space_share, Preconditioning, task->d->spectrum.mi, add_space)
 
 /* result = P gradient. */
 static void precondition(void *problem, const double *gradient, float *result)
@@ -261,18 +255,7 @@ static void frame_rows(const Descent *d, ptrdiff_t first, ptrdiff_t last)
     }
 }
 
-static void frame_share(void *data, Member member)
-{
-    const Descent *d = data;
-    ptrdiff_t first, last;
-    team_share(d->spectrum.mi, member, &first, &last);
-    frame_rows(d, first, last);
-}
-
-static void set_frame(Descent *d)
-{
-    team_run(d->threads, frame_share, d);
-}
+TEAM_ROWS(frame_share, Descent, task->spectrum.mi, frame_rows)
 
 /* The square of the largest move of `direction`, in cells, at free nodes `first` to before `last`. */
 MESHONET_CLONES

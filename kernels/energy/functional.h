@@ -6,9 +6,9 @@
          + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, l the edge lengths
 
    At the centre u and v are the means of opposite edges. Δ_i and Δ_j are the differences to the next edge of the
-   same family in either direction; those along the rim count half. Where the rim itself turns so far that no angle there can be good, corners keep a
-   share of their angle terms only. One row of cells, or of edges, at a time: first
-   the forces of each into row buffers, which vectorises, then onto the nodes. */
+   same family in either direction; those along the boundary have weight one half. Where the boundary turns so much that
+   angles cannot be near 90 degrees, the angle terms of corners are reduced. One row of cells or edges is processed at a
+   time: first the forces of each are stored in row buffers, which vectorises, then they are added to the nodes. */
 #pragma once
 #include "corner.h"
 #include "sums.h"

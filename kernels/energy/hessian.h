@@ -1,12 +1,12 @@
-/* The functional's second derivatives by the inner nodes of a grid, as a banded matrix of which the lower triangle is
-   held, and its Cholesky factor. In single precision: they lead steps, they are no part of results.
+/* Second derivatives of the functional with respect to the inner nodes of a grid, as the lower triangle of a banded matrix,
+   and its Cholesky factor. Single precision suffices, because they are only a preconditioner.
 
-   With ∇²J, ∇²c and ∇²log l left out of
+   If ∇²J, ∇²c and ∇²log l are neglected in the Hessian of
 
        A g / J (and so h),  f(c) = w (1 + c²)², c = (u·v) / J = cot of the angle,  Σ β (Δ log l)²
 
-   what is left is a sum of squares or, of the first, a convex function of u and J, so that it is never negative
-   (the method of Gauss and Newton). `bent` of the rest is added: with all of it the Hessian is exact. */
+   the rest is positive semi-definite: sums of squares, and for the first term a convex function of u and J (Gauss-Newton).
+   The fraction `bent` of the neglected part is added; with all of it the Hessian is exact. */
 #pragma once
 #include "clones.h"
 #include "functional.h"

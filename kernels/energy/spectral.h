@@ -1,13 +1,13 @@
 /* The inverse of the functional's Hessian on a uniform grid, in the frame of each node.
 
-   Moves of the nodes, as complex numbers, are c w with c the step along xi at the node, so that w is free of the size
-   and the turn of cells. For w the Hessian is about that of a grid of unit squares, which transforms along both
-   directions make diagonal: d = c Q_i (scale · (Q_iᵀ (conj(c) g) Q_j)) Q_jᵀ, with scales of their own along xi and
-   eta. Modes that the transforms leave out are divided by `rest`.
+   Displacements of the nodes, as complex numbers, are c w with c the step along xi at the node, so that w does not depend
+   on size and orientation of cells. For w the Hessian is about that of a grid of unit squares, which is diagonalised by
+   transforms along both directions: d = c Q_i (scale · (Q_iᵀ (conj(c) g) Q_j)) Q_jᵀ, with scales of their own along xi and
+   eta. Modes that the transforms do not include are divided by `rest`.
 
-   Every mode is even or odd about the middle of its direction. So values are folded first, v(k) and its mirror image
-   into (v(k) + v(-k)) / √2 and (v(k) - v(-k)) / √2, and each half has its own modes: half the work. Single precision
-   is enough here. */
+   Every mode is even or odd about the middle of its direction. Values v(k) and their mirror images are therefore first
+   combined to (v(k) + v(-k)) / √2 and (v(k) - v(-k)) / √2, and each half has its own modes, which halves the work. Single
+   precision suffices. */
 #pragma once
 #include "clones.h"
 #include "panel.h"

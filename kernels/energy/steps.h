@@ -1,5 +1,4 @@
-/* Descents by L-BFGS, whatever is minimised: by steps along directions that come of what is remembered of earlier ones,
-   and of a preconditioner. */
+/* Minimisation of any function by L-BFGS: steps along directions that follow from earlier steps and a preconditioner. */
 #pragma once
 #include <stddef.h>
 

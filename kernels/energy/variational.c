@@ -277,8 +277,10 @@ typedef struct {
 
 /* Rows `first` to before `last` of planes of z, moved by `factor` directions. */
 MESHONET_CLONES
-static void move_rows(const Descent *d, double factor, ptrdiff_t first, ptrdiff_t last)
+static void move_rows(const Try *t, ptrdiff_t first, ptrdiff_t last)
 {
+    const Descent *d = t->d;
+    const double factor = t->factor;
     const ptrdiff_t nj = d->nj, nodes = d->ni * nj, mi = d->spectrum.mi, mj = d->spectrum.mj;
     for (int c = 0; c < 2 && first < last; c++) {
         double *to = d->full + c * nodes;
@@ -295,13 +297,7 @@ static void move_rows(const Descent *d, double factor, ptrdiff_t first, ptrdiff_
     }
 }
 
-static void move_share(void *data, Member member)
-{
-    const Try *t = data;
-    ptrdiff_t first, last;
-    team_share(t->d->ni, member, &first, &last);
-    move_rows(t->d, t->factor, first, last);
-}
+TEAM_ROWS(move_share, Try, task->d->ni, move_rows)
 
 /* Planes of z moved by `factor` directions. */
 static void move(const Descent *d, double factor)
@@ -316,18 +312,17 @@ static void move(const Descent *d, double factor)
 }
 
 /* The gradient at free nodes. */
-static void fresh_share(void *data, Member member)
+static void fresh_rows(const Descent *d, ptrdiff_t first, ptrdiff_t last)
 {
-    const Descent *d = data;
     const ptrdiff_t nodes = d->ni * d->nj, mi = d->spectrum.mi, mj = d->spectrum.mj;
     const double *g = d->full + 2 * nodes;
-    ptrdiff_t first, last;
-    team_share(mi, member, &first, &last);
     for (int c = 0; c < 2; c++)
         for (ptrdiff_t i = first; i < last; i++)
             memcpy(d->steps.fresh + (c * mi + i) * mj, g + c * nodes + (d->first + i) * d->nj + 1,
                    (size_t)mj * sizeof *g);
 }
+
+TEAM_ROWS(fresh_share, Descent, task->spectrum.mi, fresh_rows)
 
 static double attempt(void *problem, double factor, double *smallest)
 {
@@ -343,13 +338,12 @@ static double attempt(void *problem, double factor, double *smallest)
     return value;
 }
 
-static void keep_share(void *data, Member member)
+static void keep_values(const Descent *d, ptrdiff_t first, ptrdiff_t last)
 {
-    const Descent *d = data;
-    ptrdiff_t first, last;
-    team_share(2 * d->ni * d->nj, member, &first, &last);
     memcpy(d->z + first, d->full + first, (size_t)(last - first) * sizeof *d->z);
 }
+
+TEAM_ROWS(keep_share, Descent, 2 * task->ni * task->nj, keep_values)
 
 static void keep(void *problem)
 {
@@ -362,7 +356,7 @@ void descent_start(Descent *d)
     Steps *s = &d->steps;
     s->problem = d, s->attempt = attempt, s->keep = keep, s->precondition = precondition;
     s->largest_move = largest_move, s->farthest = INFINITY, s->gain = GAIN;
-    set_frame(d);
+    team_run(d->threads, frame_share, d);
     steps_start(s);
 }
 

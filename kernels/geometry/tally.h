@@ -1,4 +1,4 @@
-/* What there is to say of a row of values. */
+/* Statistics of a row of values. */
 #pragma once
 #include <stddef.h>
 

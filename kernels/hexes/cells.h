@@ -1,6 +1,6 @@
-/* One row of cells of a block: the functional's terms at the eight corners of each, and forces on its nodes. The energy
-   of shapes (power SHAPES) is also taken at the eight points of Gauss' rule, which weigh most: so it is nearly the
-   integral over the cell of its trilinear map, and still infinite where a corner's Jacobian is 0. */
+/* One row of cells of a block: the functional's terms at the eight corners of each, and forces on its nodes. The shape
+   functional (power SHAPES) is also evaluated at the eight points of Gauss' rule, with most of the weight. It is thus nearly
+   the integral over the trilinear cell, and still infinite if the Jacobian of a corner is 0. */
 #pragma once
 #include "corner3.h"
 #include "energy.h"

@@ -1,4 +1,4 @@
-/* Descents of the functional over hexahedra: nodes that move do so freely, in planes or along lines. */
+/* Minimisation of the functional over hexahedra: free nodes move in space, in planes or along lines. */
 #pragma once
 #include "energy.h"
 #include "energy/steps.h"

@@ -1,8 +1,8 @@
-/* About the inverse of the functional's Hessian in one block: D M⁻¹ D.
+/* Approximate inverse of the functional's Hessian in one block: D M⁻¹ D.
 
-   M is about the Hessian on a uniform grid of box cells, (2 / N) Σ_d λ_d / L_d² (3/2 + β N^(2/3) Σ_e λ_e),
-   λ = 4 sin²(π m / 2n), diagonal after sine transforms along all three directions, which are products with their
-   matrices in single precision. D, at most 1, is the root of M's diagonal over the stiffness where nodes are. */
+   M approximates the Hessian on a uniform grid of box cells, (2 / N) Σ_d λ_d / L_d² (3/2 + β N^(2/3) Σ_e λ_e),
+   λ = 4 sin²(π m / 2n), diagonal after sine transforms along all three directions, which are matrix products
+   in single precision. D, at most 1, is the square root of the ratio of M's diagonal to the stiffness at the nodes. */
 #pragma once
 #include "energy.h"
 

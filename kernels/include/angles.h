@@ -1,4 +1,4 @@
-/* Angles in degrees in a form that loops are vectorised with, and what goes with them. */
+/* Angles in degrees, in a form that compilers vectorise in loops. */
 #pragma once
 #include "elementary.h"
 

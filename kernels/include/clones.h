@@ -1,4 +1,4 @@
-/* One build that is fast on every x86-64 machine: the loader picks the clone that the processor can run.
+/* One build for all x86-64 processors: the loader selects the variant of a function for the processor.
    Elsewhere (other processors, other compilers, make sanitize) it is plain C. */
 #pragma once
 

@@ -1,4 +1,4 @@
-/* What the energies of grids in space are made of: the terms of one corner of a cell.
+/* Terms of the functionals for volume grids at one corner of a cell.
 
    With u, v, w the edges along xi, eta and zeta that meet at the corner, each over a length of its direction,
    J = det(u, v, w), g = |u|², h = |v|², q = |w|², and χ = J, or (J + √(J² + ε²)) / 2 when regularised:
@@ -6,11 +6,11 @@
        E = a S / χ + b (g h q / χ²)^p [+ c (χ + 1/χ)],    S = |u × v|² + |v × w|² + |w × u|²
 
    S / J is the density of Winslow's functional: with dx/dξ as its columns, |dξ/dx|² J. It grows without bound at
-   J = 0 and keeps a valid grid valid. The second term, 1 on right angles, is a power of the angles' squared
-   sines' inverse. The third is for regularised corners only: with χ > J cells whose size is free would gain by
-   shrinking to points. All of it needs the products of edges only; dJ/du = v × w, dS/du = 2 ((h + q) u - (u·v) v - (u·w) w).
+   J = 0 and keeps a valid grid valid. The second term is a power of the inverse squared sines of the angles, 1 for right
+   angles. The third is for regularised corners only: because χ > J, cells of unconstrained size would otherwise shrink to
+   points. All terms depend only on products of edges; dJ/du = v × w, dS/du = 2 ((h + q) u - (u·v) v - (u·w) w).
 
-   Another energy wants cells that are cubes, 1 where u, v and w are as long and at right angles, infinite at J = 0:
+   Another functional favours cubes; it is 1 if u, v and w are equally long and perpendicular, and infinite at J = 0:
 
        E = (g + h + q) / (3 J^(2/3))
 

@@ -1,5 +1,5 @@
-/* Polynomials, and elementary functions in a form that loops are vectorised with. They are made of additions, products
-   and quotients alone, so they are the same to the bit on every processor, as those of vector libraries are not. */
+/* Polynomials, and elementary functions in a form that compilers vectorise in loops. They consist only of additions,
+   products and quotients, so that results are bitwise equal on every processor, unlike those of vector libraries. */
 #pragma once
 #include "clones.h"
 #include <math.h>

@@ -1,5 +1,5 @@
-/* LANES doubles in vector registers, as GCC and Clang have them; AT and OF take them from memory. They may overlap each
-   other in part (may_alias): without that, GCC takes two for one or for apart, and loses what was written. */
+/* LANES doubles in vector registers, as GCC and Clang have them; AT and OF take them from memory. They may
+   partly overlap (may_alias); without this attribute GCC assumes that two are identical or disjoint, and loses stores. */
 #pragma once
 
 #define LANES 8

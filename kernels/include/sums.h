@@ -1,5 +1,5 @@
-/* Sums of many numbers that are the same on every processor, whatever the width of its vectors: number k is added to
-   sum k mod 16, and these sums are added as a tree. */
+/* Sums of many numbers that are equal on every processor, independent of its vector width: number k is added to partial
+   sum k mod 16, and the partial sums are added as a binary tree. */
 #pragma once
 #include "clones.h"
 #include <stddef.h>

@@ -1,9 +1,9 @@
 /* Threads that work on the same arrays together. `team_run` calls `work(data, member)` once on each of them and
-   returns when all are done; between, `team_wait` lets nobody pass before all have come.
+   returns when all are done; `team_wait` is a barrier inside `work`.
 
-   Results must be the same to the bit for any number of threads: what is computed must not depend on where a share
-   begins, so shares are whole rows, or whole chunks of a fixed size, and sums are taken over these, then added in
-   order by one thread. On Windows a team is one thread. */
+   Results must be bitwise equal for any number of threads, so they must not depend on where the share of a thread
+   starts: shares are whole rows, or whole chunks of a fixed size, and sums over these are added in order by one thread.
+   On Windows a team is one thread. */
 #pragma once
 
 #include <stddef.h>

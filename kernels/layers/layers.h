@@ -1,4 +1,4 @@
-/* Nodes moved along grid lines into layers of given heights at one end or both. */
+/* Moves nodes along grid lines into layers of given heights at one or both ends. */
 #pragma once
 #include <stddef.h>
 

@@ -1,4 +1,4 @@
-/* Motorcycle graph of a seamless map: rays along its coordinate lines, each of which ends where it meets another. */
+/* Motorcycle graph of a seamless map: rays along its coordinate lines; each ends where it meets another one. */
 #pragma once
 #include "lines.h"
 

@@ -1,5 +1,5 @@
-/* Layers of a network over images whose channels lie together: included for each real type T and VECTOR bytes a vector,
-   with SUFFIX after every name and KERNEL before functions (their processor). */
+/* Layers of a network over images with adjacent channels. Included once for each real type T, with VECTOR bytes per vector;
+   SUFFIX is appended to every name, and KERNEL precedes functions (target processor). */
 #define LANES (VECTOR / (int)sizeof(T))
 #define MOST_PIXELS 12
 #define MOST_VECTORS 4

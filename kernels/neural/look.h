@@ -1,5 +1,5 @@
-/* Features of a grid and its last step at every node, those of encoding.py in its order: differences in double, what is
-   made of them in real type T with SUFFIX after every name. */
+/* Features of a grid and of its last step at every node, in the order of encoding.py. Differences are computed in double,
+   everything else in the real type T; SUFFIX is appended to every name. */
 
 MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *restrict y, const double *restrict dx,
                                     const double *restrict dy, double size, ptrdiff_t n, ptrdiff_t i,

@@ -157,7 +157,7 @@ static void set_nodes(QuadDescent *d, const double *at)
     walls_place(&d->walls, d->x);
     for (ptrdiff_t k = 0; k < d->tied_count; k++)
         for (int c = 0; c < 2; c++)
-            d->x[2 * d->tied[2 * k] + c] = d->x[2 * d->tied[2 * k + 1] + c] + d->shift[c];
+            d->x[2 * d->tied[2 * k] + c] = d->x[2 * d->tied[2 * k + 1] + c] + d->shift[2 * k + c];
 }
 
 static void get_unknowns(const QuadDescent *d, double *to)

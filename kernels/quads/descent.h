@@ -1,4 +1,4 @@
-/* Descents of the functional over quads: inner nodes move freely, wall nodes along their curves. */
+/* Minimisation of the functional over quads: interior nodes move in the plane, wall nodes along their curves. */
 #pragma once
 #include "energy.h"
 #include "energy/steps.h"
@@ -21,7 +21,8 @@ typedef struct {
     Walls walls;
     ptrdiff_t free_count, tied_count;
     const ptrdiff_t *free, *tied, *unknown, *wall;
-    double shift[2], bent, allowed; /* weight of the turning of wall edges, beyond an angle */
+    const double *shift;
+    double bent, allowed; /* weight of the turning of wall edges, beyond an angle */
     double *x, *g, *here, *there, *inverse_size; /* (nodes, 2) twice; unknowns twice; 1 / sizes of cells (unknowns) */
     Stiffness stiffness;
     Steps steps;

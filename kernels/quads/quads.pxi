@@ -43,7 +43,7 @@ cdef extern from "quads/descent.h":
         const ptrdiff_t *tied
         const ptrdiff_t *unknown
         const ptrdiff_t *wall
-        double shift[2]
+        const double *shift
         double bent, allowed
         double *x
         Steps steps
@@ -74,7 +74,7 @@ cdef class QuadDescent:
     """Minimisations of the functional over quads that share nodes (``descent.h``); moves `nodes` (n, 2) and `arc` (w,).
 
     `cells` are (quads, aspects (m, 2), areas), `lines` (edges, neighbours, pairs, targets), `eased` (corners (k, 3),
-    parts). `inner` are the nodes that move freely, `tied` is (pairs, shift); `unknown` and `wall` are (n,).
+    parts). `inner` are the nodes that move freely, `tied` is (pairs, shifts (pairs, 2)); `unknown` and `wall` are (n,).
     `wall_nodes` (nodes, unknowns, arc) and `wall_edges` (edges, round) are sorted by loop. Each of `loops` is (cubic,
     table, start, stop, pieces, end, turned) and the numbers of its first and last nodes and edges. Wall edges may turn
     by `allowed`; `bent` weighs what exceeds it.
@@ -99,7 +99,7 @@ cdef class QuadDescent:
         mesh.eased, mesh.ease = reads_places(eased[0], (corners, 3), n), reads(eased[1], (corners,))
         self.state.free_count, self.state.tied_count = len(inner), ties
         self.state.free, self.state.tied = reads_places(inner, inner.shape, n), reads_places(tied[0], (ties, 2), n)
-        self.state.shift[0], self.state.shift[1] = tied[1]
+        self.state.shift = reads(tied[1], (ties, 2))
         self.state.unknown, self.state.wall = reads_places(unknown, (n,), unknowns, -1), reads_places(wall, (n,), k, -1)
         for j in range(n):
             if self.state.wall[j] < 0 and self.state.unknown[j] == unknowns - 1 >= 0:

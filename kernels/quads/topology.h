@@ -1,4 +1,4 @@
-/* Which edges of quads over shared nodes follow each other along grid lines. */
+/* Consecutive edges along grid lines of a mesh of quads. */
 #pragma once
 #include <stddef.h>
 

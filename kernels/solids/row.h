@@ -1,4 +1,4 @@
-/* A row of hexahedra along k, and what its corners are.
+/* A row of hexahedra along k, and its corners.
 
         node (i+a, j+b, k) is lines[a][b] at k; edges along i are u, along j v, along k w:
 

@@ -1,5 +1,5 @@
-/* Sparse symmetric matrices A = P^T L D L^T P, L of unit lower triangle, D diagonal, without pivoting: positive definite
-   and quasi-definite ones (Vanderbei, SIAM J. Optim. 5 (1995) 100-113: they have such factors in every order P). */
+/* Factors A = P^T L D L^T P of sparse symmetric matrices without pivoting; L is unit lower triangular, D diagonal. They
+   exist for every order P if A is positive definite or quasi-definite (Vanderbei, SIAM J. Optim. 5 (1995) 100-113). */
 #pragma once
 #include <stddef.h>
 

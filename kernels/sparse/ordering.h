@@ -1,4 +1,4 @@
-/* An order of elimination that keeps a symmetric sparse matrix's factor sparse. */
+/* Elimination order with which the factor of a sparse symmetric matrix stays sparse. */
 #pragma once
 #include <stddef.h>
 

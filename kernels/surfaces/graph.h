@@ -1,11 +1,11 @@
 /* A surface as a graph: nodes, their neighbours in the order around them, and ghosts beyond its open edges.
 
-   Nodes are sorted so that the first `red` ones are nobody's neighbour among themselves. A ghost belongs to one
-   node, its owner, and depends on it and on a neighbour, its base:
+   Nodes are sorted such that no two of the first `red` ones are neighbours. A ghost belongs to one node, its owner, and
+   depends on the owner and on a neighbour, its base:
        ghost = own x(owner) + sign x(base) + shift        (own 0, sign -1 or 1: mirrored in planes;
                                                            own > 0, sign < 0: extrapolated)
-   Ghosts stand behind the nodes in every array of positions, sorted by owner; each is read by its owner alone, so
-   whoever works on a range of nodes fills their ghosts first. */
+   Ghosts follow the nodes in every array of positions, sorted by owner. Each is read only by its owner, so that a thread
+   computes the ghosts of its range of nodes before it works on them. */
 #pragma once
 #include "vectors.h"
 #include <stddef.h>
@@ -23,6 +23,7 @@ typedef struct {
     const double *sign, *shift;    /* (3, ghosts) */
     const ptrdiff_t *fixed_nodes;  /* (fixed): nodes that stay in planes, ascending */
     const double *boost;           /* (nodes): factor of the explicit smoothing */
+    const double *hollow;          /* (nodes): distance from the next concave edge, not 0 */
     const double *moves;           /* (3, fixed): 0 where they do not move along an axis, else 1 */
 } Graph;
 

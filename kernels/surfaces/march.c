@@ -7,12 +7,13 @@
    Fronts that spread, or are smoothed, come less far than the steps are long: what a step comes to, on average over the
    surface, is measured, and the next one is made as much longer. */
 #include "march.h"
-#include "solve.h"
+#include "relax.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const double FAR_POWER = 0.15; /* of the height over the size, by which smoothing sets in */
+static const double LEAST_IMPLICIT = 1.5; /* smoothing, over the explicit one: steps stay stable */
 static const double LEAST_YIELD = 0.3; /* volume swept by that of a straight march, at least */
 enum { HALVINGS = 2 };
 
@@ -23,6 +24,7 @@ typedef struct {
     const double *heights;
     ptrdiff_t count;
     double *volume, *other; /* (rows) */
+    double *moves;          /* (3, nodes): of a relaxed front */
     SurfaceMarched *made;
 } March;
 
@@ -35,12 +37,14 @@ typedef struct {
     Member member;
 } Runner;
 
-static void measure(Runner *r)
+static void measure(const March *m, Runner *r)
 {
     for (ptrdiff_t c = r->first; c < r->end; c++) {
         ptrdiff_t first, last;
         chunk_range(&r->solver, c, &first, &last);
         r->solver.sums[c] = step_sizes(&r->solver.step, first, last);
+        if (m->settings->relaxing > 0.0)
+            r->solver.sums[c] = nearest_reach(&r->solver.step, first, last);
     }
     team_wait(r->member);
     r->shortest = r->solver.sums[0];
@@ -146,8 +150,10 @@ static int solve_length(const March *m, Runner *r, double length, double again, 
     Step *step = &r->solver.step;
     const double part = part_of(set, level), keep = 0.5 * (1.0 + pow(1.0 - set->blend, (double)(level - 1)));
     const double far = fmin(1.0, pow((r->gone + length) / set->size, FAR_POWER));
-    const StepRule rule = {set->explicit_smoothing, set->implicit_smoothing, set->theta, far, set->sharp,
-                           r->gone == 0.0};
+    const double away = fmin(1.0, (r->gone + length) / set->size);
+    const double outer = 1.0 + (set->outer - 1.0) * away;
+    const double implicit = fmax(set->implicit_smoothing, LEAST_IMPLICIT * outer * set->explicit_smoothing);
+    const StepRule rule = {set->explicit_smoothing, implicit, outer, set->theta, far, set->sharp, r->gone == 0.0};
     double *before = step->before;
     if (rule.first)
         step->before = step->along;
@@ -167,7 +173,7 @@ static int solve_length(const March *m, Runner *r, double length, double again, 
 static int take_step(const March *m, Runner *r, double *left, ptrdiff_t level)
 {
     Step *step = &r->solver.step;
-    measure(r);
+    measure(m, r);
     const double whole = *left / r->yield;
     double length = fmin(whole, m->settings->longest * r->shortest);
     if (whole > length && whole - length < 0.3 * length)
@@ -183,6 +189,11 @@ static int take_step(const March *m, Runner *r, double *left, ptrdiff_t level)
     *left = whole > length ? *left - length * r->yield : 0.0;
     swap(&step->along, &step->before);
     advance(r, length);
+    const SurfaceMarch *set = m->settings;
+    const Relaxing relaxing = {set->relaxing * length, r->gone / (set->settled * set->size), r->gone * set->near};
+    if (set->relaxing > 0.0)
+        for (ptrdiff_t k = 0; k < set->relaxations; k++)
+            relax_front(&r->solver, m->moves, &relaxing, r->first, r->end, r->member);
     return iterations;
 }
 
@@ -233,8 +244,8 @@ int surface_march(double *levels, const double *heights, ptrdiff_t count, const 
     double **short_ones[] = {&s->step.right, &s->r, &s->r0, &s->v, &s->t};
     double **single[] = {&s->step.area, &m.volume, &m.other};
     double **plain[] = {&s->step.reach, &s->step.height};
-    double *room = calloc((size_t)(4 * 3 * rows + 5 * 3 * n + 3 * rows + 2 * n + 4 * n + 12 * n + SUMS * s->chunks),
-                          sizeof(double));
+    const ptrdiff_t moves = settings->relaxing > 0.0 ? 3 * n : 0;
+    double *room = calloc((size_t)(15 * rows + 33 * n + SUMS * s->chunks + moves), sizeof(double));
     if (room == NULL)
         return -1;
     double *next = room;
@@ -253,6 +264,7 @@ int surface_march(double *levels, const double *heights, ptrdiff_t count, const 
     for (ptrdiff_t k = 0; k < 4 * n; k++)
         near[k] = (int)graph->near[k];
     s->step.near = near;
+    m.moves = next + 16 * n + SUMS * s->chunks;
     for (int d = 0; d < 3; d++)
         memcpy(s->step.x + d * rows, levels + d * n, (size_t)n * sizeof(double));
     team_run(threads, run, &m);

@@ -3,6 +3,7 @@
 
 typedef struct {
     double explicit_smoothing, implicit_smoothing, theta;
+    double outer;         /* factor of the explicit smoothing at half the size from the wall and beyond */
     double sharp;         /* cosine between the normals of faces beyond which their edge is averaged */
     double size;          /* half the size of the surface */
     double longest;       /* step over the least distance of neighbours, at most */
@@ -10,6 +11,10 @@ typedef struct {
     ptrdiff_t sweeps, ramp; /* such sweeps; levels over which they set in */
     double tolerance;     /* of linear systems */
     ptrdiff_t most;       /* steps to a level: more are needed where cells collapse */
+    double relaxing;      /* of fronts between steps, relax.h; with 0 there is none, and steps are longer */
+    double settled;       /* distance over `size` at which it has set in everywhere */
+    double near;          /* distance over that from a concave edge at which it has set in there */
+    ptrdiff_t relaxations; /* sweeps after a step */
 } SurfaceMarch;
 
 typedef struct {

@@ -1,4 +1,4 @@
-/* The linear system of a step, solved by a team of threads with the same result for any number of them. */
+/* Solution of the linear system of a step by several threads; the result does not depend on their number. */
 #pragma once
 #include "step.h"
 #include "team.h"

@@ -65,6 +65,15 @@ MESHONET_INLINE void put_row(const Step *s, const StepRule *rule, ptrdiff_t i, c
     s->right[2 * n + i] = go * (z.z + f->smooth.z);
 }
 
+/* `smooth` and, of what it would be times `more`, the part within the level, across `normal`. */
+MESHONET_INLINE Vector with_outer(Vector smooth, Vector more, Vector normal)
+{
+    const Vector extra = minus(more, smooth);
+    const double square = dot(normal, normal);
+    const double along = square > 0.0 ? dot(extra, normal) / square : 0.0;
+    return plus(smooth, minus(extra, times(along, normal)));
+}
+
 MESHONET_INLINE void regular_row(const Step *s, const StepRule *rule, double power, ptrdiff_t i, const Vector *e)
 {
     const ptrdiff_t n = s->graph->nodes;
@@ -91,9 +100,12 @@ MESHONET_INLINE void regular_row(const Step *s, const StepRule *rule, double pow
     const double first = rule->first ? 0.0 : 0.5;
     const double di = spread(s->before[i], l0 + l2, power), dj = spread(s->before[n + i], l1 + l3, power);
     const double strength = rule->explicit_smoothing * s->graph->boost[i] * far * h;
-    const double si = first * smaller(strength * di * ai / sqrt(dot(f.xi, f.xi)), MOST_SMOOTHING);
-    const double sj = first * smaller(strength * dj * aj / sqrt(dot(f.eta, f.eta)), MOST_SMOOTHING);
-    f.smooth = plus(times(si, plus(e[0], e[2])), times(sj, plus(e[1], e[3])));
+    const double wi = strength * di * ai / sqrt(dot(f.xi, f.xi)), wj = strength * dj * aj / sqrt(dot(f.eta, f.eta));
+    const Vector bi = times(first, plus(e[0], e[2])), bj = times(first, plus(e[1], e[3]));
+    f.smooth = plus(times(smaller(wi, MOST_SMOOTHING), bi), times(smaller(wj, MOST_SMOOTHING), bj));
+    const Vector more = plus(times(smaller(rule->outer * wi, MOST_SMOOTHING), bi),
+                             times(smaller(rule->outer * wj, MOST_SMOOTHING), bj));
+    f.smooth = with_outer(f.smooth, more, f.zeta);
     put_row(s, rule, i, &f, 4.0);
 }
 
@@ -123,8 +135,9 @@ static void odd_row(const Step *s, const StepRule *rule, double power, ptrdiff_t
     f.zeta = times(h / sqrt(dot(normal, normal)), normal);
     const double d = spread(s->before[i], length, power);
     const double wanted = rule->explicit_smoothing * s->graph->boost[i] * rule->far * d * h * count / length;
-    const double strength = smaller(wanted, MOST_SMOOTHING);
-    f.smooth = times(rule->first ? 0.0 : 2.0 / count * strength, f.smooth);
+    const Vector bend = times(rule->first ? 0.0 : 2.0 / count, f.smooth);
+    const Vector more = times(smaller(rule->outer * wanted, MOST_SMOOTHING), bend);
+    f.smooth = with_outer(times(smaller(wanted, MOST_SMOOTHING), bend), more, f.zeta);
     put_row(s, rule, i, &f, count);
 }
 

@@ -4,6 +4,7 @@
 
 typedef struct {
     double explicit_smoothing, implicit_smoothing; /* eps_e and eps_i */
+    double outer;                                  /* factor of eps_e within the level */
     double theta;                                  /* the new level's flux weighs 1 + theta */
     double far;                                    /* how far the march is: (height / half the size)^.15, at most 1 */
     double sharp;                                  /* cosine between normals beyond which an edge is averaged */

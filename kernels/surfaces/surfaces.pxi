@@ -15,14 +15,17 @@ cdef extern from "surfaces/graph.h":
         const double *shift
         const ptrdiff_t *fixed_nodes
         const double *boost
+        const double *hollow
         const double *moves
 
 cdef extern from "surfaces/march.h":
     ctypedef struct SurfaceMarch:
-        double explicit_smoothing, implicit_smoothing, theta, sharp, size, longest, weight, blend
+        double explicit_smoothing, implicit_smoothing, theta, outer, sharp, size, longest, weight, blend
         ptrdiff_t sweeps, ramp
         double tolerance
         ptrdiff_t most
+        double relaxing, settled, near
+        ptrdiff_t relaxations
     ctypedef struct SurfaceMarched:
         ptrdiff_t levels, steps, iterations
     int c_surface_march "surface_march"(double *levels, const double *heights, ptrdiff_t count, const Graph *graph,
@@ -53,15 +56,15 @@ def surface_march(levels, heights, graph, settings, int threads):
         reads_places(graph.odd_nodes, (odd,), n), reads_starts(graph.odd_start, odd, around),
         reads_places(graph.odd_near, (around,), rows), reads_places(graph.owner, (ghosts,), n),
         reads_places(graph.base, (ghosts,), n), reads(graph.own, (ghosts,)), reads(graph.sign, (3, ghosts)),
-        reads(graph.shift, (3, ghosts)), reads_places(graph.fixed_nodes, (fixed,), n), reads(graph.boost, (n,)),
+        reads(graph.shift, (3, ghosts)), reads_places(graph.fixed_nodes, (fixed,), n), reads(graph.boost, (n,)), reads(graph.hollow, (n,)),
         reads(graph.moves, (3, fixed)))
     if not 0 <= g.red <= n or (odd and np.diff(graph.odd_start).max() > MOST_NEIGHBOURS):
         raise ValueError("red nodes beyond the last, or a node of too many neighbours")
     cdef SurfaceMarch s
     cdef SurfaceMarched made
     cdef int failed
-    (s.explicit_smoothing, s.implicit_smoothing, s.theta, s.sharp, s.size, s.longest, s.weight, s.blend, s.sweeps,
-     s.ramp, s.tolerance, s.most) = settings
+    (s.explicit_smoothing, s.implicit_smoothing, s.theta, s.outer, s.sharp, s.size, s.longest, s.weight, s.blend, s.sweeps,
+     s.ramp, s.tolerance, s.most, s.relaxing, s.settled, s.near, s.relaxations) = settings
     cdef Written px = fills(levels, (count + 1, 3, n))
     cdef Read apart = reads(heights, (count,))
     with nogil:

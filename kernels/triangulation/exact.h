@@ -1,6 +1,6 @@
-/* Orientation and in-circle test without rounding, for whole coordinates of at most 30 bits.
+/* Exact orientation and in-circle tests for integer coordinates of at most 30 bits.
 
-   Differences have 31 bits, so that the determinant of orientation fits 63 bits and that of the circle 125. */
+   Differences have 31 bits, so that the determinant of the orientation fits into 63 bits, that of the circle into 125. */
 #ifndef MESHONET_TRIANGULATION_EXACT_H
 #define MESHONET_TRIANGULATION_EXACT_H
 

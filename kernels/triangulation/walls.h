@@ -1,4 +1,4 @@
-/* How long edges at walls may be. */
+/* Largest edge lengths at walls. */
 #ifndef MESHONET_TRIANGULATION_WALLS_H
 #define MESHONET_TRIANGULATION_WALLS_H
 

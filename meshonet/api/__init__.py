@@ -1,1 +1,1 @@
-"""The functions that the commands are named after."""
+"""The public functions, one module per command."""

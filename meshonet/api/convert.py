@@ -24,38 +24,39 @@ def convert(
     from_format: str | None = None,
     to_format: str | None = None,
 ) -> None:
-    """Turn a file from one format into another.
+    """Convert a file from one format to another.
 
-    Grids stay grids; a file that holds boundaries and no grids gives boundaries.
+    If the file has grids, these are written; otherwise its boundaries are.
 
     Parameters
     ----------
     source, output : str or Path
-        The files; several grids need a format that holds many.
+        Input and output file. Several grids need an output format that stores several.
     extrude : float, optional
-        Height in z of the 3D grid to make; None leaves grids plane.
+        Height of an extrusion along z; None makes no extrusion.
     planes : int, optional
-        With `extrude`, planes of nodes in z, one more than cells; None is 2. With `revolve`, those about the
-        axis; None is 2 up to 10 degrees, then cells of up to 4 degrees.
+        Number of planes of nodes, one more than cells. With `extrude`, None is 2. With `revolve`, None is 2
+        up to 10 degrees, and cells of at most 4 degrees above.
     swap : bool, optional
-        Exchange the directions of xi and eta (four-sided grids), keeping grids right-handed.
+        Exchange xi and eta of four-sided grids, which stay right-handed.
     normalise : bool, optional
-        Scale to unit chord, leading edge at (0, 0); four-sided grids to unit length.
+        Scale and move the grid to unit chord with the leading edge at (0, 0); four-sided grids are scaled to
+        unit length.
     coarsen : int, optional
-        Keep the nodes whose indices along xi and eta are multiples of this number.
+        Keep only nodes whose indices along xi and eta are multiples of this number.
     revolve : float, optional
-        Degrees by which the 3D grid to make turns about `axis`: up to 10 a wedge, less than 360 a sector with
-        periodic sides, 360 a whole turn.
+        Angle in degrees of a revolution about `axis`: up to 10 a wedge of one cell, below 360 a sector with
+        periodic sides, 360 a full revolution.
     axis : sequence of float, optional
-        Point and direction (x, y, dx, dy) of that line in the plane; None is the x axis.
+        Axis of the revolution in the plane: point and direction (x, y, dx, dy); None is the x axis.
     from_format, to_format : str, optional
-        Formats, when endings and content do not say.
+        Formats of input and output; needed if extensions and content do not determine them.
 
     Raises
     ------
     InputError
-        A format that cannot be read, or written, or cannot hold 3D grids; a height that is not positive;
-        an axis that runs through the grid; numbers of cells that `coarsen` does not divide.
+        A format that cannot be read or written, or cannot store three-dimensional grids; a height that is not
+        positive; an axis that intersects the grid; numbers of cells that are not multiples of `coarsen`.
 
     Examples
     --------

@@ -17,7 +17,9 @@ from meshonet.solvers.deformation.targets import NewWall
 from meshonet.solvers.pipeline.deformations import make_deformed
 
 AnyWall: TypeAlias = NewWall | str | Path
-"""A file with an outline or a grid, a designation ``naca:2412``, or what these hold, nodes, or a motion."""
+"""A file with an outline or a grid, its content, a designation such as ``naca:2412``, nodes, or a
+motion.
+"""
 
 
 def deform(
@@ -27,31 +29,32 @@ def deform(
     allow_invalid: bool = False,
     threads: int | None = None,
 ) -> Grid:
-    """Return a grid that follows a changed boundary, its layers as they were.
+    """Deform a grid to a changed boundary and keep its boundary layers.
 
     Parameters
     ----------
     grid : Grid, str or Path
-        A planar grid or a volume, or a file that holds one.
+        A planar grid or a volume, or a file with one.
     wall : str, Path, Grid, Boundary, Motion or array, or dict of these by name
-        The new shape of its only wall, or of several by name. An outline takes nodes at the same share of arc
-        length between its features; the boundary of another grid, or nodes (n, d), is taken node by node; a
-        `meshonet.Motion` moves the wall as it is. A whole grid without a name gives all its boundary.
+        New shape of the only wall, or of several walls by name. On an outline, wall nodes keep their fraction
+        of arc length between corners. Another grid, a boundary or nodes (n, d) are matched node by node. A
+        `meshonet.Motion` moves the wall rigidly. A grid without a name replaces the whole boundary.
     allow_invalid : bool, optional
-        Return a grid with folded cells too.
+        Return the grid even if cells are folded.
     threads : int, optional
-        Threads of kernels; None is one a core.
+        Number of threads; None is one per core.
 
     Returns
     -------
     Grid
+        The deformed grid.
 
     Raises
     ------
     InputError
-        A file, wall or shape that cannot be used, a starting grid with folded cells.
+        A file, wall or shape that cannot be used; an initial grid with folded cells.
     NoValidGridError
-        Cells are folded, with the worst places.
+        Cells are folded; the error has the worst cells.
 
     Examples
     --------
@@ -66,7 +69,7 @@ def deform(
 
 
 def read_walls(wall: AnyWall | Mapping[str, AnyWall]) -> NewWall | dict[str, NewWall]:
-    """Return new walls with those read that are files."""
+    """Return new walls, after reading those that are given as files."""
     return {name: _read(new) for name, new in wall.items()} if isinstance(wall, Mapping) else _read(wall)
 
 
@@ -75,23 +78,24 @@ def _read(wall: AnyWall) -> NewWall:
 
 
 def rotation(degrees: float, about: Sequence[float] = (0.0, 0.0)) -> Motion:
-    """Return the motion that turns the plane counter-clockwise about a point (2,).
+    """Return the rotation of the plane about a point, counter-clockwise.
 
     Parameters
     ----------
     degrees : float
-        The angle.
+        Angle.
     about : tuple of 2 float, optional
-        The point that stays where it is.
+        Centre of the rotation.
 
     Returns
     -------
     Motion
+        The rotation.
 
     Raises
     ------
     InputError
-        An angle or point that is not finite, a point that is no (x, y).
+        An angle or point that is not finite; a point that is not (x, y).
 
     Examples
     --------

@@ -14,29 +14,31 @@ from meshonet.solvers.energy.functional import Weights
 def deform_derivative(
     grid: Grid | str | Path, wall: AnyWall | Mapping[str, AnyWall]
 ) -> DeformationDerivative:
-    """Return the deformed grid with the derivative of its nodes by those of the walls.
+    """Return a deformed grid and the derivative of its nodes with respect to the nodes of its walls.
 
-    What is returned has the ``grid``; the numbers of the ``walls``' nodes by name; ``along(moves)``, the
-    moves of all nodes when walls' make `moves` (n, 2) by name; and ``transposed(pull)``, the derivative of a
-    functional by the walls' nodes from that by all nodes (ni, nj, 2).
+    The result has the ``grid`` and, by name, the node numbers of the ``walls``. Its method ``along(moves)``
+    returns the displacements of all nodes for displacements `moves` (n, 2) of the wall nodes, given by name.
+    Its method ``transposed(pull)`` returns the derivative of a functional with respect to the wall nodes,
+    where `pull` (ni, nj, 2) is the derivative with respect to all nodes.
 
     Parameters
     ----------
     grid : Grid, str or Path
-        A planar grid, or a file that holds one.
+        A planar grid, or a file with one.
     wall : str, Path, Grid, Boundary, Motion or array, or dict of these by name
-        As of `meshonet.deform`.
+        New shape of the walls, as for `meshonet.deform`.
 
     Returns
     -------
     DeformationDerivative
+        The deformed grid with its derivative.
 
     Raises
     ------
     InputError
-        As `meshonet.deform`, and a volume.
+        As for `meshonet.deform`; also a volume.
     NoValidGridError
-        Cells fold in one step.
+        A deformation in one step folds cells.
 
     Examples
     --------
@@ -53,24 +55,26 @@ def deform_derivative(
 def optimum_derivative(
     grid: Grid | str | Path, *, method: str = "variational", weights: Weights | None = None
 ) -> OptimumDerivative:
-    """Return the derivative of a four-sided grid that solves equations by the nodes of its rim.
+    """Return the derivative of a variational or Winslow grid with respect to its boundary nodes.
 
-    What is returned has the ``grid``, the solution to rounding; ``along(moves)``, the moves (ni, nj, 2) of
-    all nodes when those of the rim make `moves`; and ``transposed(pull)``, the derivative of a functional by
-    the rim from that by all nodes. Each takes one solve with factors that are kept.
+    The result has the ``grid``, solved to round-off. Its method ``along(moves)`` returns the displacements
+    (ni, nj, 2) of all nodes for displacements `moves` of the boundary nodes. Its method ``transposed(pull)``
+    returns the derivative of a functional with respect to the boundary nodes, where `pull` is the derivative
+    with respect to all nodes. Each call is one linear solve with stored factors.
 
     Parameters
     ----------
     grid : Grid, str or Path
-        One block with a fixed rim, near the solution by `method`, or a file that holds it.
+        A four-sided grid of one block near the solution by `method`, or a file with one. Its boundary nodes
+        are fixed.
     method : str, optional
         ``variational`` or ``winslow``.
-    weights : Weights, optional
-        Of the variational functional; None is what `meshonet.solve_pde` minimises.
+    weights : Weights, optional Weights of the variational functional; None are those of `meshonet.solve_pde`.
 
     Returns
     -------
     OptimumDerivative
+        The solution with its derivative.
 
     Raises
     ------

@@ -21,22 +21,22 @@ ADDS = {
     "dask": "batches on many machines: --engine dask",
     "mpi": "batches on many machines: --engine mpi",
 }
-"""What extras add."""
+"""Features of the optional extras."""
 _FOR_DEVELOPERS = ("test", "lint", "docs")
 _LEVELS = (
     ("x86-64-v4", {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"}),
     ("x86-64-v3", {"avx2", "bmi2", "fma", "movbe"}),
 )
-"""Instruction sets that kernels are compiled for, and flags of processors that have them."""
+"""Instruction sets for which kernels are compiled, and the processor flags that they require."""
 _REQUIREMENT = re.compile(r"([\w.-]+)\s*(?:\[[^]]*\])?\s*([^;]*)(?:;.*extra\s*==\s*['\"]([\w-]+)['\"])?")
 _LIMIT = re.compile(r"(>=|<)\s*([\d.]+)")
 
 
 @dataclass(frozen=True)
 class Finding:
-    """Something that was looked at: its group, what it is, whether it is well, and what to do if it is not.
+    """A result of the examination: its group, name and value, whether it is well, and a remedy.
 
-    `well` is None where it is neither well nor ill, as an extra that is not installed.
+    `well` is None for optional parts that are not installed.
     """
 
     group: str
@@ -47,13 +47,13 @@ class Finding:
 
 
 def doctor() -> list[Finding]:
-    """Return what is installed, whether it works, and what each extra adds and how to get it.
+    """Examine the installation: installed parts, whether they work, and available extras.
 
     Returns
     -------
     list of Finding
-        Each with a group, a name, a value, whether it is well (None where it is neither well nor ill) and a
-        remedy.
+        Results with a group, a name, a value, whether all is well (None for optional parts that are not
+        installed), and a remedy.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def _program() -> Iterator[Finding]:
 
 
 def _grid() -> Finding:
-    """Make a grid and say how that went."""
+    """Make a grid and return the result."""
     from meshonet.api.grid import infer
 
     begun = time.perf_counter()
@@ -94,7 +94,7 @@ def _grid() -> Finding:
 
 
 def instructions() -> str:
-    """Return the instruction set that kernels use on this processor, as far as the system tells it."""
+    """Return the instruction set that kernels use on this processor, if the system states it."""
     if platform.machine() not in ("x86_64", "AMD64"):
         return platform.machine() or "of an unknown machine"
     try:
@@ -130,7 +130,7 @@ def _extras() -> Iterator[Finding]:
 
 
 def requirements() -> list[tuple[str, str, str]]:
-    """Return names, limits of versions and extras of what meshonet needs; nothing if it is not installed."""
+    """Return names, version limits and extras of the dependencies; empty if meshonet is not installed."""
     try:
         lines = metadata.requires("meshonet") or []
     except metadata.PackageNotFoundError:
@@ -150,7 +150,7 @@ def _package(group: str, name: str, limits: str, remedy: str) -> Finding:
 
 
 def within(version: str, limits: str) -> bool:
-    """Say whether a version keeps lower and upper limits.
+    """Return whether a version is within lower and upper limits.
 
     >>> within("0.28.0", ">=0.26,<0.29"), within("0.29", ">=0.26,<0.29"), within("2.13.0+cpu", ">=2.5")
     (True, False, True)
@@ -161,7 +161,7 @@ def within(version: str, limits: str) -> bool:
 
 
 def _numbers(version: str) -> tuple[int, ...]:
-    """Return the numbers of a version, zeros at its end left out."""
+    """Return the numbers of a version without trailing zeros."""
     numbers = [int(number) for number in re.findall(r"\d+", re.split(r"[+a-zA-Z]", version)[0])]
     while numbers and not numbers[-1]:
         numbers.pop()

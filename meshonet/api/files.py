@@ -31,16 +31,16 @@ def inputs(
     pick: str | Sequence[str] = (),
     shard: tuple[int, int] = (1, 1),
 ) -> Iterator[str]:
-    """Return an iterator over what can be read one by one: each goes to `read`, `grid` or `infer`.
+    """Return an iterator over single inputs, each for `read`, `grid` or `infer`.
 
     Parameters
     ----------
     names : str, Path or list of these
-        Files, folders, zip archives, designations; ``@FILE`` is a list of them, one a line.
+        Files, folders, zip archives and designations; ``@FILE`` is a file with a list of them, one per line.
     pick : str or list of str, optional
-        Patterns of names (``naca*``), to take only such files of folders, archives and lists.
+        Patterns (``naca*``) that the names of files in folders, archives and lists must match.
     shard : tuple of 2 int, optional
-        k and n, to take every n-th input from the k-th on.
+        k and n: return only every n-th input, starting with the k-th.
 
     Yields
     ------
@@ -50,7 +50,7 @@ def inputs(
     Raises
     ------
     InputError
-        For a folder, archive or list that cannot be read, or in which there is nothing.
+        A folder, archive or list that cannot be read, or is empty.
 
     Examples
     --------
@@ -70,23 +70,24 @@ def _readable(text: str | InputError) -> str:
 
 
 def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
-    """Return the grid of a file, or the shape of one without grids or of a designation ``naca:2412``.
+    """Return the grid of a file, or the shape of a designation or of a file without grids.
 
     Parameters
     ----------
     path : str or Path
-        File, or a designation ``naca:2412``.
+        File, or a designation such as ``naca:2412``.
     from_format : str, optional
-        Format, when neither ending nor content says.
+        Format; needed if neither extension nor content determines it.
 
     Returns
     -------
     Grid or shape
+        The only grid of the file, or its only shape.
 
     Raises
     ------
     InputError
-        A file that cannot be read, or holds several: `read_all` has them.
+        A file that cannot be read, or has several grids or shapes; use `read_all` for these.
 
     Examples
     --------
@@ -97,9 +98,9 @@ def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
 
 
 def only(records: Iterator[T], source: str | Path, what: str, remedy: str = "give a file with one") -> T:
-    """Return the only one of the records of a source, `what` it holds.
+    """Return the only one of the records of a source; `what` describes its content.
 
-    Raises InputError: there is none, or another one; `remedy` then.
+    Raises InputError, with the remedy: there is none, or a second one.
     """
     record = next(records, None)
     if record is None:
@@ -110,19 +111,19 @@ def only(records: Iterator[T], source: str | Path, what: str, remedy: str = "giv
 
 
 def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Grid | Shape]:
-    """Return an iterator over the grids of a file, or over the shapes of one without grids.
+    """Return an iterator over the grids of a file, or over the shapes of a file without grids.
 
     Parameters
     ----------
     path : str or Path
-        File, or a designation ``naca:2412``.
+        File, or a designation such as ``naca:2412``.
     from_format : str, optional
-        Format, when neither ending nor content says.
+        Format; needed if neither extension nor content determines it.
 
     Returns
     -------
     iterator of Grid or shape
-        The grids of a file, or the shapes of one without grids.
+        The grids of a file, or its shapes if it has no grids.
 
     Raises
     ------
@@ -152,22 +153,22 @@ def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Gr
 
 
 def write(what: Grid | Boundary | Layout, path: str | Path, *, to_format: str | None = None) -> None:
-    """Write a grid, a boundary or a layout, whole or not at all.
+    """Write a grid, a boundary or a layout atomically.
 
     Parameters
     ----------
     what : Grid, Boundary or Layout
-        What to write.
+        Object to write.
     path : str or Path
-        File to write; its ending says the format. The mesh of a case of OpenFOAM goes into the folder of
-        ``case.foam``, or into the one that is named.
+        File to write; its extension determines the format. An OpenFOAM mesh is written into the folder of
+        ``case.foam``, or into a folder given as the path.
     to_format : str, optional
-        Format, when the ending does not say.
+        Format; needed if the extension does not determine it.
 
     Raises
     ------
     InputError
-        A format that is not known or cannot hold this; a place that cannot be written.
+        An unknown format, or one that cannot store the object; a path that cannot be written.
 
     Examples
     --------

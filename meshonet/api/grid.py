@@ -9,6 +9,7 @@ import numpy as np
 from meshonet.api.files import read
 from meshonet.formats.layout.read import layout_of
 from meshonet.formats.mesh.recover_topology import boundary_of
+from meshonet.formats.registry import read_shapes
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
@@ -27,7 +28,9 @@ from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.parameters import SAMPLED, Counts, grid_request, sampling_of
 
 AnyShape: TypeAlias = str | Path | Floats | Shape | Grid | Domain
-"""A path, a designation ``naca:2412``, points of an outline, nodes in space, or what is made of these."""
+"""A path, a designation such as ``naca:2412``, points of an outline, nodes in space, or an object made
+from these.
+"""
 
 
 def grid(
@@ -38,38 +41,41 @@ def grid(
     assemble: bool = False,
     **parameters: Any,
 ) -> Grid:
-    """Return a valid grid inside a boundary, around a body, of the blocks of a domain, or of a volume.
+    """Return a valid grid inside a boundary, around a body, of a multi-block domain, or of a volume.
 
-    The grid has `write`, `quality` and `to_pyvista`; `meshonet.make_grid` returns notes and times too.
+    The grid has the methods `write`, `quality` and `to_pyvista`. `meshonet.make_grid` also returns notes and
+    times.
 
     Parameters
     ----------
     shape : str, Path, array, Grid, Boundary or Domain, or a list of these
-        A file or designation, points (n, 2) of a closed outline, a boundary, a grid for its outer edges or
-        faces, a `meshonet.Domain`; with `assemble` a list of these. In space nodes (ni, nj, nk, 3) of a
-        volume, whose outer faces are filled, or a list of the patches (ni, nj, 3) of a surface.
+        Shape in the plane: a file or designation, points (n, 2) of a closed outline, a boundary, a
+        `meshonet.Domain`, or a grid whose outer edges are used; with `assemble` a list of these. Shape in
+        space: nodes (ni, nj, nk, 3) of a volume, whose outer faces are used, or a list of surface patches
+        (ni, nj, 3).
     assemble : bool, optional
-        Whether all of them are one domain.
+        Combine all shapes in the list into one domain.
     res : int or tuple of int, optional
-        Nodes along xi (around a body) and eta (away from it); one number for both.
+        Number of nodes along xi (around a body) and eta (away from it); one number for both.
     method : str, optional
-        ``best`` for what measures best, ``auto`` for the same among equations, a name in `meshonet.METHODS`,
-        or ``operator:NAME``.
+        ``best`` for the default method of the kind of shape, ``auto`` for the default among elliptic methods
+        and marching, a name in `meshonet.METHODS`, or ``operator:NAME``.
     **parameters
         Those of `meshonet.Sampling` and `meshonet.GridRequest`, such as ``topology``, ``far_field``,
         ``y_plus``, ``reynolds``, ``growth``, ``repair``, ``cells``, ``cell_size``, ``walls``, ``layout``
-        (one, or its file), and settings of the method, such as ``tol``.
+        (one, or its file), ``periodic`` (pairs of names), and settings of the method, such as ``tol``.
 
     Returns
     -------
     Grid
+        A grid without folded cells, unless `allow_invalid` is given.
 
     Raises
     ------
     InputError
         A shape or parameter that cannot be used.
     NoValidGridError
-        Cells are folded, and `allow_invalid` was not given.
+        The grid has folded cells, and `allow_invalid` is not given.
     SolverError
         The method diverged.
 
@@ -81,35 +87,41 @@ def grid(
     """
     far_field = parameters.get("far_field")
     request = grid_request(method, res=res, **domain_parameters(parameters))
+    if request.of_surface and isinstance(shape, str | Path):
+        shape = next(read_shapes(str(shape), surfaces=True))
     return make_grid(shape_of(shape, assemble=assemble, far_field=far_field), request).grid
 
 
 def domain_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return parameters with the layout of a file read, and names of walls as a tuple of them."""
+    """Return parameters with the layout of a file read, and names of walls and of sides as tuples."""
     layout, walls = parameters.get("layout"), parameters.get("walls", ())
     if isinstance(layout, str | Path):
         parameters = parameters | {"layout": layout_of(str(layout))}
     if not isinstance(walls, tuple):
         parameters = parameters | {"walls": tuple(walls.split(",") if isinstance(walls, str) else walls)}
+    if parameters.get("periodic"):
+        pairs = [tuple(pair.split(",") if isinstance(pair, str) else pair) for pair in parameters["periodic"]]
+        parameters = parameters | {"periodic": tuple(pairs)}
     return parameters
 
 
 def tfi(shape: AnyShape, *, res: Counts | None = None, method: str = "tfi", **parameters: Any) -> Grid:
-    """Return a grid by transfinite interpolation; parameters as of `grid`, and ``blending``.
+    """Return a grid by transfinite interpolation.
 
     Parameters
     ----------
     shape, res, method, **parameters
-        As of `grid`, and ``blending``, a setting of ``tfi``: ``arclength`` or ``linear``.
+        As for `grid`; also ``blending``, a setting of ``tfi``: ``arclength`` or ``linear``.
 
     Returns
     -------
     Grid
+        The grid.
 
     Raises
     ------
     InputError, NoValidGridError, SolverError
-        As of `grid`.
+        As for `grid`.
 
     Examples
     --------
@@ -120,21 +132,22 @@ def tfi(shape: AnyShape, *, res: Counts | None = None, method: str = "tfi", **pa
 
 
 def solve_pde(shape: AnyShape, *, res: Counts | None = None, method: str = "auto", **parameters: Any) -> Grid:
-    """Return a grid by elliptic equations, a variational method or marching; parameters as of `grid`.
+    """Return a grid by elliptic equations, a variational method or marching.
 
     Parameters
     ----------
     shape, res, method, **parameters
-        As of `grid`.
+        As for `grid`.
 
     Returns
     -------
     Grid
+        The grid.
 
     Raises
     ------
     InputError, NoValidGridError, SolverError
-        As of `grid`.
+        As for `grid`.
 
     Examples
     --------
@@ -145,21 +158,25 @@ def solve_pde(shape: AnyShape, *, res: Counts | None = None, method: str = "auto
 
 
 def infer(shape: AnyShape, *, res: Counts | None = None, model: str | None = None, **parameters: Any) -> Grid:
-    """Return the grid that measures best, or that of an operator; parameters as of `grid`.
+    """Return a grid by the default method of the kind of shape, or by a neural operator.
 
     Parameters
     ----------
+    shape, res, **parameters
+        As for `grid`.
     model : str, optional
-        A shipped operator, a ``.safetensors`` file, or ``base`` for the conformal solver.
+        Name of a shipped operator, a ``.safetensors`` file, or ``base`` for the conformal solver. None: the
+        default method.
 
     Returns
     -------
     Grid
+        The grid.
 
     Raises
     ------
     InputError, NoValidGridError, SolverError
-        As of `grid`.
+        As for `grid`.
 
     Examples
     --------
@@ -177,15 +194,16 @@ def sample_boundary(
     Parameters
     ----------
     shape, res
-        As of `grid`.
+        As for `grid`.
     sensors : int, optional
-        So many boundary nodes are kept as sensors as well.
+        Number of boundary nodes that are also stored as sensors.
     **parameters
-        Those of `meshonet.Sampling`, such as ``topology``, ``te_spacing``, ``far_field``.
+        Fields of `meshonet.Sampling`, such as ``topology``, ``te_spacing``, ``far_field``.
 
     Returns
     -------
     Boundary
+        The edges.
 
     Raises
     ------
@@ -214,7 +232,7 @@ def sample_family(
     seed: int = 0,
     split: str | None = None,
 ) -> list[Boundary]:
-    """Return boundaries drawn at random from a family, as ``sample-boundary --family`` does.
+    """Return boundaries drawn at random from a family of shapes, like ``sample-boundary --family``.
 
     Parameters
     ----------
@@ -222,24 +240,25 @@ def sample_family(
         ``arch``, ``hexagon``, ``wrench``, ``semicircle``, ``airfoil``, ``hole``, ``procedural``,
         ``four-sided`` or ``bodies``.
     count : int, optional
-        How many to draw.
+        Number of boundaries.
     res : int or tuple of int, optional
-        As of `grid`; None is 101.
+        Node counts, as for `grid`; None is 101.
     range : tuple of 2 float, optional
-        Of the family's parameter; None is the whole range.
+        Interval of the family's parameter; None is the whole range.
     seed : int, optional
-        Of the random numbers.
+        Seed of the random numbers.
     split : str, optional
-        ``interpolation``, ``extrapolation`` or ``random``: a sixth is marked for tests.
+        ``interpolation``, ``extrapolation`` or ``random``: the rule by which a sixth is marked for tests.
 
     Returns
     -------
     list of Boundary
+        The boundaries.
 
     Raises
     ------
     InputError
-        No such family, a range that leaves the family's, members that cannot be split.
+        An unknown family; an interval outside of the family's range; a family that cannot be split.
 
     Examples
     --------
@@ -254,9 +273,9 @@ def sample_family(
 def shape_of(
     shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, far_field: float | None = None
 ) -> Shape:
-    """Return what can be sampled into a boundary; with `assemble`, the domain that several shapes make.
+    """Return a shape that can be sampled; with `assemble`, the domain formed by several shapes.
 
-    Raises InputError: a file that cannot be read, an array of another shape than (n, 2).
+    Raises InputError: a file that cannot be read; an array with a shape other than (n, 2).
     """
     if assemble:
         members = [shape] if isinstance(shape, str | Path) else list(cast(Sequence[AnyShape], shape))

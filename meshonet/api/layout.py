@@ -15,24 +15,25 @@ def layout(shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, **pa
     Parameters
     ----------
     shape : str, Path, array, Grid, Boundary or Domain, or a list of these
-        As of `grid`.
+        Shape, as for `grid`.
     assemble : bool, optional
-        Whether all of them are one domain.
+        Combine all shapes in the list into one domain.
     **parameters
-        ``cells`` or ``cell_size``, ``far_field``, ``layout``, ``pitch``, ``inlet``, ``outlet``; with
-        ``first_cell``, or ``y_plus`` and ``reynolds``, and ``walls`` it is the layout outside of layers.
+        ``cells`` or ``cell_size``, ``far_field``, ``layout``, ``pitch``, ``inlet``, ``outlet``. With
+        ``first_cell``, or ``y_plus`` and ``reynolds``, and optional ``walls``, the result has only the blocks
+        outside of the layers.
 
     Returns
     -------
     Layout
-        The blocks, and the nodes they are made of.
+        The blocks and their nodes.
 
     Raises
     ------
     InputError
         A shape or parameter that cannot be used.
     SolverError
-        No blocks are found.
+        The decomposition failed.
 
     Examples
     --------

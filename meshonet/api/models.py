@@ -18,28 +18,28 @@ _SPEEDS = {
     "quad-general": "2 ms at 65 x 65",
     "quad-winslow": "2 ms at 65 x 65",
 }
-"""About, on a core, without reading and writing: docs/benchmarks."""
+"""Approximate times per grid on one core, without reading and writing (docs/benchmarks)."""
 _HEADS = {"variational": "relative L2 from variational grids", "winslow": "relative L2 from Winslow's grids"}
 _FIRST_HEAD = ("hole-o", "quad-general")
 
 
 def models(name: str | None = None) -> list[dict[str, Any]]:
-    """Return what each shipped operator says of itself: name, use, topology, training, held-out figures.
+    """Return a description of each shipped operator.
 
     Parameters
     ----------
     name : str, optional
-        The operator that is wanted alone; None gives all.
+        Name of a single operator; None for all.
 
     Returns
     -------
     list of dict
-        What each shipped operator says of itself: name, topology, training, held-out figures.
+        Name, use, topology, training parameters and held-out errors of each operator.
 
     Raises
     ------
     InputError
-        No operator of this name.
+        No operator has this name.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def _facts(name: str) -> dict[str, Any]:
 
 
 def _error(name: str, facts: dict[str, Any]) -> str:
-    """Return the median error over held-out domains in words, as far as the file tells it."""
+    """Return the median error over held-out domains as text, if the file has it."""
     figures = facts.get("figures", {})
     if "strips" in figures:
         return f"{figures['network']['median']:.1e} rad of the lift, {figures['strips']} airfoils held out"

@@ -25,29 +25,27 @@ def plot(
     Parameters
     ----------
     grid : Grid, str or Path
-        A grid, or a file that holds one.
+        A grid, or a file with one.
     output : str or Path
-        Picture to write, ``.png``, ``.svg`` or ``.pdf``, or an interactive page, ``.html``.
+        Picture to write, ``.png``, ``.svg`` or ``.pdf``, or interactive page, ``.html``.
     metric : str, optional
-        Colours the cells; None draws lines only.
+        Quality metric that colours the cells; None draws lines only.
     zoom : tuple of float, optional
-        x0, x1, y0, y1 of the part to show, with z0, z1 of a picture in space, of a slice either; None shows
-        all.
+        Box to show: x0, x1, y0, y1, in space also z0, z1; both are possible for a slice. None shows all.
     every : int, optional
-        Draw every so many-th grid line; None chooses by the resolution of the picture.
+        Step between drawn grid lines; None selects it by the resolution of the picture.
     slice : str, optional
-        Slice of a volume, a layer ``i=10`` or ``k=-1`` or a plane ``x=.5``; None draws its walls, or the
-        outer boundary without any.
+        Slice of a volume: a grid surface ``i=10`` or ``k=-1``, or a plane ``x=.5``. None draws the walls, or
+        the whole boundary of a volume without walls.
     seen_from : tuple of 2 float, optional
-        Azimuth and elevation in degrees that a picture in space is seen from.
+        Azimuth and elevation in degrees of the view in space.
     to_format : str, optional
-        ``png``, ``svg``, ``pdf`` or ``html``, when the ending does not say.
+        ``png``, ``svg``, ``pdf`` or ``html``; needed if the extension does not determine it.
 
     Raises
     ------
     InputError
-        An unknown metric, slice or ending, a box that shows none of the grid, a file that cannot be read or
-        written.
+        An unknown metric, slice or extension; a box without cells; a file that cannot be read or written.
 
     Examples
     --------

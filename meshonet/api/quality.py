@@ -19,29 +19,30 @@ def quality(
     grid: Grid | str | Path, *, profile: str | Sequence[str] = (), compare: Grid | str | Path | None = None,
     threads: int | None = None,
 ) -> QualityReport:  # fmt: skip
-    """Measure a grid: folded cells, angles, skewness, walls, growth.
+    """Measure the quality of a grid: folded cells, angles, skewness, walls, growth.
 
     Parameters
     ----------
     grid : Grid, str or Path
-        A grid, or a file that holds one.
+        A grid, or a file with one.
     profile : str or sequence of str, optional
-        Thresholds to judge by: ``openfoam``, ``pointwise``, ``verdict`` or ``viscous``, or several of them.
+        Profiles of thresholds: ``openfoam``, ``pointwise``, ``verdict``, ``viscous``.
     compare : Grid, str or Path, optional
-        Reference grid of the same size, or a file that holds one.
+        Reference grid of the same size, or a file with one.
     threads : int, optional
-        Threads that work on it, with the same result for any number; None: as many as there are cores.
+        Number of threads, which does not change the result; None: one per core.
 
     Returns
     -------
     QualityReport
-        Every metric with its percentiles, the worst cells, walls and growth; the verdict of the profile.
+        All metrics with their percentiles, the worst cells, walls and growth, and the verdicts of the
+        profiles.
 
     Raises
     ------
     InputError
-        A file that cannot be read or holds several grids, a reference of another size, an unknown profile,
-        no threads.
+        A file that cannot be read or has several grids; a reference of another size; an unknown profile; a
+        number of threads below 1.
 
     Examples
     --------
@@ -61,28 +62,28 @@ def quality_page(
     grids: Iterable[Grid | str | Path], output: str | Path, *,
     profile: str | Sequence[str] = (), fail_on: Sequence[str] = (),
 ) -> bool:  # fmt: skip
-    """Write the quality of grids as one page, and return whether all of them pass.
+    """Write the quality of grids as an HTML page, and return whether all grids pass.
 
     Parameters
     ----------
     grids : iterable of Grid, str or Path
-        Grids, or files that hold one each.
+        Grids, or files with one each.
     output : str or Path
         Page to write, ``.html``.
     profile : str or sequence of str, optional
-        Thresholds to judge by, as for `quality`.
+        Profiles of thresholds, as for `quality`.
     fail_on : sequence of str
-        Gates, ``max_angle>170`` for instance; a limit for a figure that a profile has too replaces its.
+        Gates, for instance ``max_angle>170``. A gate replaces the limit of a profile for the same name.
 
     Returns
     -------
     bool
-        Whether no cell is folded, no gate broken and no check of the profile failed.
+        Whether no cell is folded, and no gate and no check of a profile has failed.
 
     Raises
     ------
     InputError
-        As `quality`; something that is no gate; an output that cannot be written.
+        As for `quality`; an invalid gate; an output that cannot be written.
 
     Examples
     --------
@@ -105,9 +106,9 @@ def quality_page(
 
 
 def single_grid(grid: Grid | str | Path) -> Grid:
-    """Return the grid, or the only one of a file.
+    """Return the grid, or the only grid of a file.
 
-    Raises InputError: a file that cannot be read, or holds none or several.
+    Raises InputError: a file that cannot be read, or has no grid or several.
     """
     if isinstance(grid, Grid):
         return grid

@@ -5,38 +5,43 @@ from typing import Any
 
 from meshonet.formats.stack import stack_of
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.stack import Stack, Tip
+from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
+from meshonet.solvers.rows.request import check_row_options, row_request
 from meshonet.solvers.stacking.request import stack_request
 
 
 def stack(
-    sections: str | Path | Stack, *, tip: Tip | None = None, surface: bool = False, **parameters: Any
+    sections: str | Path | Stack | Row, *, tip: Tip | None = None, surface: bool = False, **parameters: Any
 ) -> Grid:
-    """Return the volume around a wing or blade, or inside a duct, from sections placed in space.
+    """Return the volume grid of a wing, a blade, a duct or a row of blades, from cross-sections.
 
     Parameters
     ----------
-    sections : str, Path or Stack
-        A TOML file, or the stack itself.
+    sections : str, Path, Stack or Row
+        The stack of sections or the row of blades, or its TOML file.
     tip : {'round', 'flat', 'open'}, optional
-        How a wing ends; None is what the stack says.
+        Shape of the tip of a wing; None is that of the stack.
     surface : bool, optional
-        The patches of its surface instead of a volume.
+        Return the patches of the surface instead of a volume.
     **parameters
-        Those of `meshonet.StackRequest`, such as ``around``, ``span``, ``first_cell``, ``y_plus``,
-        ``reynolds``, ``layers``, ``growth``, ``far_field``.
+        Fields of `meshonet.StackRequest`, such as ``around``, ``span``, ``first_cell``, ``y_plus``,
+        ``reynolds``, ``layers``, ``growth``, ``far_field``; for a row those
+        of `meshonet.RowRequest`: ``first_cell``, ``y_plus``, ``reynolds``, ``growth``, ``cells``.
 
     Returns
     -------
     Grid
+        The volume grid, or the surface patches.
 
     Raises
     ------
     InputError
         A file or parameter that cannot be used.
     NoValidGridError
-        Cells are folded, and `allow_invalid` was not given.
+        The grid has folded cells, and `allow_invalid` is not given.
 
     Examples
     --------
@@ -46,6 +51,10 @@ def stack(
     >>> len(stack(wing, around=49, span=9, surface=True).blocks)
     3
     """
-    what = (sections if isinstance(sections, Stack) else stack_of(str(sections))).with_tip(tip)
+    what = sections if isinstance(sections, Stack | Row) else stack_of(str(sections))
+    if isinstance(what, Row):
+        check_row_options(tip=tip, surface=surface)
+        return make_row(what, row_request(**parameters)).grid
+    what = what.with_tip(tip)
     request = stack_request(**parameters)
     return stack_surface(what, request)[0] if surface else make_stack(what, request).grid

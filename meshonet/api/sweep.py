@@ -21,7 +21,7 @@ from meshonet.solvers.pipeline.sweeps import make_sweep
 from meshonet.solvers.sweeping.sweep import Sweep
 
 AnyPath: TypeAlias = str | File | Floats | Path | Revolution
-"""A file, points (n, 3) that a smooth curve goes through, a path itself, or a turn about an axis."""
+"""A file, points (n, 3) of a smooth curve, a path, or a revolution about an axis."""
 
 
 def sweep(
@@ -36,41 +36,44 @@ def sweep(
     around: int | None = None,
     **parameters: Any,
 ) -> Grid:
-    """Return the volume of a cross-section carried along a curve in space.
+    """Return the volume grid of a cross-section swept along a curve in space.
 
     Parameters
     ----------
     outline : str, Path, array, Grid, Boundary or Domain
-        ``circle:RADIUS``, a file with a closed curve, a domain or a planar grid, or what these are.
+        Cross-section: ``circle:RADIUS``, a file with a closed curve, a domain or a planar grid, or such an
+        object.
     path : str, Path, array (n, 3) or Revolution
-        A file, points that a smooth curve goes through, a path itself, or a turn about an axis
+        Path: a file, points of a smooth curve, a path object, or a revolution about an axis
         (`meshonet.Revolution`).
     planes : int, optional
-        As of `meshonet.Sweep`, like the next three.
+        Number of planes of nodes along the path, as for `meshonet.Sweep`.
     up : tuple of 3 float, optional
-        Direction that the section's y axis is nearest to where the path starts.
+        Direction to which the section's y axis is closest at the start of the path.
     twist : float, optional
-        Degrees by which the section turns along the path.
+        Rotation of the section from start to end in degrees.
     scale : float, optional
-        Size of the last section over that of the first.
+        Size of the last section relative to the first.
     res : int or tuple of int, optional
-        Nodes along the sides of a four-sided section.
+        Number of nodes along the sides of a four-sided section.
     around : int, optional
-        Cells around a circle, a multiple of four; None: at least 88, with which its area is within 0.1 %.
+        Number of cells around a circle, a multiple of four. None: at least 88, with which the area is
+        accurate to 0.1 %.
     **parameters
-        Of the section's grid: ``cells``, ``cell_size``, ``first_cell``, ``y_plus``, ``reynolds``, ``growth``,
-        ``walls``, ``layout``, and ``allow_invalid``.
+        Options for the grid of the section: ``cells``, ``cell_size``, ``first_cell``, ``y_plus``,
+        ``reynolds``, ``growth``, ``walls``, ``layout``, and ``allow_invalid``.
 
     Returns
     -------
     Grid
+        The volume grid.
 
     Raises
     ------
     InputError
-        A section, path or parameter that cannot be used, a bend too tight for the section.
+        A section, path or parameter that cannot be used; a bend that is too tight for the section.
     NoValidGridError
-        Cells are folded, and `allow_invalid` was not given.
+        The grid has folded cells, and `allow_invalid` is not given.
 
     Examples
     --------

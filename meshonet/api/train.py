@@ -1,4 +1,4 @@
-"""`meshonet.train`: datasets to a model."""
+"""`meshonet.train`: trains a model on datasets."""
 
 from __future__ import annotations
 
@@ -37,51 +37,52 @@ def train(
     note: Callable[[str], None] | None = None,
     **plan: Any,
 ) -> dict[str, Any]:
-    """Fit a neural operator to datasets and write it to `output`.
+    """Train a neural operator on datasets and write it to `output`.
 
-    Several processes under torchrun share each step; the first of them reports and writes.
+    Several processes started by torchrun share the work of each step; the first of them reports and writes.
 
     Parameters
     ----------
     datasets : str, Path or list of these
-        Files of solved grids; for ``strip`` of O boundaries; for ``quad`` of grids of the same domains by
-        winslow and by variational.
+        Files with solved grids. For ``strip``, files with O boundaries. For ``quad``, files with grids of the
+        same domains, solved by winslow and by variational.
     output : str or Path
         Model file, ``.safetensors``.
     model : str, optional
-        What to train, as ``train --model`` lists; None goes by what the first dataset holds.
+        Architecture, as listed by ``train --help``; None selects it by the first dataset.
     settings : dict, optional
-        Settings of the model; for ``quad`` weights of its loss.
+        Settings of the model; for ``quad``, weights of its loss.
     split : str, optional
-        ``interpolation``, ``extrapolation``, ``random``, or a file with ``train`` or ``test`` for each grid;
-        None for what the dataset says.
+        Shapes for tests: ``interpolation``, ``extrapolation``, ``random``, or a file that has ``train`` or
+        ``test`` for each grid. None: the split in the dataset.
     held_out : int, optional
-        Shapes kept out to watch the loss; None for the model's own.
+        Number of shapes excluded from training, on which the loss is monitored; None: the default of the
+        model.
     initial : str, optional
-        Quad model, by name or path, to start from.
+        Name or path of the model from which the training of ``quad`` starts.
     resume : bool, optional
-        Continue from the checkpoint beside the output, if there is one.
+        Continue from the checkpoint next to the output, if it exists.
     threads : int, optional
-        Threads of torch.
+        Number of threads of torch.
     from_format : str, optional
-        Format of the datasets, when neither ending nor content says.
+        Format of the datasets; needed if neither extension nor content determines it.
     report, note : callable, optional
-        Called with the progress of the run, and with what is worth a line beside it.
+        Functions that are called with the progress of the training, and with messages.
     **plan
-        Settings of `meshonet.solvers.neural.fit.plan.Plan`; None stands for the model's own. `points` is a
-        number, or ``all``.
+        Settings of `meshonet.solvers.neural.fit.plan.Plan`; None is the default of the model. `points` is a
+        number or ``all``.
 
     Returns
     -------
     dict
-        The ``model``, the number of ``shapes`` and the ``figures`` of those held out; nothing in processes of
-        torchrun that do not lead.
+        The ``model``, the number of ``shapes`` and the ``figures`` of the held-out shapes. Empty in processes
+        of torchrun other than the first.
 
     Raises
     ------
     InputError
-        Torch is not installed; the output is no ``.safetensors`` file in a folder that exists; bad settings
-        or datasets.
+        Torch is not installed; the output is not a ``.safetensors`` file in an existing folder; invalid
+        settings or datasets.
     SolverError
         The loss is not finite.
 
@@ -146,7 +147,7 @@ def train(
 
 
 def _suited(source: str, fmt: str | None) -> str:
-    """Return the model for what a dataset holds: boundaries are for the strip, grids for MeshONet."""
+    """Return the default model for a dataset: strip for boundaries, meshonet for grids."""
     try:
         first = next(read_grids(source, fmt), None)
     except InputError as error:
@@ -159,7 +160,7 @@ def _suited(source: str, fmt: str | None) -> str:
 
 
 def _full_plan(standard: Plan, changes: Mapping[str, Any], *, long: bool) -> Plan:
-    """Return the model's plan with `changes`; a `long` one reports `REPORTS` times."""
+    """Return the model's plan with `changes`; a `long` training reports `REPORTS` times."""
     words = {key: value for key, value in changes.items() if value is not None}
     if "points" in words:
         words["points"] = _points(str(words["points"]))
@@ -171,7 +172,7 @@ def _full_plan(standard: Plan, changes: Mapping[str, Any], *, long: bool) -> Pla
 
 
 def _points(text: str) -> tuple[int, int] | None:
-    """Return the points inside and on the boundary of ``N`` or ``all``."""
+    """Return the numbers of interior and boundary points for ``N``, None for ``all``."""
     if text == "all":
         return None
     if not (text.isascii() and text.isdigit() and 6 <= int(text) <= 10**7):

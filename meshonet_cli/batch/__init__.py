@@ -1,1 +1,1 @@
-"""Batches: records in, one file each or one for all, in one process or in several."""
+"""Batches: many inputs, one output file per input or one for all, in one process or several."""

@@ -1,4 +1,4 @@
-"""Settings as text: equal for equal settings, also in another process, on another machine, another day."""
+"""Description of settings as text, which is equal for equal settings in all processes and on all machines."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 
 WITHOUT_EFFECT = ("threads", "percentiles", "history", "criteria", "detailed")
-"""Fields of requests, and of what makes them, on which no node depends."""
+"""Fields of settings on which no node depends."""
 _MODEL = ".safetensors"
-"""Ending of a file that holds a model."""
+"""Extension of model files."""
 
 
 def described(value: object) -> str:
-    """Return `value`, made of dataclasses, containers, arrays and plain values, as text.
+    """Return `value`, which consists of dataclasses, containers, arrays and plain values, as text.
 
-    Models are described by what their files hold, objects of other classes by their attributes.
+    Models are described by the content of their files, objects of other classes by their attributes.
 
     >>> described({"b": (1, 2.5), "a": None})
     "{'a': None, 'b': (1, 2.5,)}"

@@ -1,4 +1,4 @@
-"""Where the results of a batch go."""
+"""Output files of a batch."""
 
 from __future__ import annotations
 
@@ -26,26 +26,30 @@ if TYPE_CHECKING:
     from meshonet_cli.batch.drawn import DrawnInputs
 
 FIELDS = ("stem", "index", "name")
-"""Fields of a pattern for names of outputs."""
+"""Fields of a pattern for output names."""
 _FORM = re.compile(r"(?:[^{}]?[<>=^])?[-+ ]?#?\d{0,3}[,_]?(?:\.\d{0,3})?[sdxXobn]?")
-"""Formats of fields: of a width of three digits at the most, and none that makes characters of numbers."""
+"""Permitted formats of fields: a width of at most three digits, and no conversion of numbers to
+characters.
+"""
 _LONGEST_NAME = 255
-"""Bytes of a file's name that the file systems of Linux, macOS and Windows take."""
+"""Longest file name in bytes on Linux, macOS and Windows."""
 MANY = 10_000
-"""Inputs of which more are written as a dataset in parts."""
+"""Largest number of inputs that are written as a dataset without parts."""
 _PART_BYTES, _LIKELY_NODES = 1 << 28, 40_000
-"""Bytes of a part at the most, and the nodes of a member whose size is not known before."""
+"""Largest size of a part in bytes, and assumed number of nodes of a grid whose size is not known in
+advance.
+"""
 _MOST_IN_PART, _MOST_FOR_MANY_WORKERS = 1000, 100
-"""Members of a part at the most; fewer where many workers share the parts."""
+"""Largest number of inputs per part, and the smaller number if many workers share the parts."""
 
 
 class Destination:
-    """Where results go: one file, one file each (``{stem}``, ``{index}`` or ``{name}`` in `text`), or ``-``.
+    """Output of a batch: ``-``, one file, or one per result (``{stem}``, ``{index}``, ``{name}`` in `text`).
 
-    `put` writes to a path in place of the format's own function for that `kind`. A dataset is written in
-    parts of `part_size` inputs where that is given, or by itself where there are many, of about so many
-    `nodes` each. Raises InputError: an unknown field or ending, a format that cannot be written or has no
-    parts.
+    `put` is a function that writes to a path, instead of the format's own function for this `kind`. A dataset
+    is written in parts of `part_size` inputs; without it the size follows from the approximate number of
+    `nodes` per result. Raises InputError: an unknown field or extension; a format that cannot be written, or
+    has no parts.
     """
 
     def __init__(
@@ -66,10 +70,7 @@ class Destination:
             raise InputError("standard output is the terminal", "pipe it on, or write to a file", source="-o")
 
     def path(self, item: Item[Any]) -> str:
-        """Return the path of one member.
-
-        Raises InputError: an earlier member has the same path.
-        """
+        """Return the path for a result. Raises InputError: an earlier result has the same path."""
         if not self.each:
             return self.format.file_at(self.text)
         if item.index == NO_NUMBER and "index" in _fields(self.text):
@@ -91,7 +92,7 @@ class Destination:
         return path
 
     def check_room(self) -> None:
-        """Raise InputError when several inputs would go into a file that holds one."""
+        """Raise InputError if there are several inputs for a file that stores one result."""
         if not (self.each or self.format.many):
             raise InputError(
                 f"several inputs and one {self.format.name} file, which holds one",
@@ -100,13 +101,12 @@ class Destination:
             )
 
     def part_size_for(self, inputs: Inputs | DrawnInputs, files: Files, *, elsewhere: bool) -> int:
-        """Return how many inputs a part of the dataset has, 0 where it is no dataset in parts.
+        """Return the number of inputs in a part of the dataset, 0 for an output without parts.
 
-        Parts are written where they are asked for, by jobs that share the work, where parts are to be
-        continued, and where there are more than `MANY` inputs. They are smaller where workers may
-        be `elsewhere`, or for shards.
+        Parts are written if requested, for shards, to continue existing parts, and for more than `MANY`
+        inputs. They are smaller if workers may be `elsewhere`, and for shards.
 
-        Raises InputError: there is another dataset, which parts would replace or which cannot be continued.
+        Raises InputError: an existing dataset that would be replaced, or cannot be continued.
         """
         if not inputs.more_than(0):
             return 0
@@ -126,7 +126,7 @@ class Destination:
         return self._part_size or _size_there(index) or usual_part_size(self._nodes, most)
 
     def part_files(self, make: object, size: int) -> PartFiles:
-        """Return the files of a dataset whose members `make` makes, in parts of so many inputs."""
+        """Return the files of a dataset in parts of `size` inputs, whose results `make` computes."""
         from meshonet.formats.hdf5.parts import PartFiles, digest_of
         from meshonet_cli.batch.described import described
 
@@ -134,7 +134,7 @@ class Destination:
         return PartFiles(Path(self.text), request, size)
 
     def check_several(self, item: Item[Any]) -> None:
-        """Raise InputError when there is room for one, and `item` is one of several in its file."""
+        """Raise InputError if the output stores one result, and `item` is one of several in its file."""
         if not (self.each or self.format.many):
             raise InputError(
                 f"holds several grids or boundaries, and a {self.format.name} file holds one",
@@ -143,7 +143,7 @@ class Destination:
             )
 
     def write(self, path: str, what: Iterable[Any]) -> None:
-        """Write `what` to `path`, whole or not at all."""
+        """Write `what` to `path` atomically."""
         folder = self.format.fills_folder
         with whole_file(path, make_folder=self.each or folder, beside=folder or self.format.beside) as part:
             self._put(part, what)
@@ -158,10 +158,12 @@ def _size_there(index: Path) -> int:
 
 
 def usual_part_size(nodes: int | None, most: int = _MOST_IN_PART) -> int:
-    """Return how many grids of so many nodes (None: not known) make a part of 256 MiB: `most` at the most.
+    """Return the number of grids in a part of up to 256 MiB, at most `most`; `nodes` is None if unknown.
+
+    It is rounded down to 1, 2 or 5 times a power of ten.
 
     >>> usual_part_size(200 * 100), usual_part_size(65 * 65), usual_part_size(800 * 400)
-    (500, 1000, 50)
+    (500, 1000, 20)
     """
     fitting = min(_PART_BYTES // (17 * (nodes or _LIKELY_NODES) + 2000), most)
     sizes = (digit * 10**power for power in range(4) for digit in (1, 2, 5))
@@ -169,7 +171,7 @@ def usual_part_size(nodes: int | None, most: int = _MOST_IN_PART) -> int:
 
 
 def _escaped(text: str) -> str:
-    """Return `text` for a message, where names in single braces would be those of parameters."""
+    """Return `text` for an error message, in which names in single braces would be replaced by options."""
     return re.sub(r"\{(\w+)\}", r"{{\1}}", text)
 
 
@@ -179,7 +181,7 @@ def _pattern(text: str, field: str = "stem") -> str:
 
 
 def _fields(text: str) -> list[str]:
-    """Return the fields of a pattern. Raises InputError: one that is not known, or that cannot be filled."""
+    """Return the fields of a pattern. Raises InputError: an unknown or unsuitable field."""
     if "{" not in text and "}" not in text:
         return []
     fields: list[str] = []
@@ -202,7 +204,10 @@ def _fields(text: str) -> list[str]:
 
 
 def same_size(what: Grid | Boundary | Layout, size: str) -> str:
-    """Return the size of what goes into a dataset. Raises InputError: it is not `size`, that of the first."""
+    """Return the size of a result for a dataset.
+
+    Raises InputError: it differs from `size`, that of the first.
+    """
     if not isinstance(what, Grid | Boundary):  # files of layouts hold one
         return ""
     own = size_of(what)

@@ -1,4 +1,4 @@
-"""Members of a family as inputs of a batch."""
+"""Members of a family of shapes as inputs of a batch."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ class DrawnInputs:
         return map(self.draws.__getitem__, range(k - 1, len(self.draws), n))
 
     def count(self) -> int:
-        """Return how many members the shard has."""
+        """Return the number of members in the shard."""
         return len(self.draws) // self.shard[1]
 
     def parts(self, size: int) -> Iterator[tuple[int, tuple[Draw, ...]]]:
-        """Yield number and members of the parts of the shard, `size` each."""
+        """Yield number and members of each part of the shard, with `size` members."""
         k, n = self.shard
         for number in range(k - 1, -(-len(self.draws) // size), n):
             yield number, tuple(self.draws[number * size : (number + 1) * size])
 
     def more_than(self, count: int) -> bool:
-        """Return whether there are more than so many."""
+        """Return whether there are more than `count` members."""
         return len(self.draws) > count

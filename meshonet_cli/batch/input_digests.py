@@ -1,4 +1,4 @@
-"""Digests of inputs, so that a part that was made of others is not taken for one of these."""
+"""Digests of inputs, by which an existing part is recognised as made from the same inputs."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 def digests_of(entry: str | InputError | Draw) -> list[Input]:
-    """Return the input with a digest of its name and of what it holds: one, or one a sample of a dataset.
+    """Return the input with a digest of its name and content; for a dataset one digest per sample.
 
-    An input that cannot be read has a digest of the reason.
+    For an input that cannot be read, the digest is that of the reason.
     """
     if isinstance(entry, InputError):
         return [Input(entry.source, digest_of(entry.source, str(entry)))]

@@ -1,4 +1,4 @@
-"""One member of a batch, with the names that messages and files have for it, and what comes of it."""
+"""A member of a batch, its names in messages and files, and its result."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 V = TypeVar("V")
 NO_NUMBER = -1
-"""Index of a member of a shard, of which it is not known how many members come before it."""
+"""Index of a member of a shard if the number of members before it is unknown."""
 
 
 @dataclass(frozen=True)
@@ -33,23 +33,23 @@ class Item(Generic[T]):
     path: str = ""  # of its own file, where it has one
 
     def without_content(self) -> Item[None]:
-        """Return the same member without what it holds, to be sent to another process."""
+        """Return the member without its content, for the transfer to another process."""
         return replace(self, what=None)  # type: ignore[arg-type, return-value]
 
     @property
     def label(self) -> str:
-        """How messages call it."""
+        """Name in messages."""
         source = "stdin" if self.source == "-" else printable(self.source)
         return source if self.only else f"{source}[{self.name or self.index}]"
 
     @property
     def stem(self) -> str:
-        """The input's file name without folder and ending."""
+        """File name of the input without folder and extension."""
         return self.called or stem_of(self.source)
 
 
 def stem_of(source: str) -> str:
-    """Return the file name of an input without folder and ending.
+    """Return the file name of an input without folder and extension.
 
     >>> stem_of("wings/root.dat"), stem_of("naca:2412"), stem_of("wings.zip/root.dat")
     ('root', 'naca2412', 'root')
@@ -58,15 +58,15 @@ def stem_of(source: str) -> str:
 
 
 Outcome: TypeAlias = "tuple[Any, Timed] | Exception"
-"""What to write of a member and its report, or the error that it ended in."""
+"""A result to write and its report, or an error."""
 Pair: TypeAlias = tuple[Item[Any], Outcome]
-"""A member and what comes of it."""
+"""A member and its result."""
 Make: TypeAlias = Callable[[Iterable[Item[Any]]], Iterator[Pair]]
-"""Makes members in order; what other processes are to do can be pickled."""
+"""Computes results of members in order; must be picklable to run in other processes."""
 
 
 def attempted(make: Callable[[T], V], each: Iterable[T]) -> Iterator[tuple[T, V | Exception]]:
-    """Yield each with what `make` makes of it, or the error that it ended in."""
+    """Yield each element with the result of `make`, or with its error."""
     for one in each:
         try:
             yield one, make(one)
@@ -75,7 +75,7 @@ def attempted(make: Callable[[T], V], each: Iterable[T]) -> Iterator[tuple[T, V 
 
 
 def made(outcome: V | Exception) -> V:
-    """Return what was made, or raise the error that it ended in."""
+    """Return a result, or raise it if it is an error."""
     if isinstance(outcome, Exception):
         raise outcome
     return outcome

@@ -1,4 +1,4 @@
-"""A dataset in parts: a task makes one part of the members of some inputs, and the parts are shown as one."""
+"""Datasets in parts: a task computes the samples of one part; an index presents all parts as one dataset."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PartTask:
-    """A task: the number of a part, from 0, and the inputs whose members it holds."""
+    """A task: the number of a part, from 0, and its inputs."""
 
     number: int
     inputs: tuple[str | InputError | Draw, ...]
@@ -34,9 +34,9 @@ class PartTask:
 
 @dataclass
 class PartDone:
-    """What became of a part: its file, whether it was there, and a report or an error of each member.
+    """Result for a part: its file, whether it existed before, and a report or an error for each member.
 
-    Of one that was there `lacks` is how many members failed when it was made.
+    For a part that existed before, `lacks` is the number of members that failed.
     """
 
     number: int
@@ -48,15 +48,15 @@ class PartDone:
 
 @dataclass(frozen=True)
 class PartMaker:
-    """Makes parts, in this process or another, and returns no more than reports.
+    """Makes parts, in this process or another; only reports are returned.
 
     Parameters
     ----------
-    files : where the parts lie.
-    kind : what they hold, grids or boundaries.
-    read : yields what an input holds.
-    work : makes the members.
-    skip_existing : whether a part that is there, of the same inputs and settings, stays.
+    files : paths of the parts.
+    kind : grids or boundaries.
+    read : function that yields the content of an input.
+    work : function that computes the results of members.
+    skip_existing : whether an existing part with the same inputs and settings is kept.
     """
 
     files: PartFiles
@@ -66,10 +66,10 @@ class PartMaker:
     skip_existing: bool = False
 
     def __call__(self, part: PartTask) -> PartDone:
-        """Make a part, whole or not at all.
+        """Make a part atomically.
 
-        Raises OtherPartsError: the part that is there was made of other inputs or with other settings, or is
-        not to be skipped; InputError: it cannot be written.
+        Raises OtherPartsError: the existing part has other inputs or settings, or existing parts must not be
+        skipped; InputError: the part cannot be written.
         """
         inputs = [each for entry in part.inputs for each in digests_of(entry)]
         state = self.files.state(part.number, inputs)
@@ -84,7 +84,7 @@ class PartMaker:
         return done
 
     def _samples(self, part: PartTask, done: PartDone, failed: list[Failed]) -> Iterator[Grid | Boundary]:
-        """Yield what goes into the part, and note a report or an error of each member on the way."""
+        """Yield the samples of the part, and record a report or an error for each member."""
         size = ""
 
         def fail(item: Item[Any], error: Exception) -> None:
@@ -119,14 +119,13 @@ def deliver_parts(
     outcomes: Outcomes, files: PartFiles, session: Session, written: Callable[[Any, str], None], *,
     skip_existing: bool, whole: bool,
 ) -> None:  # fmt: skip
-    """Report every member of parts as they are made, and show the parts as one file.
+    """Report every member when its part is complete, and write the index of all parts.
 
-    A part that fails is reported, and missing in the file until the same command makes it; `written` is
-    called with the report of each member that was made, and the path of the file; `whole` says that these
-    are all parts, and no shard.
+    A part that fails is reported; the index lacks it until the command is repeated. `written` is called with
+    the report of each successful member and the path of the file. `whole` says that these are all parts, not
+    a shard.
 
-    Raises OtherPartsError: the parts that are there were made of other inputs or with other settings, or are
-    not to be skipped.
+    Raises OtherPartsError: existing parts have other inputs or settings, or must not be skipped.
     """
     files.check(skip_existing=skip_existing)
     session.batch, session.dataset = True, str(files.index)

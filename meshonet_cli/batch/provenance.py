@@ -1,4 +1,4 @@
-"""How a file was made, as facts that travel in it."""
+"""Provenance of a file: version and command, stored in the file."""
 
 import shlex
 import sys
@@ -14,9 +14,8 @@ _MOST_NAMED = 12  # words between options that are all kept
 def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
     """Return the program's version and command line, without the output's name.
 
-    The name is left out so that the same input and settings give the same bytes wherever they are written.
-
-    `arguments`: of the program, its name not among them; None means those it was started with.
+    Without the name, equal inputs and settings give equal bytes in all output files. `arguments` are those of
+    the program, without its name; None means those of this process.
 
     >>> provenance(["tfi", "a b.csv", "-o", "grid.vts", "--res", "80"])["command"]
     "meshonet tfi 'a b.csv' --res 80"
@@ -26,7 +25,7 @@ def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
 
 
 def abridged(words: Sequence[str]) -> list[str]:
-    """Return a command line with long lists of inputs shortened: every grid of a dataset has it.
+    """Return a command line with a shortened list of inputs, because every grid of a dataset stores it.
 
     >>> abridged(["tfi", *(f"{k}.csv" for k in range(40)), "--res", "80"])
     ['tfi', '0.csv', '[38 more]', '39.csv', '--res', '80']

@@ -1,4 +1,4 @@
-"""From inputs to files: every member is read, made, written and reported; one file each, or all in one."""
+"""Runs a batch: every member is read, computed, written and reported."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ if TYPE_CHECKING:
     from meshonet_cli.report.timed import Timed
 
 Written = Callable[[Any, str], None]
-"""Takes the report and the path of each member that is written."""
+"""Function that is called with the report and the path of each written member."""
 
 
 def each(make: Callable[..., tuple[Any, Timed]], **settings: Any) -> Make:
-    """Return what makes members one by one by a function of a member and `settings`."""
+    """Return a function that computes the results of members one by one, with `settings`."""
     return partial(attempted, partial(make, **settings))
 
 
 @dataclass(frozen=True)
 class BatchTask:
-    """What a command does to each of its inputs; `read` and `make` go to other processes too.
+    """What a command does with each of its inputs; `read` and `make` may run in other processes.
 
     Parameters
     ----------
-    read : yields what an input holds.
-    make : makes members.
-    kind : what is written.
-    put : writes to a path, in place of the format's own function.
-    nodes : of what is made, about; None where that is not known.
-    together : members that one of several processes gets at a time.
-    assembled : how the far field is sampled where all inputs together make one domain.
+    read : function that yields the content of an input.
+    make : function that computes the results of members.
+    kind : kind of the results.
+    put : function that writes to a path, instead of the format's own function.
+    nodes : approximate number of nodes of a result; None if unknown.
+    together : number of members that a process gets at a time.
+    assembled : sampling of the far field if all inputs form one domain.
     """
 
     read: Callable[[Any], Iterator[Any]]
@@ -57,7 +57,7 @@ class BatchTask:
 
 @dataclass(frozen=True)
 class Batch:
-    """A run of a command: its inputs, where results go, what is printed, and who works on it."""
+    """A run of a command: its inputs, its output, its messages, and its engine."""
 
     inputs: Any  # `Inputs`, or `DrawnInputs`
     files: Files
@@ -65,17 +65,17 @@ class Batch:
     engine: Engine = HERE
 
     def run(self, task: BatchTask) -> int:
-        """Do a task to every member and return the exit code."""
+        """Process every member and return the exit code."""
         self.deliver(task, self.session.written)
         return self.session.finish()
 
     def deliver(self, task: BatchTask, written: Written) -> None:
-        """Do a task to every member, write what comes of it, and report it by `written`.
+        """Process every member, write its result, and report it by `written`.
 
-        A member that fails is reported and left out. With ``skip_existing`` members whose own file is there
-        are passed over.
+        A member that fails is reported and left out. With ``skip_existing``, members whose output file exists
+        are skipped.
 
-        Raises InputError: results cannot go there.
+        Raises InputError: an output that cannot be written.
         """
         files, session = self.files, self.session
         destination = Destination(
@@ -122,7 +122,7 @@ class Batch:
             destination.write(destination.text, chain([first], stream))
 
     def _deliver_parts(self, task: BatchTask, destination: Destination, size: int, written: Written) -> None:
-        """Deliver a dataset in parts of so many inputs, each made by a worker."""
+        """Write a dataset in parts of `size` inputs, each made by a worker."""
         from meshonet_cli.batch.parts import PartMaker, PartTask, deliver_parts
 
         files = destination.part_files(task.make, size)
@@ -139,7 +139,7 @@ class Batch:
             report(workers.in_order(maker, parts, workers.count))
 
     def _with_paths(self, members: Iterator[Item[Any]], destination: Destination) -> Iterator[Item[Any]]:
-        """Yield members with the paths of their own files; those that are there are passed over."""
+        """Yield members with the paths of their output files; members with existing files are skipped."""
         for item in members:
             with self.session.member(item.label, item.source):
                 path = destination.path(item)
@@ -149,7 +149,7 @@ class Batch:
                     yield replace(item, path=path)
 
     def _streamed(self, pairs: Iterator[Pair], destination: Destination, written: Written) -> Iterator[Any]:
-        """Yield what goes into one file; each is reported when the writer comes back for the next one."""
+        """Yield the results for a single file; each is reported when the next one is requested."""
         size = ""
         for item, outcome in pairs:
             fits = False
@@ -167,13 +167,13 @@ class Batch:
 
 @dataclass(frozen=True)
 class MemberWork:
-    """What is done to members, here or in another process: make, and write each to its own file."""
+    """Processes members in this process or another: computes results, and writes each to its own file."""
 
     make: Make
     destination: Destination | None
 
     def __call__(self, todo: Iterable[Item[Any]]) -> Iterator[Pair]:
-        """Yield members, without what they hold, and what comes of them."""
+        """Yield members, without their content, and their results."""
         for item, made_of in self.make(todo):
             outcome, bare = made_of, item.without_content()
             if isinstance(outcome, InputError) and outcome.source == item.name:

@@ -1,4 +1,4 @@
-"""Where the results of a batch go, and what works on its members."""
+"""Output files of a batch, and the engine that works on its members."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Files:
-    """Where results go, the formats of both sides, and what becomes of results that are there.
+    """Output of a command, the formats of input and output, and the treatment of existing results.
 
     Parameters
     ----------
     output : a file, a pattern of files with ``{stem}``, ``{index}`` or ``{name}``, or ``-``.
-    from_format, to_format : formats, where names and content do not say.
-    skip_existing : whether inputs are passed over whose results are there.
-    part_size : inputs in a part of a dataset.
+    from_format, to_format : formats, if names and content do not determine them.
+    skip_existing : whether inputs with existing results are skipped.
+    part_size : number of inputs in a part of a dataset.
     """
 
     output: str
@@ -38,15 +38,15 @@ EngineName = Literal["processes", "dask", "mpi"]
 
 @dataclass(frozen=True)
 class Engine:
-    """Where members of a batch are worked on.
+    """Engine that works on the members of a batch.
 
     Parameters
     ----------
     name : processes of this machine, a Dask cluster, or the ranks of MPI.
-    jobs : processes, or workers of a Dask cluster on this machine.
-    scheduler : address of the scheduler of a Dask cluster that is there already.
+    jobs : number of processes, or of workers of a local Dask cluster.
+    scheduler : address of the scheduler of an existing Dask cluster.
 
-    Raises InputError: they do not go together.
+    Raises InputError: settings that exclude each other.
     """
 
     name: EngineName = "processes"
@@ -71,15 +71,18 @@ class Engine:
         return self.name == "mpi" or self.scheduler is not None
 
     def threads(self, wanted: int | None = None) -> int | None:
-        """Return the threads of each worker: `wanted`, else its share of the cores; None: no limit."""
+        """Return the number of threads of each worker: `wanted`, else its share of the cores.
+
+        None: no limit.
+        """
         if wanted is not None or self.here:
             return wanted
         return 1 if self.elsewhere else max(cores() // self.jobs, 1)
 
     def workers(self, warn: Warn) -> AbstractContextManager[Workers]:
-        """Return the workers, to be used in a ``with`` block; `warn` says what the user must know of them.
+        """Return a context with the workers; `warn` is called with messages about them.
 
-        Raises InputError: the engine is not installed; it cannot be reached.
+        Raises InputError: the engine is not installed, or cannot be reached.
         """
         # loaded here: concurrent.futures alone takes 10 ms
         module = import_module(f"meshonet_cli.batch.executors.{self.name}_engine")

@@ -1,4 +1,4 @@
-"""Inputs of a batch: files one after the other, and the records of each."""
+"""Inputs of a batch: files in order, and the records of each."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def members_of(
     inputs: Inputs | DrawnInputs, read: Callable[[Any], Iterator[T]], session: Session
 ) -> Iterator[Item[T]]:
-    """Yield the members of every input; one that cannot be read is reported and passed over."""
+    """Yield the members of every input; one that cannot be read is reported and skipped."""
     session.batch = session.batch or inputs.more_than(1)
     if session.live:
         session.watch()
@@ -40,7 +40,10 @@ def records(
     inputs: Iterable[Numbered | str | InputError | Draw], read: Callable[[Any], Iterator[Any]], *,
     alone: bool = False,
 ) -> Iterator[Item[Any]]:  # fmt: skip
-    """Yield every member of every input, or the error in its place; draws can be `alone`."""
+    """Yield every member of every input, or an error in its place.
+
+    With `alone`, a member of a family counts as the only one of its input.
+    """
     count = 0
     for each in inputs:
         entry: Any = each
@@ -69,7 +72,7 @@ def records(
 def _entries(
     source: str | InputError | Draw, read: Callable[[Any], Iterator[T]]
 ) -> Iterator[tuple[T | Exception, float]]:
-    """Yield what an input holds, at least one entry, each with the seconds that it took to read."""
+    """Yield the entries of an input, at least one, each with the seconds that reading took."""
     left: Iterator[T] | None = None
     empty = True
     while True:
@@ -97,7 +100,7 @@ def _entries(
 def assembly(
     inputs: Inputs, read: Callable[[str], Iterator[Shape]], sampling: Sampling, session: Session
 ) -> Iterator[Item[Shape]]:
-    """Yield the one domain that the shapes of all inputs make; an error is reported, and nothing is left."""
+    """Yield the domain formed by the shapes of all inputs; after an error, which is reported, nothing."""
     from meshonet.geometry.shapes.assembly import assembled
 
     label = " + ".join(inputs.words)

@@ -1,4 +1,4 @@
-"""One command a file; this is their list, in the order of the help."""
+"""The list of commands in the order of the help; each command has a module."""
 
 from collections.abc import Callable
 from importlib import import_module
@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 
 class Command(NamedTuple):
-    """A command by its name and the first line of its help; its module is loaded when it is needed.
+    """Name and summary of a command, whose module is loaded when needed.
 
-    The module of ``solve-pde`` is ``solve_pde``. It holds the function ``solve_pde`` and its ``EXAMPLES``,
+    The module of ``solve-pde`` is ``solve_pde``. It contains the function ``solve_pde`` and its ``EXAMPLES``,
     which a test runs.
     """
 
@@ -23,18 +23,18 @@ class Command(NamedTuple):
 
 
 COMMANDS: tuple[Command, ...] = (
-    Command("sample-boundary", "Turn geometry into boundaries of four edges."),
+    Command("sample-boundary", "Place nodes on the four edges of a boundary."),
     Command("tfi", "Make grids by transfinite interpolation."),
     Command("solve-pde", "Make grids by elliptic equations, a variational method, or marching."),
-    Command("train", "Fit a neural operator to datasets (needs the extra `train`)."),
-    Command("infer", "Make the grid that measures best: conformal, marched or variational."),
-    Command("layout", "Split domains into blocks and write these."),
-    Command("stack", "Make volumes around wings and blades, and in ducts, from sections."),
-    Command("sweep", "Make volumes of pipes and ducts, cross-sections carried along curves."),
-    Command("deform", "Make grids follow a changed boundary, their layers as they were."),
-    Command("quality", "Measure grids: folded cells, angles, skewness."),
-    Command("convert", "Turn files from one format into another."),
+    Command("train", "Train a neural operator on datasets (needs the extra `train`)."),
+    Command("infer", "Make grids by the method that suits the kind of shape."),
+    Command("layout", "Split domains into blocks and write the block layout."),
+    Command("stack", "Make volume grids of wings, ducts and blade rows from cross-sections."),
+    Command("sweep", "Make volume grids of pipes and ducts by sweeping cross-sections along curves."),
+    Command("deform", "Deform grids to a changed boundary and keep their boundary layers."),
+    Command("quality", "Measure the quality of grids: folded cells, angles, skewness."),
+    Command("convert", "Convert files from one format to another."),
     Command("plot", "Draw grids, coloured by a quality metric."),
-    Command("models", "List the operators that are shipped."),
-    Command("doctor", "Say what is installed, whether it works, and what could be added."),
+    Command("models", "List the neural operators that are shipped."),
+    Command("doctor", "Check the installation, and list what is missing or could be added."),
 )

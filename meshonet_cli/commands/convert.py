@@ -28,8 +28,8 @@ class ConvertedFiles(o.FileOptions):
 
     output: Annotated[str, _output(
         "-o", "--output", metavar="OUT",
-        help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also {name}, "
-        "{index}) or one .h5.",
+        help="File to write, or - for standard output. Several inputs need a pattern such as "
+        "'dir/{stem}.vts' (the fields are {stem}, {name} and {index}), or one .h5 file for all results.",
     )] = ""
 
 
@@ -38,44 +38,46 @@ def convert(
     run: o.InputOptions,
     names: Annotated[list[str] | None, typer.Argument(
         metavar="IN... [OUT]", show_default=False,
-        help="Files to read, or - for standard input; without -o the last name is the file to write.",
+        help="Files to read, or - for standard input. Without -o the last name is the file to write.",
     )] = None,
     extrude: Annotated[float | None, _option(
         "--extrude", metavar="H",
-        help="Make the grid 3D, H high in z. It is one cell thick, as 3D solvers need it for 2D cases.",
+        help="Extrude the planar grid by H along z, into a grid with one layer of cells unless --planes is "
+        "given. Solvers that require three-dimensional grids use these for planar flow.",
     )] = None,
     planes: Annotated[int | None, _option(
         "--planes", metavar="K", min=2, max=10_000,
-        help="With --extrude or --revolve: planes of nodes, one more than cells. [default: 2, or cells of up "
-        "to 4 degrees]",
+        help="Number of planes of nodes for --extrude or --revolve, one more than the number of cells. "
+        "[default: 2; for sectors and full revolutions, cells of at most 4 degrees]",
     )] = None,
     plot3d: Annotated[str | None, _output(
         "--plot3d", metavar="WORDS",
-        help="Variant of the Plot3D file to write, or else of the one to read: words of "
-        "ascii/binary/fortran, multi/single, 2d/3d, no-iblank/iblank, little/big, float64/float32, "
-        "whole/planes, span-k/span-i/span-j, separated by commas. Words that the file itself tells need not "
-        "be given for reading; in any command --from plot3d:WORDS gives them.",
+        help="Variant of the Plot3D file to write, or to read if the output is in another format. WORDS are "
+        "separated by commas and are any of ascii/binary/fortran, multi/single, 2d/3d, no-iblank/iblank, "
+        "little/big, float64/float32, whole/planes and span-k/span-i/span-j. For reading, only properties "
+        "that cannot be recognised from the file are needed. All other commands accept the same words as "
+        "--from plot3d:WORDS.",
     )] = None,
     swap: Annotated[bool, _option(
-        "--swap", help="Have xi run where eta ran (four-sided grids), still right-handed.",
+        "--swap", help="Exchange xi and eta of a four-sided grid. The result is still right-handed.",
     )] = False,
     normalise: Annotated[bool, _option(
         "--normalise",
-        help="Scale to unit chord, leading edge at (0, 0) and trailing edge at (1, 0); four-sided grids to "
-        "unit length.",
+        help="Scale and move the grid so that the leading edge is at (0, 0) and the trailing edge at (1, "
+        "0). A four-sided grid is scaled to length 1.",
     )] = False,
     coarsen: Annotated[int | None, _option(
         "--coarsen", metavar="K", min=2, max=10_000,
-        help="Keep every K-th node along xi and eta; K must divide the number of cells along both, and "
-        "the nodes at which walls have corners.",
+        help="Keep every K-th node along xi and eta. K must divide the number of cells in both directions "
+        "and the indices of nodes at corners of walls.",
     )] = None,
     revolve: o.Revolve = None,
     axis: o.Axis = None,
     list_formats: Annotated[bool, _output(
-        "--list-formats", help="Print what can be read and written, and stop.",
+        "--list-formats", help="Print the formats that can be read and written, and exit.",
     )] = False,
 ) -> int:
-    """Turn files from one format into another."""
+    """Convert files from one format to another."""
     from meshonet.formats.convert import Conversion
     from meshonet.geometry.errors import InputError
     from meshonet_cli.tasks.conversions import convert_files, print_formats

@@ -22,21 +22,22 @@ def deform(
     gates: o.GateOptions,
     wall: Annotated[list[str] | None, _option(
         "--wall", metavar="[NAME=]FILE",
-        help="New shape of a wall: an outline, naca:2412, or a grid with as many nodes there, taken node by "
-        "node. NAME is needed where there are several walls; it may be any part of the boundary. Repeatable.",
+        help="New shape of a wall: a file with an outline, a designation such as naca:2412, or a grid whose "
+        "wall has as many nodes, which are then matched one by one. NAME is required if the grid has "
+        "several walls, and may be any part of the boundary. Repeatable.",
     )] = None,
     rotate: Annotated[list[str] | None, _option(
         "--rotate", metavar="NAME=DEGREES@X,Y",
-        help="Turn a wall counter-clockwise about a point of the plane. Repeatable.",
+        help="Rotate a wall by DEGREES counter-clockwise about the point (X, Y) of the plane. Repeatable.",
     )] = None,
     shift: Annotated[list[str] | None, _option(
         "--shift", metavar="NAME=DX,DY[,DZ]",
-        help="Shift a wall, after its turn when it has one. Repeatable.",
+        help="Translate a wall by (DX, DY, DZ), after its --rotate if there is one. Repeatable.",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
 ) -> int:
-    """Make grids follow a changed boundary, their layers as they were."""
+    """Deform grids to a changed boundary and keep their boundary layers."""
     from meshonet_cli.tasks.deformations import walls_of, write_deformed
 
     walls = walls_of(wall or (), rotate or (), shift or ())

@@ -10,13 +10,13 @@ if TYPE_CHECKING:
 
 EXAMPLES = ("meshonet doctor", "meshonet doctor --json")
 _SIGNS = {True: "ok", False: "NO", None: "-"}
-"""What is printed of a check: passed, failed, not made."""
+"""Printed result of a check: passed, failed, not applicable."""
 
 
 def doctor(as_json: o.AsJson = False) -> int:
-    """Say what is installed, whether it works, and what could be added.
+    """Check the installation, and list what is missing or could be added.
 
-    The exit code is 1 when something is missing or does not work.
+    The exit code is 1 if something required is missing or does not work.
     """
     from meshonet.api.doctor import doctor as examined
     from meshonet_cli.terminal.session import Session
@@ -34,7 +34,7 @@ def _well(findings: "Sequence[Finding]") -> bool:
 
 
 def findings_text(findings: "Sequence[Finding]") -> str:
-    """Return findings by their groups, a line each, and whether all is well."""
+    """Return findings by group, one per line, and whether all is well."""
     lines: list[str] = []
     width = max(len(finding.name) for finding in findings)
     for group in dict.fromkeys(finding.group for finding in findings):

@@ -25,33 +25,36 @@ def infer(
     blocks: o.BlocksName = "auto",
     model: Annotated[str | None, _option(
         "--model", metavar="NAME|PATH",
-        help="Operator: a shipped one (see meshonet models), a .safetensors file, or base for the conformal "
-        "solver without a network. C grids are marched and take none. [default: what measures best for the "
-        "topology]",
+        help="Operator that makes the grid: the name of a shipped model (listed by meshonet models), a "
+        ".safetensors file, or base for the conformal solver without a network. C grids are always marched, "
+        "without an operator. [default: no network; the method for the kind of shape, described above]",
     )] = None,
     polish: Annotated[str, _option(
         "--polish", metavar="auto|off|N", show_default=True,
-        help="Iterations of a solver after the operator, elliptic or variational. With off or N and no "
-        "--model, the network for the topology is used.",
+        help="Number of solver iterations after the operator (elliptic around bodies, variational in "
+        "four-sided domains); off is none. If --polish is off or N and --model is not given, the default "
+        "network of the topology makes the grid.",
     )] = "auto",
     answer: Annotated[Literal["valid", "pasted", "raw"], _option(
         "--answer", metavar="valid|pasted|raw", show_default=True,
-        help="For models that do not meet the boundary exactly: raw is the output of the network, pasted has "
-        "the true boundary on its edges, valid is pasted and unfolded.",
+        help="Treatment of networks that do not match the boundary exactly. raw writes the output of the "
+        "network, pasted replaces its boundary nodes by the true ones, and valid also repairs folded cells.",
     )] = "valid",
     device: Annotated[Literal["cpu", "cuda"] | None, _option(
         "--device", metavar="cpu|cuda",
-        help="Evaluate networks with torch on this device, all grids of a batch together. Without --polish, "
-        "airfoil-o then takes 3 steps of polish and other models none. [default: without torch]",
+        help="Evaluate networks with torch on this device, all grids of a batch together. Then --polish "
+        "auto is 3 iterations for airfoil-o and none for other models. [default: NumPy, without torch]",
     )] = None,
     refine: o.Refine = 0,
 ) -> int:
-    """Make the grid that measures best: conformal, marched or variational.
+    """Make grids by the method that suits the kind of shape.
 
-    Around a body, this is an O grid by a conformal map, or a grid marched from the wall for C grids and where
-    a first cell is given. In a four-sided domain the variational method makes it. Any other domain is split
-    into blocks. In space, six faces are filled by the variational method, and surfaces with a first cell are
-    marched off. A neural operator is used where --model, --polish or --device asks for one.
+    The method is the one with the best results in the benchmarks for that kind; the program does not compare
+    methods at run time. An O grid around a body is made by a conformal map. A C grid, or a grid with a first
+    cell, is marched from the wall. A four-sided domain is filled by the variational method. Any other planar
+    domain is split into blocks. A volume inside six faces is filled by the variational method, and the volume
+    outside of a surface is marched from it if a first cell is given. A neural operator makes the grid only
+    if --model, --polish or --device is given.
     """
     from meshonet_cli.tasks.grids import write_grids
 

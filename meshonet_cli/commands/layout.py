@@ -25,8 +25,8 @@ class LayoutFiles(Files):
 
     output: Annotated[str, o.option_of(o.IO)(
         "-o", "--output", metavar="LAYOUT.json",
-        help="File to write, or - for standard output. For several inputs: 'dir/{stem}.json' (also {name}, "
-        "{index}).",
+        help="File to write, or - for standard output. Several inputs need a pattern such as "
+        "'dir/{stem}.json' (the fields are {stem}, {name} and {index}).",
     )]
     from_format: o.From = None
     skip_existing: o.SkipExisting = False
@@ -35,20 +35,22 @@ class LayoutFiles(Files):
 def layout(
     domain: Annotated[list[str], typer.Argument(
         metavar="DOMAIN", show_default=False,
-        help="File with a domain: WKT, GeoJSON, points of closed curves, DXF, the boundary of a mesh; an "
-        "airfoil, naca:2412, or - for standard input.",
+        help="File with a domain (WKT, GeoJSON, points of closed curves, DXF, or the boundary of a mesh) or "
+        "with an airfoil, a designation such as naca:2412, or - for standard input.",
     )],
     files: LayoutFiles,
     blocks: o.DomainOptions,
     run: o.RunOptions,
     far_field: Annotated[float | None, _sampling(
-        "--far-field", metavar="R", help="Distance of the far field, in chords of all bodies. [default: 15]",
+        "--far-field", metavar="R",
+        help="Distance of the far field; the unit is the chord of all bodies together. [default: 15]",
     )] = None,
     first_cell: o.FirstCell = None, y_plus: o.YPlus = None, reynolds: o.Reynolds = None,
 ) -> int:
-    """Split domains into blocks and write these.
+    """Split domains into blocks and write the block layout.
 
-    With a first cell, they are those outside of the layers, which a grid has around them in addition.
+    With a first cell, the layout has only the blocks outside of the layers. A grid that is made with this
+    layout has the blocks of the layers in addition.
     """
     from meshonet_cli.tasks.layouts import write_layouts
 

@@ -13,12 +13,16 @@ EXAMPLES = ("meshonet models", "meshonet models quad-general", "meshonet models 
 def models(
     name: Annotated[
         list[str] | None,
-        typer.Argument(metavar="NAME", show_default=False, help="Model to tell all of: recipe and figures."),
+        typer.Argument(
+            metavar="NAME",
+            show_default=False,
+            help="Model whose training recipe and results are printed in full.",
+        ),
     ] = None,
     as_json: o.AsJson = False,
     debug: o.Debug = False,
 ) -> int:
-    """List the operators that are shipped."""
+    """List the neural operators that are shipped."""
     from meshonet.api.models import models as described
     from meshonet_cli.terminal.session import Session
 
@@ -33,7 +37,7 @@ def models(
 
 
 def models_table(models: list[dict[str, Any]]) -> str:
-    """Return a line a model: what it is for, how fast, how good."""
+    """Return one line per model: its use, time and error."""
     rows = [["model", "for", "takes", "median error"]]
     rows += [[model["name"], model["use"], model["speed"], model["error"]] for model in models]
     widths = [max(len(row[k]) for row in rows) for k in range(4)]
@@ -43,7 +47,7 @@ def models_table(models: list[dict[str, Any]]) -> str:
 
 
 def model_text(facts: Mapping[str, Any]) -> str:
-    """Return what a model says of itself, for people: its name, then one fact a line.
+    """Return the description of a model as text: its name, then one fact per line.
 
     >>> print(model_text({"name": "demo", "topology": "o", "recipe": {"shapes": 30, "seed": 1}}))
     demo

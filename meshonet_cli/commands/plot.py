@@ -13,9 +13,9 @@ EXAMPLES = (
     "meshonet plot wing.cgns -o wing.html",
 )
 _BOX = ("a box", "use x0,x1,y0,y1", "zoom")
-"""What an error says of a box: name, remedy, parameter."""
+"""Description, remedy and parameter for errors about a box."""
 _DIRECTION = ("a direction", "use azimuth and elevation in degrees, e.g. -125,25", "seen_from")
-"""Likewise of a direction."""
+"""Description, remedy and parameter for errors about a direction."""
 _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 
@@ -26,13 +26,14 @@ class PictureFiles(Files):
 
     output: Annotated[str, _output(
         "-o", "--output", metavar="PICTURE",
-        help="Picture to write, .png, .svg or .pdf, or an interactive page, .html; - for standard output. "
-        "For several inputs: "
-        "'dir/{stem}.png' (also {name}, {index}).",
+        help="Picture to write (.png, .svg or .pdf), interactive page to write (.html), or - for standard "
+        "output. Several inputs need a pattern such as 'dir/{stem}.png' (the fields are {stem}, {name} and "
+        "{index}).",
     )]
     to_format: Annotated[str | None, _output(
         "--to", metavar="FORMAT",
-        help="png, svg, pdf or html, when the ending does not say. [default on standard output: png]",
+        help="Format of the picture: png, svg, pdf or html. Needed if the extension of the file does not "
+        "determine it. [default: png on standard output]",
     )] = None
     from_format: o.From = None
     skip_existing: o.SkipExisting = False
@@ -44,23 +45,27 @@ def plot(
     run: o.InputOptions,
     metric: Annotated[str, _option(
         "--metric", metavar="METRIC", show_default=True,
-        help="Colour the cells by this metric; none draws lines only.",
+        help="Quality metric that colours the cells; none draws grid lines only.",
     )] = "max_angle",
     zoom: Annotated[str | None, _option(
         "--zoom", metavar="x0,x1,y0,y1",
-        help="Show this part only; in space x0,x1,y0,y1,z0,z1, of a --slice either.",
+        help="Show only this box: x0,x1,y0,y1 in the plane, x0,x1,y0,y1,z0,z1 in space. A --slice accepts "
+        "both.",
     )] = None,
     slice_: Annotated[str | None, _option(
         "--slice", metavar="SLICE",
-        help="Show this slice of a volume: a layer of an index, i=10 or k=-1, or a cut by a plane, x=.5. "
-        "[default: its walls, or the outer boundary without any]",
+        help="Draw this slice of a volume: a grid surface of constant index, such as i=10 or k=-1 (the "
+        "last), or a plane such as x=.5. [default: no slice; the walls are drawn, or the whole boundary of "
+        "a volume without walls]",
     )] = None,
     seen_from: Annotated[str | None, _option(
         "--seen-from", metavar="AZIMUTH,ELEVATION",
-        help="Direction in degrees that volumes and surfaces are seen from. [default: -125,25]",
+        help="Direction from which volumes and surfaces are seen: azimuth and elevation in degrees. "
+        "[default: -125,25]",
     )] = None,
     every: Annotated[int | None, _option(
-        "--every", metavar="K", help="Draw every K-th grid line. [default: as many as can be distinguished]",
+        "--every", metavar="K",
+        help="Draw every K-th grid line. [default: as many lines as can be distinguished]",
     )] = None,
 ) -> int:
     """Draw grids, coloured by a quality metric."""

@@ -22,33 +22,37 @@ def quality(
     run: o.InputOptions,
     gates: o.GateOptions,
     plot: Annotated[str | None, _output(
-        "--plot", metavar="F.png", help="Draw the grid, coloured by max_angle.",
+        "--plot", metavar="F.png", help="Draw the grid into this file, coloured by max_angle.",
     )] = None,
     html: Annotated[str | None, _output(
         "--html", metavar="F.html",
-        help="Write a report as one page, with pictures, histograms, worst places, and what --fail-on and "
-        "--profile find; of more than 20 grids the worst are shown.",
+        help="Write a report as one page: pictures, histograms, the worst cells, and the results of "
+        "--fail-on and --profile. For more than 20 grids, the page shows the worst of them.",
     )] = None,
     per_cell: Annotated[str | None, _output(
-        "--per-cell", metavar="F.vts", help="Write every metric of every cell; of many blocks to an F.vtm.",
+        "--per-cell", metavar="F.vts",
+        help="Write a file with all metrics of every cell. A grid of many blocks needs the extension "
+        ".vtm.",
     )] = None,
     compare: Annotated[str | None, _check(
         "--compare", metavar="OTHER",
-        help="Reference grids of the same sizes: prints the relative L2 distance, the distance near walls, "
-        "the largest one and that of the boundary, folded cells, and ratios of angles.",
+        help="File with reference grids of the same size. The report then has the L2 distance from the "
+        "reference relative to its size, the distance near walls, the largest distance, the distance of the "
+        "boundaries, folded cells and ratios of angles.",
     )] = None,
     pair: Annotated[Literal["auto", "name", "order"] | None, _check(
         "--pair", metavar="auto|name|order",
-        help="How grids are matched with those of --compare. auto: a single reference serves every grid; "
-        "several are matched by name where they have names, else by order. [default: auto]",
+        help="Rule that assigns grids to the references of --compare: by name, or by order. auto compares "
+        "all grids with a single reference; several references are matched by name if they have names, else "
+        "by order. [default: auto]",
     )] = None,
     summary: Annotated[bool, _output(
-        "--summary", help="One table (or JSON object) over all grids, a row each.",
+        "--summary", help="Print one table for all grids, with one row per grid; with --json one object.",
     )] = False,
     from_format: o.From = None,
     threads: o.Threads = None,
 ) -> int:
-    """Measure grids: folded cells, angles, skewness."""
+    """Measure the quality of grids: folded cells, angles, skewness."""
     from meshonet.geometry.quality.report import COMPARED
     from meshonet.geometry.threads import limited_to
     from meshonet_cli.tasks.qualities import measure_grids

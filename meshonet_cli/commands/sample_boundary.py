@@ -22,37 +22,39 @@ def sample_boundary(
     run: o.RunOptions,
     source: Annotated[list[str] | None, typer.Argument(
         metavar="SOURCE", show_default=False,
-        help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input; a "
-        "folder or .zip of them, or @FILE, a list of them. None with --family.",
+        help="File with a boundary (airfoil, points, dataset or grid), a designation such as naca:2412, or "
+        "- for standard input. A folder or a .zip file stands for all boundaries in it, and @FILE for the "
+        "inputs that FILE lists. Must be omitted with --family.",
     )] = None,
     family: Annotated[str | None, _option(
         "--family", metavar="NAME",
-        help="Draw from a family instead: arch, hexagon, wrench, semicircle, airfoil, hole (the six of the "
-        "paper), procedural (random airfoils), four-sided (random quads) or bodies (random bodies in far "
-        "fields). 101x101 nodes unless --res says otherwise.",
+        help="Draw random shapes of this family instead of reading files: arch, hexagon, wrench, "
+        "semicircle, airfoil or hole (the six families of the MeshONet paper), procedural (random "
+        "airfoils), four-sided (random quad domains) or bodies (random bodies in far fields). Without --res "
+        "they have 101x101 nodes.",
     )] = None,
     count: Annotated[int | None, _option(
-        "--count", metavar="N", min=1, help="Number of members to draw of the family. [default: 1]",
+        "--count", metavar="N", min=1, help="Number of shapes to draw from the family. [default: 1]",
     )] = None,
     spread: Annotated[str | None, _option(
-        "--range", metavar="A:B", help="Range that the family's parameter is drawn from. [default: the "
-        "paper's]",
+        "--range", metavar="A:B",
+        help="Interval from which the parameter of the family is drawn. [default: that of the paper]",
     )] = None,
     seed: Annotated[int | None, _option(
-        "--seed", metavar="S", min=0, help="Seed of the draw. [default: 0]",
+        "--seed", metavar="S", min=0, help="Seed of the random numbers. [default: 0]",
     )] = None,
     split: Annotated[str | None, _option(
         "--split", metavar="HOW",
-        help="Keep a sixth of the family for tests: interpolation (the middle of the range), extrapolation "
-        "(one end of it) or random. The .h5 file records the split: train uses it, and FILE.h5#test reads "
-        "the test part.",
+        help="Reserve a sixth of the shapes for tests: with interpolation from the middle of the parameter "
+        "range, with extrapolation from one end of it, with random at random. The .h5 file records the "
+        "split, which train uses; FILE.h5#test reads the test shapes.",
     )] = None,
     sensors: Annotated[int | None, _option(
         "--sensors", metavar="M", min=2,
-        help="Also keep M boundary nodes as sensors (dataset sensors of an .h5 file).",
+        help="Store M boundary nodes of each shape as sensors, in the dataset sensors of the .h5 file.",
     )] = None,
 ) -> int:
-    """Turn geometry into boundaries of four edges."""
+    """Place nodes on the four edges of a boundary."""
     from meshonet.geometry.errors import InputError
     from meshonet.geometry.families.draw import draws
     from meshonet_cli.batch.drawn import DrawnInputs

@@ -22,7 +22,7 @@ EXAMPLES = (
 _option = o.option_of(o.METHOD)
 
 AUTO = (
-    "hyperbolic around bodies with a first cell and for C grids (whose first cell it chooses if none is "
+    "hyperbolic for bodies with a first cell and for C grids (whose first cell it chooses if none is "
     "given), unless {coarse}, {refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
 )
 SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves} | {"auto": AUTO}
@@ -46,38 +46,43 @@ def solve_pde(
     )] = "auto",
     tol: Annotated[float | None, _option(
         "--tol", metavar="T",
-        help="Stop at this residual, relative to that of the interpolated start (variational: stop when no "
-        "node moves by more than about T times the square root of the domain's area). [default: where more "
-        "cycles would change the grid by less than its discretisation error]",
+        help="Stop when the residual, relative to that of the transfinite interpolation, is below T. The "
+        "variational method stops when no node moves by more than about T times the square root of the area "
+        "of the domain. [default: stop when more iterations would change the grid by less than its "
+        "discretisation error]",
     )] = None,
     max_cycles: Annotated[int | None, _option(
         "--max-cycles", metavar="N", min=1,
-        help="Multigrid cycles (variational: iterations at full resolution) at the most. [default: 30 (200)]",
+        help="Largest number of multigrid cycles, or of iterations at full resolution for the variational "
+        "method. [default: 30, variational 200]",
     )] = None,
     coarse: Annotated[str, _option(
         "--coarse", metavar="auto|off|N", show_default=True,
-        help="Solve on N x N nodes and interpolate to --res by splines. auto does so for quads and C grids "
-        "of more than 512 nodes a side with winslow (N is then 257) and of more than 257 with variational "
-        "(129), where the quality measures the same; not with --tol, --max-cycles or --initial.",
+        help="Solve on N x N nodes and interpolate to --res by splines; off solves on all nodes. auto uses "
+        "N = 257 for winslow above 512 nodes along a side, and N = 129 for variational above 257, where the "
+        "quality is the same. It applies to quad and C grids without --tol, --max-cycles and --initial.",
     )] = "auto",
     refine: o.Refine = 0,
-    initial: Annotated[str | None, _option("--initial", metavar="GRID", help="Grid to start from.")] = None,
+    initial: Annotated[str | None, _option("--initial", metavar="GRID",
+        help="File with the grid from which the iteration starts.",
+    )] = None,
     history: Annotated[str | None, o.option_of(o.IO)(
         "--history", metavar="F.csv",
-        help="Write residual, change, seconds, folded cells and functional of every cycle to F.csv.",
+        help="Write residual, change, seconds, folded cells and functional of every cycle to a CSV file.",
     )] = None,
     slide: o.Slide = None,
     wall_angle: o.WallAngle = None,
     repair_margin: Annotated[int | None, o.option_of(o.CHECKS)(
         "--repair-margin", metavar="CELLS", min=2, max=24,
-        help="Width of the band of cells around folded ones that moves when they are unfolded; 12 is slower "
-        "and smoother. [default: 6, more where that is not enough]",
+        help="Width, in cells, of the region around folded cells in which the repair moves nodes. Larger "
+        "values are slower and give smoother grids. [default: 6, increased if that does not suffice]",
     )] = None,
 ) -> int:
     """Make grids by elliptic equations, a variational method, or marching.
 
-    In space, six faces (of a grid, or six patches that enclose a volume) are filled, the patches of a surface
-    are marched off by --method hyperbolic, and several blocks are smoothed across their interfaces.
+    In three dimensions, a volume inside six faces is filled; the faces are those of a grid, or six patches.
+    With --method hyperbolic a volume is marched from the patches of a surface. A grid of several blocks is
+    smoothed across the interfaces of its blocks.
     """
     from meshonet_cli.tasks.grids import initial_grid, write_grids
 

@@ -30,61 +30,75 @@ class VolumeFiles(Files):
 def stack(
     sections: Annotated[list[str], typer.Argument(
         metavar="SECTIONS.toml", show_default=False,
-        help="File with two sections or more: airfoil (a file or naca:2412), chord, z, and where needed x, y "
-        "and twist, or sweep and dihedral; or - for standard input.",
+        help="File with at least two sections, or - for standard input. Each section of a wing or blade has "
+        "an airfoil (a file or naca:2412), a chord, its position z and, where needed, x, y and twist, or "
+        "sweep and dihedral. Sections of a duct have an outline instead: circle:RADIUS or a file with a "
+        "closed curve. A row of blades has profiles, hub and shroud instead.",
     )],
     files: VolumeFiles,
     run: o.RunOptions,
     gates: o.GateOptions,
     around: Annotated[int | None, _sampling(
-        "--around", metavar="N", help="Nodes around a section, an odd number. [default: 129]",
+        "--around", metavar="N", help="Number of nodes around each section, an odd number. [default: 129]",
     )] = None,
     span: Annotated[int | None, _sampling(
-        "--span", metavar="N", help="Nodes from the first section to the last. [default: 49]",
+        "--span", metavar="N",
+        help="Number of nodes along z, from the first to the last section. [default: 49]",
     )] = None,
     base: Annotated[float | None, _sampling(
         "--base", metavar="H",
-        help="Least height of trailing edges, in chords of their section; thinner ones are opened to it. "
-        "[default: 0.005]",
+        help="Smallest height of trailing edges, in chords of their section. Thinner edges of wings and "
+        "blades are opened to this height. [default: 0.005]",
+    )] = None,
+    cells: Annotated[int | None, _sampling(
+        "--cells", metavar="N", help="Approximate number of cells of a blade row. [default: 500000]",
     )] = None,
     far_field: Annotated[float | None, _sampling(
-        "--far-field", metavar="R", help="Distance of the far field, in longest chords. [default: 15]",
+        "--far-field", metavar="R",
+        help="Distance of the far field from a wing or blade, in units of the longest chord. [default: "
+        "15]",
     )] = None,
     tip: Annotated[Literal["round", "flat", "open"] | None, _volume(
         "--tip", metavar="round|flat|open",
-        help="How a wing ends: half as high as thick, flat, or not closed. [default: what the file says, or "
+        help="Shape of the tip of a wing: round closes it with a cap of half the local thickness, flat with "
+        "a plane, and open leaves it open, in a plane of symmetry. [default: as given in the file, else "
         "round]",
     )] = None,
     revolve: Annotated[float | None, _volume(
         "--revolve", metavar="DEG",
-        help="Have z of blades and ducts turn about an axis, by this from the first section to the last.",
+        help="Bend the z axis of a blade or duct around --axis, by this angle in degrees from the first to "
+        "the last section.",
     )] = None,
     axis: o.Axis = None,
     surface: Annotated[bool, _volume(
-        "--surface", help="Write the patches of the surface only, for other programs or solve-pde.",
+        "--surface", help="Write only the patches of the surface, for other programs or for solve-pde.",
     )] = False,
     layers: o.Layers = None,
     first_cell: Annotated[float | None, _layer(
         "--first-cell", "--wall-spacing", metavar="H",
-        help="Height of the first cell at every node of the wall, in longest chords. [default: 0.001]",
+        help="Height of the first cell at every wall node, in units of the longest chord. [default: 0.001]",
     )] = None,
     y_plus: o.YPlus = None,
     reynolds: Annotated[float | None, _layer(
-        "--reynolds", metavar="RE", help="Reynolds number of the longest chord.",
+        "--reynolds", metavar="RE", help="Reynolds number for --y-plus, based on the longest chord.",
     )] = None,
     growth: Annotated[float | None, _layer(
         "--growth", metavar="G",
-        help="Ratio of neighbouring cells away from the wall; it decides the number of layers. "
-        "[default: 1.2, or what --layers need]",
+        help="Ratio of neighbouring cells along a grid line away from the wall. It determines the number of "
+        "layers. [default: 1.2, or the ratio that follows from --layers]",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
 ) -> int:
-    """Make volumes around wings and blades, and in ducts, from sections."""
+    """Make volume grids of wings, ducts and blade rows from cross-sections.
+
+    The grid surrounds a wing or a blade. In a duct it fills the inside, from the first section to the last.
+    """
     from meshonet_cli.tasks.volumes import write_stacks
 
     chosen = {
-        "around": around, "span": span, "base": base, "far_field": far_field, "first_cell": first_cell,
+        "around": around, "span": span, "base": base, "cells": cells, "far_field": far_field,
+        "first_cell": first_cell,
         "y_plus": y_plus, "reynolds": reynolds, "layers": layers, "growth": growth, "threads": threads,
         "revolve": revolve, "axis": o.axis_of(axis),
     }

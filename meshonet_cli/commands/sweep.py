@@ -31,66 +31,72 @@ class SectionFiles(Files):
 def sweep(
     names: Annotated[list[str], typer.Argument(
         metavar="OUTLINE... [PATH]", show_default=False,
-        help="Cross-sections: circle:RADIUS, or a file with a closed curve, a domain, a layout or a planar "
-        "grid. Then the path of all, unless there is --revolve: a file of points x y z, one a line, or lines "
-        "and arcs in TOML.",
+        help="Cross-sections, each circle:RADIUS or a file with a closed curve, a domain, a layout or a "
+        "planar grid. The last word is the path, a file with lines and arcs in TOML or with one point x y z "
+        "per line. With --revolve there is no path.",
     )],
     run: o.RunOptions,
     gates: o.GateOptions,
     files: SectionFiles,
     res: Annotated[str | None, _sampling(
-        "--res", metavar="N|NIxNJ", help="Nodes along the sides of a four-sided section. [default: 65x33]",
+        "--res", metavar="N|NIxNJ",
+        help="Number of nodes along the sides of a four-sided section. [default: 65x33]",
     )] = None,
     around: Annotated[int | None, _sampling(
         "--around", metavar="N",
-        help="Cells around a circle, a multiple of four. [default: what --cells need, at least 88, which "
-        "keep the area within 0.1 %]",
+        help="Number of cells around a circle, a multiple of four. [default: derived from --cells, and at "
+        "least 88, with which the area is accurate to 0.1 %]",
     )] = None,
     planes: Annotated[int | None, _volume(
         "--planes", metavar="K",
-        help="Planes of nodes along the path. [default: cells turn by up to 4 degrees and are up to three "
-        "times as long as wide]",
+        help="Number of planes of nodes along the path. [default: as many as needed for cells that turn by "
+        "at most 4 degrees and are at most three times as long as wide]",
     )] = None,
     up: Annotated[str | None, _volume(
         "--up", metavar="X,Y,Z",
-        help="Direction that the section's y axis points to where the path starts. [default: z, or y for a "
-        "path along z]",
+        help="Direction of the section's y axis at the start of the path. [default: z, or y for a path that "
+        "starts along z]",
     )] = None,
     twist: Annotated[float, _volume(
-        "--twist", metavar="DEGREES", show_default=True, help="Turn the section by this from start to end.",
+        "--twist", metavar="DEGREES", show_default=True,
+        help="Angle by which the section rotates about the path from start to end, in degrees.",
     )] = 0.0,
     scale: Annotated[float, _volume(
         "--scale", metavar="F", show_default=True,
-        help="Size of the section at the end, in sizes at the start.",
+        help="Size of the section at the end of the path relative to its size at the start.",
     )] = 1.0,
     revolve: o.Revolve = None,
     axis: o.Axis = None,
     cells: Annotated[int | None, o.option_of(o.DOMAIN)(
         "--cells", metavar="N",
-        help="About so many cells in the section. [default: 88 around a circle, or 2500]",
+        help="Approximate number of cells in the section. [default: derived from --around for a circle, "
+        "else 2500]",
     )] = None,
     cell_size: Annotated[float | None, o.option_of(o.DOMAIN)(
-        "--cell-size", metavar="H", help="Length of edges in the section away from walls, in its unit.",
+        "--cell-size", metavar="H", help="Edge length of cells in the section away from walls, in its unit.",
     )] = None,
     layout: Annotated[str | None, o.option_of(o.DOMAIN)(
-        "--layout", metavar="LAYOUT.json", help="Take the blocks of a layout for the section.",
+        "--layout", metavar="LAYOUT.json", help="Use the blocks of this layout for the section.",
     )] = None,
     walls: o.Walls = None,
     first_cell: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
         "--first-cell", "--wall-spacing", metavar="H",
-        help="Height of the first cell at walls, in the section's unit.",
+        help="Height of the first cell at walls, in the unit of the section.",
     )] = None,
     y_plus: o.YPlus = None,
     reynolds: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
-        "--reynolds", metavar="RE", help="Reynolds number of the section's extent, a pipe's diameter.",
+        "--reynolds", metavar="RE",
+        help="Reynolds number for --y-plus, based on the extent of the section (the diameter of a "
+        "pipe).",
     )] = None,
     growth: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
-        "--growth", metavar="G", help="Largest ratio of neighbouring cells away from walls. [default: 1.2]",
+        "--growth", metavar="G",
+        help="Largest ratio of neighbouring cells along a grid line away from walls. [default: 1.2]",
     )] = None,
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
 ) -> int:
-    """Make volumes of pipes and ducts, cross-sections carried along curves."""
+    """Make volume grids of pipes and ducts by sweeping cross-sections along curves."""
     from meshonet.geometry.blocks.revolve import revolution
     from meshonet.geometry.errors import InputError
     from meshonet.solvers.sweeping.sweep import Sweep

@@ -30,7 +30,8 @@ def tfi(
     )] = "tfi",
     blending: Annotated[BlendingName | None, _option(
         "--blending", metavar="arclength|linear",
-        help="Blend the edges by their arc length, or linearly by index. [default: arclength]",
+        help="Blending functions of the interpolation: arclength uses the relative arc length along the "
+        "edges, linear the node index. [default: arclength]",
     )] = None,
 ) -> int:
     """Make grids by transfinite interpolation."""

@@ -25,21 +25,23 @@ class TrainOptions:
 
     model: Annotated[str | None, _option(
         "--model", metavar="NAME",
-        help="strip (airfoil operator), quad (four-sided operator), meshonet (the paper's), meshonet-hard "
-        "(exact boundary), deeponet, pod-deeponet, fno1d, fno2d (the baselines), mionet, mgnet, meshnet "
-        "(physics-informed). [default: meshonet for grids, strip for boundaries]",
+        help="Architecture: strip (operator for airfoils), quad (operator for four-sided domains), meshonet "
+        "(the network of the MeshONet paper), meshonet-hard (the same with an exact boundary), one of the "
+        "baselines deeponet, pod-deeponet, fno1d, fno2d and mionet, or one of the physics-informed networks "
+        "mgnet and meshnet. [default: meshonet for datasets of grids, strip for datasets of boundaries]",
     )] = None
     split: Annotated[str | None, _option(
         "--split", metavar="HOW|FILE",
-        help="Grids kept for the test: interpolation, extrapolation, random, or a file with train or test "
-        "for each. [default: as the dataset says]",
+        help="Shapes reserved for the test: interpolation, extrapolation, random, or a file that has train "
+        "or test for each shape. [default: the split recorded in the dataset]",
     )] = None
     epochs: Annotated[int | None, _option(
-        "--epochs", metavar="N", min=1, help="Passes over the shapes. [default: strip 24, quad 64, others "
-        "15000]",
+        "--epochs", metavar="N", min=1,
+        help="Number of passes over the shapes. [default: strip 24, quad 64, others 15000]",
     )] = None
     batch: Annotated[int | None, _option(
-        "--batch", metavar="N", min=1, help="Shapes per step. [default: strip 32, quad 64, others 30]",
+        "--batch", metavar="N", min=1,
+        help="Number of shapes per optimiser step. [default: strip 32, quad 64, others 30]",
     )] = None
     rate: Annotated[float | None, _option(
         "--rate", "--lr", metavar="R",
@@ -47,53 +49,57 @@ class TrainOptions:
     )] = None
     schedule: Annotated[Literal["cosine", "step"] | None, _option(
         "--schedule", metavar="cosine|step",
-        help="Learning rate: cosine falls to zero; step is times 0.9 after each fifteenth part of the "
-        "training. [default: strip and quad cosine, others step]",
+        help="Schedule of the learning rate: cosine decreases it to zero, step multiplies it by 0.9 after "
+        "each fifteenth of the training. [default: cosine for strip and quad, step for others]",
     )] = None
     points: Annotated[str | None, _option(
         "--points", metavar="N|all",
-        help="Points of the grid drawn at random for each step, a sixth of them on the boundary. [default: "
-        "1200]",
+        help="Number of grid points that are drawn at random for each step, a sixth of them on the "
+        "boundary. [default: 1200]",
     )] = None
     held_out: Annotated[int | None, _option(
         "--held-out", metavar="N", min=0,
-        help="Shapes kept out of training, to watch the loss. [default: strip the last 300, quad 600, others "
-        "none]",
+        help="Number of shapes excluded from training, on which the loss is monitored. [default: strip the "
+        "last 300, quad 600, others 0]",
     )] = None
     initial: Annotated[str | None, _option(
-        "--initial", metavar="NAME|PATH", help="Quad model to start from. [default: random weights]",
+        "--initial", metavar="NAME|PATH",
+        help="Model from which the training of a quad operator starts. [default: random weights]",
     )] = None
     patience: Annotated[int | None, _option(
         "--patience", metavar="EPOCHS", min=1,
-        help="Stop when the loss of the shapes held out has not fallen for this many epochs; keep the best "
-        "weights.",
+        help="Stop when the loss on the held-out shapes has not decreased for this many epochs, and keep "
+        "the best weights.",
     )] = None
     seed: Annotated[int, _option(
         "--seed", metavar="S", min=0, show_default=True,
-        help="Seed of the first weights, the order of shapes and the points drawn.",
+        help="Seed of the initial weights, the order of the shapes and the drawn points.",
     )] = 0
     threads: Annotated[int, _option(
-        "--threads", metavar="N", min=1, show_default=True, help="Threads of torch.",
+        "--threads", metavar="N", min=1, show_default=True, help="Number of threads of torch.",
     )] = 1
     device: Annotated[Literal["auto", "cpu", "cuda"] | None, _option(
         "--device", metavar="auto|cpu|cuda",
-        help="Where to compute; auto takes CUDA where torch sees it. [default: strip and quad cpu, others "
-        "auto]",
+        help="Device for the training; auto is CUDA if torch finds it, else the CPU. [default: cpu for "
+        "strip and quad, auto for others]",
     )] = None
     amp: Annotated[bool, _option(
-        "--amp", help="Multiply in bfloat16 where that is safe; twice as slow on a CPU without units for it.",
+        "--amp",
+        help="Multiply matrices in bfloat16 where the accuracy permits it. On a CPU without bfloat16 "
+        "units this takes twice as long.",
     )] = False
     compiled: Annotated[bool, _option(
         "--compile",
-        help="Compile the step first (torch.compile; needs a C++ compiler); no gain for small models on a "
-        "CPU.",
+        help="Compile the training step with torch.compile, which needs a C++ compiler. Small models on a "
+        "CPU gain nothing.",
     )] = False
     resume: Annotated[bool, _option(
-        "--resume", help="Continue from the checkpoint beside the output, if there is one.",
+        "--resume", help="Continue from the checkpoint next to the output, if it exists.",
     )] = False
     checkpoint_every: Annotated[int | None, _option(
         "--checkpoint-every", metavar="EPOCHS", min=1,
-        help="Epochs between checkpoints. [default: strip and quad 1, others a two-hundredth of all]",
+        help="Number of epochs between checkpoints. [default: 1 for strip and quad, a two-hundredth of all "
+        "epochs for others]",
     )] = None
     from_format: o.From = None
 
@@ -101,25 +107,29 @@ class TrainOptions:
 def train(
     dataset: Annotated[list[str], typer.Argument(
         metavar="DATASET", show_default=False,
-        help="Solved grids of one family, from solve-pde, as .h5. The strip operator takes O boundaries "
-        "instead, e.g. from sample-boundary --family procedural. The quad operator takes two datasets of the "
-        "same domains, one solved by winslow and one by variational, with 33x33 nodes (65x33 around bodies).",
+        help="Solved grids of one family as .h5 file, made by solve-pde. The strip operator takes "
+        "boundaries of O grids instead, for example from sample-boundary --family procedural. The quad "
+        "operator takes two datasets of the same domains, one solved by winslow and one by variational, "
+        "with 33x33 nodes (65x33 around bodies).",
     )],
-    output: Annotated[str, _output("-o", "--output", metavar="FILE", help="Model file, .safetensors.")],
+    output: Annotated[str, _output("-o", "--output", metavar="FILE",
+        help="Model file to write, .safetensors.",
+    )],
     printing: o.PrintOptions,
     options: TrainOptions,
     settings: Annotated[list[str] | None, _option(
         "--set", metavar="NAME=VALUE",
-        help="Setting of the model, e.g. sensors=80, or a weight of the quad operator's loss, e.g. folds=3; "
-        "repeatable. The page on networks of the paper in the documentation lists them.",
+        help="Setting of the model, e.g. sensors=80, or a weight in the loss of the quad operator, e.g. "
+        "folds=3. The page on networks of the paper in the documentation lists them. Repeatable.",
     )] = None,
     log_csv: Annotated[str | None, _output(
-        "--log-csv", metavar="FILE", help="Write loss, its parts, rate and time to FILE.",
+        "--log-csv", metavar="FILE",
+        help="Write the loss, its terms, the learning rate and the time to a CSV file.",
     )] = None,
 ) -> int:
-    """Fit a neural operator to datasets (needs the extra `train`).
+    """Train a neural operator on datasets (needs the extra `train`).
 
-    Several processes under torchrun share each step.
+    Several processes started by torchrun share the work of each training step.
     """
     from meshonet.api.train import train as fit
     from meshonet_cli.report.training import Log, result_lines
@@ -138,7 +148,7 @@ def train(
 
 
 def _values(words: Sequence[str]) -> dict[str, Any]:
-    """Return the values of ``name=value`` words by name, read as JSON where they are that."""
+    """Return the values of ``name=value`` words by name, interpreted as JSON where possible."""
     values: dict[str, Any] = {}
     for word in words:
         name, mark, text = word.partition("=")

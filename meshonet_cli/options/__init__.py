@@ -1,7 +1,7 @@
-"""Options that several commands share, each defined once: a module is a group of the help text.
+"""Options that several commands share; each module contains a group of the help text.
 
-A command takes an option by its type (``res: o.Resolution = None``), or a block of them, a dataclass whose
-fields become options (``layers: o.LayerOptions``, see `meshonet_cli.options.groups`).
+A command accepts an option by its type (``res: o.Resolution = None``), or a block of options: a dataclass
+whose fields become options (``layers: o.LayerOptions``, see `meshonet_cli.options.groups`).
 """
 
 from meshonet_cli.options.boundary_layer import *  # noqa: F403

@@ -1,4 +1,4 @@
-"""Options that say how high the cells at walls are, and how they grow."""
+"""Options for the first-cell height at walls and the growth of cells."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -10,28 +10,31 @@ _option = option_of(BOUNDARY_LAYER)
 # fmt: off
 WallAngle = Annotated[float | None, _option(
     "--wall-angle", metavar="DEGREES",
-    help="Angle at which grid lines leave walls, for --method steger-sorenson. Walls are the sides with a "
-    "first cell; without one, south and north, or the body. [default: 90]",
+    help="Angle in degrees at which grid lines leave walls; it applies to --method steger-sorenson. Walls "
+    "are the sides with a first cell. If no side has one, they are south and north, or the body. [default: "
+    "90]",
 )]
 Slide = Annotated[bool | None, _option(
     "--slide/--no-slide",
-    help="Move the nodes of south and north of a four-sided domain along these walls to where grid lines "
-    "leave at right angles. [default: with --first-cell, when this command samples the nodes]",
+    help="Move the nodes of south and north along these walls, so that grid lines leave the walls at right "
+    "angles. Applies to four-sided domains. [default: --slide if first cells are given there and this "
+    "command places the nodes of the boundary, else --no-slide]",
 )]
 FirstCell = Annotated[float | None, _option(
     "--first-cell", "--wall-spacing", metavar="H",
-    help="Height of the first cell at every wall node: around a body in chords, in a four-sided domain "
-    "off south and north, and in one of many blocks around holes, in its own unit. Around bodies, solve-pde "
-    "and infer then march the grid from the wall.",
+    help="Height of the first cell at every wall node. Around a body the unit is the chord, elsewhere that "
+    "of the input. The walls of a four-sided domain are south and north; those of a grid of many blocks are "
+    "its holes, or --walls. Around a body solve-pde and infer then march the grid from the wall.",
 )]
 YPlus = Annotated[float | None, _option(
     "--y-plus", metavar="Y",
-    help="The same as a y+ of its height, estimated for a turbulent flat plate; needs --reynolds.",
+    help="Height of the first cell as y+, instead of --first-cell. The conversion assumes a turbulent flat "
+    "plate and needs --reynolds.",
 )]
 Reynolds = Annotated[float | None, _option(
     "--reynolds", metavar="RE",
-    help="Reynolds number of the chord; of a four-sided domain, of the extent of its south side; of many "
-    "blocks, of the extent of all holes.",
+    help="Reynolds number for --y-plus. Its reference length is the chord of a body, the extent of the "
+    "south side of a four-sided domain, or the extent of all holes of a grid of many blocks.",
 )]
 
 
@@ -44,34 +47,37 @@ class LayerOptions:
     reynolds: Reynolds = None
     chord_fraction: Annotated[float, _option(
         "--chord-fraction", metavar="X", show_default=True,
-        help="Where along the chord --y-plus is estimated, 0 to 1.",
+        help="Position along the chord, from 0 to 1, at which --y-plus is converted to a height.",
     )] = 0.5
     growth: Annotated[float | None, _option(
         "--growth", metavar="G",
-        help="Largest ratio of neighbouring cells away from the wall, e.g. 1.15; without --res it decides "
-        "the number of rows. [default: what the rows need]",
+        help="Largest ratio of the heights of neighbouring cells along a grid line away from the wall, e.g. "
+        "1.15. Without --res it determines the number of rows. [default: 1.2 for many blocks, else the "
+        "ratio that follows from the number of rows]",
     )] = None
     constant_layers: Annotated[int | None, _option(
         "--constant-layers", metavar="K", min=1,
-        help="Number of equally high first cells, before they grow. [default: 1]",
+        help="Number of rows at the wall with the height of the first cell, before the cells grow. "
+        "[default: 1]",
     )] = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class SideOptions:
-    """First cells off single sides of four-sided domains."""
+    """First cells at single sides of four-sided domains."""
 
     spacing_south: Annotated[float | None, _option(
         "--spacing-south", metavar="H",
-        help="Height of the first cell at every node of the south side of a four-sided domain, in its unit.",
+        help="Height of the first cell at every node of the south side of a four-sided domain, in the unit "
+        "of the input.",
     )] = None
     spacing_north: Annotated[float | None, _option(
-        "--spacing-north", metavar="H", help="The same off the north side.",
+        "--spacing-north", metavar="H", help="Height of the first cell at every node of the north side.",
     )] = None
     spacing_west: Annotated[float | None, _option(
-        "--spacing-west", metavar="H", help="The same off the west side.",
+        "--spacing-west", metavar="H", help="Height of the first cell at every node of the west side.",
     )] = None
     spacing_east: Annotated[float | None, _option(
-        "--spacing-east", metavar="H", help="The same off the east side.",
+        "--spacing-east", metavar="H", help="Height of the first cell at every node of the east side.",
     )] = None
 # fmt: on

@@ -1,4 +1,4 @@
-"""Options that say what a grid must be to be written, and what ends the program with 1."""
+"""Options for the validity of grids, and for quality limits that set the exit code."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,10 @@ _option = option_of(CHECKS)
 
 
 class Profile(Enum):
-    """Profiles of `meshonet.geometry.quality.profiles`; typer repeats choices of an enumeration only."""
+    """Profiles of `meshonet.geometry.quality.profiles`.
+
+    Typer allows repeated options only for enumerations.
+    """
 
     openfoam = "openfoam"
     pointwise = "pointwise"
@@ -24,44 +27,45 @@ class Profile(Enum):
 
 # fmt: off
 AllowInvalid = Annotated[bool, _option(
-    "--allow-invalid", help="Write the grid even when cells are folded.",
+    "--allow-invalid", help="Write the grid even if it has folded cells.",
 )]
 
 
 @dataclass(frozen=True, kw_only=True)
 class CheckOptions:
-    """What a grid must be."""
+    """Validity of a grid."""
 
     repair: Annotated[bool | None, _option(
         "--repair/--no-repair",
-        help="Unfold folded cells, or refuse grids that have any. [default: solve-pde and infer unfold, tfi "
-        "refuses]",
+        help="Repair folded cells; with --no-repair a grid that has any is refused. [default: --repair for "
+        "solve-pde and infer, --no-repair for tfi]",
     )] = None
     allow_invalid: AllowInvalid = False
 
 
 @dataclass(frozen=True, kw_only=True)
 class GateOptions:
-    """What a grid must be to pass."""
+    """Quality limits of a grid."""
 
     fail_on: Annotated[list[str] | None, _option(
         "--fail-on", metavar="GATE",
-        help="Exit with 1 when this holds, e.g. 'max_angle>170', 'skewness.p99>0.8', 'folded>0'; repeatable. "
-        "Names: folded; max_angle, skewness and the other metrics; growth, wall_growth, equal_wall_cells, "
-        "far_field; non_orthogonality, face_skewness, box_ratio; of blocks irregular and more (the page on "
-        "quality in the documentation has all). Replaces the limit that a --profile has for the same figure. "
-        "Of several grids a table says which pass.",
+        help="Exit with code 1 if this condition holds, e.g. 'max_angle>170', 'skewness.p99>0.8' or "
+        "'folded>0'. The names include folded, max_angle, skewness, growth, wall_growth, equal_wall_cells, "
+        "far_field, non_orthogonality, face_skewness, box_ratio and, for grids of many blocks, irregular; "
+        "the page on quality in the documentation lists all of them. A gate replaces the limit of a "
+        "--profile for the same name. For several grids a table shows which of them pass. Repeatable.",
     )] = None
     profile: Annotated[list[Profile] | None, _option(
         "--profile", metavar="openfoam|pointwise|verdict|viscous",
-        help="Judge by the thresholds of other programs as by gates: pass, warn or FAIL, and exit with 1 "
-        "when one fails; repeatable. The page on quality in the documentation lists them.",
+        help="Check the grid against the thresholds of another program or guideline, with the result pass, "
+        "warn or FAIL for each of them. Exit with code 1 if one fails. The page on quality in the "
+        "documentation lists the thresholds. Repeatable.",
     )] = None
 
     def criteria(self, more: Sequence[str] = ()) -> "Criteria":
-        """Return gates and profiles; gates may name figures of `more` too.
+        """Return gates and profiles; gates may refer to the names in `more` too.
 
-        Raises InputError: a gate that is none.
+        Raises InputError: an invalid gate.
         """
         from meshonet.geometry.quality.criteria import Criteria
 

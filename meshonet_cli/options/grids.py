@@ -1,4 +1,4 @@
-"""The options of every command that turns boundaries into grids."""
+"""Options of the commands that make grids from boundaries."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class GridOptions(RunOptions, SamplingOptions, LayerOptions, CheckOptions, GateOptions, FileOptions):
-    """What boundaries become grids, how they are checked, and where they go."""
+    """Options for making, checking and writing grids."""
 
     threads: Threads = None
 
     def request(
         self, method: str, settings: Mapping[str, Any], *blocks: object, **more: Any
     ) -> "GridRequest":
-        """Return what is asked of the grids, `blocks` of options and `more` by the names of its fields.
+        """Return the request for the grids, from blocks of options and additional fields `more`.
 
         Raises InputError: as `GridRequest`.
         """

@@ -1,4 +1,4 @@
-"""Groups of options in help texts; blocks of options, dataclasses whose fields are options; bad values."""
+"""Groups of options in help texts, dataclasses of options, and errors for invalid values."""
 
 import dataclasses
 import functools
@@ -11,19 +11,23 @@ import typer
 IO, SAMPLING, BOUNDARY_LAYER = "Input and output", "Sampling", "Boundary layer"
 DOMAIN, VOLUME = "Domains of many blocks", "Volumes from surfaces"
 METHOD, CHECKS = "Method", "Checks"
-"""Headings of groups of options in the help; those above likewise."""
+"""Headings of the groups, with those above."""
 GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, DOMAIN, VOLUME, METHOD, CHECKS)  # in the order of the help text
 
 
 def option_of(group: str) -> Callable[..., Any]:
-    """Return `typer.Option` for an option of `group`; a default is shown where the help text has it."""
+    """Return `typer.Option` for an option of `group`.
+
+    Defaults are shown only where the help text contains them.
+    """
     return functools.partial(typer.Option, rich_help_panel=group, show_default=False)
 
 
 def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return `function` with the fields of its dataclass parameters as parameters of their own.
+    """Return `function` with the fields of its dataclass parameters as separate parameters.
 
-    The options of a block are declared once, with their defaults, and the function has them by group::
+    The options of a block are declared once, with their defaults, and the function receives them as one
+    object::
 
         def tfi(boundary: Boundaries, grids: GridOptions, sides: SideOptions): ...
     """
@@ -52,19 +56,21 @@ def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def values_of(block: Any, options: object) -> dict[str, Any]:
-    """Return by name the fields of a `block`, a dataclass, that `options`, derived from it, have."""
+    """Return, by name, the values in `options` of the fields of `block`, a base class of it."""
     return {each.name: getattr(options, each.name) for each in dataclasses.fields(block)}
 
 
 def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
-    """Return the InputError for an option's `text`, which is not `what` it should be."""
+    """Return the InputError for an option with the value `text`, which is not `what` is expected."""
     from meshonet.geometry.errors import InputError
 
     return InputError(f"{text!r} is not {what}", remedy, parameter=parameter)
 
 
 def numbers(text: str | None, counts: tuple[int, ...], what: str, remedy: str, parameter: str) -> Any:
-    """Return the numbers of an option, as many as one of `counts`, None for None, or raise InputError.
+    """Return the numbers in an option, whose count must be one of `counts`; None for None.
+
+    Raises InputError: other text.
 
     >>> numbers("0,57.5", (2,), "a vector", "use DX,DY", "pitch")
     (0.0, 57.5)
@@ -81,7 +87,7 @@ def numbers(text: str | None, counts: tuple[int, ...], what: str, remedy: str, p
 
 
 def only_with(needed: str, present: bool, **others: object) -> None:
-    """Raise InputError when one of the `others` is there (not None) without the option `needed`."""
+    """Raise InputError if one of the `others` is given without the option `needed`."""
     from meshonet.geometry.errors import InputError
 
     for name, value in others.items():

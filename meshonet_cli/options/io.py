@@ -1,4 +1,4 @@
-"""Options that say what is read, which of many inputs, what is written and what is printed."""
+"""Options for input, selection of inputs, output and messages."""
 
 import re
 from collections.abc import Sequence
@@ -20,46 +20,52 @@ _option = option_of(IO)
 # fmt: off
 Boundaries = Annotated[list[str], typer.Argument(
     metavar="BOUNDARY", show_default=False,
-    help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input; a "
-    "folder or .zip of them, or @FILE, a list of them.",
+    help="File with a boundary (airfoil, points, dataset or grid), a designation such as naca:2412, or - "
+    "for standard input. A folder or a .zip file stands for all boundaries in it, and @FILE for the inputs "
+    "that FILE lists.",
 )]
 Grids = Annotated[list[str], typer.Argument(
     metavar="GRID", show_default=False,
-    help="Grid file, or - for standard input; a folder of them, or @FILE, a list of them.",
+    help="File with a grid, or - for standard input. A folder stands for all grids in it, and @FILE for the "
+    "inputs that FILE lists.",
 )]
 Output = Annotated[str, _option(
     "-o", "--output", metavar="FILE",
-    help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also {name}, "
-    "{index}) or one .h5.",
+    help="File to write, or - for standard output. Several inputs need a pattern such as 'dir/{stem}.vts' "
+    "(the fields are {stem}, {name} and {index}), or one .h5 file for all results.",
 )]
 From = Annotated[str | None, _option(
-    "--from", metavar="FORMAT", help="Format of the input, when neither its ending nor its content says.",
+    "--from", metavar="FORMAT",
+    help="Format of the input. Needed if neither the extension nor the content of the file determines "
+    "it.",
 )]
 To = Annotated[str | None, _option(
     "--to", metavar="FORMAT",
-    help="Format of the output, when its ending does not say. [default on standard output: hdf5]",
+    help="Format of the output. Needed if the extension of the file does not determine it. [default: hdf5 "
+    "on standard output]",
 )]
 SkipExisting = Annotated[bool, _option(
-    "--skip-existing", help="Skip inputs whose output file, or part of a dataset, exists already.",
+    "--skip-existing", help="Skip an input if its output file, or its part of a dataset, already exists.",
 )]
 Threads = Annotated[int | None, _option(
     "--threads", metavar="N", min=1, max=64,
-    help="Threads that work on one large grid; the result is the same for any number. [default: all cores, "
-    "divided among --jobs]",
+    help="Number of threads for one large grid. The result does not depend on it. [default: all cores, "
+    "divided by --jobs]",
 )]
-AsJson = Annotated[bool, _option("--json", help="Print one JSON object on standard output for each result.")]
+AsJson = Annotated[bool, _option("--json", help="Print one JSON object per result on standard output.")]
 PartSize = Annotated[int | None, _option(
     "--part-size", metavar="N", min=1, max=1_000_000,
-    help="Write an .h5 dataset in parts of N inputs, out/part-00000.h5 and on, which out.h5 shows as one; "
-    "--skip-existing continues it. [default: in parts of up to 256 MiB where there are more than 10,000 "
-    "inputs, or a --shard]",
+    help="Number of inputs in each part of an .h5 dataset. The parts are files out/part-00000.h5, "
+    "out/part-00001.h5 and so on, which out.h5 presents as one dataset; --skip-existing continues an "
+    "unfinished one. [default: parts of up to 256 MiB for more than 10,000 inputs or with --shard, else a "
+    "dataset without parts]",
 )]
 Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class FileOptions(Files):
-    """Files of a command that turns files into files or datasets."""
+    """Output of a command that writes files or datasets."""
 
     output: Output
     from_format: From = None
@@ -70,14 +76,14 @@ class FileOptions(Files):
 
 @dataclass(frozen=True, kw_only=True)
 class PrintOptions:
-    """What is printed."""
+    """Messages of a command."""
 
     as_json: AsJson = False
-    quiet: Annotated[bool, _option("-q", "--quiet", help="Print warnings and errors only.")] = False
+    quiet: Annotated[bool, _option("-q", "--quiet", help="Print only warnings and errors.")] = False
     debug: Debug = False
 
     def session(self) -> "Session":
-        """Return the session that prints so."""
+        """Return the session with these options."""
         from meshonet_cli.terminal.session import Session
 
         return Session(quiet=self.quiet, as_json=self.as_json, debug=self.debug)
@@ -85,25 +91,25 @@ class PrintOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class InputOptions(PrintOptions):
-    """Which inputs are taken of folders, zip archives and lists, which of all inputs, what is printed."""
+    """Selection of inputs from folders, zip archives and lists; shards; messages."""
 
     pick: Annotated[list[str] | None, _option(
         "--pick", metavar="PATTERN",
-        help="Of folders, .zip files and lists take files of these names only, e.g. 'naca*'; case does not "
-        "matter. Can be repeated.",
+        help="Use only files whose name matches this pattern, e.g. 'naca*', from folders, .zip files and "
+        "lists. Upper and lower case are equivalent. Repeatable.",
     )] = None
     shard: Annotated[str | None, _option(
         "--shard", metavar="K/N",
-        help="Take every N-th input from the K-th on, for N jobs that share the work; of a dataset in parts, "
-        "every N-th part.",
+        help="Process every N-th input, starting with the K-th, so that N jobs can share the work. If the "
+        "output is a dataset in parts, process every N-th part.",
     )] = None
 
     def inputs(
         self, words: Sequence[str], *, grids: bool = False, suffixes: Sequence[str] = ()
     ) -> "Inputs":
-        """Return the inputs that `words` name: shapes, or `grids`, or files of other endings.
+        """Return the inputs that `words` name: shapes, `grids`, or files with the given extensions.
 
-        Raises InputError: as `Inputs`; a shard that is none.
+        Raises InputError: as `Inputs`; an invalid shard.
         """
         from meshonet.formats.inputs import Inputs, readable_suffixes
 
@@ -111,14 +117,14 @@ class InputOptions(PrintOptions):
         return Inputs(tuple(words), endings, tuple(self.pick or ()), self.part() if self.shard else (1, 1))
 
     def part(self) -> tuple[int, int]:
-        """Return K and N of the shard, 1 and 1 for all inputs. Raises InputError: it is none."""
+        """Return K and N of the shard, 1 and 1 for all inputs. Raises InputError: an invalid shard."""
         match = re.fullmatch(r"(\d{1,9})/(\d{1,9})", self.shard or "1/1", re.ASCII)
         if match is None:
             raise bad_value(str(self.shard), "a shard", "use K/N, e.g. 3/8 for the third of eight", "shard")
         return int(match[1]), int(match[2])
 
     def batch(self, inputs: Any, files: Files) -> "Batch":
-        """Return the run over `inputs`, in this process."""
+        """Return the batch over `inputs` in this process."""
         from meshonet_cli.batch.run import Batch
 
         return Batch(inputs, files, self.session())
@@ -126,24 +132,24 @@ class InputOptions(PrintOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class RunOptions(InputOptions):
-    """Options of inputs and printing, and where members of a batch are worked on."""
+    """Selection of inputs, messages, and the engine of a batch."""
 
     jobs: Annotated[int, _option(
-        "--jobs", metavar="N", min=1, max=1024, show_default=True, help="Processes for a batch.",
+        "--jobs", metavar="N", min=1, max=1024, show_default=True, help="Number of processes for a batch.",
     )] = 1
     engine: Annotated[EngineName, _option(
         "--engine", metavar="processes|dask|mpi", show_default=True,
-        help="What works on a batch: --jobs processes, a Dask cluster, or the ranks of MPI (mpiexec -n N "
-        "meshonet ...).",
+        help="Engine that distributes a batch: processes uses --jobs processes, dask a Dask cluster, and "
+        "mpi the ranks of MPI (mpiexec -n N meshonet ...).",
     )] = "processes"
     scheduler: Annotated[str | None, _option(
         "--scheduler", metavar="ADDRESS",
-        help="Scheduler of the Dask cluster, e.g. tcp://head:8786. [default: a cluster of --jobs processes "
-        "here]",
+        help="Address of the scheduler of the Dask cluster, e.g. tcp://head:8786. [default: a cluster of "
+        "--jobs processes on this machine]",
     )] = None
 
     def batch(self, inputs: Any, files: Files) -> "Batch":
-        """Return the run over `inputs`. Raises InputError: options that do not go together."""
+        """Return the batch over `inputs`. Raises InputError: options that exclude each other."""
         engine = Engine(self.engine, self.jobs, self.scheduler)
         return replace(super().batch(inputs, files), engine=engine)
 # fmt: on

@@ -8,15 +8,15 @@ from meshonet_cli.options.groups import METHOD, bad_value, option_of
 # fmt: off
 Refine = Annotated[int, option_of(METHOD)(
     "--refine", metavar="K", min=0, max=8,
-    help="Solve at --res, halve all cells and solve again, K times. The result is the finest grid of a "
-    "family; convert --coarsen makes the others from it. Of many blocks, --cells, --cell-size and --res say "
-    "what the coarsest grid has, --first-cell and --growth what the finest has.",
+    help="Number of refinements: solve at --res, then halve all cells and solve again, K times. The result "
+    "is the finest of K + 1 nested grids; convert --coarsen extracts the others. For many blocks --cells, "
+    "--cell-size and --res refer to the coarsest grid, --first-cell and --growth to the finest.",
 )]
 # fmt: on
 
 
 def polish_steps(text: str) -> Literal["auto", "off"] | int:
-    """Return the steps of ``auto``, ``off`` or a number, or raise InputError.
+    """Return the value of ``--polish``: ``auto``, ``off`` or a number. Raises InputError: other text.
 
     >>> polish_steps("off"), polish_steps("3")
     ('off', 3)
@@ -29,7 +29,9 @@ def polish_steps(text: str) -> Literal["auto", "off"] | int:
 
 
 def coarse_nodes(text: str) -> Literal["auto"] | int | None:
-    """Return the nodes of ``auto``, ``off`` (None; 0 is the same) or a number from 9 on, or raise InputError.
+    """Return the value of ``--coarse``: ``auto``, None for ``off`` or 0, or a number of at least 9.
+
+    Raises InputError: other text.
 
     >>> coarse_nodes("auto"), coarse_nodes("off"), coarse_nodes("65")
     ('auto', None, 65)

@@ -1,4 +1,4 @@
-"""Options that say how the nodes of a boundary are placed."""
+"""Options for the boundary nodes."""
 
 import re
 from dataclasses import dataclass
@@ -20,73 +20,82 @@ _option = option_of(SAMPLING)
 # fmt: off
 Resolution = Annotated[str | None, _option(
     "--res", metavar="N|NIxNJ[xNK]",
-    help="Nodes: N along every direction, or NI along xi (around a body) by NJ along eta (away from it), and "
-    "NK along zeta of a volume. [default: the nodes of the input, or 200x100 around a curve]",
+    help="Number of nodes along each direction: N for all directions, or NI along xi (around a body), NJ "
+    "along eta (away from it) and NK along zeta (volumes). For many blocks, number of cells along the "
+    "longest extent. [default: the nodes of the input, or 200x100 for curves]",
 )]
 
 
 @dataclass(frozen=True, kw_only=True)
 class SamplingOptions:
-    """How the nodes of a boundary are placed."""
+    """Distribution of the boundary nodes."""
 
     res: Resolution = None
     topology: Annotated[TopologyName, _option(
         "--topology", metavar="auto|quad|o|c", show_default=True,
-        help="Kind of grid: four-sided (quad), O around a body, or C around an airfoil and its wake (NI "
-        "counts both sides of the wake). auto takes C when a first cell is given and the edge is sharp.",
+        help="Topology of the grid: quad is four-sided, o surrounds a body, and c surrounds an airfoil and "
+        "its wake (NI then includes both sides of the wake). auto selects c if a first cell is given and "
+        "the trailing edge is sharp, else quad or o according to the input.",
     )] = "auto"
     spacing: Annotated[SpacingName, _option(
         "--spacing", metavar="|".join(LAWS), show_default=True,
-        help="Spacing of the nodes along walls.",
+        help="Distribution of the nodes along walls. conformal: equal steps on the circle to which a "
+        "conformal map takes the body. uniform: equal steps. cosine: small cells at both ends. tanh: small "
+        "cells at both ends, of prescribed size. curvature: small cells at the ends and where the wall "
+        "bends. auto: conformal around airfoils and smooth bodies, tanh around airfoils if a cell size is "
+        "given, curvature with a first cell, else uniform.",
     )] = "auto"
     le_spacing: Annotated[float | None, _option(
-        "--le-spacing", metavar="H", help="Length of the wall cell at the leading edge, in chords.",
+        "--le-spacing", metavar="H", help="Length of the wall cells at the leading edge, in chords.",
     )] = None
     te_spacing: Annotated[float | None, _option(
-        "--te-spacing", metavar="H", help="Length of the wall cell at the trailing edge, in chords.",
+        "--te-spacing", metavar="H", help="Length of the wall cells at the trailing edge, in chords.",
     )] = None
     te: Annotated[Literal["auto", "exact", "round", "wedge"], _option(
         "--te", metavar="auto|exact|round|wedge", show_default=True,
-        help="Blunt trailing edges: exact keeps them, round rounds their two corners (grid angles there "
-        "then deviate from 90 degrees by at most 10, not 45), wedge closes them by a wedge up to four "
-        "base heights long. auto is exact, but wedge for a C grid without a first cell, which is one block.",
+        help="Treatment of blunt trailing edges: exact keeps their shape, round rounds the two corners, and "
+        "wedge closes the base by a wedge of up to four base heights. At the corners, grid angles deviate "
+        "from 90 degrees by about 45 with exact and by at most 10 with round. auto is exact, but wedge for a "
+        "C grid that is not marched, or that has no first cell and a base of at most 0.005 chords.",
     )] = "auto"
     far_field: Annotated[float | None, _option(
         "--far-field", metavar="R",
-        help="Least distance of the far field from the middle of the body, in chords; off a surface in "
-        "space, in its unit. For lift and drag 100 chords or more. [default: 15; of a surface, 15 times its "
-        "largest extent]",
+        help="Smallest distance of the far field from the middle of the body, in chords. For lift and drag "
+        "use 100 or more. For a volume marched from a surface, the marching distance in the unit of the "
+        "surface. [default: 15 chords, or 15 times the largest extent of the surface]",
     )] = None
     wake: Annotated[float | None, _option(
         "--wake", metavar="L",
-        help="Length of a C grid's wake, in chords. [default: the distance of the far field]",
+        help="Length of the wake of a C grid, in chords. [default: the distance of the far field]",
     )] = None
     wake_nodes: Annotated[int | None, _option(
         "--wake-nodes", metavar="N",
-        help="Nodes of a C grid's wake, the trailing edge included; its cells grow by a constant ratio. "
-        "[default: about a fifth of NI]",
+        help="Number of nodes along the wake of a C grid, including the trailing edge. The cells grow by a "
+        "constant ratio. [default: about a fifth of NI]",
     )] = None
     base_nodes: Annotated[int | None, _option(
         "--base-nodes", metavar="N",
-        help="Nodes of a blunt trailing edge's base, its corners included; odd in an O grid, which begins in "
-        "the middle of it. [default: by the cells beside it and its width]",
+        help="Number of nodes on the base of a blunt trailing edge, including its two corners. It must be "
+        "odd for an O grid, which starts in the middle of the base. [default: derived from the width of the "
+        "base and the cells next to it]",
     )] = None
     smooth: Annotated[float | None, _option(
         "--smooth", metavar="TOL",
-        help="Smooth an airfoil whose coordinates ripple, by splines within TOL chords of its points, say "
-        "1e-4; its corners stay, and the report says what changed. Needs SciPy.",
+        help="Replace the points of an airfoil with rippled coordinates by smoothing splines, which deviate "
+        "from the points by at most TOL chords, e.g. 1e-4. Corners are kept, and the report gives the "
+        "changes. Needs SciPy.",
     )] = None
     corners: Annotated[str, _option(
         "--corners", metavar="auto|I,J,K,L", show_default=True,
-        help="Points of an outline, counted from 0, that become the corners of a four-sided grid, "
-        "south-west first.",
+        help="Indices, from 0, of the four points of an outline that become the corners of a four-sided "
+        "grid, starting in the south-west.",
     )] = "auto"
     normalise: Annotated[bool, _option(
         "--normalise", help="Move the leading edge to (0, 0) and the trailing edge to (1, 0).",
     )] = False
 
     def placed(self) -> "Sampling":
-        """Return them for the library; raise InputError for what cannot be read or is out of range."""
+        """Return the options as `Sampling`. Raises InputError: an invalid value."""
         from meshonet.geometry.spacing.sampling import Sampling
 
         ni, nj, nk = (None, None, None) if self.res is None else resolution(self.res)
@@ -98,7 +107,7 @@ class SamplingOptions:
 
 
 def resolution(text: str) -> tuple[int, int, int | None]:
-    """Return the node counts (ni, nj, nk) of ``N``, ``NIxNJ`` or ``NIxNJxNK``, or raise InputError.
+    """Return the node counts (ni, nj, nk) of ``N``, ``NIxNJ`` or ``NIxNJxNK``. Raises InputError: other text.
 
     >>> resolution("200"), resolution("400x100"), resolution("33x33x65")
     ((200, 200, None), (400, 100, None), (33, 33, 65))
@@ -113,7 +122,7 @@ def resolution(text: str) -> tuple[int, int, int | None]:
 
 
 def four_corners(text: str) -> tuple[int, int, int, int]:
-    """Return the four indices of ``I,J,K,L``, or raise InputError.
+    """Return the four indices of ``I,J,K,L``. Raises InputError: other text.
 
     >>> four_corners("0,10,20,30")
     (0, 10, 20, 30)

@@ -1,4 +1,4 @@
-"""Options of grids in space."""
+"""Options of three-dimensional grids."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -13,25 +13,26 @@ _option = option_of(VOLUME)
 # fmt: off
 Layers = Annotated[int | None, _option(
     "--layers", metavar="N", min=3,
-    help="Nodes along the lines of a volume marched from a surface, the wall's included. [default: what "
-    "a growth of 1.2 needs]",
+    help="Number of nodes along each grid line from the surface to the far field of a marched volume, "
+    "including the wall node. [default: as many as a growth ratio of 1.2 needs]",
 )]
 
 Revolve = Annotated[float | None, _option(
     "--revolve", metavar="DEG",
-    help="Turn the plane about an axis by this: up to 10 degrees a wedge of one cell, below 360 a sector, "
-    "360 a whole turn.",
+    help="Angle by which the planar grid is revolved about --axis, in degrees. Up to 10 makes a wedge with "
+    "one cell, less than 360 a sector, 360 a full revolution.",
 )]
 Axis = Annotated[str | None, _option(
     "--axis", metavar="x|y|X,Y,DX,DY",
-    help="With --revolve: the axis, or a point on a line in the plane and its direction. [default: x]",
+    help="Axis of --revolve: x, y, or a point (X, Y) on a line in the plane and its direction (DX, DY). "
+    "[default: x]",
 )]
 
 
 def axis_of(text: str | None) -> "AxisLine | None":
-    """Return the line that the words of an option mean, None for none.
+    """Return the axis described by an option, None for None.
 
-    Raises InputError: other words than an axis or four numbers.
+    Raises InputError: neither a named axis nor four numbers.
     """
     from meshonet.geometry.blocks.revolve import AxisLine
 
@@ -43,18 +44,19 @@ def axis_of(text: str | None) -> "AxisLine | None":
 
 @dataclass(frozen=True, kw_only=True)
 class VolumeOptions:
-    """How a volume is marched from a surface, or filled inside six faces."""
+    """How a volume is marched from a surface, or made inside six faces."""
 
     layers: Layers = None
     symmetry: Annotated[Literal["x", "y", "z", "none"] | None, _option(
         "--symmetry", metavar="x|y|z|none",
-        help="Open edges of the surface lie in a plane of symmetry across this axis. [default: edges in one "
-        "plane across an axis are in a plane of symmetry, others, and all with none, are free]",
+        help="Axis normal to the plane of symmetry in which the open edges of the surface lie; with none "
+        "all open edges are free. [default: open edges that lie in a plane normal to an axis are in a plane "
+        "of symmetry, others are free]",
     )] = None
     energy: Annotated[Literal["angles", "shape"] | None, _option(
         "--energy", metavar="angles|shape",
-        help="What is minimised inside six faces. angles: right angles, and lengths that change gradually, "
-        "whatever the aspect of cells. shape: cells like cubes, the inverse mean ratio |T|²/(3 det(T)^⅔) "
-        "of their Jacobian matrices T (metric 303 of TMOP). [default: angles]",
+        help="Functional that is minimised inside six faces. angles favours right angles and lengths that "
+        "change gradually, at any aspect ratio of cells. shape favours cells like cubes; it is the inverse "
+        "mean ratio |T|²/(3 det(T)^⅔) of the Jacobian matrices T (metric 303 of TMOP). [default: angles]",
     )] = None
 # fmt: on

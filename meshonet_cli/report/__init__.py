@@ -1,1 +1,1 @@
-"""Reports of what is done, as JSON and for people."""
+"""Reports of results, as JSON and as text."""

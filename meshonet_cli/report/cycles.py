@@ -1,4 +1,4 @@
-"""Cycles as they run: on the terminal, and in the file of ``--history``."""
+"""Cycles of iterations: shown on the terminal, and written to the file of ``--history``."""
 
 import contextlib
 import csv
@@ -18,7 +18,7 @@ INTERVAL = 0.1  # least seconds between two texts on the terminal
 
 
 class Live:
-    """Shows cycles on the terminal, ten a second at the most: `show` takes a line."""
+    """Shows cycles on the terminal, at most ten per second; `show` prints a line."""
 
     def __init__(self, show: Callable[[str], None]) -> None:
         self._show = show
@@ -36,9 +36,9 @@ class Live:
 
 @contextlib.contextmanager
 def followed(session: Session, history: str | None) -> Iterator[Callable[[Report, str], None]]:
-    """Show cycles on a terminal, and write those of the reports that the given function takes to `history`.
+    """Return a context that shows cycles on a terminal; its function writes those of reports to `history`.
 
-    Raises InputError: a file that does not end in ``.csv`` or has no folder to be in.
+    Raises InputError: a file that does not end in ``.csv``, or whose folder does not exist.
     """
     if history is not None:
         if Path(history).suffix.lower() != ".csv":
@@ -59,7 +59,7 @@ def followed(session: Session, history: str | None) -> Iterator[Callable[[Report
 
 
 def _write(path: Path, members: Iterable[tuple[str, Iterable[HistoryRow]]]) -> None:
-    """Write the cycles of all members, each under its label, to `path`."""
+    """Write the cycles of all members, each with its label, to `path`."""
     with path.open("w", newline="", encoding="utf-8") as stream:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow(COLUMNS)

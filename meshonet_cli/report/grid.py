@@ -1,4 +1,4 @@
-"""The report of one grid: how it was made and how good it is."""
+"""Report of one grid: how it was made, and its quality."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
     from meshonet_cli.terminal.summary import MemberRow
 
 _METHODS = {"conformal": "conformal map"}
-"""Methods whose names alone would not say what they do, for people."""
+"""Descriptions of methods whose names are not clear."""
 
 
 @dataclass
 class Report(Timed):
-    """The report of one grid, as ``--json`` prints it.
+    """Report of one grid, in the form of ``--json``.
 
-    `wake` is the number of cells along the wake of a C grid, 0 in others. `seconds` holds wall-clock seconds
-    by stage: read, boundary, load (modules and models, once a process), grid (from boundary nodes in memory
-    to grid nodes in memory), guard, quality, write, and total.
+    `wake` is the number of cells along the wake of a C grid, 0 for other grids. `seconds` are wall-clock
+    seconds by stage: read, boundary, load (modules and models, once per process), grid (from boundary nodes
+    in memory to grid nodes in memory), guard, quality, write, and total.
     """
 
     method: str
@@ -47,12 +47,12 @@ class Report(Timed):
 
     @property
     def warning(self) -> str:
-        """That there are folded cells."""
+        """Warning about folded cells."""
         folded = self.quality.folded
         return f"{self.item.label}: {folded} folded cells are in {self.output}" if folded else ""
 
     def row(self) -> MemberRow | None:
-        """Return its row of a table, where it was judged."""
+        """Return its row in a table, if it was judged."""
         if not self.judgement:
             return None
         from meshonet_cli.terminal.summary import MemberRow, figures
@@ -60,7 +60,7 @@ class Report(Timed):
         return MemberRow(self.item.label, figures(self.quality), self.judgement)
 
     def as_json(self) -> dict[str, Any]:
-        """Return what ``--json`` prints."""
+        """Return the data for ``--json``."""
         from meshonet.geometry.quality.blocks import BlockFigures
         from meshonet.geometry.quality.report import quality_dict
         from meshonet_cli.terminal.summary import gates_not_met
@@ -77,7 +77,7 @@ class Report(Timed):
         }  # fmt: skip
 
     def lines(self) -> str:
-        """Return the report of a single grid for people."""
+        """Return the report of a single grid as text."""
         angle = self.quality["max_angle"]
         kind = "multi-block" if self.topology == "blocks" else self.topology
         head = f"{self.item.label} -> {self.output}: {self._size()}, {kind} grid"
@@ -96,7 +96,7 @@ class Report(Timed):
         return "\n  ".join([*lines, *map(with_options, self.notes)])
 
     def line(self) -> str:
-        """Return the report of a member of a batch for people: one line, and what was changed below it."""
+        """Return the report of a member of a batch as text: one line, followed by lines about changes."""
         angle = self.quality["max_angle"].max
         head = (
             f"{self.item.label} -> {self.output}: {self._size(short=True)}, "
@@ -106,18 +106,21 @@ class Report(Timed):
         return "\n  ".join([head, *changes_in(self.notes)])
 
     def _along_wall(self) -> dict[str, int]:
-        """Return how the nodes of a C grid's south side are shared out, the trailing edge counted in both."""
+        """Return the numbers of nodes on wake and wall of a C grid's south side.
+
+        The trailing edge is in both.
+        """
         if self.ni is None or not self.wake:
             return {}
         return {"body_nodes": self.ni - 2 * self.wake, "wake_nodes": self.wake + 1}
 
     def _made(self) -> str:
-        """Return the method and what came after it."""
+        """Return the method and the stages after it."""
         method = _METHODS.get(self.method, self.method)
         return f"{method}, then {', '.join(self.path)}" if self.path else method
 
     def _size(self, *, short: bool = False) -> str:
-        """Return how large the grid is."""
+        """Return the size of the grid."""
         if self.ni is None and self.blocks is None:
             return f"{self.quality.cells} cells"
         if self.blocks is None:

@@ -1,4 +1,4 @@
-"""The quality of a grid for people."""
+"""Report of the quality of a grid."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -20,31 +20,31 @@ from meshonet_cli.terminal.summary import MemberRow, figures, gates_not_met
 from meshonet_cli.terminal.text import aligned, figure
 
 _PLACES = {2: "i, j", 3: "block, i, j", 4: "block, i, j, k"}
-"""Places of nodes and cells by how many numbers they have."""
+"""Names of indices, by their number."""
 
 
 @dataclass
 class Measured(Timed):
-    """The report of a grid that was measured."""
+    """Report of a measured grid."""
 
     report: QualityReport
     judgement: Judgement
     judged: bool
 
     def row(self) -> MemberRow:
-        """Return its row of a table."""
+        """Return its row in a table."""
         comparison = self.report.comparison
         values = figures(self.report.quality) | (comparison.figures() if comparison else {})
         return MemberRow(self.item.label, values, self.judgement if self.judged else None)
 
     def as_json(self) -> dict[str, Any]:
-        """Return what ``--json`` prints."""
+        """Return the data for ``--json``."""
         member = {"input": self.item.source, "name": self.item.name}
         end = {"seconds": self.times_json(), "gates_not_met": gates_not_met(self.judgement)}
         return member | self.report.as_dict() | end
 
     def lines(self) -> str:
-        """Return the tables for people."""
+        """Return the tables as text."""
         report = self.report
         grid, quality = report.grid, report.quality
         folded = folded_words(quality)
@@ -57,7 +57,7 @@ class Measured(Timed):
         rows = [f"{self.item.label}: {size}, {quality.cells} cells, {folded}", quality_table(grid, quality)]
         if many:
             rows.append(lines_table(report.figures.blocks))
-        if report.figures.wall_rows and (report.profile or grid.around_body or many):
+        if report.figures.wall_rows and (report.profile or many or grid.form == "plane"):
             rows.append(walls_table(report.figures.wall_rows))
         if report.profile or not many:
             rows.append(growth_table(report.figures))
@@ -70,7 +70,7 @@ class Measured(Timed):
 
 
 def quality_table(grid: Grid, quality: Quality) -> str:
-    """Return the metrics as a table; it needs the percentiles."""
+    """Return the metrics as a table; percentiles are required."""
     places = max(len(summary.worst) for summary in quality.metrics.values())
     rows = [["metric", "min", "p01", "mean", "p99", "max", f"worst at {_PLACES[places]}"]]
     for metric in metrics_of(grid):
@@ -82,7 +82,7 @@ def quality_table(grid: Grid, quality: Quality) -> str:
 
 
 def blocks_line(blocks: BlockFigures) -> str:
-    """Return how many blocks, nodes, interfaces and irregular vertices there are."""
+    """Return the numbers of blocks, nodes, interfaces and irregular vertices as text."""
     parts = (len(blocks.sizes), "block"), (blocks.nodes, "node"), (blocks.interfaces, "interface")
     counts = [f"{count} {word}{'' if count == 1 else 's'}" for count, word in parts]
     if blocks.irregular is None:
@@ -93,7 +93,7 @@ def blocks_line(blocks: BlockFigures) -> str:
 
 
 def lines_table(blocks: BlockFigures) -> str:
-    """Return angles, growth and bends of many blocks as a table."""
+    """Return angles, growth and bends of grid lines in a multi-block grid as a table."""
     angles = blocks.deviation
     rows = [["angles and lines", "mean", "p99", "max", f"at {_PLACES[len(angles.at)]}"]]
     values = (angles.mean, angles.p99, angles.max)
@@ -110,12 +110,12 @@ def lines_table(blocks: BlockFigures) -> str:
 
 
 def cell_text(cell: BadCell) -> str:
-    """Return the place of a folded cell for people."""
+    """Return the place of a folded cell as text."""
     return f"{cell.indices}: {cell.centre}"
 
 
 def folded_words(quality: Quality) -> str:
-    """Return how many cells are folded in words, of volumes by both tests."""
+    """Return the number of folded cells as text; for volumes by both tests."""
     words = f"{quality.folded} folded" if quality.folded else "none folded"
     if quality.bezier_folded is None:
         return words
@@ -131,7 +131,7 @@ def _place(at: tuple[int, ...]) -> str:
 
 
 def comparison_lines(comparison: Comparison) -> str:
-    """Return a comparison in two lines."""
+    """Return a comparison with a reference as two lines."""
     d = comparison.difference
     return (
         f"distance to the other grid: max {figure(d.max)} at {named(d.at)}, "
@@ -170,7 +170,7 @@ def profile_table(figures: Figures, profile: ProfileReport) -> str:
 
 
 def _places_of(figures: Figures) -> str:
-    """Return the head of a column of places."""
+    """Return the heading of the column with places."""
     grid = figures.grid
     return f"at {_PLACES[1 + len(grid.blocks[0].counts) if grid.topology == 'blocks' else 2]}"
 
@@ -184,7 +184,7 @@ def _check_row(result: CheckResult) -> list[str]:
 
 
 def limit_text(limit: Limit) -> str:
-    """Return a limit for people.
+    """Return a limit as text.
 
     >>> limit_text(Limit("fail", ">=", 90))
     'fail >= 90'

@@ -1,4 +1,4 @@
-"""What all reports of members of a batch have in common: which member, where the result is, and times."""
+"""Base of the reports of members of a batch: the member, its output file, and times."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from meshonet_cli.terminal.summary import MemberRow
 
 STAGES = ("read", "boundary", "load", "layout", "grid", "guard", "quality", "compare", "write")
-"""Stages that times are reported of, in this order."""
+"""Stages with reported times, in this order."""
 
 
 @dataclass
 class Timed:
-    """Something done to a member of a batch: which, where the result is, and seconds by stage."""
+    """Report of a member of a batch: the member, its output file, and seconds by stage."""
 
     item: Item[Any]
     notes: tuple[str, ...] = field(default=(), kw_only=True)
@@ -35,60 +35,60 @@ class Timed:
 
     @property
     def warning(self) -> str:
-        """What a user must know even when nothing else is printed."""
+        """Warning that is printed even with ``--quiet``; empty if there is none."""
         return ""
 
     def row(self) -> MemberRow | None:
-        """Return its row of a table, where it was judged."""
+        """Return its row in a table, if it was judged."""
         return None
 
     def as_json(self) -> dict[str, Any]:
-        """Return what ``--json`` prints."""
+        """Return the data for ``--json``."""
         raise NotImplementedError
 
     def lines(self) -> str:
-        """Return it in full, for people."""
+        """Return the full report as text."""
         raise NotImplementedError
 
     def line(self) -> str:
-        """Return it as a line of a batch."""
+        """Return the report as one line for a batch."""
         return self.lines()
 
     def finished(self, path: str | None) -> None:
-        """Note where the result is and add the stages up, in the order of `STAGES`, others behind them."""
+        """Store the output file and add up the stages, in the order of `STAGES`; others follow."""
         self.output = path
         in_order = sorted(self.seconds, key=(*STAGES, *self.seconds).index)
         self.seconds = {stage: self.seconds[stage] for stage in in_order}
         self.seconds["total"] = sum(self.seconds.values())
 
     def member_json(self) -> dict[str, Any]:
-        """Return for JSON which member this is, and where its result."""
+        """Return the member and its output file for JSON."""
         return {"input": self.item.source, "name": self.item.name, "output": self.output}
 
     def times(self) -> str:
-        """Return the stages for people."""
+        """Return the times of the stages as text."""
         stages = [f"{name} {span(spent)}" for name, spent in self.seconds.items() if name != "total"]
         return f"{span(self.seconds['total'])}: {', '.join(stages)}"
 
     def times_json(self) -> dict[str, float]:
-        """Return the stages for JSON, to the microsecond."""
+        """Return the times of the stages for JSON, to the microsecond."""
         return {stage: round(spent, 6) for stage, spent in self.seconds.items()}
 
 
 @dataclass
 class Delivered(Timed):
-    """The report of what is in a file: `facts` are for JSON, `text` and `notes` for people."""
+    """Report of the content of a file: `facts` are for JSON, `text` and `notes` for messages."""
 
     facts: dict[str, Any]
     text: str
 
     def as_json(self) -> dict[str, Any]:
-        """Return what ``--json`` prints."""
+        """Return the data for ``--json``."""
         notes = {"notes": [with_options(note) for note in self.notes]} if self.notes else {}
         return {**self.member_json(), **self.facts, **notes, "seconds": self.times_json()}
 
     def lines(self) -> str:
-        """Return it for people."""
+        """Return the report as text."""
         head = f"{self.item.label} -> {self.output}: {self.text}, {self.times()}"
         return "\n  ".join([head, *map(with_options, self.notes)])
 
@@ -96,7 +96,7 @@ class Delivered(Timed):
 def delivered(
     item: Item[Any], what: Grid | Boundary, facts: dict[str, Any], text: str = "", notes: Sequence[str] = ()
 ) -> Delivered:
-    """Return the report of a grid or boundary, of which `text` says more than its topology."""
+    """Return the report of a grid or boundary; `text` replaces the name of its topology."""
     counts, topology = _counts(what), what.topology
     size = (
         "{ni} x {nj} nodes" if "ni" in counts else "{blocks} blocks, {cells} cells, {interfaces} interfaces"
@@ -114,6 +114,6 @@ def _counts(what: Grid | Boundary) -> dict[str, int]:
 
 
 def part_names(what: Grid | Boundary) -> dict[str, Any]:
-    """Return the names of the parts of a boundary, a fact for JSON."""
+    """Return the names of the patches of a boundary for JSON."""
     names = [patch.name for patch in what.patches]
     return {"parts": list(dict.fromkeys(names)) if what.topology == "blocks" else names}

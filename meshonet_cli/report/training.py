@@ -1,4 +1,4 @@
-"""How a training run is followed: a bar on a terminal, lines elsewhere, a CSV file."""
+"""Progress of a training: a bar on a terminal, otherwise lines, and a CSV file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LINES = 25  # lines about a run where there is no terminal
 
 
 def result_lines(result: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the figures of a trained model for people."""
+    """Yield the results of a trained model as text."""
     name, figures = result["model"], result["figures"]
     if name == "strip":
         network, base = figures["network"]["median"], figures["base"]["median"]
@@ -35,9 +35,9 @@ def result_lines(result: Mapping[str, Any]) -> Iterator[str]:
 
 
 class Log:
-    """Shows progress, and adds a row for each report to the CSV file `path`, if there is one.
+    """Shows progress, and appends a row per report to the CSV file `path`, if given.
 
-    A run that begins anew begins it anew; one that goes on cuts the rows after its checkpoint.
+    A new training overwrites the file; a resumed one removes the rows after its checkpoint.
     """
 
     def __init__(self, session: Session, path: str | None, *, resume: bool) -> None:
@@ -47,7 +47,7 @@ class Log:
         session.watch()
 
     def __call__(self, progress: Progress) -> None:
-        """Show it."""
+        """Show the progress."""
         parts = ", ".join(f"{name} {value:.2e}" for name, value in progress.parts.items())
         parts = f" ({parts})" if len(progress.parts) > 1 else ""
         left = (progress.epochs - progress.epoch) * progress.seconds / max(progress.done, 1)

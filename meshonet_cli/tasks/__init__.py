@@ -1,1 +1,1 @@
-"""What commands do to one input of many: how it is read, what is made of it, where that goes."""
+"""Tasks of commands for one input of many: how it is read, processed and written."""

@@ -1,4 +1,4 @@
-"""The boundaries of `sample-boundary`: from files, or drawn from a family."""
+"""Task of `sample-boundary`: boundaries from files, or drawn from a family."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from meshonet_cli.batch.run import Batch, BatchTask, each
 from meshonet_cli.report.timed import Delivered, delivered, part_names
 
 EDGE_NODES = 1000
-"""Nodes that the edges of a boundary have, as a rule."""
+"""Typical number of nodes on the edges of a boundary."""
 
 
 def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = None) -> int:
-    """Sample shapes, from files or of a family, keep so many nodes as sensors, and return the exit code.
+    """Sample shapes, optionally with `sensors`, write them, and return the exit code.
 
-    Raises InputError: a format without room for sensors, or for several members.
+    Raises InputError: a format that cannot store sensors, or several boundaries.
     """
     files = batch.files
     if sensors is not None and format_for_output(files.output, files.to_format, "boundaries").name != "hdf5":
@@ -37,7 +37,7 @@ def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = Non
 
 
 def itself(member: Draw) -> Iterator[Draw]:
-    """Yield what a member of a family holds, itself."""
+    """Yield a member of a family, which is its own content."""
     return iter([member])
 
 

@@ -1,4 +1,4 @@
-"""The files of `convert`."""
+"""Task of `convert`."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,7 +14,7 @@ from meshonet_cli.terminal.session import Session
 
 
 def convert_files(batch: Batch, conversion: Conversion, plot3d: str | None = None) -> int:
-    """Write what the inputs hold in another format and return the exit code; `plot3d` is a variant of it."""
+    """Convert the inputs to another format and return the exit code; `plot3d` is a variant of Plot3D."""
     files = batch.files
     from_format, to_format = plot3d_variant(plot3d, files.output, files.from_format, files.to_format)
     boundaries = conversion.of_boundaries(batch.inputs.first(), files.output, from_format, to_format)
@@ -36,7 +36,7 @@ def _converted(
 
 
 def print_formats(session: Session) -> int:
-    """Print what every format can do, one JSON object each when asked, and return the exit code."""
+    """Print the properties of all formats, with JSON one object each, and return the exit code."""
     from meshonet.formats.catalogue import plain, rows
 
     if session.as_json:

@@ -1,4 +1,4 @@
-"""The grids of `deform`."""
+"""Task of `deform`."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def write_deformed(
     batch: Batch, walls: Mapping[str, NewWall] | NewWall, criteria: Criteria, *, allow_invalid: bool,
     threads: int | None,
 ) -> int:  # fmt: skip
-    """Write the grids of the inputs with `walls` in their new places and return the exit code."""
+    """Deform the grids of the inputs to their new `walls`, write them, and return the exit code."""
     request = DeformRequest(allow_invalid, criteria.percentiles, batch.engine.threads(threads))
     make = each(_deformed, walls=walls, request=request, criteria=criteria)
     return batch.run(BatchTask(partial(read_grids, fmt=batch.files.from_format), make))
@@ -41,9 +41,9 @@ def _deformed(
 def walls_of(
     wall: Sequence[str], rotate: Sequence[str], shift: Sequence[str]
 ) -> Mapping[str, NewWall] | NewWall:
-    """Return the new walls that options describe, by name or the only one.
+    """Return the new walls described by options: by name, or the only one.
 
-    Raises InputError: words that are none, a wall that is named twice, a file that cannot be read.
+    Raises InputError: invalid words; a wall that is named twice; a file that cannot be read.
     """
     if not (wall or rotate or shift):
         raise InputError("nothing is moved", "give {wall}, {rotate} or {shift}", source="deform")
@@ -104,7 +104,7 @@ def _shifts(texts: Sequence[str]) -> dict[str, Motion]:
 
 
 def _numbers(words: Sequence[str]) -> list[float]:
-    """Return words as finite numbers, none where one of them is not."""
+    """Return words as finite numbers; empty if one of them is not a number."""
     try:
         numbers = [float(word) for word in words]
     except ValueError:

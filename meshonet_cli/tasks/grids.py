@@ -1,4 +1,4 @@
-"""What `tfi`, `solve-pde` and `infer` share: one request, many boundaries, a report of each grid."""
+"""Task of `tfi`, `solve-pde` and `infer`: one request, many boundaries, a report of each grid."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SHARED = 16  # members that one of several processes gets at a time at the most,
 def _grids(
     members: Iterable[Item[Shape]], request: GridRequest, criteria: Criteria, detailed: bool
 ) -> Iterator[Pair]:
-    """Yield each member with its grid and report, or the error that it ended in."""
+    """Yield each member with its grid and report, or with its error."""
     for member, result in make_grids_of(members, request, attrgetter("what")):
         outcome: Outcome
         try:
@@ -42,11 +42,11 @@ def _grids(
 def reported(
     member: Item[Any], result: Result, criteria: Criteria, *, detailed: bool = True
 ) -> tuple[Grid, Report]:
-    """Return the grid of `member` with the command in its provenance, and the report, judged by `criteria`.
+    """Return the grid of `member` with the command in its provenance, and its report, judged by `criteria`.
 
-    A `detailed` one has angles and lines of grids of blocks, which only programs are told.
+    A `detailed` report has angles and growth of grid lines in multi-block grids, which only JSON shows.
 
-    Raises InputError: a gate names a figure that these cells do not have.
+    Raises InputError: a gate for a figure that is not defined for these cells.
     """
     solution, grid = result.solution, result.grid
     counts = grid.blocks[0].counts if len(grid.blocks) == 1 else (None, None)
@@ -70,17 +70,17 @@ def write_grids(
     batch: Batch, request: GridRequest, criteria: Criteria, *, history: str | None = None,
     assemble: bool = False,
 ) -> int:  # fmt: skip
-    """Turn every boundary of the inputs into a grid and return the exit code.
+    """Make a grid from every boundary of the inputs and return the exit code.
 
-    With `assemble` they are one domain. Grids that do not meet `criteria` end the program with 1; the cycles
-    go to the file `history`.
+    With `assemble` the inputs form one domain. The exit code is 1 if a grid does not meet the `criteria`.
+    Cycles are written to the file `history`.
     """
     request = replace(request, threads=batch.engine.threads(request.threads))
     session, sampling = batch.session, request.sampling
     nodes = (sampling.ni or DEFAULT_NI) * (sampling.nj or DEFAULT_NJ)
     alone = method_of(request).together is None
     task = BatchTask(
-        partial(read_shapes, fmt=batch.files.from_format),
+        partial(read_shapes, fmt=batch.files.from_format, surfaces=request.of_surface),
         partial(_grids, request=request, criteria=criteria, detailed=session.as_json),
         nodes=None if request.asks_for_blocks else nodes,
         together=1 if alone else max(1, min(SHARED, MOST_NODES // nodes)),

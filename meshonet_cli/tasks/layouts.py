@@ -1,4 +1,4 @@
-"""The layouts of `layout`."""
+"""Task of `layout`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from meshonet_cli.report.timed import Delivered
 def write_layouts(
     batch: Batch, parameters: Mapping[str, Any], far_field: float | None, *, assemble: bool = False
 ) -> int:
-    """Split the domains of the inputs, or the one that they make, into blocks, and return the exit code."""
+    """Split the domains of the inputs, or the one formed by all, into blocks, and return the exit code."""
     sampling = Sampling(far_field=far_field)
     read = partial(read_shapes, fmt=batch.files.from_format)
     make = each(_split, request=GridRequest(sampling, **parameters))

@@ -1,4 +1,4 @@
-"""The pictures of `plot`."""
+"""Task of `plot`."""
 
 from dataclasses import replace
 from functools import partial
@@ -14,7 +14,7 @@ from meshonet_cli.report.timed import Delivered, delivered
 def plot_grids(batch: Batch, picture: Picture) -> int:
     """Draw every grid and return the exit code.
 
-    Raises InputError: the output is no picture, or holds one and there are several grids.
+    Raises InputError: an output that is not a picture; one picture for several grids.
     """
     kind = picture_format(batch.files.output, batch.files.to_format).name
     read = partial(read_grids, fmt=batch.files.from_format)

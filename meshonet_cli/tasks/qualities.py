@@ -1,4 +1,4 @@
-"""The grids of `quality`."""
+"""Task of `quality`."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -29,9 +29,8 @@ def measure_grids(
 ) -> int:  # fmt: skip
     """Measure every grid of `inputs`, print the reports and return the exit code.
 
-    `compare` is a file of reference grids, matched by `pairing`. `summary` prints one
-    table over all; `plot` and `per_cell` are pictures and files of metrics to write, `html` is a page about
-    all grids.
+    `compare` is a file of reference grids, which are matched by `pairing`. `summary` prints one table for all
+    grids. `plot`, `per_cell` and `html` are files for pictures, metrics and the report.
     """
     gates = criteria.gates
     session.summary = summary
@@ -77,20 +76,20 @@ def measure_grids(
 
 
 def _page(output: str, gates: Sequence[Gate]) -> QualityPage:
-    """Return a page to collect reports for, which is to be written to `output`."""
+    """Return a page that collects reports and is written to `output`."""
     if format_for_output(output).name != "html":
         raise InputError("a report is a page", "name it FILE.html", parameter="html", source=output)
     return QualityPage(gates, f"meshonet {__version__}")
 
 
 def _picture_file(output: str) -> Destination:
-    """Return the destination of a picture. Raises InputError: `output` is none."""
+    """Return the destination of a picture. Raises InputError: `output` is not a picture."""
     kind = picture_format(output).name
     return Destination(output, kind, put=partial(Picture().draw, kind))
 
 
 def _metrics_file(output: str) -> Destination:
-    """Return the destination of a grid with every metric as cell data, which these files can hold."""
+    """Return the destination of a grid with all metrics as cell data."""
     name = format_for_output(output).name
     if name not in ("vts", "vtm"):
         remedy = "name it FILE.vts, or FILE.vtm for many blocks"

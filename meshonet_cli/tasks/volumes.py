@@ -1,4 +1,4 @@
-"""The volumes of `stack` and `sweep`."""
+"""Tasks of `stack` and `sweep`."""
 
 from __future__ import annotations
 
@@ -16,12 +16,15 @@ from meshonet.geometry.curves.path import Path
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import change_facts
 from meshonet.geometry.quality.criteria import Criteria
+from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.stack import Stack, Tip
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.solvers.pipeline.parameters import grid_request
 from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
 from meshonet.solvers.pipeline.sweeps import make_sweep
+from meshonet.solvers.rows.request import check_row_options, row_request
 from meshonet.solvers.stacking.request import StackRequest, stack_request
 from meshonet.solvers.stages import stage
 from meshonet.solvers.sweeping.sweep import Sweep
@@ -35,26 +38,36 @@ from meshonet_cli.report.timed import Delivered, delivered, part_names
 from meshonet_cli.tasks.grids import reported
 
 VOLUME_NODES = 1_000_000
-"""Nodes of a volume, about; how many there will be is known when it is made."""
+"""Assumed number of nodes of a volume, which is not known in advance."""
 
 
 def write_stacks(
     batch: Batch, parameters: Mapping[str, Any], criteria: Criteria, *, tip: Tip | None, surface: bool
 ) -> int:
-    """Write the volumes, or the surfaces, of the stacks of the inputs and return the exit code."""
-    request = stack_request(**_shared(parameters, batch), percentiles=criteria.percentiles)
+    """Write the volumes or surfaces of the stacks and return the exit code."""
+    chosen = _shared(parameters, batch) | {"percentiles": criteria.percentiles}
+    request = stack_request(**{name: value for name, value in chosen.items() if name != "cells"})
     if surface and criteria:
         raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")
-    make = each(_surface, request=request) if surface else each(_stacked, request=request, criteria=criteria)
-    return batch.run(BatchTask(partial(_stack, tip=tip), make, nodes=VOLUME_NODES))
+    volumes = each(_stacked, parameters=chosen, criteria=criteria)
+    make = each(_surface, request=request) if surface else volumes
+    return batch.run(BatchTask(partial(_stack, tip=tip, surface=surface), make, nodes=VOLUME_NODES))
 
 
-def _stack(source: str, tip: Tip | None) -> Iterator[Stack]:
-    return iter([stack_of(source).with_tip(tip)])
+def _stack(source: str, tip: Tip | None, surface: bool) -> Iterator[Stack | Row]:
+    what = stack_of(source)
+    if isinstance(what, Row):
+        check_row_options(tip=tip, surface=surface)
+        return iter([what])
+    return iter([what.with_tip(tip)])
 
 
-def _stacked(item: Item[Stack], request: StackRequest, criteria: Criteria) -> tuple[Grid, Report]:
-    return reported(item, make_stack(item.what, request), criteria)
+def _stacked(
+    item: Item[Stack | Row], parameters: Mapping[str, Any], criteria: Criteria
+) -> tuple[Grid, Report]:
+    if isinstance(item.what, Row):
+        return reported(item, make_row(item.what, row_request(**parameters)), criteria)
+    return reported(item, make_stack(item.what, stack_request(**parameters)), criteria)
 
 
 def _surface(item: Item[Stack], request: StackRequest) -> tuple[Grid, Delivered]:
@@ -70,7 +83,7 @@ def write_sweeps(
     batch: Batch, path: str | Revolution, section: Mapping[str, Any], settings: Sweep, criteria: Criteria,
     *, around: int | None = None,
 ) -> int:  # fmt: skip
-    """Write the volumes of the sections of the inputs along a path or about an axis; return the exit code."""
+    """Write the volumes of the sections swept along a path or about an axis, and return the exit code."""
     parameters = domain_parameters(_shared(section, batch)) | {"percentiles": criteria.percentiles}
     res = parameters.pop("res")
     request = grid_request(res=None if res is None else _counts(res), **parameters)
@@ -94,5 +107,5 @@ def _counts(text: str) -> tuple[int, int]:
 
 
 def _shared(parameters: Mapping[str, Any], batch: Batch) -> dict[str, Any]:
-    """Return parameters, the cores shared out among the workers of the engine."""
+    """Return parameters in which the cores are shared among the workers of the engine."""
     return {**parameters, "threads": batch.engine.threads(parameters.get("threads"))}

@@ -1,1 +1,1 @@
-"""What a user sees while a command runs: lines, errors, progress; and interrupts."""
+"""Output on the terminal while a command runs, and interrupts."""

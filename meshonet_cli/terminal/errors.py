@@ -1,13 +1,13 @@
-"""Errors as a line for the user, parameters spelled as options."""
+"""Error messages for the user, in which parameters are written as options."""
 
 _OPTIONS = {
     "from_format": "--from", "to_format": "--to", "output": "-o", "settings": "--set",
 }  # fmt: skip
-"""Parameters whose options have other names."""
+"""Parameters whose options have different names."""
 
 
 def explained(error: Exception, name: str = "") -> str:
-    """Return the line or two that explain `error`, which happened to the member `name`, to a user."""
+    """Return the message for an `error` of the member `name`, in one or two lines."""
     from meshonet.geometry.errors import InputError, MeshonetError, NoValidGridError
 
     if isinstance(error, InputError):
@@ -27,7 +27,7 @@ def explained(error: Exception, name: str = "") -> str:
 
 
 def option(parameter: str) -> str:
-    """Return how the command line spells a parameter.
+    """Return the option for a parameter.
 
     >>> option("far_field"), option("from_format")
     ('--far-field', '--from')
@@ -36,7 +36,7 @@ def option(parameter: str) -> str:
 
 
 def with_options(text: str) -> str:
-    """Return a note of the library, its ``{parameters}`` spelled as options.
+    """Return a message of the library in which ``{parameters}`` are replaced by options.
 
     >>> with_options("the far field is cut off; set {far_field}")
     'the far field is cut off; set --far-field'

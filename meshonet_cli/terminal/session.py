@@ -1,4 +1,4 @@
-"""One run of a command over its members: its output on screen, and the worst outcome so far."""
+"""A run of a command: its output on the terminal, and its exit code."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
     from meshonet_cli.terminal.summary import BatchSummary, MemberRow
 
 GATE_NOT_MET = 1
-"""Exit code where a gate is broken."""
+"""Exit code if a gate has failed."""
 SAME_ERRORS = 3
-"""How many inputs are named that end in the same error; the others are counted."""
+"""Number of inputs that are listed for the same error; further ones are counted."""
 
 
 class Session:
-    """Prints what happens and remembers the worst exit code.
+    """Prints messages, and keeps the largest exit code.
 
-    Results for programs (`as_json`) and tables go to standard output, everything else to standard error; only
-    warnings and errors when `quiet`, and tracebacks of failing members too with `debug`. On a terminal a line
-    of progress stands below, with bars and without colours.
+    Tables and results for programs (`as_json`) are printed on standard output, everything else on standard
+    error. With `quiet` only warnings and errors are printed, with `debug` also the tracebacks of failed
+    members. A terminal also shows a line of progress.
     """
 
     def __init__(self, *, quiet: bool = False, as_json: bool = False, debug: bool = False) -> None:
@@ -61,7 +61,10 @@ class Session:
 
     @contextlib.contextmanager
     def member(self, label: str, source: str | None = None) -> Iterator[None]:
-        """Report an error of the block as that of the member `label` (of `source`), and go on after it."""
+        """Return a context in which an error is reported for the member `label` of `source`.
+
+        The batch continues.
+        """
         try:
             yield
         except (KeyboardInterrupt, GeneratorExit, BrokenPipeError):
@@ -70,7 +73,7 @@ class Session:
             self.fail(label, source or label, error, repeated=True)
 
     def fail(self, label: str, source: str, error: Exception, *, repeated: bool = False) -> None:
-        """Report a member that failed; of one that may be `repeated` for each the first `SAME_ERRORS`."""
+        """Report a failed member; an error that may be `repeated` for all is reported `SAME_ERRORS` times."""
         from meshonet_cli.terminal.summary import MemberRow
 
         self.failed += 1
@@ -90,7 +93,7 @@ class Session:
             self.result({"input": source, "output": None, "error": line, "exit_code": code})
 
     def judge(self, row: MemberRow) -> None:
-        """Report gates that a member did not meet, and keep its row for a table."""
+        """Report the gates that a member has failed, and keep its row for the table."""
         self.rows.append(row)
         problems = row.judgement.problems if row.judgement else ()
         self.beyond += bool(problems)
@@ -99,11 +102,11 @@ class Session:
             self._write(f"gate not met: {row.label}: {with_options(problem)}")
 
     def warn(self, text: str) -> None:
-        """Print what the user should know even when quiet."""
+        """Print a message that is shown even with `quiet`."""
         self._write(f"warning: {text}")
 
     def written(self, report: Timed, path: str) -> None:
-        """Report a member whose result is in the file `path`: in full when it is alone, else on one line."""
+        """Report a member with the output file `path`: in full if it is the only one, else in one line."""
         report.finished(path)
         if report.warning:
             self.warn(report.warning)
@@ -121,25 +124,25 @@ class Session:
             self.judge(row)
 
     def show(self, report: Timed) -> None:
-        """Print a report that is itself the result: on standard output, in full, unless quiet."""
+        """Print a report that is itself the result, on standard output, unless `quiet`."""
         self.done += 1
         if self.as_json or not self.quiet:
             self.conclude(report)
 
     def conclude(self, total: Timed | BatchSummary) -> None:
-        """Print the report of all members together: on standard output, even when quiet."""
+        """Print the report of all members on standard output, even with `quiet`."""
         if self.as_json:
             self.result(total.as_json())
         else:
             self.print(total.lines())
 
     def note(self, text: str) -> None:
-        """Print what happened, unless quiet or in JSON."""
+        """Print a message, except with `quiet` or JSON."""
         if not (self.quiet or self.as_json):
             self._write(text)
 
     def result(self, facts: Mapping[str, Any]) -> None:
-        """Print one JSON object on standard output, at once, so that a reader in a pipe can follow."""
+        """Print one JSON object on standard output, without buffering."""
         self.print(json.dumps(facts))
 
     def print(self, text: str) -> None:
@@ -150,7 +153,7 @@ class Session:
             print(quoted(text), flush=True)  # noqa: T201
 
     def check_output(self, output: str) -> None:
-        """Raise InputError when results and JSON would share standard output."""
+        """Raise InputError if both results and JSON would be printed on standard output."""
         self._stdout_is_taken = output == "-"
         if self.as_json and output == "-":
             raise InputError(
@@ -158,7 +161,7 @@ class Session:
             )
 
     def status(self, text: str) -> None:
-        """Show on a terminal what is going on, in place of what was shown before."""
+        """Show the current status on a terminal; it replaces the previous one."""
         if self.live:
             self._text = text
             if self._line:
@@ -166,9 +169,9 @@ class Session:
             self._draw()
 
     def watch(self) -> None:
-        """Show on a terminal what a single input is at, once that has taken a second.
+        """Show the stage of a single input on a terminal, after one second.
 
-        Not with JSON; nor where standard output is a pipe, whose reader may have a line of its own.
+        It is not shown with JSON, or if standard output is a pipe, whose reader may show a status too.
         """
         leads = os.environ.get("RANK", "0") == "0"  # of several processes under torchrun
         if self.live and leads and not (self.as_json or self.batch or self._line or _is_pipe(1)):
@@ -177,7 +180,10 @@ class Session:
             self._line = StageLine(self._draw, self._clear)
 
     def begin(self, name: str, count: int | None = None) -> None:
-        """Show on a terminal which member of how many (None: not known) is at work; stop if asked to."""
+        """Show the current member and the number of members, None if unknown.
+
+        Stop if a signal requested it.
+        """
         check()
         self.members += 1
         if self._line and self.batch:
@@ -191,17 +197,17 @@ class Session:
             self.status(f"{self.members}: {name}")
 
     def progress(self, done: int, count: int, text: str) -> bool:
-        """Show on a terminal how far one long task is; return whether there is a terminal."""
+        """Show the progress of a long task on a terminal; return whether there is a terminal."""
         self.status(f"{bar(done, count)} {text}")
         return self.live
 
     def skip(self, name: str, path: str, remark: str = "") -> None:
-        """Report a member whose result is there already."""
+        """Report a member whose result exists."""
         self.skipped += 1
         self.note(f"{name} -> {path}: there already{remark}")
 
     def finish(self) -> int:
-        """Report how a batch went, with a table where it was judged, and return the exit code."""
+        """Print the summary of a batch, with a table if grids were judged, and return the exit code."""
         if self._line:
             self._unwatch()
         if self._shown:
@@ -256,7 +262,7 @@ class Session:
             self._line = None
 
     def _clear(self) -> None:
-        """Wipe what is shown, if it is still there: the thread of a line may have done so."""
+        """Remove the status line, if it is still shown."""
         if self._shown:
             sys.stderr.write("\r\x1b[2K")
             sys.stderr.flush()

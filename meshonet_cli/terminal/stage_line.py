@@ -1,7 +1,7 @@
-"""What a single long input is at, for a terminal: ``12 s, grid: level 34/100, 23 s left``.
+"""Status line for the stage of a single long input: ``12 s, grid: level 34/100, 23 s left``.
 
-A thread has the line drawn while the main one works in kernels, which release the lock of the interpreter.
-It begins with single inputs in the main process alone, never in a batch, whose processes it would disturb.
+A thread draws the line while the main thread runs kernels, which release the interpreter lock. It is used
+only for single inputs in the main process, because it would disturb the processes of a batch.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ HELD = 1.0  # seconds to wait for a terminal that is held, at the most
 
 
 class StageLine:
-    """Calls `draw` five times a second, from the second second on until it is stopped, and then `clear`."""
+    """Calls `draw` five times per second, from the second second until it is stopped; then calls `clear`."""
 
     def __init__(self, draw: Callable[[], None], clear: Callable[[], None]) -> None:
         self._draw, self._clear = draw, clear
@@ -36,7 +36,7 @@ class StageLine:
         LINES.append(self)
 
     def stop(self) -> None:
-        """End the thread, wait until it draws no more, and clear the line."""
+        """Stop the thread, wait for its end, and remove the line."""
         if self in LINES:
             LINES.remove(self)
             self._stopped.set()
@@ -45,7 +45,10 @@ class StageLine:
             self._clear()
 
     def text(self) -> str:
-        """Return the line, with the detail where the stage has no steps; that alone for the first second."""
+        """Return the line.
+
+        For stages without steps with a detail, which in the first second is shown alone.
+        """
         stage, now = self._stage, time.perf_counter()
         spent = now - self._begun
         if spent < DELAY:

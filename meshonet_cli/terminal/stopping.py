@@ -1,7 +1,7 @@
-"""Interrupts that are not lost: Python drops an exception that a signal raises inside a clean-up callback.
+"""Reliable interrupts: Python drops an exception that a signal handler raises inside a clean-up callback.
 
-The handlers raise at once, as Python's own does, and also remember; `check`, called between the members of a
-batch, raises what was dropped.
+The handlers raise an exception immediately, like Python's own, and also record the signal. `check`, called
+between the members of a batch, raises a dropped exception again.
 """
 
 import signal
@@ -11,15 +11,16 @@ from types import FrameType
 from typing import Any, NoReturn
 
 LINES: list[Any] = []
-"""Lines on the terminal that are drawn by threads, to be stopped when the program ends, however it does."""
+"""Status lines drawn by threads, which are stopped at the end of the program."""
 
 _asked: list[BaseException] = []
 
 
 def install() -> None:
-    """Let SIGINT raise KeyboardInterrupt, SIGTERM and SIGHUP SystemExit, so that unfinished files go.
+    """Install handlers: SIGINT raises KeyboardInterrupt, SIGTERM and SIGHUP raise SystemExit.
 
-    A signal that whoever started the program had it ignore (nohup, a shell's ``&``) stays ignored.
+    Unfinished files are thus removed. A signal that was ignored when the program started (nohup, a shell's
+    ``&``) stays ignored.
     """
     handlers = {"SIGINT": _interrupt, "SIGTERM": _terminate, "SIGHUP": _terminate}
     for name, handler in handlers.items():
@@ -29,13 +30,13 @@ def install() -> None:
 
 
 def hide_warnings() -> None:
-    """Keep Python's warnings, which are about the source, to ``--debug``: users are told by notes."""
+    """Show Python's warnings, which concern the source code, only with ``--debug``."""
     if not sys.warnoptions and "--debug" not in sys.argv:
         warnings.simplefilter("ignore")
 
 
 def check() -> None:
-    """Raise what a signal asked for, if it was dropped where it came."""
+    """Raise the exception of a signal that was dropped."""
     if _asked:
         raise _asked[-1]
 

@@ -1,4 +1,4 @@
-"""Many grids in one table: a row each, and the median, mean, 90th percentile and worst of every column."""
+"""Table of many grids: one row each, and median, mean, 90th percentile and worst value of every column."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ LABELS = {
     "near_wall": "near wall", "max": "max", "boundary": "boundary", "folded_other": "folded there",
     "max_angle_ratio": "max ratio", "mean_angle_ratio": "mean ratio",
 }  # fmt: skip
-"""Columns, for people."""
+"""Headings of the columns."""
 
 
 def figures(quality: Quality) -> dict[str, float]:
-    """Return the columns of every grid."""
+    """Return the values of the columns for a grid."""
     angle = quality["max_angle"]
     return {"folded": quality.folded, "max_angle": angle.max, "mean_angle": angle.mean}
 
 
 def gates_not_met(judgement: Judgement | None) -> list[str]:
-    """Return what JSON says of gates."""
+    """Return the failed gates for JSON."""
     return [with_options(problem) for problem in judgement.problems] if judgement else []
 
 
 @dataclass(frozen=True)
 class MemberRow:
-    """A member of a batch, with its figures by column; one without figures ended in an error."""
+    """A member of a batch with its values by column; none if it ended in an error."""
 
     label: str
     figures: Mapping[str, float] = field(default_factory=dict)
@@ -43,13 +43,13 @@ class MemberRow:
 
     @property
     def verdict(self) -> str:
-        """One of `VERDICTS`, or nothing for a grid that was not judged."""
+        """One of `VERDICTS`, or empty for a grid that was not judged."""
         return (self.judgement.verdict if self.judgement else "") if self.figures else "error"
 
 
 @dataclass(frozen=True)
 class BatchSummary:
-    """Figures of many grids, and the verdicts where they were judged."""
+    """Values of many grids, and their verdicts if they were judged."""
 
     rows: Sequence[MemberRow]
 
@@ -64,7 +64,7 @@ class BatchSummary:
         return any(row.judgement for row in self.rows)
 
     def as_json(self) -> dict[str, Any]:
-        """Return what ``--json`` prints."""
+        """Return the data for ``--json``."""
         facts: dict[str, Any] = {"members": len(self.members)}
         for column in self._columns():
             labels, values = self._values(column)
@@ -78,7 +78,7 @@ class BatchSummary:
         return {"summary": facts}
 
     def lines(self) -> str:
-        """Return the table for people."""
+        """Return the table as text."""
         columns = self._columns()
         rows = self.rows if self.judged else self.members
         table = [["grid", *(LABELS[column] for column in columns)]]
@@ -92,7 +92,7 @@ class BatchSummary:
         return self._with_verdicts(aligned(table)) if self.judged else aligned(table)
 
     def _with_verdicts(self, table: str) -> str:
-        """Return a table of all rows with the verdict at the end of each, and how many there are of each."""
+        """Return the table with a verdict at the end of each row, and the number of each verdict."""
         lines = table.splitlines()
         width = max(map(len, lines))
         ends = ["verdict  limits exceeded"]

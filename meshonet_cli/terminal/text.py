@@ -3,11 +3,11 @@
 from meshonet.formats.source import printable
 
 _BAR_LENGTH = 24
-"""Characters of a bar of progress."""
+"""Number of characters of a progress bar."""
 
 
 def aligned(rows: list[list[str]]) -> str:
-    """Return `rows` as lines with columns aligned, the first to the left and the others to the right."""
+    """Return `rows` as lines with aligned columns, the first to the left and the others to the right."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     lines = []
     for first, *others in rows:
@@ -18,7 +18,7 @@ def aligned(rows: list[list[str]]) -> str:
 
 
 def quoted(text: str) -> str:
-    r"""Return lines of text for a terminal, on which escape sequences in names of files must not act.
+    r"""Return lines of text for a terminal, with escape sequences in file names made harmless.
 
     >>> print(quoted("a\x1b[31m.dat\nb"))
     a\x1b[31m.dat
@@ -28,7 +28,7 @@ def quoted(text: str) -> str:
 
 
 def figure(value: float) -> str:
-    """Return a number as a table shows it.
+    """Return a number in the format of tables.
 
     >>> figure(90.12345), figure(0.000123456), figure(1234567.0), figure(0.0)
     ('90.12', '0.0001235', '1.235e+06', '0')
@@ -37,12 +37,12 @@ def figure(value: float) -> str:
 
 
 def span(seconds: float) -> str:
-    """Return a time span for people, in seconds or milliseconds."""
+    """Return a time in seconds or milliseconds as text."""
     return f"{seconds:.2f} s" if seconds >= 1 else f"{1e3 * seconds:.1f} ms"
 
 
 def duration(seconds: float) -> str:
-    """Return a span of time that goes on, for people.
+    """Return a remaining time as text.
 
     >>> duration(42.0), duration(600.0), duration(9000.0)
     ('42 s', '10 min', '2.5 h')

@@ -1,4 +1,4 @@
-"""A layout with as many cells as asked for, its nodes optimised."""
+"""Refines a layout to the requested number of cells and optimises its nodes."""
 
 from __future__ import annotations
 
@@ -8,24 +8,27 @@ import numpy as np
 
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.decomposition.errors import most_folded
-from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
+from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides
+from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric, node_images
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
 from meshonet.solvers.energy.quads import QuadOptimum, optimise
 
 CELLS = 2500
-"""Cells where nobody asked for a count."""
+"""Default number of cells."""
 OPTIMISED = 6000
-"""Most cells that are optimised themselves; more are splines through half as many each way."""
+"""Largest number of cells that are optimised directly; finer grids are splines through half as many in
+each direction.
+"""
 ITERATIONS = 150
 CUT_OFF = 7e-4
-"""Most of the area that cells may cut off along walls, before walls get more of them."""
+"""Fraction of the area that cells may cut off along walls before the walls get more cells."""
 ROUNDS, STEP, MORE = 7, 1.12, 1.19
 """How often at the most, by which factor, and up to how many times the cells asked for."""
 MOST_CUT_OFF = 9.5e-4
@@ -42,10 +45,10 @@ def fine_layout(
     halved: int = 0,
     timings: Timings | None = None,
 ) -> Layout:
-    """Return a layout with as many cells as asked for, its nodes optimised all together.
+    """Return a layout with the requested number of cells and optimised nodes.
 
-    Then all cells are halved so often: every second, fourth, ... node makes the coarser grids of a family.
-    Raises NoValidGridError: it stays folded.
+    Then all cells are halved `halved` times, so that every second, fourth, ... node forms the coarser nested
+    grids. Raises NoValidGridError: folded cells remain.
     """
     timings = timings or Timings()
     area = layout.mesh.domain.area
@@ -56,7 +59,7 @@ def fine_layout(
     own = 0  # halvings that are optimised themselves
     while own < halved and wanted * 4 ** (own + 1) <= OPTIMISED:
         own += 1
-    chords = Chords.of(layout)
+    chords = Chords.of(layout, node_images(layout.mesh))
     least = chords.least
     turning, counts, finer = ALLOWED, least, 4.0 ** (halvings - own)
     fine: Layout | None = None
@@ -66,26 +69,28 @@ def fine_layout(
             counts = chords.counts_for_size(cell_size * 2**halvings, least)
         else:
             counts = chords.counts_for_cells(int(wanted / 4**halvings), least)
+        counts = counts_along_sides(chords, counts, least)
         if fine is not None and chords.cells(counts) > MORE * wanted / 4**halvings:
             if abs(cut_off(fine)) / finer < MOST_CUT_OFF:
                 break
-            turning, counts = _held_back(Chords.of(fine), turning), before
+            turning, counts = _held_back(chords.of_refined(fine), turning), before
         trial = _optimised(chords, counts, 2**own, turning, timings)
         if fine is not None and turning < ALLOWED and abs(cut_off(trial)) > abs(cut_off(fine)):
             break
         fine = trial
-        more = _more_along_walls(Chords.of(fine), finer, 2**own)
+        more = _more_along_walls(chords.of_refined(fine), finer, 2**own)
         if (more <= counts).all():
             break
         least = np.maximum(least, more)
     assert fine is not None  # noqa: S101 - the first round makes it
     with timings.stage("refine"):
         times = 2 ** (halvings + halved - own)
-        return multiplied(fine, times) if times > 1 else fine
+        fine = multiplied(fine, times) if times > 1 else fine
+        return replace(fine, mesh=with_tied_sides(made_symmetric(fine.mesh)))
 
 
 def cut_off(fine: Layout) -> float:
-    """Return which part of the area cells along walls cut off; less than 0 where they add some."""
+    """Return the fraction of the area that cells along walls cut off; negative if they add area."""
     (x, y), area = fine.mesh.nodes[fine.mesh.quads].transpose(2, 0, 1), fine.mesh.domain.area
     return 1.0 - 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()) / area
 
@@ -100,7 +105,7 @@ def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timi
         fine = refine(chords.layout, counts, chords)
         fine = multiplied(fine, times) if times > 1 else fine
     with timings.stage("optimum"):
-        optimum = _optimum(fine.mesh, turning)
+        optimum = _optimum(with_tied_sides(fine.mesh), turning)
     if not optimum.valid:
         where = most_folded(optimum.mesh)
         raise NoValidGridError(f"cells of the blocks stay folded after optimisation, most {where}")
@@ -109,7 +114,7 @@ def _optimised(chords: Chords, counts: Indices, times: int, turning: float, timi
 
 def _optimum(mesh: QuadMesh, turning: float) -> QuadOptimum:
     """Return the optimum of a mesh, its nodes symmetric to mirrors of the domain to which its quads are."""
-    images = images_of(mesh, mirrors_of(mesh.domain))
+    images = images_of(mesh)
     if images:
         optimum = optimise(made_symmetric(mesh, images), iterations=ITERATIONS, turning=turning)
         symmetric = made_symmetric(optimum.mesh, images)

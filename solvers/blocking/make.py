@@ -1,4 +1,4 @@
-"""From a domain to a grid of blocks, as it was asked for."""
+"""Makes a multi-block grid of a domain."""
 
 from __future__ import annotations
 
@@ -8,31 +8,33 @@ from time import perf_counter
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.periodic import with_periodic_sides
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.around_body import around_body
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.reach import MOST_CELLS
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
 from meshonet.solvers.blocking.decomposition.decompose import Timings, decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
-from meshonet.solvers.blocking.request import CELLS, LAYERED_CELLS, MOST_CELLS, BlockRequest
+from meshonet.solvers.blocking.request import CELLS, LAYERED_CELLS, BlockRequest
 from meshonet.solvers.blocking.wall_note import wall_note
 from meshonet.solvers.solution import Solution
 
 METHOD = "blocks"
 GROWTH = 1.2
-"""Ratio of neighbouring layers where nobody asked for one."""
+"""Default ratio of neighbouring layers."""
 CUT_OFF = 1e-3
-"""Part of the area that cells along walls may cut off before it is said."""
+"""Fraction of the area that cells may cut off along walls without a note."""
 
 
 def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
-    """Return the grid of blocks of a domain, with layers where a first cell is asked for.
+    """Return the multi-block grid of a domain, with layers if a first cell is given.
 
-    Raises InputError: loops that cross or touch, names of walls that it does not have, a layout of another
-    domain; SolverError: no blocks are found; NoValidGridError: cells are folded.
+    Raises InputError: loops that cross or touch, unknown names of walls, a layout of another domain;
+    SolverError: the decomposition fails; NoValidGridError: folded cells.
     """
     begun, timings = perf_counter(), Timings()
     domain = _checked(shape.domain, request)
@@ -59,7 +61,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
 
 
 def _cut_off(fine: Layout) -> str:
-    """Return a note where cells along walls cut off, or add, more than `CUT_OFF` of the area."""
+    """Return a note if cells along walls cut off, or add, more than `CUT_OFF` of the area."""
     off = abs(cut_off(fine))
     if off <= CUT_OFF:
         return ""
@@ -69,9 +71,9 @@ def _cut_off(fine: Layout) -> str:
 
 
 def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
-    """Return the blocks of a domain, with as many cells as are asked for, else those they were found with.
+    """Return the blocks of a domain; without a requested number of cells, with that of the decomposition.
 
-    Raises InputError: as `make_blocks`; SolverError: no blocks are found.
+    Raises InputError: as `make_blocks`; SolverError: the decomposition fails.
     """
     domain = _checked(shape.domain, request)
     if request.pitch is not None:
@@ -83,14 +85,17 @@ def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
     layout = layout or decompose(domain)
     if not (request.cells or request.cell_size or request.res or request.refine):
         return layout
+    if domain.periodic:
+        problem = "a count or size of cells for the layout of a domain with periodic sides"
+        raise InputError(problem, "drop it: nodes are matched when the grid is made")
     cells, size = _wanted(domain, request)
     return fine_layout(layout, cells=cells, cell_size=size, halved=request.refine)
 
 
 def _given(shape: DomainShape, domain: Domain, request: BlockRequest) -> Layout | None:
-    """Return the layout that was asked for, or that the input has; layers are looked at later.
+    """Return the layout of the request, or that of the input; a layout for layers is checked later.
 
-    Raises InputError: without layers, one that leaves room for them; another kind of domain.
+    Raises InputError: a layout with room for layers in a request without; another kind of domain.
     """
     if shape.layout is not None and shape.layout.fronts:
         problem = "is a layout of what layers leave of a domain"
@@ -106,7 +111,7 @@ def _given(shape: DomainShape, domain: Domain, request: BlockRequest) -> Layout 
 def _with_layers(
     domain: Domain, request: BlockRequest, height: float, layout: Layout | None, timings: Timings
 ) -> Layout:
-    """Return a fine layout with layers at the walls that were named, or around all holes."""
+    """Return a fine layout with layers at the named walls, or around all holes."""
     from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
     from meshonet.solvers.blocking.layers.layered import layered
     from meshonet.solvers.blocking.layers.stretches import layered_walls
@@ -123,7 +128,7 @@ def _with_layers(
 
 
 def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout: Layout | None) -> Layout:
-    """Return the blocks of what the layers leave of a domain."""
+    """Return the blocks of the domain outside of layers."""
     from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
     from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
     from meshonet.solvers.blocking.layers.stretches import layered_walls
@@ -169,11 +174,11 @@ def _checked(domain: Domain, request: BlockRequest) -> Domain:
     for name in request.walls:
         if name not in known:
             raise InputError(f"there is no wall {name!r}", "use " + ", ".join(known), parameter="walls")
-    return domain
+    return with_periodic_sides(domain, request.periodic)
 
 
 def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | None]:
-    """Return how many cells there are to be, or else how long their edges."""
+    """Return the requested number of cells, or else their edge length."""
     if request.res is not None:
         return None, domain.extent / request.res
     if request.cell_size is not None:
@@ -181,12 +186,12 @@ def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | 
         if request.cell_size < least:
             problem = f"edges of {request.cell_size:g} are more than {MOST_CELLS} cells"
             raise InputError(problem, f"use {least:.2g} or more", parameter="cell_size")
-        return None, request.cell_size
+        return None, min(request.cell_size, domain.extent)
     return request.cells or CELLS, None
 
 
 def _folded_coarser(grid: Grid, halvings: int) -> list[str]:
-    """Return a note for each coarser grid of a family that has folded cells."""
+    """Return a note for each coarser nested grid with folded cells."""
     notes = []
     for times in (2**k for k in range(1, halvings + 1)):
         folded = sum(count_folded(block.nodes[::times, ::times]) for block in grid.blocks)
@@ -196,7 +201,7 @@ def _folded_coarser(grid: Grid, halvings: int) -> list[str]:
 
 
 def _stages(timings: Timings, spent: float) -> dict[str, float]:
-    """Return seconds for finding blocks, and for the grid."""
+    """Return the seconds of the decomposition and of the grid."""
     stages = timings.seconds
     layout = sum(seconds for stage, seconds in stages.items() if stage not in ("refine", "optimum", "layers"))
     return {"layout": layout, "grid": max(spent - layout, 0.0)}

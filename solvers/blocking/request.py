@@ -1,4 +1,4 @@
-"""What a user can ask of a grid of many blocks."""
+"""Options of multi-block grids."""
 
 from __future__ import annotations
 
@@ -7,39 +7,40 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.reach import MOST_CELLS
 from meshonet.geometry.spacing.first_cell import FirstCell
 
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
 
 CELLS = 2500
-"""Cells where nobody asked for a count or a size."""
+"""Default number of cells."""
 LAYERED_CELLS = 20_000
-"""Cells where nobody asked for a count and there are layers."""
-MOST_CELLS = 20_000_000
+"""Default number of cells of grids with layers."""
 MOST_HALVINGS = 8
 LARGEST_PITCH = 1e12
-"""In the unit of the blade; squares of coordinates stay far below what numbers can be."""
+"""Largest pitch in the unit of the blade, so that squares of coordinates do not overflow."""
 
 
 @dataclass(frozen=True)
 class BlockRequest(FirstCell):
-    """How to make a grid of blocks from a domain; the values are checked when it is made.
+    """How to make a multi-block grid of a domain. Values are checked on construction.
 
     Parameters
     ----------
-    cells : about how many cells in all; without it, `cell_size` and `res` there are `CELLS`, with layers
+    cells : approximate number of cells; without `cells`, `cell_size` and `res` it is `CELLS`, with layers
         `LAYERED_CELLS`.
-    cell_size : target length of edges away from walls, in the domain's unit.
-    res : cells along the longest extent of the domain.
-    first_cell : height of the first cell at walls, in the domain's unit.
-    y_plus, reynolds, chord_fraction : the same height by its y+, converted for a flat plate; the Reynolds
+    cell_size : target edge length away from walls, in the domain's unit.
+    res : number of cells along the longest extent of the domain.
+    first_cell : first-cell height at walls, in the domain's unit.
+    y_plus, reynolds, chord_fraction : first-cell height as y+, converted for a flat plate; the Reynolds
         number is based on the extent of the bodies.
     growth : largest ratio of neighbouring cells away from the wall.
     constant_layers : number of first layers of equal height.
     walls : names of the stretches with layers; none stands for all holes.
     pitch : vector from one blade of a cascade to the next: the domain is the passage around it.
     inlet, outlet : lengths of the passage before and behind the blade, in its axial chords; None is 1.
+    periodic : pairs of sides of the outer boundary, by name, that are translated copies of each other.
     layout : blocks to take, of this domain or of one like it.
     refine : how often all cells are halved. `cells`, `cell_size` and `res` say what the coarsest grid of the
         family has, `first_cell` and `growth` what the finest has, which is the one that is made.
@@ -58,6 +59,7 @@ class BlockRequest(FirstCell):
     outlet: float | None = None
     layout: Layout | None = None
     refine: int = 0
+    periodic: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         sizes = [name for name in ("cells", "cell_size", "res") if getattr(self, name) is not None]
@@ -94,5 +96,5 @@ class BlockRequest(FirstCell):
 
     @property
     def multiple(self) -> int:
-        """What divides all counts of cells: 2 to the power of `refine`."""
+        """Divisor of all numbers of cells: 2 to the power of `refine`."""
         return 1 << self.refine

@@ -1,4 +1,4 @@
-"""What a grid of blocks has at its walls with layers, measured there: for the report."""
+"""Note for the report about first cells and growth at walls with layers, measured on the grid."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from meshonet.geometry.spacing.y_plus import first_cell_note
 
 
 def wall_note(grid: Grid, domain: Domain, names: Collection[str], first: float) -> str:
-    """Return the heights of first cells and the growth of rows at the walls with layers.
+    """Return a note on the heights of first cells and the growth of rows at the walls with layers.
 
     Parameters
     ----------
-    grid : the grid, of blocks or of one ring.
+    grid : grid of blocks, or of one ring.
     domain : its domain.
-    names : names of the walls with layers; none stands for all holes.
-    first : height that was asked for, in the domain's unit.
+    names : names of the walls with layers; empty for all holes.
+    first : prescribed height in the domain's unit.
     """
     layered = set(names) or {name for loop in domain.loops[1:] for name in loop.names}
     patches = tuple(replace(p, kind="wall") if p.name in layered else p for p in grid.patches)

@@ -1,1 +1,1 @@
-"""O grids by conformal lift: harmonic base and Winslow's equations in the periodic strip."""
+"""O grids by a conformal map: harmonic extension and Winslow's equations in the periodic strip."""

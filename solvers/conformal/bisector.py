@@ -1,8 +1,8 @@
-"""Lines that leave a corner of the wall halve its angle.
+"""Makes the grid lines that leave a corner of the wall bisect its angle.
 
-The two cells at a corner of exterior angle A have angles there that add up to A: the larger is smallest when
-both are A/2. Winslow's equations get there only as the cells shrink; a nudge of phi around the corner's first
-node gets there at once, and dies out within a few cells.
+The two cells at a corner with the exterior angle A have angles there whose sum is A; the larger one is
+smallest if both are A/2. Solutions of Winslow's equations approach this only as the cells shrink. A local
+shift of phi near the first node of the line achieves it directly, and decays within a few cells.
 """
 
 from functools import partial
@@ -21,9 +21,9 @@ SWEEPS = 3  # over the corners, which influence each other a little
 
 
 def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> None:
-    """Add to `grid` the nudges that make the first lines off `corners` bisectors in the plane.
+    """Shift `grid` so that the first grid lines at `corners` are bisectors in the plane.
 
-    `wall` is (n,) nodes counter-clockwise in the plane, `corners` indices into it.
+    `wall` (n,) are nodes in the plane, counter-clockwise, and `corners` indices into it.
     """
     if not corners or len(grid.eta) < 4:
         return
@@ -32,7 +32,7 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return the weight of each corner's shift along the wall (n, corners), and the shifts of phi."""
+    """Return the weights of each corner's shift along the wall, (n, corners), and the shifts of phi."""
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n
     apart = np.minimum(between, n - between) + n * np.eye(len(corners))
@@ -54,6 +54,6 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
 
 
 def fading(eta: Floats, first: float) -> Floats:
-    """Return the share of a shift at `eta`: 1 at the first level, 0 at the walls."""
+    """Return the fraction of a shift at `eta`: 1 at the first level, 0 at the walls."""
     cells = eta / first
     return np.asarray(cells * exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))

@@ -1,8 +1,8 @@
-"""Chebyshev points, interpolation from points as a matrix, and panels of such points along eta.
+"""Chebyshev points, interpolation matrices, and panels of such points along eta.
 
-The maps from the strip to the plane are singular only at the wall, so on a panel that starts as far from the
-wall (in psi) as it is long, `NODES` Chebyshev points carry a grid line to round-off: Bernstein's ellipse has
-rho = 3 + sqrt(8), and rho^-NODES is 6e-13. The maps are evaluated there alone.
+The maps from the strip to the plane are singular only at the wall. On a panel that is as long as its distance
+from the wall (in psi), `NODES` Chebyshev points therefore represent a grid line to round-off: Bernstein's
+ellipse has rho = 3 + sqrt(8), and rho^-NODES is 6e-13. The maps are evaluated only at these points.
 
 Trefethen, Approximation Theory and Approximation Practice (2013), chapter 8; Berrut & Trefethen, Barycentric
 Lagrange Interpolation, SIAM Review 46 (2004) 501.
@@ -21,7 +21,7 @@ WORTH = 3  # times as many grid nodes as Chebyshev points: fewer are evaluated t
 
 
 def points(n: int) -> Floats:
-    """Return n Chebyshev points of the second kind in [0, 1], rising, the ends among them."""
+    """Return n Chebyshev points of the second kind in [0, 1], ascending, including both ends."""
     return np.asarray(0.5 - 0.5 * cos(np.pi * np.arange(n) / (n - 1)))
 
 
@@ -33,9 +33,9 @@ def weights(n: int) -> Floats:
 
 
 def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
-    """Return the (len(nodes), len(x)) matrix that takes values at `nodes` to values at `x`.
+    """Return the (len(nodes), len(x)) matrix from values at `nodes` to values at `x`.
 
-    Exact at the nodes themselves: a column there has one 1.
+    It is exact at the nodes themselves, where its column has a single 1.
 
     >>> points(5) ** 4 @ barycentric(points(5), weights(5), np.array([0.0, 0.3]))
     array([0.    , 0.0081])
@@ -52,7 +52,7 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Panel:
-    """Grid levels ``start`` to ``stop`` from values at `eta` (NODES,) by `matrix` (NODES, stop - start)."""
+    """Grid levels ``start`` to ``stop``: values at `eta` (NODES,) times `matrix` (NODES, stop - start)."""
 
     start: int
     stop: int
@@ -61,13 +61,15 @@ class Panel:
 
 
 def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> list[Panel]:
-    """Return the panels that cover levels `first` to `last` of `eta`, where they save evaluations.
+    """Return the panels that cover the levels `first` to `last` - 1 of `eta`, if they save evaluations.
 
-    `eta`: (nj,) rising from 0 at the wall to 1; `height`: psi from wall to far field; `spread`: how much psi
-    varies along the wall; `first`, `last`: levels outside ``[first, last)`` are left out. Panels are without
-    gaps, outwards, and end at `last`; there are none when none is worth it.
+    `eta` (nj,) ascends from 0 at the wall to 1; `height` is the difference of psi between wall and far field,
+    and `spread` the variation of psi along the wall. Panels follow each other outwards without gaps and end
+    at `last`. The list is empty if panels would save nothing.
     """
     chosen: list[Panel] = []
+    angle = np.pi * (np.arange(NODES) + 0.5) / NODES
+    signed = sin(angle) * (1.0 - 2.0 * (np.arange(NODES) % 2))
     distance = NEAREST
     while spread + distance < height:
         far = spread + 2.0 * distance
@@ -75,16 +77,10 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
         start = max(int(ends[0]), first)
         stop = last if far >= height else min(int(ends[1]), last)
         if stop - start >= WORTH * NODES:
-            chosen.append(_panel(eta, start, stop))
+            a, b = eta[start], eta[stop - 1]
+            places = 0.5 * (a + b) - 0.5 * (b - a) * cos(angle)
+            chosen.append(Panel(start, stop, places, barycentric(places, signed, eta[start:stop])))
         elif stop > start:
             chosen.clear()  # too few levels here: they and all before them are evaluated themselves
         distance *= 2.0
     return chosen
-
-
-def _panel(eta: Floats, start: int, stop: int) -> Panel:
-    a, b = eta[start], eta[stop - 1]
-    angle = np.pi * (np.arange(NODES) + 0.5) / NODES
-    points = 0.5 * (a + b) - 0.5 * (b - a) * cos(angle)
-    weights = sin(angle) * (1.0 - 2.0 * (np.arange(NODES) % 2))
-    return Panel(start, stop, points, barycentric(points, weights, eta[start:stop]))

@@ -1,9 +1,9 @@
-"""A grid at any resolution from a strip solution, at the speed of memory.
+"""Evaluates a strip solution at the nodes of a grid of any resolution.
 
-The strip solution is separable: Fourier modes along theta, Chebyshev points across. What the first `MODES`
-modes leave out of the walls dies within a few levels and is added there exactly. Levels near the walls go
-through the compiled maps one by one; all others are interpolated along eta in the plane, from the few
-Chebyshev points of each panel. The points of a row::
+The strip solution is separable: Fourier modes along theta, Chebyshev points across. The part of the walls
+beyond the first `MODES` modes decays within a few levels and is added there exactly. Levels near the walls
+are mapped to the plane one by one. All others are interpolated along eta in the plane, from the few Chebyshev
+points of each panel. The points of a row are::
 
     levels 1 .. begin - 1 | panels' points | levels end .. nj - 2
 """
@@ -33,8 +33,8 @@ FAINT = 1e-12  # a wall's high modes are followed until their sum is below this 
 class StripGrid:
     """A strip solution sampled at the nodes of one grid.
 
-    `c`: (2 MODES + 1, LEVELS) modes of F = w - i theta at the Chebyshev points; `wall`, `far`: (n,) F at the
-    nodes of the two walls; `eta`: (nj,) rising from 0 to 1.
+    `c` (2 MODES + 1, LEVELS) are modes of F = w - i theta at the Chebyshev points, `wall` and `far` (n,) are
+    F at the nodes of the two walls, and `eta` (nj,) ascends from 0 to 1.
     """
 
     def __init__(self, c: Complexes, wall: Complexes, far: Complexes, eta: Floats) -> None:
@@ -52,7 +52,7 @@ class StripGrid:
         self._begin, self._end = ends
 
     def at(self, rows: Sequence[int], j: int) -> Complexes:
-        """Return w at nodes (rows, j) near the wall, nudges left out."""
+        """Return w at nodes (rows, j) near the wall, without shifts."""
         theta = self.theta[list(rows)]
         low = product(self._c, _interpolation(self.eta[j : j + 1].tobytes())[:, 0])
         k, high = self._near.at(float(self.eta[j]))
@@ -62,15 +62,14 @@ class StripGrid:
         return np.asarray(F + 1j * theta)
 
     def nudge(self, along: Floats, across: Callable[[Floats], Floats]) -> None:
-        """Add `along` (n,) times ``across(eta)`` to phi."""
+        """Add the shift `along` (n,) times ``across(eta)`` to phi."""
         self._nudges.append((along, across))
 
     def fill(self, lift: Lift, out: Floats, axis: Axis | None = None) -> bool:
-        """Write the grid in the plane to `out` (n + 1, nj, 2) planar, its two walls left out.
+        """Write the grid in the plane to `out` (n + 1, nj, 2), in planar layout, except for its two walls.
 
-        Return whether it is finite.
-
-        The last row repeats the first bitwise. With an `axis`, rows i and n - i become mirror images.
+        Return whether it is finite. The last row repeats the first bitwise. With an `axis`, rows i and n - i
+        are mirror images.
         """
         n, nj, begin = len(self.theta), len(self.eta), self._begin
         far = self.eta[self._end : nj - 1]
@@ -93,7 +92,7 @@ class StripGrid:
         return finite
 
     def _columns(self, eta: Floats, last: int) -> Iterator[tuple[int, int, Floats]]:
-        """Yield the points at `eta` in slices: their first, their number and the columns of their modes."""
+        """Yield the points at `eta` in slices: first index, number, and the columns of their modes."""
         base = np.ascontiguousarray(self._c.T)
         low = product(_interpolation(eta.tobytes()).T, base.view(np.float64)).view(np.complex128)
         first = 0
@@ -120,9 +119,9 @@ def _widened(low: Complexes, ahead: Complexes, behind: Complexes) -> Complexes:
 
 @dataclass(frozen=True)
 class _HighModes:
-    """What `MODES` modes leave out of a wall: `ahead` for k = MODES + 1 .. K, `behind` for -K .. -MODES - 1.
+    """Modes of a wall beyond `MODES`: `ahead` for k = MODES + 1 .. K, `behind` for -K .. -MODES - 1.
 
-    They never see the opposite wall: to round-off, exp(-|k| height depth) is their sinh ratio.
+    They are zero at the opposite wall to round-off; exp(-|k| height depth) then equals their ratio of sinh.
     """
 
     ahead: Complexes
@@ -139,14 +138,14 @@ class _HighModes:
         return cls(ahead, behind, height)
 
     def at(self, depth: float) -> tuple[Floats, Complexes]:
-        """Return wave numbers (2 m,) and how strong their modes are at one depth."""
+        """Return wave numbers (2 m,) and the amplitudes of the modes at one depth."""
         k = np.arange(MODES + 1.0, MODES + 1.0 + len(self.ahead))
         fade = exp(-self.height * depth * k)
         modes = np.concatenate([self.ahead * fade, self.behind[::-1] * fade])
         return np.concatenate([k, -k]), modes
 
     def reach(self, depth: Floats) -> int:
-        """Return how many levels of `depth` (rising) any of the modes reaches."""
+        """Return the number of levels of ascending `depth` at which any of the modes is not negligible."""
         return max((count for count, _ in self._felt(depth)), default=0)
 
     def bands(self, depth: Floats) -> Iterator[tuple[slice, Complexes, Complexes]]:

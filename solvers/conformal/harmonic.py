@@ -1,13 +1,13 @@
-"""The harmonic extension of a boundary: x and y that solve Laplace's equation in a rectangle or a ring.
+"""Harmonic extension of a boundary: x and y solve Laplace's equation in a rectangle or a ring.
 
 ::
 
     quad   u = corners, bilinear + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1 - eta)) / sinh(k pi a)
     o      u = means, linear + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1 - eta)) / sinh(k T)
 
-with eta measured from the side that has the coefficients. a is the height of the rectangle over its length,
-as the sides' lengths say; T = log(outer length / inner length), so that a ring between two circles comes out
-as Winslow's equations have it. Kinks of the boundary do not reach inside.
+Here eta is measured from the side with these coefficients. a is the ratio of height to length of the
+rectangle, from the lengths of the sides. T = log(outer length / inner length), so that for a ring between two
+circles the result solves Winslow's equations. Kinks of the boundary do not propagate into the interior.
 """
 
 import math
@@ -23,7 +23,7 @@ FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so 
 
 
 def extend(boundary: Boundary) -> Floats:
-    """Return the nodes (ni, nj, 2) of the extension; those on the boundary are the boundary's own.
+    """Return the nodes (ni, nj, 2) of the extension; boundary nodes are those of `boundary`.
 
     >>> s, zero, one = np.linspace(0.0, 1.0, 5), np.zeros(5), np.ones(5)
     >>> square = Boundary(*(np.stack(edge, axis=1) for edge in [(s, zero), (s, one), (zero, s), (one, s)]))
@@ -74,7 +74,7 @@ def _ring(b: Boundary) -> Floats:
 
 
 def _add(into: Floats, waves: Floats, b: Floats, rate: Floats, rows: int) -> None:
-    """Add the modes `waves` (n, k) with coefficients b (k, 2) at the first row to rows 1 .. of `into`."""
+    """Add the modes `waves` (n, k) with coefficients b (k, 2) on the first row to rows 1 .. of `into`."""
     first = 1
     while first < rows:
         last = min(2 * first, rows)

@@ -1,8 +1,8 @@
-"""Fourier sums at any number of equal steps of theta, from a power of two of them.
+"""Fourier sums at an arbitrary number of equal steps of theta, through FFTs whose length is a power of two.
 
-An FFT of the nodes around a body is slow where their number has large factors, as 799 = 17 x 47 has. Here a
-sum of modes |k| < Q/4 costs one FFT of Q columns, Q a power of two, and a node weighs the `TAPS` columns
-around it with a window w, whose transform the modes were divided by::
+An FFT over the nodes around a body is slow if their number has large prime factors, like 799 = 17 x 47. Here
+a sum of modes |k| < Q/4 costs one FFT of Q columns, Q a power of two. Each node is a weighted sum of the
+`TAPS` columns around it. The weights are a window w, and the modes are first divided by its transform::
 
     sum_k c_k exp(i k theta) = sum_q w(theta - theta_q) f_q,      f_q = sum_k c_k / v_k exp(i k theta_q)
     w(x) = exp(b (sqrt(1 - x^2) - 1)),  |x| < 1,  x in half windows
@@ -26,21 +26,14 @@ SHARPNESS = 2.30 * TAPS  # b
 FEWEST = 256  # columns
 
 
-def columns_for(highest: int) -> int:
-    """Return how many columns carry modes |k| <= `highest`: a power of two above 4 `highest`."""
-    count = FEWEST
-    while count < 4 * highest + 4:
-        count *= 2
-    return count
-
-
 def columns(modes: Complexes) -> Floats:
-    """Return f (Q, 2, width) whose windowed sums are those of `modes` (m, 2 K + 1), k = 0 .. K, -K .. -1.
+    """Return f (Q, 2, width), whose windowed sums are those of `modes` (m, 2 K + 1), k = 0 .. K, -K .. -1.
 
-    Real parts before imaginary ones, zero from m on; the width is a multiple of `LANES`.
+    Real parts precede imaginary parts, columns from m on are zero; the width is a multiple of `LANES`.
     """
     count, wide = len(modes), -(-len(modes) // LANES) * LANES
-    gain, unit = _transform(columns_for(modes.shape[1] // 2))
+    highest = modes.shape[1] // 2
+    gain, unit = _transform(max(FEWEST, 1 << (4 * highest + 3).bit_length()))  # Q >= 4 highest + 4
     samples = np.zeros((2 * len(unit), 2, wide))
     if count:
         fourier_columns(np.ascontiguousarray(modes), gain, unit, samples)
@@ -49,7 +42,7 @@ def columns(modes: Complexes) -> Floats:
 
 @lru_cache(maxsize=16)
 def _transform(count: int) -> tuple[Floats, Complexes]:
-    """Return 1 / v_k for k = 0 .. count / 4, by the trapezoidal rule, which is exact to exp(-b)."""
+    """Return 1 / v_k for k = 0 .. count / 4 by the trapezoidal rule, whose error is exp(-b)."""
     steps = 8 * TAPS
     x = np.arange(-steps, steps + 1) / steps
     window = exp(SHARPNESS * (np.sqrt(np.maximum(1.0 - x * x, 0.0)) - 1.0))

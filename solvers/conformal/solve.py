@@ -1,9 +1,9 @@
-"""O grids without a network: lift, harmonic base, Picard's iteration in the strip, evaluation at the nodes.
+"""O grids without a network: conformal map, harmonic extension, Picard iteration, evaluation at the nodes.
 
-A boundary's two walls are lifted to a periodic strip, where the harmonic extension of the walls nearly solves
-Winslow's equations. A correction (a network's) may be added to it. Picard's iteration does the rest, and the
-separable sum is evaluated at the grid's nodes. Boundaries that this cannot take go to the elliptic solver,
-and the solution says so.
+The two walls of a boundary are mapped to a periodic strip, where their harmonic extension nearly solves
+Winslow's equations. A correction, such as that of a network, may be added. Picard iterations reduce the
+remaining error, and the separable sum is evaluated at the nodes of the grid. Boundaries without such a map
+are solved by the elliptic solver, which the solution states in a note.
 """
 
 import time
@@ -29,7 +29,9 @@ from meshonet.solvers.solution import Solution
 Polish = Literal["auto", "off"] | int  # steps: a number, ``off`` for none, ``auto`` until they change little
 
 Correction: TypeAlias = Callable[[Complexes, Complexes, NDArray[np.intp]], Complexes]
-"""Modes of wall and far field (batch, modes) and handedness (batch,) to modes (batch, modes, LEVELS)."""
+"""Function from modes of wall and far field (batch, modes) and handedness (batch,) to modes (batch, modes,
+LEVELS).
+"""
 
 AUTO_STEPS = 8  # the most steps that "auto" takes
 SETTLED = 2e-4  # change (radians) below which "auto" stops: what is left is a tenth of that, or less
@@ -43,11 +45,11 @@ def solve(
     model: str | None = None,
     substitute: Callable[[Boundary, str], Solution | None] | None = None,
 ) -> list[Solution]:
-    """Return a grid inside each O boundary, whose nodes it has bitwise.
+    """Return a grid inside each O boundary, with bitwise the nodes of the boundary.
 
-    `polish`: Picard steps; `correction`: what is added to the harmonic base before them, for all boundaries
-    at once; `model`: name of the operator that makes the correction; `substitute`: is offered a boundary
-    that cannot be lifted, and why, before the elliptic solver.
+    `polish` is the number of Picard iterations. `correction` returns a term that is added to the harmonic
+    extension, for all boundaries at once, and `model` is the name of its operator. `substitute` is called
+    with a boundary that has no map and the reason, before the elliptic solver is used.
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()
@@ -69,7 +71,8 @@ def solve(
 def _solved(
     boundary: Boundary, body: StripWalls, start: Complexes, polish: Polish, model: str | None, *, rough: bool
 ) -> Solution:
-    c, changes = _polished(start, polish)
+    steps = AUTO_STEPS if polish == "auto" else 0 if polish == "off" else polish
+    c, changes = picard(start, steps, SETTLED if polish == "auto" else 0.0, DIVERGED)
     if changes and not changes[-1] < DIVERGED:
         return _elliptic(boundary, f"the polish of the {_called(model)} diverged")
     nodes, finite = _evaluated(boundary, body, c)
@@ -92,7 +95,7 @@ def _called(model: str | None) -> str:
 
 
 def _lifted(boundary: Boundary) -> tuple[StripWalls | InputError, bool]:
-    """Return the walls in the strip, or why there are none, and whether the body's is rough."""
+    """Return the walls in the strip, or the reason why there are none, and whether the wall is rough."""
     try:
         body = walls(boundary)
         return body, is_rough(body)
@@ -101,24 +104,13 @@ def _lifted(boundary: Boundary) -> tuple[StripWalls | InputError, bool]:
 
 
 def _starts(bodies: Sequence[StripWalls], correction: Correction | None) -> list[Complexes]:
-    """Return where Picard's iteration starts for each body: the harmonic base, and the correction."""
+    """Return the initial modes of each body: the harmonic extension plus the correction."""
     ends = [(modes(body.wall), modes(body.far)) for body in bodies]
     added: Iterable[Complexes | float] = [0.0] * len(bodies)
     if correction is not None and bodies:
         wall, far = (np.array(side) for side in zip(*ends, strict=True))
         added = correction(wall, far, np.array([body.hand for body in bodies]))
     return [harmonic(a, b, across().eta) + more for (a, b), more in zip(ends, added, strict=True)]
-
-
-def _polished(c: Complexes, polish: Polish) -> tuple[Complexes, list[float]]:
-    """Return the modes after polish, and the largest change in each Picard step."""
-    changes: list[float] = []
-    for _ in range(AUTO_STEPS if polish == "auto" else 0 if polish == "off" else polish):
-        c, change = picard(c, 1)
-        changes += change
-        if not change[0] < DIVERGED or (polish == "auto" and change[0] < SETTLED):
-            break
-    return c, changes
 
 
 def _evaluated(boundary: Boundary, body: StripWalls, c: Complexes) -> tuple[Floats, bool]:
@@ -140,7 +132,7 @@ def _elliptic(boundary: Boundary, why: str) -> Solution:
 
 @dataclass(frozen=True)
 class Conformal:
-    """O grids by Picard's iteration in the strip that a conformal map makes of the domain."""
+    """The method ``conformal``: O grids by Picard iteration in the conformal image of the domain, a strip."""
 
     polish: Polish = "auto"
     name = "conformal"
@@ -153,7 +145,7 @@ class Conformal:
     ) -> list[Solution]:
         """Return a solution for each of the boundaries.
 
-        Raises InputError: a boundary that is not around a body.
+        Raises InputError: a boundary that is not an O boundary.
         """
         for problem in problems:
             if problem.topology != "o":

@@ -1,14 +1,14 @@
-"""Winslow's equations in the periodic strip, by Fourier modes along phi and Chebyshev points across.
+"""Winslow's equations in the periodic strip, with Fourier modes along phi and Chebyshev points across.
 
-A grid in the strip is w(theta, eta) = psi + i phi with phi = theta + ..., so that F = w - i theta is
-periodic in theta (2 pi). With W = w::
+A grid in the strip is w(theta, eta) = psi + i phi with phi = theta + ..., so that F = w - i theta is periodic
+in theta (2 pi). With W = w::
 
     alpha W_tt - 2 beta W_te + gamma W_ee = 0
     alpha = |W_e|^2,  beta = Re(conj(W_t) W_e),  gamma = |W_t|^2
 
-The uniform strip W = T eta + i theta has alpha = T^2, beta = 0, gamma = 1: the harmonic extension of the two
-walls solves the equations with these coefficients, and Picard's iteration with that constant operator as
-preconditioner does the rest. Points cluster at the wall, where high modes live.
+For the uniform strip W = T eta + i theta, alpha = T^2, beta = 0 and gamma = 1, and the harmonic extension of
+the two walls solves the equations with these coefficients. Picard iteration uses this constant operator as a
+preconditioner. Points are clustered at the wall, where high modes decay.
 
 Trefethen, Spectral Methods in MATLAB (2000), chapters 6 and 7.
 """
@@ -35,8 +35,9 @@ CLUSTERING = 4.0  # eta(s) = (exp(c s) - 1)/(exp(c) - 1)
 EIGENVECTORS = Path(__file__).with_name("eigenvectors.npy")
 """Rows of eigenvalues w of ``d2[1:-1, 1:-1]`` below, of eigenvectors v in columns, and of their inverse.
 
-Kept, since LAPACK rounds by the processor. When `LEVELS` or `CLUSTERING` change, they are made again:
-``w, v = np.linalg.eig(d2[1:-1, 1:-1])``, ``np.save(EIGENVECTORS, np.vstack([w, v, np.linalg.inv(v)]))``.
+They are stored because LAPACK rounds differently on different processors. If `LEVELS` or `CLUSTERING` change,
+compute them again: ``w, v = np.linalg.eig(d2[1:-1, 1:-1])``, ``np.save(EIGENVECTORS, np.vstack([w, v,
+np.linalg.inv(v)]))``.
 """
 
 
@@ -51,11 +52,17 @@ class Across:
     eigenvalues: Floats
     vectors: Floats
     inverse: Floats
+    matrices: Floats
+    """(4, LEVELS, LEVELS) for the compiled step: `d1`, `d2`, `inverse` and `vectors`, transposed."""
+    stiffness: Floats
+    """`eigenvalues` with one more at either end."""
+    smooth: Floats
+    """`smoothing`."""
 
 
 @lru_cache(maxsize=1)
 def across() -> Across:
-    """Return the discretisation across the strip (built once, about a millisecond)."""
+    """Return the discretisation across the strip, which is computed once in about a millisecond."""
     n = LEVELS - 1
     x = elementary.cos(np.pi * np.arange(n + 1) / n)
     c = np.r_[2.0, np.ones(n - 1), 2.0] * (1.0 - 2.0 * (np.arange(n + 1) % 2))
@@ -68,8 +75,12 @@ def across() -> Across:
     d1 = -2.0 * d / rate[:, None]
     d2 = elementary.product(d1, d1)
     kept = np.load(EIGENVECTORS)
-    arrays = (s, eta, d1, d2, kept[0], kept[1:n], kept[n:])
-    return Across(*(read_only(array) for array in arrays))
+    inner = np.zeros((2, LEVELS, LEVELS))
+    inner[:, 1:-1, 1:-1] = kept[n:], kept[1:n]
+    matrices = np.concatenate([[d1, d2], inner]).swapaxes(1, 2).copy()
+    stiffness = np.pad(kept[0], 1, constant_values=-1.0)
+    arrays = (s, eta, d1, d2, kept[0], kept[1:n], kept[n:], matrices, stiffness, smoothing())
+    return Across(*map(read_only, arrays))
 
 
 def interpolation(eta: Floats) -> Floats:
@@ -81,8 +92,8 @@ def interpolation(eta: Floats) -> Floats:
 def modes(F: Any, xp: Any = np) -> Any:
     """Return Fourier coefficients (..., 2 MODES + 1) of F (..., n) for k = 0, 1 .. MODES, -MODES .. -1.
 
-    Modes that n samples do not resolve are zero. `xp`: the module, numpy or torch, that F is an array of; the
-    same in the functions below.
+    Modes that n samples do not resolve are zero. `xp` is the module of the array F, numpy or torch; the same
+    holds for the functions below.
     """
     n = F.shape[-1]
     c, kept = xp.fft.fft(F) / n, min(MODES, (n - 1) // 2)
@@ -91,16 +102,16 @@ def modes(F: Any, xp: Any = np) -> Any:
 
 
 def wavenumbers(like: Any = None, xp: Any = np) -> Any:
-    """Return k in the order of `modes`, an array `like` another if one is named."""
+    """Return k in the order of `modes`, as an array of the same type as `like`."""
     k = np.concatenate([np.arange(MODES + 1.0), np.arange(-MODES, 0.0)])
     return k if like is None else array_like(k, like, xp)
 
 
 def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
-    """Return how mode k of the wall and of the far field reach eta: two (..., len(k), len(eta)) arrays.
+    """Return the factors at eta of mode k of the wall and of the far field: (..., len(k), len(eta)) arrays.
 
-    sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), written without overflow. T, the height of the strip,
-    is a number or (..., 1, 1).
+    They are sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), computed without overflow. T, the height of
+    the strip, is a number or (..., 1, 1).
     """
     k, exp = abs(k)[:, None], functions_of(xp).exp
     flat = k == 0
@@ -112,12 +123,15 @@ def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def smoothing() -> Floats:
-    """Return the filter of a change of each mode: those near `MODES` are aliases of others."""
+    """Return the factors by which changes of the modes are filtered.
+
+    Modes near `MODES` are affected by aliasing.
+    """
     return np.asarray(elementary.exp(-36.0 * elementary.power(np.abs(wavenumbers()) / (MODES + 1), 12.0)))
 
 
 def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
-    """Return modes (..., 2 MODES + 1, len(eta)) of the harmonic function with these on the two walls."""
+    """Return modes (..., 2 MODES + 1, len(eta)) of the harmonic function with given modes on both walls."""
     count, T = MODES + 1, (far - wall)[..., :1, None].real
     k = wavenumbers(wall, xp)[:count]  # k and -k decay alike
     near, away = decay(k, T, array_like(eta, wall, xp), xp)
@@ -142,27 +156,18 @@ def _zeros(like: Any, count: int, xp: Any) -> Any:
     return xp.zeros((*like.shape[:-1], count), dtype=like.dtype, device=like.device)
 
 
-def picard(c: Complexes, steps: int) -> tuple[Complexes, list[float]]:
-    """Return the modes after `steps` Picard steps, and the largest change of F in each.
+def picard(
+    c: Complexes, steps: int, settled: float = 0.0, diverged: float = np.inf
+) -> tuple[Complexes, list[float]]:
+    """Return the modes after `steps` Picard steps at the most, and the largest change of F in each.
 
-    A step that is not finite counts as an infinite change, and is the last. `c`: (2 MODES + 1, LEVELS) modes
-    at the Chebyshev points; the two walls stay as they are.
+    The last step is one whose change is below `settled` or not below `diverged`; one that is not finite
+    counts as an infinite change. `c`: (2 MODES + 1, LEVELS) modes at the Chebyshev points; the two walls stay
+    as they are.
     """
     T = float((c[0, -1] - c[0, 0]).real)
-    parts = np.stack([c.real, c.imag])
-    matrices, eigenvalues, smooth = _kernels()
+    parts, grid = np.stack([c.real, c.imag]), across()
     changes: list[float] = []
-    while len(changes) < steps and (not changes or np.isfinite(changes[-1])):
-        changes.append(picard_step(parts, T, matrices, eigenvalues, smooth))
+    while len(changes) < steps and (not changes or settled <= changes[-1] < diverged):
+        changes.append(picard_step(parts, T, grid.matrices, grid.stiffness, grid.smooth))
     return parts[0] + 1j * parts[1], changes
-
-
-@lru_cache(maxsize=1)
-def _kernels() -> tuple[Floats, Floats, Floats]:
-    """Return what the compiled step takes: matrices, eigenvalues, and a filter against aliasing."""
-    grid = across()
-    inner = np.zeros((2, LEVELS, LEVELS))
-    inner[:, 1:-1, 1:-1] = grid.inverse, grid.vectors
-    matrices = np.concatenate([[grid.d1, grid.d2], inner]).swapaxes(1, 2).copy()
-    eigenvalues = np.pad(grid.eigenvalues, 1, constant_values=-1.0)
-    return read_only(matrices), read_only(eigenvalues), read_only(smoothing())

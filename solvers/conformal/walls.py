@@ -21,11 +21,12 @@ CORNER = np.radians(85.0)  # turn at a node, trailing edge aside, that makes a b
 
 
 class StripWalls(NamedTuple):
-    """A body's two walls in the strip.
+    """The two walls of a body in the strip.
 
-    `lift` to the plane; F on the `wall` and on the `far` field (n,), where F = w - i theta is periodic and
-    n = ni - 1; the wall's nodes `z`; its trailing `corners`; the `axis` of a boundary that is its own mirror
-    image, and which of the two mirror images it is otherwise (`hand`).
+    `lift` maps the strip to the plane. `wall` and `far` (n,) are F = w - i theta, periodic in theta, at the n
+    = ni - 1 nodes of each wall; `z` are the nodes of the wall in the plane, `corners` its trailing corners.
+    `axis` is that of a boundary that is its own mirror image; otherwise `hand` says which of the two mirror
+    images it is.
     """
 
     lift: Lift
@@ -38,7 +39,7 @@ class StripWalls(NamedTuple):
 
 
 def walls(boundary: Boundary) -> StripWalls:
-    """Return the walls of an O boundary in the strip. Raises InputError when the body cannot be lifted."""
+    """Return the walls of an O boundary in the strip. Raises InputError: the body has no conformal map."""
     z, far = mirrored(boundary.south[:-1]), mirrored(boundary.north[:-1])
     hand, (point, direction) = handedness(z, far)
     # near the origin: far from it the map's branch points are subject to cancellation
@@ -52,10 +53,11 @@ def walls(boundary: Boundary) -> StripWalls:
 
 
 def is_rough(body: StripWalls) -> bool:
-    """Return whether uneven spacing exceeds the strip's resolution a little, so that a grid may fold.
+    """Return whether uneven spacing slightly exceeds the resolution of the strip, so that a grid may fold.
 
-    Airfoils have at most 0.013 in the wall, 0.06 where nodes are evenly spaced around the leading edge;
-    polygons at least 0.02; a square far field has 0.01. Raises InputError when the strip does not resolve it.
+    The measure is at most 0.013 for the walls of airfoils, 0.06 if nodes are evenly spaced around the leading
+    edge, at least 0.02 for polygons and 0.01 for a square far field. Raises InputError: the strip does not
+    resolve it.
     """
     n = len(body.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))
@@ -70,7 +72,7 @@ def is_rough(body: StripWalls) -> bool:
 
 
 def sharp_turns(body: StripWalls) -> tuple[int, ...]:
-    """Return the trailing corners, then the nodes at which the wall turns so much that lines may cross it."""
+    """Return the trailing corners, then nodes at which the wall turns enough for grid lines to cross it."""
     others = set(np.flatnonzero(_turn(body) > SHARP_TURN).tolist()) - set(body.corners)
     return (*body.corners, *sorted(others))
 

@@ -20,7 +20,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import Indices
 
 STEP = 1e-5
-"""Step of central differences, in lengths of the shortest edge at a node; errors are about its square."""
+"""Step of central differences relative to the shortest edge at a node; errors are about its square."""
 
 Equations = Callable[[Floats], Floats]
 """Function from nodes (2, ni, nj) to residuals of the same shape; only those at inner nodes are used."""

@@ -1,11 +1,11 @@
 """Derivatives, by the implicit function theorem, of a grid that solves equations.
 
-With F(x, b) = 0 for inner nodes x and boundary nodes b, dx = -F_x⁻¹ F_b db; and a functional whose derivative
-by x is p has the derivative -F_bᵀ F_x⁻ᵀ p by b (adjoint method): one linear solve per functional, whatever
-the number of boundary nodes. F is the gradient of the variational functional
-(`meshonet.solvers.energy.functional`), whose F_x is symmetric, or Winslow's equations, whose F_x is not; then
-the symmetric matrix ((1, F_x), (F_xᵀ, 0)) is factored. The aspect ratio a in the functional depends on the
-boundary, and is differentiated too.
+Let F(x, b) = 0 for interior nodes x and boundary nodes b. Then dx = -F_x⁻¹ F_b db. A functional whose
+derivative with respect to x is p has the derivative -F_bᵀ F_x⁻ᵀ p with respect to b (adjoint method): one
+linear solve per functional, whatever the number of boundary nodes. F is the gradient of the variational
+functional (`meshonet.solvers.energy.functional`), for which F_x is symmetric, or Winslow's equations, for
+which it is not. In the second case the symmetric matrix ((1, F_x), (F_xᵀ, 0)) is factored. The aspect ratio a
+of the functional depends on the boundary and is differentiated too.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from meshonet.solvers.sparse import Factor, SparseMatrix, SparsePattern
 
 STEPS = 20  # of Newton's method, to the optimum itself
 STILL = 1e-11
-"""Largest displacement of a node, in its shortest edges, at which the iteration ends."""
+"""Largest displacement of a node, relative to its shortest edge, at which the iteration ends."""
 _NEAR = 0.5  # displacement of a node, in its shortest edges, above which the grid is too far from the optimum
 _SHIFT = 1e-9  # subtracted from the zero diagonal of the augmented system, so that it can be factored
 _REFINED = 3  # steps of iterative refinement that make up for that
@@ -35,17 +35,17 @@ _REACH = {"variational": 2, "winslow": 1}  # nodes each way in the stencil of an
 
 
 class OptimumDerivative:
-    """The derivative of the inner nodes of a four-sided grid with respect to its boundary nodes.
+    """The derivative of the interior nodes of a four-sided grid with respect to its boundary nodes.
 
     Parameters
     ----------
     grid : a grid near the minimum of the variational functional, or near the solution of Winslow's equations,
-        for its boundary nodes; Newton's method then converges to it.
+        with these boundary nodes; Newton's method then converges to it.
     method : ``variational`` or ``winslow``.
-    weights : of the functional; None stands for those that `solve_pde` uses.
+    weights : weights of the functional; None stands for those of `solve_pde`.
 
-    Raises InputError: an O grid, many blocks, a volume, an unknown method; SolverError: the grid is far from
-    the solution.
+    Raises InputError: an O grid, several blocks, a volume, an unknown method; SolverError: the grid is far
+    from the solution.
     """
 
     grid: Grid
@@ -139,7 +139,10 @@ class OptimumDerivative:
         return self._system.solve(right, transposed=transposed)
 
     def _aspect_term(self, nodes: Floats) -> Floats:
-        """Return the derivative of the equations with respect to a; store that of a by the nodes."""
+        """Return the derivative of the equations with respect to a.
+
+        Store that of a with respect to the nodes.
+        """
         self._aspect_slope = np.zeros(nodes.size)
         if self._method == "winslow":
             return np.zeros(nodes.size)
@@ -160,7 +163,7 @@ def _inner_numbers(nodes: Floats) -> Indices:
 
 
 def aspect_slope(nodes: Floats) -> Floats:
-    """Return the derivative (2, ni, nj) of `aspect_of` (in `solvers.energy.functional`) by `nodes`."""
+    """Return the derivative (2, ni, nj) of `aspect_of` (`solvers.energy.functional`) by `nodes`."""
     slope = np.zeros_like(nodes)
     walls, sides = nodes[:, :, :: nodes.shape[2] - 1], nodes[:, :: nodes.shape[1] - 1]
     along, across = np.diff(walls, axis=1), np.diff(sides, axis=2)

@@ -74,7 +74,7 @@ def thomas_middlecoff(boundary: Boundary) -> Controls:
 
     On an edge with arc length s, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ) = -(ln s_ξ)_ξ, which assumes that the lines that
     leave the edge are straight and orthogonal to it. Inside, φ and ψ are interpolated linearly between
-    opposite edges. Of an O boundary, ψ is that of the cut.
+    opposite edges. For an O boundary, ψ is that of the seam.
 
     Thomas and Middlecoff, AIAA J. 18 (1980) 652-656.
     """

@@ -1,1 +1,1 @@
-"""One corner energy: variational grids, repair of folded cells, untangling."""
+"""The variational functional: variational grids, repair of folded cells, untangling."""

@@ -1,4 +1,4 @@
-"""Windows of cells around groups of bad ones."""
+"""Windows of nodes around groups of bad cells."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ NEIGHBOURS = [(da, db) for da in (-1, 0, 1) for db in (-1, 0, 1) if (da, db) != 
 
 @dataclass(frozen=True)
 class Window:
-    """Nodes i0 .. i1 and j0 .. j1, both included; i may run past the seam of an O grid.
+    """Nodes i0 .. i1 and j0 .. j1, inclusive; i may extend across the seam of an O grid.
 
     >>> Window(-2, 4, 0, 3).cells
     18
@@ -26,11 +26,11 @@ class Window:
 
     @property
     def cells(self) -> int:
-        """Count of cells."""
+        """Number of cells."""
         return (self.i1 - self.i0) * (self.j1 - self.j0)
 
     def rows(self, ni: int, periodic: bool) -> NDArray[np.intp]:
-        """Return the first indices of the nodes, in a grid of `ni` rows."""
+        """Return the first indices of the nodes in a grid with `ni` rows."""
         rows = np.arange(self.i0, self.i1 + 1)
         return rows % (ni - 1) if periodic else rows
 
@@ -39,7 +39,7 @@ class Window:
         return as_planar(nodes[self.rows(len(nodes), periodic), self.j0 : self.j1 + 1])
 
     def put(self, nodes: Floats, periodic: bool, patch: Floats) -> None:
-        """Set the inner nodes of the window to those of `patch`, as `cut` returned it."""
+        """Set the inner nodes of the window to those of `patch`, which has the shape returned by `cut`."""
         nodes[self.rows(len(nodes), periodic)[1:-1], self.j0 + 1 : self.j1] = patch[1:-1, 1:-1]
         if periodic:
             nodes[-1] = nodes[0]
@@ -48,11 +48,11 @@ class Window:
 def windows(
     bad: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool, largest: int
 ) -> Iterator[Window]:
-    """Yield windows around the groups of cells `bad` (n, 2), with `margin` cells and more about each.
+    """Yield windows around the groups of cells `bad` (n, 2), with at least `margin` cells around each.
 
-    Bad cells whose `margin`-sized tiles touch are one group; one that needs more than `largest` cells is
-    split, down to single tiles. Windows stay inside the (ni, nj) nodes of
-    `shape`; where `periodic`, one may run past the seam, but not onto itself.
+    Bad cells form a group if their tiles of `margin` cells touch. A group that needs more than `largest`
+    cells is divided, if necessary down to single tiles. Windows stay inside the (ni, nj) nodes of `shape`; if
+    `periodic`, a window may extend across the seam, but not overlap itself.
 
     >>> list(windows(np.array([[20, 0], [22, 1]]), 6, (100, 50), False, 2500))
     [Window(i0=12, i1=30, j0=0, j1=12)]
@@ -73,7 +73,7 @@ def windows(
 def _cover(
     tiles: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool, largest: int
 ) -> Iterator[Window]:
-    """Yield windows over `tiles` (n, 2) of `margin` cells; a large group is halved until they are small."""
+    """Yield windows that cover `tiles` (n, 2) of `margin` cells; a large group is halved repeatedly."""
     low, high = tiles.min(axis=0), tiles.max(axis=0)
     i0, j0 = (int(k) for k in (low - 1) * margin)
     i1, j1 = (int(k) for k in (high + 2) * margin)

@@ -1,6 +1,6 @@
-"""One descent of the functional: from given nodes, made valid first, to where they hardly move.
+"""Minimisation of the variational functional from given nodes, which are made valid first.
 
-The iterations themselves are compiled: preconditioned L-BFGS and, for few nodes, Newton's method.
+The iterations are compiled: preconditioned L-BFGS and, for few nodes, Newton's method.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ HARD = 1.1  # value of the functional around a body above which descents go on
 WON = 3e-2  # relative decrease of the functional below which Newton's method ends
 
 UNFOLDED = 129
-"""Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""
+"""Largest node count along a direction for which a grid is untangled as a whole if local repair fails."""
 SKEWED = 1.5  # 1/sin⁴ of an angle, here 65 or 115 degrees, from which on a cell has a window around it
 MARGIN_CELLS = 6  # cells around a group of skewed ones that move with them
 LARGEST_CELLS = 1500  # cells of a window at the most
@@ -35,11 +35,14 @@ def descend(
     nodes: Floats, weights: Weights, still: float, most: int, *, periodic: bool = False,
     first: int | None = None, stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
 ) -> tuple[int, bool]:  # fmt: skip
-    """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
+    """Minimise from planar `nodes` (ni, nj, 2), in place.
 
-    `still` is the `tol` of `solve`, `most` the iterations at the most, `first` those where the value is not
-    `HARD` then. Around a body (`periodic`) the last row of nodes is the first and moves like any other. The
-    Hessian on a coarse copy and its counts (`stiffness`) lead smooth moves.
+    Return the iterations and whether the grid is valid.
+
+    `still` is the `tol` of `solve` and `most` the largest number of iterations. If `first` is given, the
+    iteration stops after `first` iterations unless the value is then above `HARD`. Around a body (`periodic`)
+    the last row of nodes is the first one and moves too. `stiffness` is the Hessian on a coarse copy with its
+    node counts, a preconditioner for smooth displacements.
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:
@@ -63,10 +66,11 @@ def descend(
 
 
 def newton(nodes: Floats, weights: Weights, most: int) -> int:
-    """Take up to `most` steps of Newton's method from planar `nodes` (ni, nj, 2) of a quad; return how many.
+    """Take up to `most` Newton steps from planar `nodes` (ni, nj, 2) of a quad; return the number of steps.
 
-    A step goes much farther than one of `descend`; on 33 x 33 nodes it costs some six of these. They end
-    after one that lowers the functional by less than `WON`; from nodes that stay folded none is taken.
+    A step reduces the error much more than one of `descend`; with 33 x 33 nodes it costs about six of these.
+    The iteration ends after a step that lowers the functional by less than `WON`. If nodes cannot be
+    repaired, no step is taken.
     """
     if min(nodes.shape[:2]) < 3 or (count_folded(nodes) and repair(nodes, periodic=False)):
         return 0
@@ -75,7 +79,10 @@ def newton(nodes: Floats, weights: Weights, most: int) -> int:
 
 
 def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int, int]] | None:
-    """Return the Hessian at planar `nodes` of few counts, and these, for `descend`; None if folded."""
+    """Return the Hessian at coarse planar `nodes`, and their counts, for `descend`.
+
+    None if cells are folded.
+    """
     if count_folded(nodes):
         return None
     hessian = Stiffness(np.moveaxis(nodes, -1, 0), aspect_of(nodes), weights.shape, weights.smoothness)
@@ -83,7 +90,7 @@ def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int,
 
 
 def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
-    """Return what calls listeners after iterations that move `nodes` (ni, nj, 2), None without listeners."""
+    """Return a function that calls the listeners with `nodes` (ni, nj, 2), None without listeners."""
     if not listened_to():
         return None
     first = 0.0
@@ -97,12 +104,12 @@ def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
 
 
 def in_cells(still: float, nodes: Floats) -> float:
-    """Return `still` in cells of planar `nodes` (ni, nj, 2)."""
+    """Return the tolerance `still` in units of the cells of planar `nodes` (ni, nj, 2)."""
     return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 
 def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
-    """Unfold planar `nodes` in place, by local repair or else as a whole; return success."""
+    """Repair planar `nodes` in place, locally or else as a whole; return whether they are valid."""
     if repair(nodes, periodic) == 0:
         return True
     small = not periodic and max(nodes.shape[:2]) <= UNFOLDED
@@ -110,10 +117,10 @@ def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
 
 
 def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
-    """Unfold planar `nodes` (ni, nj, 2) of an O grid in windows around poor cells, and minimise there.
+    """Repair and minimise planar `nodes` (ni, nj, 2) of an O grid in windows around skewed cells, in place.
 
-    Splines smear what corners of a wall do to the lines that leave them. There the functional is far from a
-    parabola, and descents of whole grids spend most of their iterations on a few cells.
+    Splines smooth the effect of wall corners on the grid lines that leave them. There the functional is far
+    from quadratic, and a minimisation over the whole grid would spend most of its iterations on a few cells.
     """
     skewed = corner_distortion(nodes)
     poor = np.argwhere(skewed > SKEWED)
@@ -135,7 +142,7 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
 
 
 def corner_distortion(nodes: Floats) -> Floats:
-    """Return the largest 1/sin⁴ of the angles of each cell of `nodes` (ni, nj, 2), infinite where folded."""
+    """Return the largest 1/sin⁴ of the angles of each cell of `nodes` (ni, nj, 2), infinite if folded."""
     z = nodes[..., 0] + 1j * nodes[..., 1]
     along, across = np.diff(z, axis=0), np.diff(z, axis=1)
     g, h = modulus(along), modulus(across)

@@ -1,17 +1,18 @@
-"""What variational grids minimise: open angles, cells of even shape, lengths that change gradually.
+"""The functional of variational grids: angles, cell shapes, and gradual changes of edge lengths.
 
-With u and v the edges along xi and eta that meet at a corner of a cell, g = |u|², h = |v|², J = u × v,
-l the lengths of the edges of one family, and at a cell's centre u and v the means of opposite edges::
+Let u and v be the edges along xi and eta that meet at a corner of a cell, g = |u|², h = |v|², J = u × v, and
+l the lengths of the edges of one family. At the centre of a cell, u and v are the means of opposite edges.
+Then::
 
     E = mean over cells of (mean over corners + 2 at the centre) / 3 of
             (1-w) (a g + h/a) / (2J) + w (g h / J²)²
       + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, both families
 
-The first term is the discrete harmonic functional: it is infinite at J = 0, so that a descent keeps a valid
-grid valid. The second is 1/sin⁴ of the angle. Neither tells equal cells from stripes of alternating ones;
-the third, the squared gradient of log l, does. Every mean is Simpson's or the trapezoidal rule over the unit
-square, so that the minimum converges with the square of the step. Folded grids are minimised with
-χ = (J + √(J² + ε²)) / 2 > 0 in place of J.
+The first term is the discrete harmonic functional. It is infinite at J = 0, so that a minimisation keeps a
+valid grid valid. The second term is 1/sin⁴ of the angle. Both have the same value for equal cells and for
+alternating narrow and wide cells; the third term, the squared gradient of log l, distinguishes them. All
+means are Simpson's or the trapezoidal rule over the unit square, so that the minimum converges with the
+square of the step. For folded grids, J is replaced by χ = (J + √(J² + ε²)) / 2 > 0.
 
 Ivanenko, Charakch'yan, USSR Comput. Maths. Math. Phys. 28 (1988) 126-133 (the barrier); Garanzha, Comput.
 Maths. Math. Phys. 40 (2000) 1617-1637 (regularisation).
@@ -37,24 +38,27 @@ class Weights:
 
 
 AROUND = Weights(smoothness=2e-5)
-"""Around a body, where cells grow by orders of magnitude: more smoothness would cost angles."""
+"""Weights for O grids, whose cells grow by orders of magnitude; more smoothness would worsen angles."""
 
 WAKE = Weights(smoothness=3e-5)
-"""Around a body and its wake: with less, rows grow threefold from one to the next, with more angles widen."""
+"""Weights for C grids: with a smaller weight, rows grow threefold from one to the next; a larger one
+worsens angles.
+"""
 
 
 def value(nodes: Floats, weights: Weights) -> float:
-    """Return E of planar `nodes` (ni, nj, 2) of a quad, a number without unit; infinite when folded."""
+    """Return E of planar `nodes` (ni, nj, 2) of a quad, dimensionless; infinite for folded grids."""
     z = np.moveaxis(nodes, -1, 0)
     terms = aspect_of(nodes), weights.shape, weights.smoothness, 0.0, False, None
     return variational_energy(z, *terms, np.empty_like(z))[0]
 
 
 def relief_of(wall: Floats) -> Floats:
-    """Return the share of the angle term that corners at the nodes of a closed `wall` (ni, 2) keep, (ni,).
+    """Return the factor (ni,) of the angle term of cell corners at the nodes of a closed `wall` (ni, 2).
 
-    Where the domain takes up more than 320 degrees around a node, as at a trailing edge, the two corners
-    there cannot both be good; they keep sin⁴ of half that angle: like a right one at best.
+    If the interior angle of the domain exceeds 320 degrees, as at a trailing edge, the two angles there
+    cannot both be near 90 degrees. The factor is then sin⁴ of half that angle, so that the smallest possible
+    value of the term equals that of right angles.
     """
     half = 0.5 * (np.pi - turning(wall[:-1], closed=True))
     share = np.where(half > 8.0 / 9.0 * np.pi, (np.maximum(sin(half), 1e-3) ** 2) ** 2, 1.0)
@@ -62,10 +66,10 @@ def relief_of(wall: Floats) -> Floats:
 
 
 def aspect_of(nodes: Floats, periodic: bool = False) -> float:
-    """Return a, the length of steps along eta over that of steps along xi, for `nodes` (ni, nj, 2).
+    """Return a, the ratio of steps along eta to steps along xi, for `nodes` (ni, nj, 2).
 
-    It is the ratio of the root mean square steps of west and east and of south and north. With `periodic`
-    west and east are no boundary, and it is the a with the least harmonic term.
+    It is the ratio of the root mean square steps of west and east to those of south and north. With
+    `periodic`, west and east are not boundaries, and a minimises the harmonic term.
     """
     if periodic:
         u, v = np.diff(nodes, axis=0)[:, :-1], np.diff(nodes, axis=1)[:-1]

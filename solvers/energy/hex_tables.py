@@ -1,7 +1,7 @@
-"""A mesh of hexahedra as the compiled descent takes it: blocks with what is beyond their sides, and forces.
+"""Tables of a hexahedral mesh for the compiled minimisation: blocks, one layer beyond them, and forces.
 
-Of each block (``kernels/hexes/energy.h``) there is the part around nodes that move, its longest direction
-last.
+Only the part of each block around free nodes is stored, with its longest direction last
+(``kernels/hexes/energy.h``).
 """
 
 from __future__ import annotations
@@ -20,24 +20,28 @@ from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner, corner
 
 BlockTargets: TypeAlias = tuple[Floats, Floats, Floats]
 Targets = Sequence[BlockTargets]
-"""Of each block the logarithms of wanted lengths of edges along xi, eta and zeta: (ni+1, nj, nk) with one
-edge beyond either end, and so on; any number where there is no edge."""
+"""For each block, logarithms of target lengths of edges along xi, eta and zeta.
+
+The shape along the direction of an edge is (ni+1, nj, nk), with one edge beyond either end, and likewise for
+the others; values without an edge are arbitrary.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class HexTables:
-    """Tables of all blocks, one after the other.
+    """Concatenated tables of all blocks.
 
     Parameters
     ----------
-    blocks : (b, 6) places along each direction, and where places, cells and rows begin.
-    node : number of the node at each place (p,), -1 for none.
-    target : (3, p) wanted logarithms of edges that begin there.
-    inverse : (3, c) one over the wanted lengths of cells.
-    skip : (c,) bits of corners that do not count.
-    busy : of each row of cells, whether it has a corner that counts.
-    free : nodes (k,) that move.
-    start, place : at which places, from start[k] to start[k + 1], are the forces on each of them.
+    blocks : (b, 6) node counts along each direction, and the starts of positions, cells and rows.
+    node : number of the node at each position (p,), -1 for none.
+    target : (3, p) logarithms of target lengths of the edges that start there.
+    inverse : (3, c) inverse target lengths of cells.
+    skip : (c,) bits of corners that are ignored.
+    busy : for each row of cells, whether it has a corner that is not ignored.
+    free : free nodes (k,).
+    start, place : the forces on free node k are those at positions place[start[k]] to place[start[k + 1] -
+        1].
     """
 
     blocks: NDArray[np.int64]
@@ -54,9 +58,9 @@ class HexTables:
 def tables_of(
     mesh: HexMesh, moves: Bools, targets: Targets, lengths: Sequence[Floats], turned: bool = True
 ) -> HexTables:
-    """Return the tables of a mesh of which nodes `moves` (n,) are free and cells have wanted `lengths`.
+    """Return the tables of a mesh with free nodes `moves` (n,) and target `lengths` of cells.
 
-    Blocks may be `turned`, so that their longest direction is the last.
+    If `turned`, blocks are stored with their longest direction last.
     """
     parts = [
         _part(wider, np.append(moves, False), wanted, sizes, turned)
@@ -91,7 +95,7 @@ def tables_of(
 
 
 def cell_lengths(edges: Sequence[Floats]) -> Floats:
-    """Return the wanted lengths (3, ni-1, nj-1, nk-1) of cells from `Targets` of their block."""
+    """Return the target lengths (3, ni-1, nj-1, nk-1) of cells from the `Targets` of their block."""
     means = []
     for d, values in enumerate(edges):
         inner = np.moveaxis(values, d, 0)[1:-1]
@@ -106,7 +110,7 @@ _Part: TypeAlias = tuple[NDArray[np.int32], Floats, Floats, NDArray[np.uint8], B
 def _part(
     lattice: Indices, free: Bools, wanted: BlockTargets, lengths: Floats, turned: bool
 ) -> _Part | None:  # fmt: skip
-    """Return the tables of a block around what moves; None if nothing does. `free` of -1 is False."""
+    """Return the tables of a block around its free nodes, None if it has none; `free` of node -1 is False."""
     last = int(np.argmax(lattice.shape)) if turned else 2
     axes = [(last + 1) % 3, (last + 2) % 3, last]
     lattice = lattice.transpose(axes)
@@ -151,7 +155,7 @@ def _collapsed(nodes: Indices) -> NDArray[np.uint8]:
 
 
 def _forces(moves: Bools, own: Indices, places: Indices) -> tuple[Indices, Indices, NDArray[np.int32]]:
-    """Return the nodes that move, where each one's places start (k+1,), and the places of forces on them."""
+    """Return the free nodes, the starts of their positions (k+1,), and the positions of forces on them."""
     on = moves[own]
     free = np.flatnonzero(moves)
     of = (np.cumsum(moves) - 1)[own[on]]

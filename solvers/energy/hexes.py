@@ -1,10 +1,10 @@
-"""The joint optimum of hexahedra in blocks: one functional over all cells, one descent of all nodes.
+"""Joint optimisation of all nodes of a multi-block hexahedral mesh with one functional.
 
-Interface nodes and singular edges are unknowns like any other. Folded meshes are unfolded first, with
-Jacobians regularised, less and less of it; meshes that are nearly folded are opened.
+Nodes of interfaces and singular edges are unknowns like all others. Folded meshes are first untangled with
+regularised Jacobians, whose regularisation is reduced step by step; nearly flat cells are opened.
 
-Escobar et al., Comput. Methods Appl. Mech. Engrg. 192 (2003) 2775-2787 (less and less); Garanzha, Kaporin,
-Kudryavtseva, Protais, Ray, Sokolov, ACM Trans. Graph. 40 (2021) 154 (unfolding with volumes).
+Escobar et al., Comput. Methods Appl. Mech. Engrg. 192 (2003) 2775-2787 (regularisation); Garanzha, Kaporin,
+Kudryavtseva, Protais, Ray, Sokolov, ACM Trans. Graph. 40 (2021) 154 (untangling with volumes).
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ from meshonet.solvers.energy.hex_functional import OPENING, OPTIMAL, UNFOLDING, 
 from meshonet.solvers.energy.hex_tables import HexTables, Targets, cell_lengths, tables_of
 
 RENEWED = 10
-"""Iterations after which the preconditioner follows the nodes."""
+"""Number of iterations after which the preconditioner is updated."""
 STILL = 0.3
-"""Moves, in cells: two steps on end below it that also gain little end a descent."""
+"""Displacement in cells; a minimisation ends after two consecutive smaller steps that gain little."""
 REACH = 0.5
-"""The farthest that a node may move in a first step, in cells."""
+"""Largest displacement of a node in a first step, in cells."""
 ROUNDS, ROUND = 20, 10
-"""Rounds of unfolding at the most, and iterations of each."""
+"""Largest number of rounds of untangling, and iterations of each."""
 NARROW = 8  # rounds after which ε is 0.3 of what it would be
 WITHOUT_GAIN = 6
-"""Rounds without gain after which unfolding is given up."""
+"""Number of rounds without improvement after which untangling is given up."""
 SIZE = 0.1
-"""Weight of the volumes of cells in unfolding."""
+"""Weight of the volumes of cells in untangling."""
 NEARLY = 0.05
-"""Smallest Jacobian, 1 in a cell of wanted lengths, below which cells are opened before all else."""
+"""Smallest Jacobian, relative to a cell with target lengths, below which cells are opened first."""
 OPENED = 20, 10, 10
 """Iterations of each stage of opening."""
 
@@ -49,17 +49,17 @@ class Slides:
 
     @classmethod
     def none(cls) -> Slides:
-        """Return those of a mesh none of whose nodes do."""
+        """Return those of a mesh without sliding nodes."""
         return cls(np.empty(0, dtype=np.intp), np.empty((0, 3, 3)))
 
     def among(self, nodes: Indices) -> Slides:
-        """Return those among `nodes` (m,), sorted numbers, by their places there."""
+        """Return those among `nodes` (m,), sorted numbers, by their indices in `nodes`."""
         place = np.minimum(np.searchsorted(nodes, self.nodes), len(nodes) - 1)
         some = nodes[place] == self.nodes
         return Slides(place[some], self.projections[some])
 
     def kept(self, before: Floats, after: Floats, moves: Bools) -> Floats:
-        """Return nodes (n, 3) `after` a move, of those that may, exactly where those that slide may be."""
+        """Return nodes (n, 3) `after` a displacement, projected exactly to their planes or lines."""
         nodes, at = after.copy(), self.nodes
         nodes[at] = before[at] + (self.projections * (after[at] - before[at])[:, None]).sum(axis=2)
         nodes[~moves] = before[~moves]
@@ -68,23 +68,23 @@ class Slides:
 
 @dataclass(frozen=True, eq=False)
 class HexOptimum:
-    """What `optimise` ends with."""
+    """Result of `optimise`."""
 
     nodes: Floats
-    """(n, 3), those that did not move bitwise as they were."""
+    """(n, 3); nodes that are not free are bitwise unchanged."""
     smallest: float
-    """Jacobian of a corner of cells that move, as a part of the volume of the cell that is wanted."""
+    """Smallest corner Jacobian of cells with free nodes, relative to their target volume."""
     value: float
     iterations: int
 
     @property
     def valid(self) -> bool:
-        """Whether no cell that could move is folded."""
+        """Whether no cell with free nodes is folded."""
         return self.smallest > 0.0
 
 
 class HexProblem:
-    """The descent of a mesh of which nodes `moves` (n,) are free."""
+    """Minimisation over a mesh with free nodes `moves` (n,)."""
 
     def __init__(self, mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides | None = None) -> None:
         self.mesh, self.moves, self.iterations = mesh, moves, 0
@@ -99,7 +99,7 @@ class HexProblem:
         self.descent = descent_of(self.nodes, tables, 1.0 / sizes, mesh.cells, (unknowns, projections))
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Take `most` iterations, fewer without gain; return the smallest Jacobian and the value."""
+        """Do at most `most` iterations; return the smallest Jacobian and the value."""
         size = SIZE if epsilon > 0.0 else 0.0
         self.descent.weigh(weights.shape, weights.smoothness, weights.power, epsilon, size)
         value, smallest, done = self.descent.run(weights.gain, most, RENEWED, STILL, REACH)
@@ -107,12 +107,12 @@ class HexProblem:
         return smallest, value
 
     def smallest(self) -> float:
-        """Return the smallest corner Jacobian, 1 in a cell of wanted lengths."""
+        """Return the smallest corner Jacobian, which is 1 for a cell with target lengths."""
         self.descent.weigh(UNFOLDING.shape, 0.0, 1, 1.0)
         return self.descent.smallest()
 
     def unfold(self, smallest: float, rounds: int = ROUNDS, iterations: int = ROUND) -> float:
-        """Lower the regularised functional while a Jacobian is not positive; return the smallest."""
+        """Minimise the regularised functional until all Jacobians are positive; return the smallest one."""
         best, idle = smallest, 0
         for count in range(rounds):
             if smallest > 0.0 or idle == WITHOUT_GAIN:
@@ -131,7 +131,7 @@ class HexProblem:
         return smallest
 
     def result(self) -> Floats:
-        """Return the nodes (n, 3) where the descent is; those that slide exactly where they may be."""
+        """Return the current nodes (n, 3); sliding nodes are exactly in their planes or on their lines."""
         return self.slides.kept(self.mesh.nodes, self.nodes, self.moves)
 
 
@@ -139,7 +139,7 @@ def descent_of(
     nodes: Floats, tables: HexTables, inverse_sizes: Floats, cells: int, slides: tuple[Indices, Floats],
     over: tuple[float, float, float] | None = None,
 ) -> HexDescent:  # fmt: skip
-    """Return the compiled descent of nodes (n, 3) that `tables` are of."""
+    """Return the compiled minimisation for nodes (n, 3) and their `tables`."""
     of_places = tables.node, tables.target, tables.inverse, tables.skip, tables.busy
     places = tables.free, tables.start, tables.place, np.ascontiguousarray(inverse_sizes)
     threads = threads_for(len(nodes), MANY_VISITS)
@@ -147,7 +147,7 @@ def descent_of(
 
 
 def _sizes(mesh: HexMesh, lengths: list[Floats]) -> Floats:
-    """Return the mean wanted length (n,) of the sides of the cells at each node."""
+    """Return the mean target length (n,) of the edges of the cells at each node."""
     total, count = np.zeros(len(mesh.nodes)), np.zeros(len(mesh.nodes))
     for block, wanted in zip(mesh.blocks, lengths, strict=True):
         mean = wanted.mean(axis=0)
@@ -162,11 +162,11 @@ def optimise(
     mesh: HexMesh, moves: Bools, targets: Targets, *, slides: Slides | None = None, iterations: int = 60,
     tolerance: float = 1e-5, rounds: int = ROUNDS,
 ) -> HexOptimum:  # fmt: skip
-    """Return the nodes of `mesh`, of which `moves` (n,) are free, where the functional is least.
+    """Return the nodes of `mesh`, with free nodes `moves` (n,), that minimise the functional.
 
-    It ends after so many `iterations`, not counting those of unfolding, or when two in a row gain less than
-    `tolerance` of the value. Folded cells are unfolded first, in so many `rounds` at the most. Cells with no
-    node that moves are left out.
+    The minimisation ends after `iterations`, not including those of untangling, or if two consecutive
+    iterations gain less than `tolerance` times the value. Folded cells are untangled first, in at most
+    `rounds` rounds. Cells without free nodes are ignored.
     """
     problem = HexProblem(mesh, moves, targets, slides)
     low = problem.unfold(problem.smallest(), rounds)

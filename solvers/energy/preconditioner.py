@@ -1,8 +1,8 @@
-"""Descents, preconditioned by the inverse of the functional's Hessian on a grid of equal squares.
+"""Minimisation preconditioned by the inverse Hessian of the functional on a grid of equal squares.
 
-There the harmonic term is a Laplacian and the edge length term a biharmonic operator, both diagonal in
-products of sines (along eta, and along xi between fixed nodes) or of sines and cosines (around a body). The
-compiled descent applies them in the frame of each node, by products of matrices.
+On such a grid the harmonic term is a Laplacian and the edge length term a biharmonic operator. Both are
+diagonal in products of sines (along eta, and along xi between fixed nodes) or of sines and cosines (around a
+body). The compiled code applies them in the local frame of each node, as products of matrices.
 """
 
 from collections.abc import Callable
@@ -22,10 +22,10 @@ MODES = 512  # modes along a direction that are kept; finer ones are all divided
 
 
 class Descent:
-    """Descents of the functional from planar nodes (ni, nj, 2), moved in place; those of the rim are fixed.
+    """Minimisation of the functional over planar nodes (ni, nj, 2), in place; boundary nodes are fixed.
 
-    Around a body (`periodic`) the last row is the first and moves. `aspect` is a of the functional, None that
-    of `nodes`.
+    Around a body (`periodic`) the last row is the first one and moves. `aspect` is a of the functional; None
+    computes it from `nodes`.
     """
 
     def __init__(
@@ -40,21 +40,21 @@ class Descent:
         self, still: float, most: int, *, epsilon: float = 0.0, relief: Floats | None = None,
         listener: Callable[[int, float, float], None] | None = None,
     ) -> tuple[float, float, int]:  # fmt: skip
-        """Descend; return the value of the functional, the smallest corner Jacobian and the iterations.
+        """Minimise; return the value of the functional, the smallest corner Jacobian and the iterations.
 
-        It stops when nodes move by less than `still` of their own cells, or after `most` iterations.
-        `epsilon` is an area by which Jacobians are regularised, `relief` that of `relief_of`; `listener` gets
-        number, value and norm of the gradient at the start and after each iteration.
+        The iteration stops if nodes move by less than `still` times their cells, or after `most` iterations.
+        `epsilon` is an area that regularises Jacobians, `relief` the result of `relief_of`. `listener` is
+        called with number, value and norm of the gradient, before the first and after each iteration.
         """
         return self.minimiser.run(self._z, *self._terms, epsilon, relief, still, REACH_CELLS, most, listener)
 
 
 def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights) -> VariationalDescent:
-    """Return the descent for ni x nj nodes, the last row of which is the first when `periodic`.
+    """Return the compiled minimisation for ni x nj nodes; if `periodic`, the last row is the first one.
 
-    On squares of steps 1, with a move (p, q) along (xi, eta) and a = 1, the second variation is about (1-w)
-    (‖∇p‖² + ‖∇q‖²) + 4 w (p_η² + q_ξ²) + 2 β (‖∇p_ξ‖² + ‖∇q_η‖²), with ∇ in units of the whole square in the
-    last term. The coupling p_η q_ξ is left to the descent.
+    On squares with steps 1, for a displacement (p, q) along (xi, eta) and a = 1, the second variation is
+    about (1-w) (‖∇p‖² + ‖∇q‖²) + 4 w (p_η² + q_ξ²) + 2 β (‖∇p_ξ‖² + ‖∇q_η‖²), with ∇ in units of the whole
+    square in the last term. The coupling p_η q_ξ is not included.
     """
     rows, along = _fourier(ni - 1) if periodic else _sines(ni - 1)
     columns, across = _sines(nj - 1)
@@ -72,12 +72,12 @@ def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights)
 
 
 Halves: TypeAlias = tuple[Modes, Modes]
-"""Even and odd modes about the middle, over the first half of the nodes."""
+"""Modes that are even and odd about the middle, on the first half of the nodes."""
 
 
 @lru_cache(maxsize=16)
 def _sines(n: int) -> tuple[Halves, Floats]:
-    """Return sines that vanish at the ends of n cells; minus their second differences; even ones first."""
+    """Return sines that vanish at the ends of n cells, even ones first, and their eigenvalues."""
     waves, k = np.arange(1, n)[:MODES], np.arange(1, n)
     even, odd = (sin(np.pi / n * (np.outer(k, half) % (2 * n))) for half in (waves[::2], waves[1::2]))
     values = 4.0 * sin(np.pi * np.concatenate([waves[::2], waves[1::2]]) / (2 * n)) ** 2
@@ -86,7 +86,7 @@ def _sines(n: int) -> tuple[Halves, Floats]:
 
 @lru_cache(maxsize=16)
 def _fourier(n: int) -> tuple[Halves, Floats]:
-    """Return `_sines` for n periodic nodes: a constant and cosines, and sines, about the middle of a cell."""
+    """Return the same as `_sines` for n periodic nodes: constant, cosines and sines about a cell's middle."""
     cosines, sines = np.arange((n + 1) // 2)[: MODES // 2], np.arange(1, n // 2 + 1)[: MODES // 2]
     phase = 2.0 * np.pi / n * (np.arange(n) + 0.5)
     even, odd = cos(np.outer(phase, cosines)), sin(np.outer(phase, sines))
@@ -95,7 +95,7 @@ def _fourier(n: int) -> tuple[Halves, Floats]:
 
 
 def _folded(modes: Floats, even: bool) -> Modes:
-    """Return the first half of even or odd `modes` (n, m), of length 1 as they are when folded."""
+    """Return the first half of even or odd `modes` (n, m), normalised to length 1."""
     n = len(modes)
     half = modes[: (n + 1) // 2 if even else n // 2].copy()
     half[: n // 2] *= np.sqrt(2.0)

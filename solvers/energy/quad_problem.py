@@ -1,6 +1,6 @@
-"""A quad mesh as the compiled descent takes it: what moves, how, and what is compared with what.
+"""A quad mesh in the form of the compiled minimisation: unknowns, constraints and pairs of edges.
 
-Everything is in units near the size of a cell, around the middle of the mesh, and goes back from there.
+Coordinates are scaled so that cells have a size near 1, and centred; results are scaled back.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ WIDE = 160.0  # degrees of a single cell from which on they are
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """Which nodes stay, and which are images of others across a period."""
+    """Fixed nodes, and periodic images of other nodes."""
 
     fixed: Bools
     images: Indices
     originals: Indices
     tied: Bools
-    """(n,) images and originals."""
+    """(n,) mask of images and their originals."""
 
 
 def unknowns_of(mesh: QuadMesh, held: Bools | None) -> Unknowns:
-    """Return what of a mesh stays besides corners: `held` nodes (n,)."""
+    """Return the fixed nodes and periodic images of a mesh; `held` nodes (n,) are fixed, like corners."""
     places = mesh.places
     fixed = (places.cells > 0) if held is None else (places.cells > 0) | held
     images = np.flatnonzero((places.partner >= 0) & ~fixed)
@@ -51,16 +51,16 @@ def unknowns_of(mesh: QuadMesh, held: Bools | None) -> Unknowns:
 
 
 def smallest_jacobian(nodes: Floats, quads: Indices, areas: Floats | None = None) -> float:
-    """Return the smallest corner Jacobian of `quads` (m, 4) of `nodes` (n, 2), over `areas` (m,) if given."""
+    """Return the smallest corner Jacobian of `quads` (m, 4) of `nodes` (n, 2), relative to `areas` (m,)."""
     least = corner_jacobians(nodes[quads]).min(axis=1, initial=np.inf)
     return float((least if areas is None else least / areas).min(initial=np.inf))
 
 
 class Problem:
-    """The descent of a mesh, and the way back from it."""
+    """The minimisation over a mesh, and the conversion of its result."""
 
     cell: float
-    """Mean area of a cell, in its units."""
+    """Mean area of a cell in scaled units."""
     descent: QuadDescent
 
     def __init__(
@@ -84,7 +84,7 @@ class Problem:
         self.descent = self._descent(aspects, targets, turning)
 
     def _number(self) -> None:
-        """Give coordinates of inner nodes the first numbers, then come arc lengths."""
+        """Assign numbers to the unknowns: coordinates of inner nodes, then arc lengths of wall nodes."""
         n, known, walls = len(self.nodes), self.unknowns, self.walls
         free = ~known.fixed & (known.tied | (self.mesh.places.loop < 0))
         free[known.images] = False
@@ -105,15 +105,13 @@ class Problem:
         self.areas = self._areas()
         line, pairs = self._lines()
         target = np.zeros(len(line)) if targets is None else log(targets)
-        periodic = self.mesh.domain.periodic
-        shift = (0.0, 0.0) if periodic is None else periodic.shift
         return QuadDescent(
             self.nodes,
             (self.quads, np.stack([ratio, 1.0 / ratio], axis=1), self.areas),
             (self.mesh.edges, line, pairs, target),
             self._relief(),
             self.inner,
-            (np.stack([known.images, known.originals], axis=1), (shift[0] / self.unit, shift[1] / self.unit)),
+            (np.stack([known.images, known.originals], axis=1), self.mesh.shifts(known.images) / self.unit),
             self.unknown,
             self.wall,
             (walls.nodes, self.of_wall, self.arc),
@@ -124,7 +122,7 @@ class Problem:
         )
 
     def _areas(self) -> Floats:
-        """Return the areas (m,) that cells are held to while they unfold: near those they have."""
+        """Return the target areas (m,) of cells for untangling, which are near their current areas."""
         z, n = self.nodes[self.quads], len(self.nodes)
         across, other = z[:, 2] - z[:, 0], z[:, 3] - z[:, 1]
         signed = 0.5 * cross2(across, other)
@@ -138,7 +136,7 @@ class Problem:
         return np.maximum(np.maximum(area, around), least)
 
     def _loop(self, number: int) -> tuple[object, ...]:
-        """Return a loop as the compiled descent takes it."""
+        """Return a loop in the form of the compiled minimisation."""
         loop = self.mesh.domain.loops[number]
         cubic, table, start, stop, pieces = loop.curve.tables
         cubic = cubic / self.unit
@@ -167,10 +165,10 @@ class Problem:
         return line, pairs
 
     def _relief(self) -> tuple[Indices, Floats]:
-        """Return corners (k, 3) where the domain turns over, and the part of their angle term they give away.
+        """Return corners (k, 3) with large interior angles, and the removed part of their angle term.
 
-        Where it takes up more than 320 degrees in two cells, as at a trailing edge, neither can be good; they
-        keep sin⁴ of their angle: like a right one at best.
+        If the interior angle exceeds 320 degrees and two cells share it, as at a trailing edge, neither angle
+        can be near 90 degrees. The factor sin⁴ of half that angle remains.
         """
         places, angle = self.mesh.places, np.zeros(len(self.nodes))
         for number, loop in enumerate(self.mesh.domain.loops):
@@ -189,7 +187,7 @@ class Problem:
         return np.ascontiguousarray(corners), 1.0 - keeps**2
 
     def _on_walls(self, nodes: Floats, arc: Floats) -> Floats:
-        """Return `nodes` with those that slide at arc lengths (w,) of their loops."""
+        """Return `nodes` with sliding nodes at arc lengths (w,) of their loops."""
         nodes = nodes.copy()
         for number, loop in enumerate(self.mesh.domain.loops):
             of = (self.walls.loop == number) & self.slides
@@ -197,11 +195,11 @@ class Problem:
         return nodes
 
     def smallest(self) -> float:
-        """Return the smallest corner Jacobian of cells that can move, as a part of its area."""
+        """Return the smallest corner Jacobian of cells with free nodes, relative to the cell's area."""
         return smallest_jacobian(self.nodes, self.quads, self.areas)
 
     def result(self) -> QuadMesh:
-        """Return the mesh where the descent is."""
+        """Return the mesh with the current nodes."""
         known, walls = self.unknowns, self.walls
         arc = self.mesh.places.arc.copy()
         lengths = np.array([loop.length for loop in self.mesh.domain.loops])
@@ -210,7 +208,6 @@ class Problem:
         nodes = self.nodes * self.unit + self.centre
         nodes[known.fixed] = self.mesh.nodes[known.fixed]
         nodes = self._on_walls(nodes, arc[walls.nodes])
-        periodic = self.mesh.domain.periodic
-        if periodic is not None:
-            nodes[known.images] = nodes[known.originals] + np.array(periodic.shift)
+        if len(known.images):
+            nodes[known.images] = nodes[known.originals] + self.mesh.shifts(known.images)
         return self.mesh.with_nodes(nodes, arc)

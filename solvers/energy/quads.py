@@ -1,15 +1,15 @@
-"""The joint optimum of a quad mesh: one functional over all cells of all blocks, one descent of all nodes.
+"""Joint optimisation of all nodes of a multi-block quad mesh with one functional.
 
-The functional is that of `meshonet.solvers.energy.functional` in the corners of cells, with the squared
-differences of log lengths over all pairs of edges that follow or face each other along a grid line, across
-interfaces as inside of blocks. Nodes of interfaces and singular vertices are unknowns like any other; wall
-nodes slide along their loops, in order, and edges of walls that turn too much are held back:
-angles alone are best where tips are cut off.
+The functional is that of `meshonet.solvers.energy.functional` at the corners of cells. Its smoothness term is
+the squared differences of log lengths of neighbouring edges along and across grid lines, also across
+interfaces. Nodes of interfaces and singular vertices are unknowns like all others. Wall nodes slide along
+their loops without overtaking each other. A penalty limits the turning of a wall along one edge, because
+otherwise wall nodes would leave rounded tips, which improves angles.
 
-Folded meshes are unfolded first, with Jacobians regularised; cells that could then gain by shrinking to
-points are held to their areas.
+Folded meshes are first untangled with regularised Jacobians; a term for their areas keeps cells from
+shrinking to points.
 
-Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov, ACM Trans. Graph. 40 (2021) 154 (unfolding with area
+Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov, ACM Trans. Graph. 40 (2021) 154 (untangling with area
 and shape).
 """
 
@@ -37,13 +37,13 @@ GAIN = 1e-5  # relative, in three iterations in a row, below which a round ends
 
 @dataclass(frozen=True, eq=False)
 class QuadOptimum:
-    """What `optimise` ends with."""
+    """Result of `optimise`."""
 
     mesh: QuadMesh
     valid: bool
     """Whether all corner Jacobians are positive and wall nodes are in order."""
     value: float
-    """Of the functional, infinite where the mesh is not valid."""
+    """Value of the functional, infinite if the mesh is not valid."""
     iterations: int
 
 
@@ -52,16 +52,16 @@ def optimise(
     targets: Floats | None = None, tolerance: float = 1e-4, turning: float = ALLOWED,
     weights: tuple[float, float] = SIZED,
 ) -> QuadOptimum:  # fmt: skip
-    """Return the mesh with all nodes moved to where the functional is least.
+    """Return the mesh with all nodes at the minimum of the functional.
 
-    Corners (`Places.cells` > 0) and `held` nodes (n,) stay bitwise; a node with a partner is where that one
-    is, moved by the domain's period, and both move freely. `aspects` (m,) are the wanted ratios of the sides
-    1-2 and 0-3 of a quad to 0-1 and 3-2; `targets` (e,), for `mesh.edges`, lengths in any unit whose ratios
-    those of neighbouring edges should have. Edges along which a wall turns by more than `turning` radians are
-    held back. It ends after so many `iterations`, not counting those of unfolding, or when three in a row
-    gain less than a hundredth of `tolerance` of the value. Cells
-    with no node that moves are left out, but a mesh where one of them is folded is not valid. `weights`
-    are w and β of the functional where there are `targets`.
+    Corners (`Places.cells` > 0) and `held` nodes (n,) are bitwise unchanged. A node with a partner is
+    displaced from it by the domain's period, and both move. `aspects` (m,) are the target ratios of the sides
+    1-2 and 0-3 of a quad to its sides 0-1 and 3-2. `targets` (e,), for `mesh.edges`, are lengths in any unit;
+    the ratios of neighbouring edges should be those of the targets. Edges along which a wall turns by more
+    than `turning` radians are penalised. The minimisation ends after `iterations`, not including those of
+    untangling, or if three consecutive iterations gain less than a hundredth of `tolerance` times the value.
+    Cells without free nodes are ignored, but if one of them is folded the mesh is not valid. `weights` are w
+    and β of the functional if there are `targets`.
     """
     unknowns = unknowns_of(mesh, held)
     walls = walls_of(mesh, unknowns.fixed, unknowns.tied)
@@ -82,9 +82,10 @@ def optimise(
 
 
 def _unfold(problem: Problem, low: float) -> tuple[float, int]:
-    """Descend with less and less regularised Jacobians; return the smallest Jacobian, and the iterations.
+    """Minimise with decreasing regularisation of the Jacobians; return the smallest one, and the iterations.
 
-    `low` is the smallest one at first, over its cell's area; once none is negative it is done.
+    `low` is the initial smallest Jacobian relative to its cell's area. The iteration ends when all are
+    positive.
     """
     done, epsilon = 0, max(0.3, min(2.0 * abs(low), 3.0))
     shape, size = UNFOLDING

@@ -1,9 +1,9 @@
-"""Unfold the folded cells of a grid by moving nodes around them.
+"""Repairs the folded cells of a grid by moving the nodes around them.
 
-A grid with a few folded cells is unfolded on windows around them, which grow while they stay folded. What
-that cannot undo is unfolded on coarser copies of the grid first: the coarsest at once, then each finer one
-follows, and what is left is unfolded on windows. Only inner nodes move, so the boundary stays as it is. What
-cannot be unfolded is given up after a second or two.
+A grid with few folded cells is untangled in windows around them, which grow while cells stay folded. If this
+fails, coarser copies of the grid are untangled first: the coarsest as a whole, then each finer one with the
+displacements of the coarser one, followed by windows. Only interior nodes move. An attempt that fails ends
+after a second or two.
 """
 
 from dataclasses import dataclass
@@ -23,16 +23,16 @@ from meshonet.solvers.energy.preconditioner import Descent
 from meshonet.solvers.energy.untangle import unfold
 
 UNFOLDING = (Weights(0.3, 0.0), 60), (Weights(0.0, 0.0), 60), (Weights(0.0, 0.0), 200)
-"""Weights, and iterations with one regularisation, tried in turn while cells stay folded.
+"""Weights and iterations that are tried in turn, with decreasing regularisation, while cells stay folded.
 
-The harmonic term alone unfolds more, with wider angles; around spikes it takes many iterations.
+The harmonic term alone untangles more cells, but with larger angles; around spikes it needs many iterations.
 """
 
 SMOOTHING = Weights()  # weights with which the corners of an unfolded patch are opened
 
 SMOOTHING_ITERATIONS = 1500
 SMOOTHING_STILL = 3e-5
-"""Iterations of that at the most, and the move of nodes, in cells, below which it stops."""
+"""Displacement of nodes, in cells, below which the smoothing stops."""
 
 MARGIN = 6  # cells around a group of folded ones that move with them, at first
 MARGINS = (12, 16)  # those of later rounds, where cells stay folded
@@ -46,16 +46,21 @@ FUTILE = 2.4e7  # nodes times iterations that may be spent on patches which stay
 
 @dataclass
 class UnfoldingBudget:
-    """Budget left for unfolding that fails, in nodes times iterations; unfolding that succeeds is free."""
+    """Remaining budget, in nodes times iterations, for untangling that fails.
+
+    Successful untangling is free.
+    """
 
     left: float = FUTILE
 
 
 def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
-    """Unfold planar `nodes` (ni, nj, 2) in place, but for their rim; return how many cells stay folded.
+    """Untangle planar `nodes` (ni, nj, 2) in place, except boundary nodes.
 
-    With `periodic` (O) the last row repeats the first, and both move. `margin` cells around folded ones move
-    at first.
+    Return the number of folded cells left.
+
+    If `periodic` (O grids), the last row repeats the first one, and both move. The first windows have
+    `margin` cells around the folded ones.
     """
     bad = folded_cells(nodes)
     if min(nodes.shape[:2]) < 3 or len(bad) == 0:
@@ -81,7 +86,10 @@ def _repair_windows(
     margins: tuple[int, ...] = (MARGIN, *MARGINS),
     nested: bool = False,
 ) -> int:
-    """Unfold windows around folded cells, at once or (`nested`) through coarser copies, as `repair`."""
+    """Untangle windows around folded cells, directly or (`nested`) through coarser copies.
+
+    Return as `repair`.
+    """
     largest = (16 if nested else 1) * LARGEST_CELLS
     left = count_folded(nodes)
     for cells in margins:
@@ -105,7 +113,7 @@ def _smooth_windows(nodes: Floats, periodic: bool, cells: NDArray[np.int64], mar
 
 
 def untangle(patch: Floats, periodic: bool, budget: UnfoldingBudget) -> int:
-    """Unfold and smooth planar `patch` (m, n, 2) in place, all nodes at once, as `repair`."""
+    """Untangle and smooth all nodes of planar `patch` (m, n, 2), in place; return as `repair`."""
     if budget.left <= 0 or min(patch.shape[:2]) < 3:
         return count_folded(patch)
     spent, valid, tried = 0, False, patch
@@ -124,13 +132,13 @@ def untangle(patch: Floats, periodic: bool, budget: UnfoldingBudget) -> int:
 
 
 def _smooth(patch: Floats, periodic: bool = False) -> None:
-    """Open the corners of planar `patch` (m, n, 2) in place, where it is valid."""
+    """Improve the angles of a valid planar `patch` (m, n, 2), in place."""
     if min(patch.shape[:2]) > 2 and count_folded(patch) == 0:
         Descent(patch, SMOOTHING, periodic).run(SMOOTHING_STILL, SMOOTHING_ITERATIONS)
 
 
 def _repair_nested(nodes: Floats, periodic: bool, budget: UnfoldingBudget) -> int:
-    """Unfold coarser copies first and let this grid follow, as `repair`."""
+    """Untangle coarser copies first, then this grid with their displacements; return as `repair`."""
     ni, nj = nodes.shape[:2]
     tangled = not _few(count_folded(nodes), nodes)
     small = ni * nj <= LARGEST_CELLS
@@ -147,7 +155,7 @@ def _repair_nested(nodes: Floats, periodic: bool, budget: UnfoldingBudget) -> in
 
 
 def _follow_coarser(nodes: Floats, periodic: bool, budget: UnfoldingBudget) -> None:
-    """Unfold a coarser copy of planar `nodes` (ni, nj, 2); give them its displacements or its nodes."""
+    """Untangle a coarser copy of planar `nodes` (ni, nj, 2), and apply its displacements or its nodes."""
     ni, nj = nodes.shape[:2]
     i, j = _kept(nodes[:, 0], nodes[:, -1]), _kept(nodes[0], nodes[-1])
     coarse = as_planar(nodes[np.ix_(i, j)])
@@ -164,12 +172,12 @@ def _follow_coarser(nodes: Floats, periodic: bool, budget: UnfoldingBudget) -> N
 
 
 def _few(cells: int, nodes: Floats) -> bool:
-    """Return whether `cells` are so small a part of those of `nodes` (ni, nj, 2) that windows come first."""
+    """Return whether `cells` are so few of all cells of `nodes` (ni, nj, 2) that windows come first."""
     return cells <= max(FEW * nodes.shape[0] * nodes.shape[1], 50)
 
 
 def _kept(edge: Floats, opposite: Floats) -> NDArray[np.intp]:
-    """Return about every second index of two opposite edges (n, 2), the ends and sharp corners among them."""
+    """Return about every second index of two opposite edges (n, 2), including ends and sharp corners."""
     n = len(edge)
     corners = np.flatnonzero(np.maximum(np.abs(turning(edge)), np.abs(turning(opposite))) > SHARP)
     if len(corners) > n // 8:  # a rough edge: all its nodes are alike
@@ -180,7 +188,7 @@ def _kept(edge: Floats, opposite: Floats) -> NDArray[np.intp]:
 
 
 def _between(values: Floats, i: NDArray[np.intp], j: NDArray[np.intp], ni: int, nj: int) -> Floats:
-    """Return planar (ni, nj, 2), bilinear between the `values` at rows i and columns j."""
+    """Return planar (ni, nj, 2), interpolated bilinearly between the `values` at rows i and columns j."""
     result = planar_nodes(ni, nj)
     along, across = (
         np.stack([np.interp(np.arange(n), knots, row) for row in np.eye(len(knots))], axis=1)

@@ -1,4 +1,4 @@
-"""A folded grid made valid by minimising the functional with regularised Jacobians, all nodes at once."""
+"""Untangles a folded grid as a whole, by minimising the functional with regularised Jacobians."""
 
 import numpy as np
 
@@ -18,10 +18,11 @@ def unfold(
     nodes: Floats, weights: Weights, *, periodic: bool = False, aspect: float | None = None,
     iterations: int = ITERATIONS,
 ) -> tuple[bool, int]:  # fmt: skip
-    """Unfold planar `nodes` (ni, nj, 2) in place; return whether no cell is folded, and the iterations taken.
+    """Untangle planar `nodes` (ni, nj, 2) in place; return whether no cell is folded, and the iterations.
 
-    ε is a cell's area at first and shrinks with the worst Jacobian, at least by half: large enough to let a
-    cell unfold, small enough to tell folded from valid. `periodic` and `aspect` are those of `Descent`.
+    The regularisation ε starts at the area of a cell and decreases with the worst Jacobian, at least by half
+    in each step. It is large enough for cells to untangle, and small enough to distinguish folded from valid
+    cells. `periodic` and `aspect` are those of `Descent`.
     """
     descent = Descent(nodes, weights, periodic, aspect)
     rim = [nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]]

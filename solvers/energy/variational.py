@@ -1,8 +1,8 @@
-"""From a boundary to a variational grid: nested iteration from Winslow's solution on the coarsest level.
+"""Variational grids by nested iteration from Winslow's solution on the coarsest level.
 
-Each level starts from the minimum of the next coarser one, evaluated by splines. A start with folded cells is
-unfolded first: by local repair, else as a whole. The Hessian of the coarsest level preconditions the smooth
-moves of finer ones.
+Each level starts from the minimum on the next coarser one, evaluated by splines. If an initial grid has
+folded cells, it is repaired first, locally or as a whole. The Hessian of the coarsest level preconditions
+smooth displacements on finer levels.
 """
 
 from dataclasses import replace
@@ -29,28 +29,30 @@ COARSEST = 17  # a copy with this many nodes or fewer along a direction is the f
 COARSEST_AROUND = 65  # the same around a body
 
 NEXT = 129
-"""Nodes along a direction of the finest copy at the most.
+"""Largest node count along a direction of the finest coarse copy.
 
-One nearly as fine as the grid itself would cost more than it saves, and sweeps around kinks reach less far.
+A copy nearly as fine as the grid itself would cost more than it saves.
 """
 
 STILL = 1e-4
-"""Moves at which the finest level stops, in the side of a square of as many cells as the grid has."""
+"""Displacement at which the iteration on the finest level stops, relative to the side of the square of all
+cells.
+"""
 
 FEW = 4
-"""Iterations on a finest level of more nodes, of a quad, unless a tolerance is given.
+"""Iterations on a finest level with more nodes, for quads without a tolerance.
 
-They mend what the evaluation of the copy's minimum has bent. From there on the value falls, for tens of
-iterations around notches, but the angles hardly change.
+They remove the errors of the spline evaluation. Further iterations lower the functional near notches, but
+hardly change angles.
 """
 
 FEW_AROUND = 20, 10
-"""The same around a body, with up to `NEXT` nodes and with more, up to the value `descent.HARD`."""
+"""The same for O grids, with up to `NEXT` nodes and with more, unless the value exceeds `descent.HARD`."""
 
 FIRST_AROUND = 100  # the same on a coarser level
 
 ROUGH = 3.0
-"""How much further nodes of levels between may move when descent stops there: the next is farther away."""
+"""Factor of the tolerance on intermediate levels."""
 
 MOST = 1000  # iterations on a coarser level at the most
 WEAKER = 3  # how often the edge length term may be made weaker, to a fourth each time
@@ -69,13 +71,13 @@ def solve(
 ) -> Solution:  # fmt: skip
     """Minimise the functional of `meshonet.solvers.energy.functional` over the nodes inside `boundary`.
 
-    Around a body (o) the nodes of the cut are unknowns; a wake (c) stays as it is. `tol` is the part of
-    √cells steps, about that of the domain's size, by which no node may move at the end; None is 1e-4, and
-    `FEW` or `FEW_AROUND` iterations suffice. `max_cycles` are iterations on the finest level; `initial`, of
-    the same counts, takes the place of nested iteration. Where no start could be unfolded a note says so, and
-    the grid is folded.
+    The nodes of the seam of an O grid are unknowns; a wake of a C grid is fixed. At the end no node moves by
+    more than `tol` times √cells mean cell sizes, which is about the size of the domain; None is 1e-4 with at
+    most `FEW` or `FEW_AROUND` iterations. `max_cycles` limits the iterations on the finest level. `initial`,
+    a grid with the same node counts, replaces nested iteration. If no initial grid could be untangled, the
+    result is folded and has a note.
 
-    Raises InputError: `initial` of other node counts; `tol` or `max_cycles` not positive.
+    Raises InputError: `initial` with other node counts; `tol` or `max_cycles` not positive.
     """
     check_settings(boundary, tol, max_cycles, initial)
     weights = weights or WEIGHTS[boundary.topology]
@@ -101,11 +103,11 @@ def _nested(
     boundary: Boundary, weights: Weights, still: float, limits: tuple[int, int], easy: float = EASY,
     few: tuple[int, int] | None = None,
 ) -> tuple[Floats, Weights, int, bool]:  # fmt: skip
-    """Return nodes, the weights that made them, iterations on the finest level, whether it is valid.
+    """Return nodes, their weights, iterations on the finest level, and whether the grid is valid.
 
-    The `limits` are those of iterations there: in general, and where there are more than `NEXT` nodes; `few`
-    the same of values that are not `HARD`. A folded start that unfolds as a whole is not repaired up to the
-    value `easy`.
+    `limits` are the largest numbers of iterations on the finest level: in general, and for more than `NEXT`
+    nodes. `few` are those for values below `HARD`. A folded initial grid that can be untangled as a whole is
+    not repaired locally if its value is at most `easy`.
     """
     periodic = boundary.periodic
     coarsest = (COARSEST if not boundary.around_body else COARSEST_AROUND), COARSEST
@@ -142,7 +144,7 @@ def _nested(
 def _coarsest(
     boundary: Boundary, weights: Weights, still: float, most: int, easy: float, first: int | None
 ) -> tuple[Floats, Weights, int, bool]:
-    """Return what `_nested` does, for the coarsest level, from Winslow's solution."""
+    """Return the result of `_nested` on the coarsest level, from Winslow's solution."""
     start = winslow_start(boundary)
     limits = [value + 1e-9 for value in angles(start)]
     periodic = boundary.periodic
@@ -161,9 +163,10 @@ def _coarsest(
 
 
 def winslow_start(boundary: Boundary) -> Floats:
-    """Return about Winslow's solution inside `boundary`, planar (ni, nj, 2).
+    """Return approximately Winslow's solution inside `boundary`, planar (ni, nj, 2).
 
-    Where its equations have no discrete one it is the transfinite interpolation, which may be folded.
+    If the discrete equations have no solution, the result is the transfinite interpolation, which may be
+    folded.
     """
     if not boundary.around_body and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
         nodes = tfi(boundary).nodes
@@ -181,10 +184,10 @@ def winslow_start(boundary: Boundary) -> Floats:
 def _descended(
     start: Floats, weights: Weights, still: float, most: int, periodic: bool, easy: float, first: int | None
 ) -> tuple[Floats, int, bool]:
-    """Return the minimum reached from `start` on the coarsest level, iterations, whether it is valid.
+    """Return the minimum from `start` on the coarsest level, the iterations, and whether it is valid.
 
-    A folded start is unfolded as a whole, which is quick. Strongly bent domains have several minima, and
-    local repair leads to better ones there: of both the lower counts.
+    A folded start is untangled as a whole, which is fast. In strongly bent domains the functional has several
+    minima, and local repair leads to better ones; the lower of both results is returned.
     """
     nodes = start.copy(order="K")
     if periodic or count_folded(start) == 0:
@@ -203,7 +206,7 @@ def _descended(
 
 
 def _worst_at_kink(nodes: Floats) -> bool:
-    """Return whether the cell with the largest angle is at the rim but not in a corner of it."""
+    """Return whether the cell with the largest angle is at the boundary but not in a corner of it."""
     at = widest_cell(nodes)
     ends = [at[axis] in {0, nodes.shape[axis] - 2} for axis in (0, 1)]
     return ends[0] != ends[1]

@@ -1,4 +1,4 @@
-"""Wall nodes of a quad mesh as unknowns: on which loop they are, in which order, how far the loop turns."""
+"""Wall nodes of a quad mesh as unknowns: their loops, their order, and the turning angle of the loops."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 
 LEAST_GAP = 0.05
-"""Of the mean distance of wall nodes between two that stay: nodes out of order are put that far apart."""
+"""Distance of wall nodes after reordering, relative to the mean distance between two fixed nodes."""
 _SAMPLES = np.linspace(0.0, 1.0, 9)  # places in an interval between which a loop's turning is summed
 
 Bools = NDArray[np.bool_]
@@ -23,19 +23,19 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class Walls:
-    """The nodes on loops, by loop, and the edges between them in the direction of the loop."""
+    """The nodes on loops, ordered by loop, and the edges between them in the direction of the loop."""
 
     nodes: Indices
     loop: Indices
     arc: Floats
-    """Arc lengths (w,), those of a loop not beyond its length."""
+    """Arc lengths (w,), less than the length of the loop."""
     edges: Indices
     """(e, 2), numbers of wall nodes."""
     round: Floats
-    """(e,) what the second's arc length lacks: 0 or the length of the loop."""
+    """(e,) value to add to the arc length of the second node: 0 or the length of the loop."""
 
     def range_of(self, loop: int) -> tuple[int, int, int, int]:
-        """Return the first and last (not included) node and edge of a loop."""
+        """Return first and end index of the nodes and of the edges of a loop."""
         of_edge = self.loop[self.edges[:, 0]]
         n = [int(k) for k in np.searchsorted(self.loop, [loop, loop + 1])]
         e = [int(k) for k in np.searchsorted(of_edge, [loop, loop + 1])]
@@ -43,10 +43,10 @@ class Walls:
 
 
 def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
-    """Return the walls of a mesh, nodes that overtook others put back.
+    """Return the walls of a mesh, with nodes that overtook others moved back.
 
-    `fixed` (n,) are nodes that stay, `tied` (n,) those of periodic sides, which are no walls. None where
-    nodes that stay are out of order.
+    `fixed` (n,) are fixed nodes, `tied` (n,) those of periodic sides, which are not walls. None if fixed
+    nodes are not in order.
     """
     places = mesh.places
     on = (places.loop >= 0) & ~tied
@@ -75,7 +75,7 @@ def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
 
 
 def _in_order(arc: Floats, edges: Indices, length: Floats, fixed: Bools) -> tuple[Floats, bool]:
-    """Return arc lengths (w,) that rise along the `edges` (e, 2) of each loop, and whether there are such."""
+    """Return arc lengths (w,) that increase along the `edges` (e, 2) of each loop, and whether they exist."""
     following = np.full(len(arc), -1, dtype=np.intp)
     following[edges[:, 0]] = np.arange(len(edges))
     if _once_around(arc, edges, length, following):
@@ -87,7 +87,7 @@ def _in_order(arc: Floats, edges: Indices, length: Floats, fixed: Bools) -> tupl
 
 
 def _once_around(arc: Floats, edges: Indices, length: Floats, following: Indices) -> bool:
-    """Return whether the way along each ring of edges is not more than its loop's length."""
+    """Return whether the edges go around each loop at most once."""
     gap = arc[edges[:, 1]] - arc[edges[:, 0]]
     gap = np.where(gap <= 0, gap + length, gap)
     nowhere = np.zeros(len(arc), dtype=bool)
@@ -96,7 +96,7 @@ def _once_around(arc: Floats, edges: Indices, length: Floats, following: Indices
 
 
 def _chains(edges: Indices, following: Indices, starts: Indices, ends: Bools) -> list[list[int]]:
-    """Return the edges in chains, from nodes `starts` and then from others, up to those that are `ends`."""
+    """Return the edges in chains that start at nodes `starts`, then at others, and end at nodes in `ends`."""
     seen, chains = np.zeros(len(edges), dtype=bool), []
     for start in [*starts.tolist(), *edges[:, 0].tolist()]:
         k, chain = int(following[start]), []
@@ -110,7 +110,10 @@ def _chains(edges: Indices, following: Indices, starts: Indices, ends: Bools) ->
 
 
 def _spread(arc: Floats, chain: Indices, length: float, ends: bool) -> None:
-    """Give the edges of a chain (k, 2) gaps above zero, in place; `ends`: at a node that stays."""
+    """Give the edges of a chain (k, 2) positive lengths, in place.
+
+    With `ends`, the chain ends at a fixed node.
+    """
     gap = arc[chain[:, 1]] - arc[chain[:, 0]]
     gap = gap - length * np.round(gap / length)
     whole = ends or chain[-1, 1] == chain[0, 0]
@@ -124,9 +127,9 @@ def _spread(arc: Floats, chain: Indices, length: float, ends: bool) -> None:
 
 @lru_cache(maxsize=256)
 def turned(loop: Loop) -> Floats:
-    """Return how far a loop has turned (n + 1,) at each of its points, in absolute radians, corners left out.
+    """Return the accumulated absolute turning angle (n + 1,) of a loop in radians, without its corners.
 
-    What the tangent jumps by at points that are no corners is spread over both intervals there.
+    Jumps of the tangent at points that are not corners are spread over both adjacent intervals.
     """
     curve = loop.curve
     _, first, second, third = (part[:, None] for part in curve.tables[0])

@@ -13,6 +13,8 @@ import numpy as np
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.airfoil.base_wake import COARSEST
+from meshonet.geometry.shapes.wake import C_EDGE
 from meshonet.solvers.hyperbolic.march import hyperbolic
 from meshonet.solvers.solution import Solution
 
@@ -21,6 +23,7 @@ PART = 0.05
 with 400 rows; at 0.05 by 29 at the most, and by 4 around most."""
 MOST = 0.25  # the same where rows are few, so that they grow by no more than `GROWTH`
 GROWTH = 1.2
+CHOSEN = "no first cell was asked for: it follows from the smallest one along the wall"
 STEEPEST = 1.3  # growth beyond which marched grids have larger angles than variational ones
 
 
@@ -30,7 +33,19 @@ def first_cell(boundary: Boundary) -> float:
     wall = boundary.south[behind : boundary.ni - behind]
     smallest = float(np.hypot(*np.diff(wall, axis=0).T).min())
     away = float(np.hypot(*(boundary.west[-1] - boundary.west[0])))
-    gentle = away * (GROWTH - 1.0) / (GROWTH ** (boundary.nj - 1) - 1.0)
+    return _height(smallest, away, boundary.nj)
+
+
+def first_cell_around_base(width: float, away: float, chord: float, ni: int, nj: int) -> float:
+    """Return the same for a C grid of `ni` x `nj` nodes that keeps a base of this `width`, before it is made.
+
+    Its smallest cell is what it is behind a sharp edge, or a cell on the base.
+    """
+    return _height(min(C_EDGE / ni * chord, COARSEST * width), away, nj)
+
+
+def _height(smallest: float, away: float, nj: int) -> float:
+    gentle = away * (GROWTH - 1.0) / (GROWTH ** (nj - 1) - 1.0)
     return max(PART * smallest, min(gentle, MOST * smallest))
 
 
@@ -48,5 +63,4 @@ def march_by_default(boundary: Boundary) -> Solution | None:
         return None
     if count_folded(solution.grid.nodes):
         return None
-    note = "no first cell was asked for: it follows from the smallest one along the wall"
-    return replace(solution, notes=(*solution.notes, note))
+    return replace(solution, notes=(*solution.notes, CHOSEN))

@@ -133,7 +133,7 @@ def _too_few(cells: int, needed: int, growth: float) -> InputError:
 
 
 def _rows(cells: int, first: float, distance: float, growth: float | None, free: bool, constant: int) -> int:
-    """Return the number of cells from the wall to the far field, more than asked for if growth needs it."""
+    """Return the number of cells from the wall to the far field, increased if the limit requires it."""
     allowed = growth or MOST_GROWTH
     equal = constant - 1
     if equal * first >= distance:

@@ -1,1 +1,1 @@
-"""First cells of given height at walls, and wall nodes that slide."""
+"""Prescribed first-cell heights at walls, and sliding wall nodes."""

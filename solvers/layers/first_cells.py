@@ -1,4 +1,4 @@
-"""Heights of the first cells off each edge, and cells that grow from them by one ratio."""
+"""First-cell heights at the edges of a block, and cells that grow from them by a constant ratio."""
 
 import math
 from dataclasses import dataclass
@@ -15,9 +15,9 @@ from meshonet.kernels._native import layer_steps
 
 @dataclass(frozen=True)
 class Heights:
-    """Heights of the first cells off the edges, 0 for any height.
+    """First-cell heights at the four edges; 0 if none is prescribed.
 
-    Raises InputError: a height, a number of layers or a growth out of range.
+    Raises InputError: a height, a number of layers or a growth ratio out of range.
     """
 
     south: float = 0.0  # in the unit of the boundary
@@ -42,12 +42,12 @@ class Heights:
 
     @property
     def by_side(self) -> dict[str, float]:
-        """The heights that are not 0, by side."""
+        """The prescribed heights, by side."""
         return {side: height for side in SIDES if (height := getattr(self, side))}
 
     @property
     def any(self) -> bool:
-        """Whether an edge has a height."""
+        """Whether any height is prescribed."""
         return bool(self.by_side)
 
     def __str__(self) -> str:
@@ -55,7 +55,7 @@ class Heights:
 
 
 def check_fit(heights: Heights, boundary: Boundary) -> None:
-    """Raise InputError when `boundary` cannot have the heights: wrong edges, cells too few or too high."""
+    """Raise InputError if `boundary` cannot have the heights: wrong edges, too few or too high cells."""
     if boundary.around_body and (heights.north or heights.west or heights.east):
         raise InputError(
             f"a spacing off north, west or east in topology {boundary.topology}",
@@ -80,7 +80,7 @@ def check_fit(heights: Heights, boundary: Boundary) -> None:
 
 
 def cells_needed(length: float, first: float, last: float, heights: Heights) -> int:
-    """Return the fewest cells that fill `length` growing by no more than `heights.growth`."""
+    """Return the smallest number of cells that fill `length` with growth ratios up to `heights.growth`."""
     least = heights.constant * ((first > 0) + (last > 0)) + 1
     allowed = heights.growth or LARGEST
     count = least
@@ -93,9 +93,10 @@ def cells_needed(length: float, first: float, last: float, heights: Heights) -> 
 
 
 def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights: Heights) -> Floats:
-    """Return `count` nodes (count, 2) on the curve through an open edge, in layers at its ends.
+    """Return `count` nodes (count, 2) on the curve through an open edge, with layers at its ends.
 
-    The distance of the first two nodes is `first` and that of the last two `last`, where these are not 0.
+    The distance between the first two nodes is `first`, that between the last two `last`; 0 prescribes
+    nothing.
     """
     curve = Curve(edge)
     nodes = curve.at(arcs_in_layers(curve, count, first, last, heights)[0])
@@ -106,7 +107,7 @@ def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights:
 def arcs_in_layers(
     curve: Curve, count: int, first: float, last: float, heights: Heights
 ) -> tuple[Floats, float]:
-    """Return arc lengths (count,) on an open curve, in layers at its ends, and the largest ratio of steps."""
+    """Return arc lengths (count,) on an open curve with layers at its ends, and the largest step ratio."""
     steps = np.empty(count - 1)
     begin = _arc_at(curve, 0.0, first) if first else 0.0
     end = _arc_at(curve, curve.length, last) if last else 0.0
@@ -119,7 +120,7 @@ def arcs_in_layers(
 
 
 def _arc_at(curve: Curve, origin: float, distance: float) -> float:
-    """Return how far along the curve from its end at `origin` a point lies `distance` away from that end."""
+    """Return the arc length from the end at `origin` to the point at the given distance from it."""
     sign = 1.0 if origin == 0.0 else -1.0
     home = curve.points[0 if origin == 0.0 else -1]
     arc = distance

@@ -1,7 +1,8 @@
-"""Nodes moved along the lines that leave walls until neighbouring cells differ by at most a given ratio.
+"""Moves nodes along the lines that leave walls until neighbouring cells differ by at most a given ratio.
 
-Levels that grow by one ratio do not give lines that do: where lines spread, behind a sharp edge say, a front
-catches up and cells grow faster for some rows. Each line keeps its course, its length and its first cells.
+Even if the distances of fronts grow by a constant ratio, cells along lines do not: where lines diverge, for
+example behind a sharp edge, some cells grow faster. Each line keeps its curve, its length and its first
+cells.
 """
 
 import math
@@ -13,21 +14,25 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.quality.growth import ratios
 
 PASSES = 8
-"""Times at most that nodes are moved: chords of a bent line are not what its arcs are, less so each time."""
+"""Largest number of passes; chords of a bent line differ from its arcs, less so in each pass."""
 SPARE = 1.08
-"""How much longer than a line its cells must be able to be: with less, one is changed all along where its
-neighbour is not at all."""
+"""Smallest ratio of the length that the cells can reach to that of the line.
+
+With a smaller ratio one line would
+
+be changed everywhere and its neighbour not at all.
+"""
 LEFT = 1e-6
-"""Part of the growth above 1 that is left out, so that files whose numbers are rounded keep to it as well."""
+"""Margin below the growth limit, as a fraction of growth - 1, so that rounded files respect it too."""
 HALVINGS = 60  # of the interval of a line's factor
 _MOST = math.log(100.0)  # of the factor on the last cell of a line
 
 
 def limit_growth(nodes: Floats, growth: float, constant: int, last: int = 0) -> bool:
-    """Move nodes (ni, nj, 2) along lines of eta, in place; say whether all cells grow by at most `growth`.
+    """Move nodes (ni, nj, 2) along lines of eta, in place; return whether all cells grow by at most `growth`.
 
-    The first `constant` and the `last` cells of a line, its ends and, but for rounding of bends, its course
-    stay.
+    The first `constant` and the last `last` cells of a line do not change. Its curve changes only by the
+    rounding of bends.
     """
     allowed = 1.0 + (growth - 1.0) * (1.0 - LEFT)
     limit = 1.0 + (growth - 1.0) * (1.0 - 2.0 * LEFT)
@@ -49,10 +54,11 @@ def limit_growth(nodes: Floats, growth: float, constant: int, last: int = 0) -> 
 
 
 def _limited(steps: Floats, rate: float, constant: int, last: int) -> Floats | None:
-    """Return arcs (m, n-1) of inner nodes on lines of `steps` (m, n); logarithms change by `rate` at most.
+    """Return arc lengths (m, n-1) of inner nodes on lines of `steps` (m, n), limited to the growth `rate`.
 
-    They are the largest below exp(c k/n) times the steps, k counted from the cells that stay, with the c of
-    each line that keeps its length; None where cells growing by that rate all the way do not reach.
+    The new steps are the largest ones below exp(c k/n) times the old steps, where k counts from the first
+    free cell and the constant c keeps the length of the line. The result is None if growth by `rate`
+    everywhere does not suffice.
     """
     count = steps.shape[1]
     k = np.arange(count, dtype=np.float64)
@@ -74,7 +80,7 @@ def _limited(steps: Floats, rate: float, constant: int, last: int) -> Floats | N
 
 
 def _capped(wanted: Floats, k: Floats, rate: float) -> Floats:
-    """Return exp of the largest below `wanted` (m, n) whose neighbours differ by `rate` at most."""
+    """Return exp of the largest values below `wanted` (m, n) whose neighbours differ by at most `rate`."""
     ahead = np.minimum.accumulate(wanted - rate * k, axis=1) + rate * k
     back = np.minimum.accumulate((ahead + rate * k)[:, ::-1], axis=1)[:, ::-1] - rate * k
     return np.asarray(exp(back))

@@ -1,12 +1,12 @@
-"""Layers of given heights at the walls of any grid, its lines kept.
+"""Adds layers with given heights to any grid by moving nodes along its lines.
 
 ::
 
     grid --rows along xi--> west, east --lines along eta--> south, north --first cells made exact--> grid
 
-The lines that leave a wall stay the curves they are, and nodes are placed anew on them
-(``kernels/layers/layers.c``): a valid grid with even rows becomes one with thin ones. Rows are moved along xi
-by one map of their index, which keeps kinks of the walls on their nodes.
+The curves of the lines that leave a wall do not change; their nodes are redistributed
+(``kernels/layers/layers.c``). A valid grid with even rows thus becomes one with thin rows. Along xi all rows
+are moved by one map of their index, which keeps kinks of the walls on nodes.
 """
 
 from dataclasses import replace
@@ -46,8 +46,8 @@ PASSES = 100  # alternating corrections of first cells off edges that meet, at t
 def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
     """Return `solution` with its nodes moved along its grid lines into layers.
 
-    `solution` is a quad or O grid made for `boundary`, valid and best with even rows. What is returned has
-    the boundary that its edges have now. Raises InputError: heights that the boundary cannot have, or more
+    `solution` is a valid quad or O grid for `boundary`, preferably with even rows. The result has its own
+    boundary, given by its edges. Raises InputError: heights that the boundary cannot have, or that need more
     growth than allowed.
     """
     check_fit(heights, boundary)
@@ -79,16 +79,16 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
 
 
 def _parts(boundary: Boundary, nodes: Floats) -> tuple:  # type: ignore[type-arg]
-    """Return the parts of `boundary` when they do not depend on its counts of rows, else the defaults."""
+    """Return the patches of `boundary` if they do not depend on its numbers of rows, else the defaults."""
     if all(part.side in ("south", "north") for part in boundary.patches):
         return boundary.patches
     return default_patches(boundary.topology, nodes.shape[0], nodes.shape[1], boundary.wake)
 
 
 def _within_growth(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Floats, float]:
-    """Return nodes in layers off south and north, first cells exact, and the largest ratio of their lines.
+    """Return nodes with layers at south and north and exact first cells, and the largest growth ratio.
 
-    Raises InputError: growth is limited, and so many rows cannot keep to it along every line.
+    Raises InputError: the number of rows is too small for the growth limit along some line.
     """
     ends = [heights.constant if height else 0 for height in (heights.south, heights.north)]
     for more in range(MORE_ROWS):
@@ -107,9 +107,9 @@ def _within_growth(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple
 
 
 def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights, more: int) -> tuple[Floats, float]:
-    """Return nodes in layers off south and north, and the largest ratio of neighbouring cells.
+    """Return nodes with layers at south and north, and the largest ratio of neighbouring cells.
 
-    Rows that are free are `more` than the fewest.
+    If the number of rows is free, it is the smallest possible one plus `more`.
     """
     ni, nj = nodes.shape[:2]
     longest = float(np.hypot(*np.diff(nodes, axis=1).T).sum(axis=0).max())
@@ -143,7 +143,7 @@ def _check_ratio(
 
 
 def _along_xi(nodes: Floats, boundary: Boundary, heights: Heights) -> Floats:
-    """Return nodes in layers off west and east: every row by the same kind of map of its index."""
+    """Return nodes with layers at west and east; every row is moved by the same kind of map of its index."""
     ni, nj = nodes.shape[:2]
     out = nodes.copy(order="K")
     index = np.arange(float(ni))
@@ -165,9 +165,9 @@ def _along_xi(nodes: Floats, boundary: Boundary, heights: Heights) -> Floats:
 
 
 def _between_rows(nodes: Floats, at: Floats) -> Floats:
-    """Return points (m, n, 2) of nodes (ni, n, 2) at the places `at` (m, n) of the first index.
+    """Return points (m, n, 2) of nodes (ni, n, 2) at fractional values `at` (m, n) of the first index.
 
-    Cubic pieces whose slopes are those of parabolas through three nodes.
+    Interpolation is by cubic pieces with the slopes of parabolas through three nodes.
     """
     slope = np.empty_like(nodes)
     slope[1:-1] = (nodes[2:] - nodes[:-2]) / 2
@@ -182,7 +182,7 @@ def _between_rows(nodes: Floats, at: Floats) -> Floats:
 
 
 def _make_exact(nodes: Floats, periodic: bool, heights: Heights) -> None:
-    """Correct first cells in place, off one edge after the other until all are exact."""
+    """Correct first cells in place, at one edge after the other, until all are exact."""
     order = ("west", "east", "south", "north")
     sides = [(side, height) for side in order if (height := getattr(heights, side))]
     for _ in range(PASSES):
@@ -196,7 +196,7 @@ def _make_exact(nodes: Floats, periodic: bool, heights: Heights) -> None:
 
 
 def _correct(nodes: Floats, side: str, height: float) -> None:
-    """Make the first cells off one edge exact, moving nodes less and less away from it."""
+    """Make the first cells at one edge exact; the displacement of nodes decreases away from it."""
     view = lines_from_side(nodes, side)
     if side in ("west", "east"):
         view = view[1:-1]
@@ -212,11 +212,11 @@ def _correct(nodes: Floats, side: str, height: float) -> None:
 
 
 def worst_first_cell(solution: Solution) -> float:
-    """Return the largest relative error of the first cells that `solution` was to have."""
+    """Return the largest relative error of the prescribed first cells of `solution`."""
     nodes, heights = solution.grid.nodes, solution.first_cells
     return max((first_cell_error(nodes, side, height) for side, height in heights.items()), default=0.0)
 
 
 def first_cell_error(nodes: Floats, side: str, height: float) -> float:
-    """Return the largest relative error of the first cells off one edge."""
+    """Return the largest relative error of the first cells at one edge."""
     return float(np.abs(first_heights(lines_from_side(nodes, side)) / height - 1.0).max())

@@ -1,10 +1,11 @@
-"""Wall nodes of a four-sided domain moved along their walls until the lines leave them at right angles.
+"""Moves wall nodes of a four-sided domain along their walls until grid lines leave them at right angles.
 
-Each round solves for the grid (a cycle from the last one), measures by how much the lines lean at the walls,
-and moves the wall nodes against it. A displacement sin(k s) of both walls leans the lines by k tanh(k H/2)
-times as much, a contrary one by k coth(k H/2), H being the distance of the walls, so sum and difference of
-the leans are divided by that, wave by wave. It is done on few nodes; the map from old to new places along a
-wall is smooth and serves any number.
+Each iteration solves for the grid (one cycle from the previous one), measures the angles of grid lines to the
+wall normals, and moves the wall nodes to reduce them. If H is the distance of the walls, an equal
+displacement sin(k s) of both walls changes the angles by k tanh(k H/2) times its amplitude, an opposite one
+by k coth(k H/2). Sum and difference of the angles are therefore divided by these factors, for each wave
+number k. This is done with few nodes; the resulting map from old to new positions along a wall is smooth and
+is used for any number of nodes.
 """
 
 import math
@@ -27,7 +28,7 @@ COUNTS = 129, 49  # nodes along and between the walls, at the most, on which pla
 ROUNDS = 60  # rounds at the most
 
 UPRIGHT = math.sin(math.radians(0.05))
-"""Lean of a line at the wall that is left, as the sine of the angle to the normal."""
+"""Sine of the largest remaining angle between a grid line and the wall normal."""
 
 RELAXATION = 0.7  # part of the linearised displacement that a round moves by
 RAMP = 0.03  # part of a wall, next to its ends and kinks, over which sliding sets in
@@ -35,11 +36,12 @@ ROOM = 0.4  # relative change of a step between wall nodes, at the most, in a ro
 
 
 def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
-    """Return the quad `boundary` with the nodes of south and north moved, and the controls to solve with.
+    """Return the quad `boundary` with moved nodes on south and north, and the controls for the solver.
 
-    The lines of an elliptic grid inside it leave both walls at right angles, except next to west and east
-    where these do not, and at kinks of the walls, which stay nodes. The control function φ(ξ) keeps what
-    uneven spacing is common to both walls; None where it is even. Raises InputError for other topologies.
+    Grid lines of an elliptic grid inside it leave both walls at right angles, except next to west and east if
+    these are not normal to the walls, and at kinks of the walls, which stay on nodes. The control function
+    φ(ξ) preserves the uneven spacing that both walls share; it is None for even spacing. Raises InputError:
+    another topology.
     """
     if boundary.around_body:
         problem = f"walls of topology {boundary.topology} cannot slide"
@@ -67,7 +69,7 @@ def _inner_corners(curve: Curve) -> Floats:
 
 
 def _controls(south: Floats, north: Floats, nj: int) -> Controls | None:
-    """Return φ(ξ) of the mean spacing of two walls with arc lengths (n,), None when it is even."""
+    """Return φ(ξ) for the mean spacing of two walls with arc lengths (n,), None if it is even."""
     steps = log(np.diff(0.5 * (south / south[-1] + north / north[-1])))
     ratios = np.zeros(len(south))
     ratios[1:-1] = np.diff(steps)
@@ -79,7 +81,7 @@ def _controls(south: Floats, north: Floats, nj: int) -> Controls | None:
 def _slid(
     boundary: Boundary, curves: tuple[Curve, Curve], starts: tuple[Floats, Floats], n: int
 ) -> tuple[Floats, Floats]:
-    """Return arc lengths (m,) on both walls at which the lines of a grid of m x n nodes stand upright."""
+    """Return arc lengths (m,) on both walls for which lines of a grid of m x n nodes are normal to them."""
     m = len(starts[0])
     few = np.linspace(0.0, boundary.nj - 1.0, n)
     sides = [_between(getattr(boundary, side), few) for side in ("west", "east")]
@@ -118,7 +120,7 @@ def _slid(
 
 
 def _between(edge: Floats, places: Floats) -> Floats:
-    """Return points on the curve through an edge at fractional places of its index; the ends are kept."""
+    """Return points on the curve through an edge at fractional indices `places`; the ends are exact."""
     curve = Curve(edge)
     points = curve.at(np.interp(places, np.arange(float(len(edge))), curve.knots))
     points[[0, -1]] = edge[[0, -1]]
@@ -126,7 +128,7 @@ def _between(edge: Floats, places: Floats) -> Floats:
 
 
 def _leans(nodes: Floats, curves: tuple[Curve, Curve], arcs: list[Floats]) -> list[Floats]:
-    """Return the sine (m,) of the angle to each wall's normal, less and less next to ends and kinks."""
+    """Return the sine (m,) of the angle to each wall's normal, reduced towards ends and kinks."""
     leans = []
     for curve, arc, side in zip(curves, arcs, ("south", "north"), strict=True):
         lean = leaning(lines_from_side(nodes, side), curve.tangent(arc))
@@ -137,7 +139,7 @@ def _leans(nodes: Floats, curves: tuple[Curve, Curve], arcs: list[Floats]) -> li
 
 
 def _waves(m: int) -> Floats:
-    """Return sines (m - 2, m - 2) that take inner values to amplitudes, and back, but for 2/(m - 1)."""
+    """Return sines (m - 2, m - 2) that transform inner values to amplitudes and, up to 2/(m - 1), back."""
     k = np.arange(1, m - 1)
     return sin(np.pi * np.outer(k, k) / (m - 1))
 
@@ -145,7 +147,7 @@ def _waves(m: int) -> Floats:
 def _displacements(
     leans: list[Floats], arcs: list[Floats], waves: Floats, apart: float
 ) -> tuple[Floats, Floats]:
-    """Return the displacements (m,) along both walls that take the leans away, to first order."""
+    """Return the displacements (m,) along both walls that remove the angles to first order."""
     m = len(arcs[0])
     k = 2.0 * np.pi * np.arange(1, m - 1) / (arcs[0][-1] + arcs[1][-1])
     both, contrary = (
@@ -159,7 +161,7 @@ def _displacements(
 
 
 def _moved(arcs: Floats, move: Floats) -> Floats:
-    """Return arcs (m,) displaced by `move` (m,), no step changed by more than `ROOM` before all fit."""
+    """Return arcs (m,) displaced by `move` (m,), scaled down so that no step changes by more than `ROOM`."""
     steps = np.diff(arcs)
     steps = steps * (1.0 + np.clip(np.diff(move) / steps, -ROOM, ROOM))
     moved = np.concatenate([[0.0], np.cumsum(steps)])
@@ -167,7 +169,7 @@ def _moved(arcs: Floats, move: Floats) -> Floats:
 
 
 def _move_wall(nodes: Floats, edge: Floats, k: int) -> None:
-    """Put an edge (m, 2) into the first (k = 0) or last row, the others following less and less."""
+    """Put an edge (m, 2) into the first (k = 0) or last row; the displacement of other rows decreases."""
     n = nodes.shape[1]
     share = np.linspace(1.0, 0.0, n) if k == 0 else np.linspace(0.0, 1.0, n)
     shift = edge - nodes[:, -k]

@@ -1,1 +1,1 @@
-"""From a shape to a checked grid: choice of method, coarse solves, first cells, fallbacks."""
+"""From a shape to a checked grid: choice of method, coarse solves, first cells, repair."""

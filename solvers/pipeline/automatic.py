@@ -1,4 +1,4 @@
-"""Methods that call others: one a topology, fewer nodes where they do as well, marches around wakes."""
+"""Methods that call other methods: by topology, on fewer nodes, or by marching for C grids."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ if TYPE_CHECKING:
     from meshonet.solvers.pipeline.methods import Method
 
 FEWER_NODES = {"winslow": (512, 257), "variational": (257, 129)}
-"""Nodes along a direction above which a method solves on fewer unless a number is given, and how many.
+"""Node counts above which a method by default solves on fewer nodes, and these smaller counts.
 
-Over random domains at 513 x 513 the mean angle is then within 0.01 degrees of the full solve's.
+For random domains with 513 x 513 nodes the mean angle then differs by at most 0.01 degrees from that of the
+solution on all nodes.
 """
 
 
@@ -32,16 +33,16 @@ class Auto(OneByOne):
     name: str = "auto"
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary by the method of its topology."""
+        """Return the solution of a boundary by the method for its topology."""
         return solved(getattr(self, boundary.topology), boundary, start)
 
 
 @dataclass(frozen=True)
 class Fewer(Wrapper):
-    """`method` on fewer nodes where that measures as good; where those fold, on twice as many."""
+    """`method` on fewer nodes if the quality is the same; on twice as many if the result has folded cells."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary, on all nodes when there is a grid to start from."""
+        """Return the solution of a boundary; on all nodes if there is an initial grid."""
         above, n = FEWER_NODES.get(self.name, (0, 0))
         if not n or start is not None or max(boundary.ni, boundary.nj) <= above:
             return self.inner(boundary, start)
@@ -56,7 +57,7 @@ class Fewer(Wrapper):
 
 @dataclass(frozen=True)
 class Anew(Wrapper):
-    """`method` from nothing, also where there is a grid to start from."""
+    """`method` without an initial grid, even if there is one."""
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
         """Return the solution of a boundary."""
@@ -65,16 +66,17 @@ class Anew(Wrapper):
 
 @dataclass(frozen=True)
 class AroundWake(OneByOne):
-    """C grids: marched with a first cell of its own choice, or where that does not suit variational.
+    """C grids: marched with a default first cell, or by the variational method if marching does not suit.
 
-    Winslow's lines lean by 70 degrees along the wake, where small cells face large ones of the far field.
+    Winslow's equations are not used: their grid lines deviate from the normal by up to 70 degrees along the
+    wake, where small cells face the large ones of the far field.
     """
 
     note: str = ""  # begins the notes, before the method's name
     name: str = "auto"
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
-        """Return the solution of a boundary; a march starts from the wall, and from no grid."""
+        """Return the solution of a boundary; marching starts from the wall and ignores an initial grid."""
         from meshonet.solvers.hyperbolic.default_spacing import march_by_default
 
         solution = march_by_default(boundary) or Fewer(method_named("variational")).solve_one(boundary)
@@ -83,11 +85,11 @@ class AroundWake(OneByOne):
 
 
 def elliptic() -> Auto:
-    """Return what ``auto`` is among the equations: Winslow's, and around wakes a march."""
+    """Return the method ``auto`` for elliptic grids: Winslow's equations, and marching for C grids."""
     winslow = method_named("winslow")
     return Auto(Fewer(winslow), winslow, AroundWake())
 
 
 def fewer_on_quads(method: Method) -> Auto:
-    """Return `method`, on fewer nodes in large four-sided domains."""
+    """Return `method`, on fewer nodes for large four-sided domains."""
     return Auto(Fewer(method), method, method, method.name)

@@ -1,4 +1,4 @@
-"""Which shapes are made as many blocks, and what of a request is of use to these."""
+"""Decides which shapes become multi-block grids, and which options apply to these."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 SMOOTHERS = ("auto", "variational")
 """Methods that smooth the blocks of a given grid."""
 METHODS = ("best", *SMOOTHERS)
-"""Methods under whose names blocks are made: their nodes come from one optimum of the variational energy."""
+"""Method names for which multi-block grids are made; their nodes minimise the variational functional."""
 
 
 def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
-    """Return the domain whose blocks `request` makes of a shape, None where it makes a single block.
+    """Return the domain from which `request` makes blocks, or None if it makes a single block.
 
-    Raises InputError: a shape that is no domain; parameters that many blocks have no use for.
+    Raises InputError: a shape that is not a domain; options that do not apply to multi-block grids.
     """
     if any(_for_one(request).values()):
         return None
@@ -45,15 +45,15 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
 
 
 def smooths(shape: DomainShape, request: GridRequest) -> bool:
-    """Say whether a request is to smooth the blocks of a grid that was given: it asks for no others."""
+    """Return whether a request smooths the blocks of a given grid, rather than making other blocks."""
     new_blocks = request.asks_for_blocks or request.sampling.ni or request.at_walls
     return shape.given is not None and request.method in SMOOTHERS and not new_blocks
 
 
 def smoothed(grid: Grid, request: GridRequest) -> Solution:
-    """Return a given grid of many blocks smoothed, and as often refined and smoothed again as is asked for.
+    """Return a given multi-block grid smoothed, then `request.refine` times refined and smoothed again.
 
-    Raises InputError: as `smooth`; with refinement, a connection of a part of a side.
+    Raises InputError: as `smooth`; with refinement, a connection that covers only a part of a side.
     """
     from meshonet.solvers.smoothing.refine import refined
     from meshonet.solvers.smoothing.smooth import ITERATIONS, smooth
@@ -68,7 +68,7 @@ def smoothed(grid: Grid, request: GridRequest) -> Solution:
 
 
 def check_asked(request: GridRequest) -> None:
-    """Raise InputError when a request asks for many blocks in a way that cannot be, or for one as well."""
+    """Raise InputError for invalid options of multi-block grids, or options of single blocks beside them."""
     block_request(request)
     for name, given in _for_one(request).items():
         if given:
@@ -77,10 +77,10 @@ def check_asked(request: GridRequest) -> None:
 
 
 def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str, float]]:
-    """Return the blocks that `request` makes of a shape, and seconds by stage.
+    """Return the blocks that `request` makes of a shape, and the seconds of each stage.
 
-    They have as many cells as are asked for, or those that they were found with. Raises InputError: as
-    `as_blocks`; SolverError: no blocks are found.
+    Without a requested number of cells, the layout keeps that of the decomposition. Raises InputError: as
+    `as_blocks`; SolverError: the decomposition fails.
     """
     seconds: dict[str, float] = {}
     with stage("load", seconds):
@@ -92,10 +92,7 @@ def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str
 
 
 def block_request(request: GridRequest) -> BlockRequest:
-    """Return what is asked of many blocks.
-
-    Raises InputError: as `BlockRequest`.
-    """
+    """Return the options of `request` for multi-block grids. Raises InputError: as `BlockRequest`."""
     own = [each.name for each in fields(BlockRequest) if each.name != "res"]
     values = {name: getattr(request, name) for name in own}
     sampling = request.sampling
@@ -115,7 +112,7 @@ def _domain(shape: Shape, request: GridRequest) -> DomainShape:
 
 
 def _blade(shape: Shape, sampling: Sampling) -> DomainShape:
-    """Return the domain of which the only hole is the blade of a cascade."""
+    """Return the domain whose only hole is the blade of a cascade."""
     if sampling.far_field is not None:
         raise InputError("the passage of a cascade has no far field", "leave {far_field} out")
     around = assembled([shape], ["blade"], sampling, shape.name)
@@ -125,7 +122,7 @@ def _blade(shape: Shape, sampling: Sampling) -> DomainShape:
 
 
 def _for_one(request: GridRequest) -> dict[str, bool]:
-    """Return by name whether parameters are given that ask for one block."""
+    """Return for each option of single-block grids whether it is given."""
     sampling = request.sampling
     return {
         "blocks": request.blocks == "single",
@@ -135,7 +132,7 @@ def _for_one(request: GridRequest) -> dict[str, bool]:
 
 
 def _check_use(request: GridRequest, way: str = MANY) -> None:
-    """Raise InputError for the first option of no use to many blocks, or to smoothing given ones."""
+    """Raise InputError for the first option that does not apply to multi-block grids or their smoothing."""
     if request.method not in METHODS:
         problem = f"method {request.method} makes single blocks"
         raise InputError(problem, "drop {method}, or ask for {blocks} single")

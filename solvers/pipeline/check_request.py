@@ -1,4 +1,4 @@
-"""What a request cannot ask for: values out of range, parameters that need or exclude each other."""
+"""Validation of requests: values out of range, options that need or exclude each other."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def check_request(request: GridRequest) -> None:
-    """Raise InputError for a value out of its range, or for parameters that need or exclude each other."""
+    """Raise InputError for a value out of range, or for options that need or exclude each other."""
     if request.method not in ("best", "auto") and request.method.partition(":")[0] not in METHODS:
         method_named(request.method)  # which says what there is
     _check_first_cells(request)
@@ -34,7 +34,7 @@ def check_request(request: GridRequest) -> None:
     tol = request.settings.get("tol")
     if tol is not None and not 0 < tol < 1:
         raise InputError(f"{tol:g} is not between 0 and 1", "use e.g. 1e-8", parameter="tol")
-    for name, least in (("threads", 1), ("layers", 3)):
+    for name, least in (("threads", 1), ("constant_layers", 1), ("layers", 3)):
         value = getattr(request, name)
         if value is not None and value < least:
             raise InputError(f"{value} is too few", f"give {least} or more", parameter=name)
@@ -55,8 +55,6 @@ def _check_first_cells(request: GridRequest) -> None:
             if getattr(request, name) is not None:
                 problem = f"{{{name}}} without a first cell"
                 raise InputError(problem, "give {first_cell} or {y_plus} as well")
-    if request.constant_layers is not None and request.constant_layers < 1:
-        raise InputError(f"{request.constant_layers} layers", "give at least 1", parameter="constant_layers")
     if request.at_walls and request.growth is not None and not 1 < request.growth <= 10:
         remedy = "give the ratio of neighbouring cells, such as 1.15"
         raise InputError(f"a growth of {request.growth:g}", remedy, parameter="growth")

@@ -1,4 +1,4 @@
-"""The method that makes what a request asks for, or what measures best, and on how many nodes it solves."""
+"""Selects the method for a request, and the number of nodes on which it solves."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from meshonet.solvers.pipeline.methods import Method
 
 NETWORK_SETTINGS = ("model", "polish", "device")
-"""Settings of the operator any of which asks for a network."""
+"""Settings of the operator; if one of them is given, a network makes the grid."""
 
 
 def method_of(request: OneBlock) -> Method:
-    """Return the method that makes the grids of `request`, without the guard.
+    """Return the method that makes the grids of `request`, without the repair of folded cells.
 
     Raises InputError: settings that the method does not have.
     """
@@ -44,7 +44,7 @@ def method_of(request: OneBlock) -> Method:
 def _base(request: OneBlock) -> Method:
     """Return the method with its settings, on all nodes.
 
-    A network is taken where one is asked for by name or settings, else what measures best without.
+    A network is used only if it is requested by name or settings.
     """
     if request.by_network or request.method == "best":
         if ":" in request.method or set(NETWORK_SETTINGS).intersection(request.chosen):
@@ -61,7 +61,7 @@ def _base(request: OneBlock) -> Method:
 
 
 def _at_any_resolution(request: OneBlock, base: Method) -> Method:
-    """Return `base` on fewer nodes where that is asked for, or left open and as good."""
+    """Return `base` on fewer nodes, if this is requested, or left open and equally good."""
     open_method = request.by_network or request.method == "best"
     if request.refine:
         from meshonet.solvers.pipeline.automatic import Anew
@@ -80,7 +80,7 @@ def _at_any_resolution(request: OneBlock, base: Method) -> Method:
 
 
 def _first_cells(request: OneBlock) -> FirstCells:
-    """Return the heights of first cells and the layers that begin with them."""
+    """Return the first-cell heights, and the layers that start with them."""
     from meshonet.solvers.pipeline.layered import FirstCells
 
     note = request.height_note(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
@@ -95,12 +95,12 @@ def _angle(request: OneBlock) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Best(OneByOne):
-    """What measures best: conformal grids around bodies, variational ones in quads, marches around wakes."""
+    """Default method by topology: conformal for O grids, variational for quad grids, marching for C grids."""
 
     name: str = "best"
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; only the variational method starts from a grid."""
+        """Return the solution of a boundary; only the variational method uses an initial grid."""
         if boundary.topology != "o":
             from meshonet.solvers.pipeline.automatic import AroundWake, Fewer
         if boundary.topology == "quad":
@@ -113,7 +113,7 @@ class Best(OneByOne):
 
 
 def _by_network(boundary: Boundary, why: str) -> Solution | None:
-    """Return the grid of a body that the conformal map cannot take by the network for bodies."""
+    """Return the grid of a body without a suitable conformal map, made by the network for bodies."""
     from meshonet.solvers.neural.inference import grid_of_body
 
     return grid_of_body(boundary, why)

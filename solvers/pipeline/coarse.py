@@ -1,7 +1,7 @@
-"""A grid of any resolution from a small one: solve with few nodes, then evaluate at many.
+"""Solves on few nodes, and evaluates the result at the nodes of the grid.
 
-A few nodes describe a smooth grid. So the boundary is thinned to the coarse counts, a method solves there,
-and its grid is evaluated inside the full edges (`meshonet.solvers.algebraic.resample.grids`).
+Few nodes suffice for a smooth grid. The boundary is coarsened, a method solves there, and its grid is
+evaluated between the full edges (`meshonet.solvers.algebraic.resample.grids`).
 """
 
 import time
@@ -22,12 +22,12 @@ LEAST_NODES = 9  # fewest coarse nodes along a direction that describe anything
 
 @dataclass(frozen=True)
 class Coarse(Wrapper):
-    """`method` on at most n x n nodes, evaluated at the counts of the boundary (`solve_coarse`)."""
+    """`method` on at most n x n nodes, evaluated at the node counts of the boundary (`solve_coarse`)."""
 
     n: int
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
-        """Return the solution of a boundary; a grid to start from is of no use, as a `GridRequest` says."""
+        """Return the solution of a boundary; an initial grid is not used."""
         smooth = self.name not in METHODS or METHODS[self.name].sweeps
         return solve_coarse(boundary, self.inner, self.n, smooth=smooth)
 
@@ -35,11 +35,12 @@ class Coarse(Wrapper):
 def solve_coarse(
     boundary: Boundary, solve: Callable[[Boundary], Solution], n: int, *, smooth: bool
 ) -> Solution:
-    """Solve with `solve` on at most n x n nodes and return the grid at the node counts of `boundary`.
+    """Solve by `solve` on at most n x n nodes, and return the grid at the node counts of `boundary`.
 
-    With `smooth` sweeps of Winslow's equations at full resolution end it around kinks of the boundary: always
-    where these were solved or the grid came out folded, else where angles gain by them. The edges equal those
-    of `boundary` bitwise; residual and cycles are those of the coarse solve. Raises InputError: n < 9.
+    With `smooth`, sweeps of Winslow's equations at full resolution follow near kinks of the boundary: always
+    for solutions of these equations and for folded grids, otherwise if they improve angles. The edges equal
+    those of `boundary` bitwise; residual and cycles are those of the coarse solution. Raises InputError: n <
+    9.
     """
     if n < LEAST_NODES:
         raise InputError(f"{n} coarse nodes along a direction are too few", f"use at least {LEAST_NODES}")

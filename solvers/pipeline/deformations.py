@@ -1,4 +1,4 @@
-"""Grids that follow their walls: deformed and measured."""
+"""Deforms a grid to new walls and measures the result."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _REMEDY = "go part of the way first, or make the grid of the new shape anew"  # 
 def make_deformed(
     grid: Grid, walls: Mapping[str, NewWall] | NewWall, request: DeformRequest | None = None
 ) -> Result:
-    """Return `grid` with its walls in their new places, measured.
+    """Return `grid` deformed to its new walls, with its quality.
 
-    Raises InputError: see `meshonet.solvers.deformation.deform.deform`; NoValidGridError: cells are folded,
-    which is not allowed.
+    Raises InputError: see `meshonet.solvers.deformation.deform.deform`; NoValidGridError: folded cells,
+    unless these are allowed.
     """
     request = request or DeformRequest()
     with limited_to(request.threads):

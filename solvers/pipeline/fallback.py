@@ -1,4 +1,4 @@
-"""The guard: a folded grid is repaired, made again by another method, or refused."""
+"""The guard: repairs a folded grid, makes it by another method, or rejects it."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
 def guard(
     solution: Solution, boundary: Boundary, *, allow_invalid: bool = False, margin: int | None = None
 ) -> Solution:
-    """Return a valid grid: that of `solution` when it is one, else that of the first way that works.
+    """Return the grid of `solution` if it is valid, else the first valid result of the following stages.
 
-    Tried in turn: local repair (with `margin`); each method of `ORDER`, from the repaired grid where it takes
-    a start; its grid repaired. `boundary` is what `solution` was made for, unless that has its own. The path
-    ends with the stages that made the grid: ``("repair",)``, ``("winslow", "repair")``, ``("tfi",)`` ...,
-    none for a valid one. Raises NoValidGridError where every way ends in folded cells, with the count and the
-    ten worst of the best try, unless `allow_invalid`.
+    The stages are: local repair (with `margin`); each method of `ORDER`, which starts from the repaired grid
+    if it uses an initial grid; repair of its grid. `boundary` is the boundary of `solution`, unless that has
+    its own. The path of the result ends with the stages that made it, such as ``("repair",)``, ``("winslow",
+    "repair")`` or ``("tfi",)``. Raises NoValidGridError, with the ten worst cells of the best attempt: all
+    stages leave folded cells, unless `allow_invalid` is set.
     """
     grid, boundary = solution.grid, solution.boundary or boundary
     if count_folded(grid.nodes) == 0:
@@ -59,7 +59,7 @@ def guard(
 def _ways(
     grid: Grid, boundary: Boundary, others: Sequence[Method], margin: int | None
 ) -> Iterator[tuple[tuple[str, ...], Floats]]:
-    """Yield the stages and nodes of one try after another; a valid one ends the search."""
+    """Yield the stages and the nodes of one attempt after another, until one is valid."""
     from meshonet.solvers.energy.repair import MARGIN, repair
 
     margin = margin or MARGIN
@@ -80,7 +80,7 @@ def _ways(
 
 
 def _open_corner(grid: Grid) -> NoValidGridError | None:
-    """Return the failure when a corner of a quad opens by 180 degrees or more: no grid is valid then."""
+    """Return the error for a quad domain with a corner of 180 degrees or more, which has no valid grid."""
     if grid.around_body:
         return None
     for i, di in ((0, 1), (grid.ni - 1, -1)):

@@ -1,11 +1,11 @@
-"""First cells of given heights: marched from bodies, moved along the lines of a grid elsewhere.
+"""Prescribed first-cell heights: by marching from bodies, otherwise by moving nodes along grid lines.
 
 ::
 
-    body --------------------------------- march --------------------------> grid
-    channel, nodes sampled here -- slide wall nodes, solve --+
-    channel, given nodes --------- turn lines by sources ----+-- move nodes along lines --> grid
-    anything else ---------------- solve --------------------+
+    body ----------------------------------- march ------------------------------> grid
+    channel, free wall nodes ---- slide wall nodes, solve ------+
+    channel, given wall nodes --- turn lines by source terms ---+-- move nodes along lines --> grid
+    other domains --------------- solve ------------------------+
 """
 
 from __future__ import annotations
@@ -31,11 +31,12 @@ if TYPE_CHECKING:
 
 UPRIGHT_DEGREES = 0.3  # by which lines may lean at walls whose nodes have slid
 LEANING_DEGREES = 1.0  # by which they may lean when sources have turned them
+OBLIQUE_DEGREES = 20.0  # beyond which layers that lean are worth a note
 
 
 @dataclass(frozen=True)
 class FirstCells:
-    """Heights of first cells, and the layers that begin with them."""
+    """First-cell heights, and the layers that start with them."""
 
     # off walls, or None: around a body in chords, off south and north of a four-sided domain in its own unit
     height: float | None = None
@@ -63,7 +64,7 @@ class FirstCells:
 
 @dataclass(frozen=True)
 class Layered(Wrapper):
-    """`method`, and first cells of given heights at the walls of its grids."""
+    """`method`, followed by a redistribution of nodes to the prescribed first-cell heights."""
 
     cells: FirstCells  # heights and layers
     # settings of ``steger-sorenson``, whose sources turn lines at walls
@@ -79,7 +80,7 @@ class Layered(Wrapper):
     chosen: tuple[str, ...] = ()
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary, its first cells of the heights.
+        """Return the solution of a boundary with the prescribed first-cell heights.
 
         Raises InputError: heights or settings that do not suit the boundary or the method.
         """
@@ -106,7 +107,7 @@ class Layered(Wrapper):
         return replace(solution, notes=(cells.note, *solution.notes)) if cells.note else solution
 
     def _in_layers(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
-        """Return the grid of `boundary` with layers; the grid's time is that of all this."""
+        """Return the grid of `boundary` with layers; its time includes all stages."""
         from meshonet.solvers.elliptic import steger_sorenson  # noqa: F401 - loaded before the clock starts
         from meshonet.solvers.layers import slide_nodes  # noqa: F401
         from meshonet.solvers.layers.redistribute import spread
@@ -115,14 +116,16 @@ class Layered(Wrapper):
         solution = self._even(boundary, heights, start)
         if heights.any:
             edges = solution.boundary or boundary
+            slid = solution.boundary is not None
             solution = spread(guard(solution, edges, allow_invalid=True), edges, heights)
+            solution = solution if slid else _noted_lean(solution, boundary, heights)
         seconds = {**solution.seconds, "grid": perf_counter() - begun}
         note = (self.cells.note,) if self.cells.note else ()
         return replace(solution, notes=(*note, *solution.notes), seconds=seconds)
 
     def _even(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
-        """Return the grid of `boundary` with even rows, wall nodes slid or lines turned as they are to be."""
-        channel = self.channels and not boundary.around_body and self.cells.height is not None
+        """Return the grid of `boundary` without layers; wall nodes may slide or grid lines be turned."""
+        channel = self.channels and not boundary.around_body and bool(heights.south or heights.north)
         slide = channel and boundary.sampled if self.slide is None else self.slide
         if slide:
             solution = self._slid(boundary, start)
@@ -149,7 +152,7 @@ class Layered(Wrapper):
     def _upright(
         self, solution: Solution, boundary: Boundary, heights: Heights, start: Grid | None
     ) -> Solution:
-        """Return `solution`, its wall nodes slid, or where lines lean the better of two turned by sources."""
+        """Return `solution` with wall nodes slid, or with lines turned by sources, whichever is better."""
         from meshonet.solvers.elliptic.steger_sorenson import largest_lean
 
         slid = solution.boundary
@@ -167,3 +170,23 @@ class Layered(Wrapper):
         return solved(
             method_named("steger-sorenson", **self.turning, heights=heights.by_side), boundary, start
         )
+
+
+def _noted_lean(solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
+    """Return a solution whose wall nodes did not slide, with a note if lines lean much in its layers."""
+    from meshonet.solvers.elliptic.steger_sorenson import largest_lean
+
+    if (
+        boundary.topology != "quad"
+        or not (heights.south or heights.north)
+        or min(solution.grid.nodes.shape[:2]) < 3
+    ):
+        return solution
+    lean = largest_lean(solution.grid.nodes, boundary)
+    if lean <= OBLIQUE_DEGREES:
+        return solution
+    note = (
+        f"grid lines leave south or north up to {lean:.0f} degrees off the right angle; elliptic methods "
+        "with {slide} move the wall nodes to where there is none"
+    )
+    return replace(solution, notes=(note, *solution.notes))

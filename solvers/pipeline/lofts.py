@@ -1,10 +1,10 @@
-"""Blades and ducts: planar grids of all sections, alike, and the volume between them along z.
+"""Blades and ducts: planar grids of all sections with the same topology, and the volume between them.
 
 ::
 
-    blade   O grids marched from the sections, between two end walls, ``hub`` and ``shroud``. Twist and scale
-            fade away from the blade, so that the far field is a straight cylinder.
-    duct    one block in sections of four sides, five in others; ``inlet`` and ``outlet`` at the ends.
+    blade   O grids marched from the sections, between two walls, ``hub`` and ``shroud``. Twist and scaling
+            decrease away from the blade, so that the far field is a straight cylinder.
+    duct    one block if all sections have four sides, else five; ``inlet`` and ``outlet`` at the ends.
 """
 
 from __future__ import annotations
@@ -33,14 +33,15 @@ from meshonet.solvers.stacking.wing_surface import span_heights
 from meshonet.solvers.sweeping import butterfly
 
 _FADE = 4.0
-"""Distance from a blade, in chords, at which two thirds of its twist and scale are gone."""
+"""Distance from a blade, in chords, at which its twist and scaling are reduced to one third."""
 _GROWTH = 1.2  # of layers where none is given, as of volumes that are marched
 
 
 def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
     """Return the volume around a blade between its first and its last section, and notes.
 
-    Raises InputError: counts that do not suffice; NoValidGridError: a section's own grid is folded.
+    Raises InputError: node counts that are too small; NoValidGridError: the grid of a section has folded
+    cells.
     """
     plan = around(request.around, gap=request.base, edge=stack.te_spacing, nose=stack.le_spacing)
     height = request.height() * stack.chord
@@ -65,7 +66,7 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
 def duct_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
     """Return the volume inside a duct between its first and its last section, and notes.
 
-    Raises InputError: a section that is an airfoil; counts that do not suffice.
+    Raises InputError: a section that is an airfoil; node counts that are too small.
     """
     for k, section in enumerate(stack.sections):
         if isinstance(section.shape, Airfoil):
@@ -79,7 +80,7 @@ def duct_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, .
 
 
 def _four_sided(stack: Stack, request: StackRequest, first: float | None) -> list[Grid]:
-    """Return the single blocks inside sections of four sides, their sides walls."""
+    """Return the blocks inside four-sided sections, whose sides are walls."""
     n = _side(request) + 1
     planes = []
     for section in stack.sections:
@@ -111,7 +112,7 @@ def _five_blocks(stack: Stack, request: StackRequest, first: float | None) -> li
 
 
 def _side(request: StackRequest) -> int:
-    """Return the cells along a quarter of a section."""
+    """Return the number of cells along a quarter of a section."""
     if (request.around - 1) % 4:
         remedy = "use a multiple of 4, and one more"
         raise InputError(
@@ -128,7 +129,7 @@ def _unit(plane: Grid, section: Section) -> Grid:
 def _lofted(
     stack: Stack, planes: list[Grid], span: int, ends: tuple[End, End], weight: Floats | None = None
 ) -> Grid:
-    """Return the volume between planar grids of the sections, of unit chord and alike."""
+    """Return the volume between planar grids of the sections, which have unit chord and equal topology."""
     z = span_heights(stack.z, span, None)
     nodes = []
     for k, block in enumerate(planes[0].blocks):
@@ -140,5 +141,5 @@ def _lofted(
 
 
 def _planar(planes: Floats) -> Floats:
-    """Return nodes (ni, nj, nk, 3) in planar layout from those of planes (nk, ni, nj, 3)."""
+    """Return nodes (ni, nj, nk, 3) in planar memory layout from planes (nk, ni, nj, 3)."""
     return np.moveaxis(np.ascontiguousarray(planes.transpose(3, 1, 2, 0)), 0, -1)

@@ -1,4 +1,4 @@
-"""From shapes to valid grids: sample, solve, check, measure; many at a time where that is faster."""
+"""From shapes to valid grids: sample, solve, check, measure; several at a time if that is faster."""
 
 from __future__ import annotations
 
@@ -48,13 +48,14 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
     Returns
     -------
     Result
+        The grid, its quality and the times of the stages.
 
     Raises
     ------
     InputError
-        Shape and request do not go together.
+        The request does not suit the shape.
     NoValidGridError
-        Cells are folded, and that was not allowed.
+        The grid has folded cells, and these are not allowed.
     SolverError
         The method diverged.
 
@@ -73,10 +74,11 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
 
 
 def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result | Exception]:
-    """Yield for each of the shapes, in order, its grid or the error that it ended in.
+    """Yield for each of the shapes, in order, its grid or an error.
 
-    Shapes are read as results are taken, and a few ahead (`MOST_TOGETHER`, `MOST_NODES`) when the method
-    solves many faster in one call. They do not change one another's grids but in the last digits.
+    Shapes are read when their results are requested. If the method solves many shapes faster in one call, a
+    limited number is read ahead (`MOST_TOGETHER`, `MOST_NODES`). The grids then differ only in the last
+    digits from those of separate calls.
 
     Parameters
     ----------
@@ -88,7 +90,7 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     Yields
     ------
     Result or Exception
-        For each of the shapes, in order, its grid or the error that it ended in.
+        The grid of a shape, or the error that its computation ended in.
 
     Raises
     ------
@@ -109,7 +111,7 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
 def make_grids_of(
     keys: Iterable[K], request: GridRequest, shape_of: Callable[[K], Shape]
 ) -> Iterator[tuple[K, Result | Exception]]:
-    """Yield each of the keys with the grid of its shape, or the error, as `make_grids` does.
+    """Yield each of the keys with the grid of its shape, or with the error, as `make_grids`.
 
     Raises InputError: the method does not have such settings.
     """
@@ -132,7 +134,7 @@ def make_grids_of(
 
 @dataclass
 class _Member:
-    """A shape on its way: its boundary or what went wrong, and its solution once it was made with others."""
+    """A shape in progress: its boundary or an error, and its solution if it was solved in a group."""
 
     boundary: Boundary | BaseWake | DomainShape | SpatialShape | Exception
     seconds: dict[str, float]
@@ -160,9 +162,9 @@ def _group(
 
 
 def _solve_together(group: Iterable[_Member], method: Method) -> None:
-    """Solve those that the method takes in one call.
+    """Solve the members that the method solves in one call.
 
-    When one of them cannot be solved, or memory does not suffice, each is solved in its turn.
+    If one of them cannot be solved, or memory does not suffice, they are solved one by one later.
     """
     alike = [
         (member, member.boundary)
@@ -187,7 +189,7 @@ def _solve_together(group: Iterable[_Member], method: Method) -> None:
 
 
 def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
-    """Return what comes of a member: solved if it is not yet, checked and measured."""
+    """Return the result of a member, which is solved if necessary, checked and measured."""
     boundary, solution, seconds = member.boundary, member.solution, member.seconds
     if isinstance(boundary, Exception):
         raise boundary
@@ -218,7 +220,7 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
 
 
 def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[HistoryRow, ...]]:
-    """Return a solution and the cycles that lead to it."""
+    """Return a solution and the cycles of its iteration."""
     from meshonet.solvers.progress import History, listening
 
     history = History()
@@ -228,7 +230,7 @@ def _with_history(solve: Callable[[], Solution]) -> tuple[Solution, tuple[Histor
 
 
 def _of_many(shape: BaseWake | DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the grid of blocks around a base or of a domain, measured."""
+    """Return the multi-block grid around a base or of a domain, measured."""
     from meshonet.geometry.shapes.airfoil.base_wake import BaseWake
 
     if isinstance(shape, BaseWake):
@@ -237,7 +239,7 @@ def _of_many(shape: BaseWake | DomainShape, request: GridRequest, seconds: dict[
 
 
 def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the grid of blocks of a domain, measured."""
+    """Return the multi-block grid of a domain, measured."""
     from meshonet.solvers.pipeline.blocks import block_request, smoothed, smooths
 
     reached("grid")
@@ -256,14 +258,14 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
 
 
 def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the C grid around a section with a base, measured."""
+    """Return the C grid around a section with a blunt base, measured."""
     from meshonet.solvers.hyperbolic.around_base import around_base
 
     reached("grid")
     begun = time.perf_counter()
     solution = around_base(
         lines,
-        first=(request.height() or 0.0) * lines.chord,
+        first=lines.first,
         growth=request.growth,
         free_rows=request.growth is not None and request.sampling.nj is None,
         constant=request.constant_layers or 1,
@@ -275,7 +277,7 @@ def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -
 
 
 def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, float]) -> Result:
-    """Return the volume grid of a shape in space, measured."""
+    """Return the volume grid of a three-dimensional shape, measured."""
     from meshonet.solvers.pipeline.volumes import make_volume
 
     reached("grid")
@@ -286,7 +288,7 @@ def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, flo
 
 
 def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> None:
-    """Add the stages of a solve that took `spent` seconds: what it took beside its grid was loading."""
+    """Add the times of a solution; of the `spent` seconds, those beyond its own are the time of loading."""
     rest = "load" if "grid" in solution.seconds else "grid"
     for name in ("grid", "guard"):
         if name in solution.seconds:
@@ -298,7 +300,7 @@ def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> N
 def _repaired(
     solution: Solution, boundary: Boundary, request: GridRequest
 ) -> tuple[Solution, tuple[str, ...]]:
-    """Return the solution of a folded grid made valid by the guard, and what there is to say of it."""
+    """Return the solution of a folded grid after the guard, and notes about it."""
     from meshonet.solvers.layers.redistribute import worst_first_cell
     from meshonet.solvers.pipeline.fallback import guard
 

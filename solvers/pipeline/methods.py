@@ -1,8 +1,8 @@
-"""What a method is, and the table of those there are, from which choices, help and tests are made.
+"""The interface of a method, and the table of methods from which choices, help and tests are derived.
 
-A method is a name, frozen settings and one function: boundaries in, solutions out. A new one is a function
-``solve(boundary, *, settings...) -> Solution`` in a file of its own and a row of `METHODS`. Rows name their
-functions by text, so that reading them loads nothing.
+A method has a name, immutable settings and a function from boundaries to solutions. A new method is a
+function ``solve(boundary, *, settings...) -> Solution`` in a file of its own and a row of `METHODS`. Rows
+contain the names of functions as text, so that reading the table loads no solver.
 """
 
 from __future__ import annotations
@@ -44,12 +44,12 @@ if TYPE_CHECKING:
 
 
 class OneByOne:
-    """Solves one boundary after the other: base of methods that gain nothing from many."""
+    """Base class of methods that solve one boundary after the other."""
 
     together: ClassVar[Topology | None] = None
 
     def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-        """Return a solution for each of the boundaries, which may start from a grid each."""
+        """Return a solution for each of the boundaries; `start` has an optional initial grid for each."""
         starts: Sequence[Grid | None] = start or [None] * len(problems)
         return list(map(self.solve_one, problems, starts))
 
@@ -65,7 +65,7 @@ def solved(method: Method, boundary: Boundary, start: Grid | None) -> Solution:
 
 @dataclass(frozen=True)
 class Each(OneByOne):
-    """A function of one boundary as a method.
+    """A method that is a function of one boundary.
 
     Raises InputError: a setting that the function does not have.
     """
@@ -90,12 +90,15 @@ class Each(OneByOne):
         return setting in inspect.signature(self.function).parameters
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the function's solution of a boundary, begun from `start` if the function takes one."""
+        """Return the function's solution of a boundary.
+
+        `start` is used if the function accepts an initial grid.
+        """
         more = {"initial": start} if start is not None and self.takes("initial") else {}
         return self.function(boundary, **self.settings, **more)
 
     def having(self, **settings: Any) -> Each:
-        """Return the method with more settings."""
+        """Return the method with additional settings."""
         return replace(self, settings={**self.settings, **settings})
 
 
@@ -108,7 +111,7 @@ class UnknownSettingError(InputError):
 
 
 def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[str, Any]) -> None:
-    """Raise InputError for a setting of the method `name` that is no parameter of its `function`."""
+    """Raise InputError for a setting that is not a parameter of `function`, the method `name`."""
     known = inspect.signature(function).parameters
     for setting in settings:
         if setting not in known:
@@ -116,7 +119,7 @@ def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[s
 
 
 class MethodEntry(NamedTuple):
-    """A method before it is loaded."""
+    """A row of the table: a method that is not loaded yet."""
 
     target: str  # ``module:name`` of the function of a boundary, or of the class of the method
     summary: str  # for help and documentation, behind the name
@@ -129,17 +132,17 @@ class MethodEntry(NamedTuple):
 
     @property
     def solves(self) -> bool:
-        """Whether it solves equations, minimises or marches."""
+        """Whether it solves equations, minimises a functional or marches."""
         return self.kind == "solved"
 
     @property
     def algebraic(self) -> bool:
-        """Whether its grids are formulas of the boundary."""
+        """Whether its grids are explicit formulas of the boundary."""
         return self.kind == "algebraic"
 
     @property
     def is_class(self) -> bool:
-        """Whether the target is a class, whose name begins with a capital."""
+        """Whether the target is a class; its name then starts with a capital letter."""
         return self.target.partition(":")[2][0].isupper()
 
 
@@ -147,43 +150,45 @@ METHODS: Mapping[str, MethodEntry] = MappingProxyType(
     {
         "tfi": MethodEntry(
             "meshonet.solvers.algebraic.tfi:solve",
-            "interpolates between the edges",
+            "transfinite interpolation between the four edges",
             kind="algebraic",
         ),
         "winslow": MethodEntry(
-            "meshonet.solvers.elliptic.solve:solve", "elliptic, without control functions"
+            "meshonet.solvers.elliptic.solve:solve", "Winslow's elliptic equations without control functions"
         ),
         "thomas-middlecoff": MethodEntry(
             "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
-            "with control functions that carry the spacing of the edges into the interior",
+            "Winslow's equations with control functions that continue the spacing of the edges inside",
             sweeps=False,
         ),
         "steger-sorenson": MethodEntry(
             "meshonet.solvers.elliptic.steger_sorenson:solve_steger_sorenson",
-            "with sources at walls that turn grid lines to {wall_angle} there",
+            "Winslow's equations with sources that turn grid lines at walls to the angle {wall_angle}",
             sweeps=False,
         ),
         "variational": MethodEntry(
             "meshonet.solvers.energy.variational:solve",
-            "minimises a functional of angles and edge lengths; better angles, no folds",
+            "minimises a functional of angles and edge lengths; angles are closer to 90 degrees",
         ),
-        "hyperbolic": MethodEntry("meshonet.solvers.hyperbolic.march:hyperbolic", "marches from the wall"),
+        "hyperbolic": MethodEntry(
+            "meshonet.solvers.hyperbolic.march:hyperbolic", "marches row by row from the wall"
+        ),
         "conformal": MethodEntry(
             "meshonet.solvers.conformal.solve:Conformal",
-            "Winslow's equations around a body, in the strip that a conformal map makes of its domain",
+            "Winslow's equations around a body, solved in the strip that is its conformal image",
         ),
         "operator": MethodEntry(
             "meshonet.solvers.neural.inference:OperatorMethod", "a neural operator", kind="network"
         ),
     }
 )
-"""Methods by name; ``operator:NAME`` is the operator of that name."""
+"""Methods by name; ``operator:NAME`` is the neural operator with that name."""
 
 
 def method_named(name: str, **settings: Any) -> Method:
-    """Return the method of that name with the settings.
+    """Return the method with the given name and settings.
 
-    Raises InputError: no such method; a setting that it does not have.
+    Raises InputError: an unknown method; a setting that it does not have.
 
     >>> method_named("winslow", tol=1e-8).settings
     {'tol': 1e-08}

@@ -1,4 +1,4 @@
-"""Requests from the parameters of the public functions, whoever's they are."""
+"""Requests from the keyword parameters of the public functions."""
 
 from __future__ import annotations
 
@@ -13,25 +13,26 @@ from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.uses import COUNTED
 
 Counts: TypeAlias = int | tuple[int, int] | tuple[int, int, int]
-"""Nodes along every direction, or along each of them."""
+"""Number of nodes along all directions, or along each of them."""
 
 
 def grid_request(method: str = "best", *, res: Counts | None = None, **parameters: Any) -> GridRequest:
-    """Return the request with the parameters, of the sampling, the request or the method.
+    """Return a request from keyword parameters of the sampling, the request or the method.
 
     Parameters
     ----------
     method : str, optional
-        As of `GridRequest`.
+        As in `GridRequest`.
     res : int or tuple of int, optional
-        Nodes along xi, eta and, of volumes, zeta; one number for all.
+        Number of nodes along xi, eta and, for volumes, zeta; one number for all.
     **parameters
-        Fields of `Sampling` and `GridRequest`, settings of the method; None leaves a setting out.
+        Fields of `Sampling` and `GridRequest`, and settings of the method; a setting that is None is ignored.
         ``wall_spacing`` is another name of ``first_cell``.
 
     Returns
     -------
     GridRequest
+        The validated request.
 
     Raises
     ------
@@ -60,7 +61,7 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
 
 
 def sampling_of(res: Counts | None, parameters: dict[str, Any]) -> Sampling:
-    """Return the sampling with counts `res` and its fields among `parameters`, which are taken out."""
+    """Return the sampling with counts `res`; its other fields are removed from `parameters`."""
     counts: dict[str, Any] = {}
     if res is not None:
         counts = dict(zip(COUNTED, (res, res) if isinstance(res, int) else res, strict=False))
@@ -68,7 +69,7 @@ def sampling_of(res: Counts | None, parameters: dict[str, Any]) -> Sampling:
 
 
 SAMPLED = tuple(each.name for each in fields(Sampling) if each.name not in (*COUNTED, "viscous"))
-"""Parameters of the sampling, without counts and without what follows from first cells."""
+"""Parameters of the sampling, without node counts and without fields that follow from first cells."""
 REQUESTED = tuple(
     each.name for each in fields(GridRequest) if each.name not in ("sampling", "method", "settings")
 )

@@ -1,4 +1,4 @@
-"""What a user can ask of a grid."""
+"""Options of the grid generation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from meshonet.geometry.spacing.first_cell import FirstCell
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.check_request import check_request
 from meshonet.solvers.pipeline.methods import METHODS
-from meshonet.solvers.pipeline.uses import FOR_MANY, chosen
+from meshonet.solvers.pipeline.uses import FOR_MANY, OF_SURFACE, chosen
 
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Request(FirstCell):
-    """What every way of making grids reads; `GridRequest` explains all fields."""
+    """Options that all kinds of grids use; `GridRequest` explains all fields."""
 
     sampling: Sampling = field(default_factory=Sampling)
     method: str = "best"
@@ -32,13 +32,13 @@ class Request(FirstCell):
 
     @property
     def chosen(self) -> tuple[str, ...]:
-        """Names of the options that are not what they are by default, settings at the end."""
+        """Names of the options that differ from their defaults, followed by settings."""
         return chosen(self)
 
 
 @dataclass(frozen=True)
 class OneBlock(Request):
-    """What a grid of one block needs."""
+    """Options of single-block grids."""
 
     constant_layers: int | None = None
     spacing_south: float | None = None
@@ -56,7 +56,7 @@ class OneBlock(Request):
 
     @property
     def sides(self) -> dict[str, float]:
-        """Heights of first cells off single sides, by the side."""
+        """First-cell heights of single sides."""
         heights = self.spacing_south, self.spacing_east, self.spacing_north, self.spacing_west
         if heights == (None,) * 4:
             return {}
@@ -69,11 +69,11 @@ class OneBlock(Request):
 
     @property
     def by_network(self) -> bool:
-        """Whether the method is a neural operator by its name."""
+        """Whether the name of the method is that of a neural operator."""
         return self.method.partition(":")[0] == "operator"
 
     def shape_sampling(self) -> Sampling:
-        """Return the sampling of shapes: with thin first cells, wall nodes whose spacing changes slowly."""
+        """Return the sampling of shapes; with first cells the spacing of wall nodes changes slowly."""
         if not self.at_walls or self.algebraic:
             return self.sampling
         spacing = "curvature" if self.sampling.spacing == "auto" else self.sampling.spacing
@@ -88,7 +88,7 @@ class OneBlock(Request):
 
 @dataclass(frozen=True)
 class ManyBlocks(Request):
-    """What a grid of many blocks needs."""
+    """Options of multi-block grids."""
 
     constant_layers: int | None = None
     slide: bool | None = None
@@ -101,16 +101,17 @@ class ManyBlocks(Request):
     inlet: float | None = None
     outlet: float | None = None
     layout: Layout | None = None
+    periodic: tuple[tuple[str, str], ...] = ()
 
     @property
     def asks_for_blocks(self) -> tuple[str, ...]:
-        """Names of the options that are given and that only many blocks have a use for."""
+        """Names of the given options that only apply to multi-block grids."""
         return tuple(filter(FOR_MANY.__contains__, self.chosen))
 
 
 @dataclass(frozen=True)
 class Volume(Request):
-    """What a grid in space needs."""
+    """Options of three-dimensional grids."""
 
     slide: bool | None = None
     coarse: int | Literal["auto"] | None = "auto"
@@ -118,79 +119,87 @@ class Volume(Request):
     symmetry: Literal["x", "y", "z", "none"] | None = None
     energy: Literal["angles", "shape"] | None = None
 
+    @property
+    def of_surface(self) -> bool:
+        """Whether options that only surfaces have a use for ask for a march from one, be it flat."""
+        return self.method == "hyperbolic" and not OF_SURFACE.isdisjoint(self.chosen)
+
 
 @dataclass(frozen=True)
 class GridRequest(OneBlock, ManyBlocks, Volume):
-    """How to make grids from shapes; the values are checked when it is made.
+    """How to make grids from shapes. Values are checked on construction.
 
     Parameters
     ----------
     sampling : Sampling, optional
         Node counts and spacing of the boundary.
     method : str, optional
-        A name in `METHODS`, or ``best``: what measures best for the topology, and marching around bodies with
-        a first cell; or ``auto``: marching where ``best`` marches, Winslow's equations elsewhere.
+        A name in `METHODS`; ``best``: the default method of the topology, which is marching around bodies
+        with a first cell; or ``auto``: marching in the same cases, Winslow's equations in others.
     settings : dict, optional
         Keywords of the method.
     first_cell : float, optional
-        Height of the first cell at every wall node, around a body in chords; in a four-sided domain the walls
+        Height of the first cell at every wall node, in chords around a body. In a four-sided domain the walls
         are south and north, and the unit is that of the domain.
     y_plus, reynolds : float, optional
-        The same height by its y+, converted for a flat plate; the Reynolds number is based on the chord.
+        First-cell height as y+, converted for a flat plate; the Reynolds number is based on the chord.
     chord_fraction : float, optional
-        Where along the chord the y+ is converted to a height, 0 to 1.
+        Position along the chord, 0 to 1, at which y+ is converted to a height.
     growth : float, optional
-        Largest ratio of neighbouring cells away from the wall; without `nj` in the sampling there are as many
-        rows as it needs.
+        Largest ratio of neighbouring cells away from the wall. If the sampling has no `nj`, the number of
+        rows follows from it.
     constant_layers : int, optional
-        Number of first layers of equal height.
+        Number of rows at the wall with the height of the first cell.
     spacing_south, spacing_north, spacing_west, spacing_east : float, optional
-        Heights of first cells off single sides of a four-sided domain.
+        First-cell heights at single sides of a four-sided domain.
     slide : bool, optional
-        Move the nodes of south and north along these walls; None: if a first cell is given and this request
-        samples the nodes.
+        Move the nodes of south and north along these walls. None: only if a first cell is given and this
+        request samples the nodes.
     wall_angle : float, optional
-        Angle of grid lines at walls in degrees, for ``steger-sorenson``.
+        Angle between grid lines and walls in degrees, for ``steger-sorenson``.
     coarse : int or 'auto', optional
-        Nodes along each direction to solve on, before the grid is evaluated at its own node counts; ``auto``
-        chooses by method and size, None solves on all nodes of the grid.
+        Number of nodes along each direction on which to solve before the grid is evaluated at all its nodes.
+        ``auto`` selects it by method and size; None solves on all nodes of the grid.
     refine : int, optional
-        How many times, after the first solve, to halve all cells and solve again.
+        Number of refinements after the first solution; each halves all cells and solves again.
     initial : Grid, optional
-        Grid to start from.
+        Initial grid.
     repair : bool, optional
-        Whether folded grids are repaired or made by another method; else they are refused. None: all are
-        repaired but those of algebraic methods and of networks asked for raw answers.
+        Whether folded grids are repaired or made by another method; otherwise they are rejected. None: all
+        are repaired except those of algebraic methods, and of networks with raw answers.
     repair_margin : int, optional
-        Cells around folded ones that move with them.
+        Width in cells of the region around folded cells in which the repair moves nodes.
     allow_invalid : bool, optional
-        Whether a folded grid is a result.
+        Whether a folded grid is returned.
     percentiles : bool, optional
         Whether the quality includes percentiles.
     history : bool, optional
-        Whether the cycles of the solve are kept.
+        Whether the cycles of the iteration are kept.
     blocks : {'auto', 'single'}, optional
-        ``single`` for one block also where many would be made.
+        ``single`` makes one block where ``auto`` would make several.
     cells : int, optional
-        About how many cells a grid of many blocks has. This and those down to `layout` ask for many blocks.
+        Approximate number of cells of a multi-block grid. This option and those down to `layout` make the
+        grid a multi-block grid.
     cell_size : float, optional
-        Length of edges, in place of `cells`.
+        Edge length, instead of `cells`.
     walls : tuple of str, optional
-        Names of the walls that get layers; empty means all holes.
+        Names of the walls with layers; empty for all holes.
     pitch : tuple of 2 float, optional
-        From one blade of a cascade to the next.
+        Displacement from one blade of a cascade to the next.
     inlet, outlet : float, optional
-        Axial chords before and behind the blade of a cascade.
+        Lengths of the passage upstream and downstream of the blade, in axial chords.
     layout : Layout, optional
         Blocks to use again.
+    periodic : tuple of tuple of str, optional
+        Pairs of sides of a domain, by name, that are periodic.
     layers : int, optional
-        Nodes along the lines of a volume marched from a surface, the wall's included.
+        Number of nodes along each grid line of a volume marched from a surface, including the wall node.
     symmetry : {'x', 'y', 'z', 'none'}, optional
-        Axis that the open edges of a surface lie across.
+        Axis normal to the plane of symmetry with the open edges of a surface.
     energy : {'angles', 'shape'}, optional
-        What is minimised inside six faces; None: angles.
+        Functional that is minimised inside six faces; None: angles.
     threads : int, optional
-        Threads that kernels work with; None: all there are.
+        Number of threads; None: all cores.
 
     Raises
     ------

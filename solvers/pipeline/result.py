@@ -1,4 +1,4 @@
-"""What comes of a request: a grid that was checked, with its quality and times."""
+"""Result of a request: a checked grid with its quality and times."""
 
 from __future__ import annotations
 
@@ -18,27 +18,28 @@ if TYPE_CHECKING:
     from meshonet.solvers.deformation.request import DeformRequest
     from meshonet.solvers.pipeline.request import GridRequest
     from meshonet.solvers.progress import HistoryRow
+    from meshonet.solvers.rows.request import RowRequest
     from meshonet.solvers.stacking.request import StackRequest
 
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """A grid and what there is to say of it.
+    """A grid and the information for its report.
 
     Parameters
     ----------
     solution : Solution
-        The grid, its method, path and figures.
+        The grid, its method, the stages of its computation and their figures.
     quality : Quality
         Quality of the grid.
     seconds : dict
-        Wall-clock seconds by stage: boundary, load (modules and models, once a process), grid (from boundary
-        nodes in memory to grid nodes in memory), guard, quality.
+        Wall-clock seconds by stage: boundary, load (modules and models, once per process), grid (from
+        boundary nodes in memory to grid nodes in memory), guard, quality.
     notes : tuple of str, optional
-        Sentences a user should read, those of boundary and solution among them; names of parameters stand in
-        braces, for `meshonet.geometry.errors.spelled`.
+        Sentences for the user, including those of boundary and solution. Names of parameters are in braces,
+        for `meshonet.geometry.errors.spelled`.
     history : tuple of HistoryRow, optional
-        Cycles of the method, when the request keeps them.
+        Cycles of the method, if the request keeps them.
     """
 
     solution: Solution
@@ -54,22 +55,22 @@ class Result:
 
     @property
     def outcome(self) -> Outcome:
-        """How it ended, with what to try next."""
+        """How the computation ended, with advice on what to try next."""
         return Outcome.FOLDED if self.quality.folded else self.solution.outcome
 
 
 def judged(
     solution: Solution,
     seconds: dict[str, float],
-    request: GridRequest | StackRequest | DeformRequest,
+    request: GridRequest | StackRequest | RowRequest | DeformRequest,
     *,
     remedy: str,
     history: tuple[HistoryRow, ...] = (),
 ) -> Result:
-    """Return a solution with its quality, whose time is added to `seconds` by stage.
+    """Return a solution with its quality; the time of the measurement is added to `seconds`.
 
-    Its grid says, in files too, what was changed of the shape. Raises NoValidGridError: cells are folded,
-    which is not allowed; `remedy` says what to try.
+    The grid's provenance has the changes of the shape. Raises NoValidGridError: folded cells, unless these
+    are allowed; the error has the given `remedy`.
     """
     with stage("quality", seconds):
         quality = measure(solution.grid, percentiles=request.percentiles)

@@ -1,4 +1,4 @@
-"""The boundary nodes of a shape, as a request samples them."""
+"""Boundary nodes of a shape for a request."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Advice
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
-from meshonet.geometry.spacing.sampling import DEFAULT_FAR_FIELD, Sampling
+from meshonet.geometry.spacing.sampling import DEFAULT_FAR_FIELD, DEFAULT_NI, DEFAULT_NJ, Sampling
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.uses import AROUND_BASE, IN_SPACE, ONE, refuse
+from meshonet.solvers.pipeline.uses import AROUND_BASE, IN_SPACE, ONE, USES, refuse
 
 if TYPE_CHECKING:
     from typing import TypeGuard
@@ -26,12 +26,14 @@ if TYPE_CHECKING:
 
 MARCHING = ("best", "auto", "hyperbolic")
 """Methods by which grids with layers around airfoils are marched."""
+THIN_BASE = 0.005
+"""Base in chords up to which C grids without layers close it with a wedge, unless it is asked for."""
 
 
 def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainShape | SpatialShape:
-    """Return the boundary of a shape, or the shape itself in space and where many blocks are made of it.
+    """Return the boundary of a shape; a three-dimensional or multi-block shape is returned itself.
 
-    Of an airfoil whose base a C grid keeps it is what both its blocks begin at.
+    For an airfoil whose blunt base is kept in a C grid, the result is the line around the base and its wake.
     """
     if isinstance(shape, SpatialShape):
         return shape
@@ -63,31 +65,46 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
 
 
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:
-    """Say whether a C grid with layers is wanted of an airfoil whose blunt base is to stay."""
+    """Return whether the request is a marched C grid that keeps the blunt base of an airfoil.
+
+    Without layers, a thin base and the base of a grid that is solved for and refined are kept only if the
+    request says so.
+    """
     sampling = request.sampling
-    marches = request.method in MARCHING and request.at_walls
-    keeps = marches and sampling.topology == "c" and sampling.te in ("auto", "exact")
+    keeps = request.method in MARCHING and sampling.topology == "c" and sampling.te in ("auto", "exact")
     if not keeps:
         return False
     from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
-    return isinstance(shape, Airfoil) and shape.blunt
+    if not (isinstance(shape, Airfoil) and shape.blunt):
+        return False
+    if request.at_walls or sampling.te == "exact":
+        return True
+    return shape.gap > THIN_BASE * shape.chord and USES[AROUND_BASE].issuperset(request.chosen)
 
 
 def _behind_base(shape: Airfoil, sampling: Sampling, request: GridRequest) -> BaseWake:
-    """Return the lines of nodes around an airfoil with a base and behind it."""
+    """Return the lines of nodes around an airfoil with a blunt base and along its wake."""
     from meshonet.geometry.shapes.airfoil.base_wake import behind_base
 
     refuse(request.chosen, AROUND_BASE)
     body = shape.smoothed(sampling.smooth) if sampling.smooth else shape
     body = body.normalised() if sampling.normalise else body
-    lines = behind_base(body, sampling, (request.height() or 0.0) * body.unit, request.growth)
-    advice = _far_field_advice(request, shape.far_field_unit)
-    return replace(lines, notes=(*lines.notes, *advice))
+    height, notes = request.height(), _far_field_advice(request, shape.far_field_unit)
+    if height is None:
+        from meshonet.solvers.hyperbolic.default_spacing import CHOSEN, first_cell_around_base
+
+        ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
+        away, notes = sampling.radius * body.chord, (CHOSEN,)
+        first = first_cell_around_base(body.gap, away, body.chord, ni, nj)
+    else:
+        first = height * body.unit
+    lines = behind_base(body, sampling, first, request.growth)
+    return replace(lines, notes=(*lines.notes, *notes))
 
 
 def _far_field_advice(request: GridRequest, unit: str) -> tuple[str, ...]:
-    """Return advice on forces, where cells are thin at walls and the far field is where it is by default."""
+    """Return advice on forces for grids with layers and the default far field."""
     if not request.at_walls or request.sampling.far_field is not None:
         return ()
     where = f"the far field is {DEFAULT_FAR_FIELD:g} {unit} away, the default"
@@ -95,7 +112,7 @@ def _far_field_advice(request: GridRequest, unit: str) -> tuple[str, ...]:
 
 
 def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Sampling:
-    """Return `sampling` with `k` times the cells of the `boundary` of `shape`, those of a wake included."""
+    """Return `sampling` with `k` times the cells of the `boundary` of `shape`, including those of a wake."""
     wakes = [patch.stop - patch.start for patch in boundary.patches if patch.name == "wake"]
     made = boundary.topology == "c" and wakes and not isinstance(shape, Boundary)
     nodes = k * wakes[0] + 1 if made else sampling.wake_nodes

@@ -1,4 +1,4 @@
-"""The planar grid of a cross-section that is swept or stacked: the inside of an outline."""
+"""The planar grid of a cross-section that is swept or stacked."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ from meshonet.solvers.sweeping.butterfly import GROWTH
 from meshonet.solvers.sweeping.disc import Disc, butterfly
 
 _SIDES = 65, 33
-"""Nodes along the sides of a four-sided section, unless they are given."""
+"""Default number of nodes along the sides of a four-sided section."""
 
 
 def section_grid(
     shape: Shape | Grid, request: GridRequest, around: int | None = None
 ) -> tuple[Grid, tuple[str, ...]]:
-    """Return the planar grid inside a closed curve or domain, and notes; a grid is taken as it is.
+    """Return the planar grid inside a closed curve or domain, and notes; a given grid is returned unchanged.
 
-    A circle is made of five blocks, a four-sided outline of one, others of the blocks that are found.
-    Walls with a first cell are all sides, or the stretches that the request names. `around` is the count of
-    cells around a circle.
+    A circle gets five blocks, a four-sided outline one, and other shapes those of the decomposition. All
+    sides are walls with a first cell, or those that the request names. `around` is the number of cells around
+    a circle.
 
-    Raises InputError: parameters that do not fit the shape; as `make_grid`.
+    Raises InputError: parameters that do not suit the shape; as `make_grid`.
     """
     five_blocks = isinstance(shape, Circle) and not (request.cell_size or request.layout or request.walls)
     if around is not None and not five_blocks:
@@ -71,7 +71,7 @@ def section_grid(
 
 
 def extent(shape: Shape | Grid) -> float:
-    """Return the larger side of the box around a section."""
+    """Return the longer side of the bounding box of a section."""
     if isinstance(shape, Grid):
         points = np.concatenate([block.nodes.reshape(-1, 2) for block in shape.blocks])
     elif isinstance(shape, DomainShape):
@@ -84,7 +84,7 @@ def extent(shape: Shape | Grid) -> float:
 
 
 def _with_height(shape: Shape, request: GridRequest) -> tuple[GridRequest, str]:
-    """Return the request with the height of a y+, by the extent of the section, and where it is from."""
+    """Return the request with the first-cell height of its y+, based on the section's extent, and a note."""
     if request.y_plus is None:
         return request, ""
     unit = extent(shape)
@@ -101,7 +101,7 @@ def _disc(shape: Circle, request: GridRequest, around: int | None) -> Disc:
 
 
 def _inside(shape: Shape) -> Shape:
-    """Return a closed curve as the domain in it; one block where that has four sides."""
+    """Return the domain inside a closed curve, as one block if it has four sides."""
     if not isinstance(shape, Outline | Airfoil):
         return shape
     loop = _loop(shape.curve)
@@ -112,7 +112,7 @@ def _inside(shape: Shape) -> Shape:
 
 
 def _loop(curve: Curve) -> Loop:
-    """Return the loop along a smooth curve, the domain inside."""
+    """Return the loop of a smooth curve, with the domain inside."""
     if polygon_area(curve.points) < 0:
         points, last = curve.points[::-1], len(curve.points) - 1
         curve = Curve(points, closed=True, corners=np.sort(last - curve.corner_index))
@@ -121,7 +121,7 @@ def _loop(curve: Curve) -> Loop:
 
 
 def _walled(shape: DomainShape, request: GridRequest) -> GridRequest:
-    """Return the request with layers along all loops that can have them, unless it names some."""
+    """Return the request with layers along all loops that can have them, unless it names walls."""
     loops = shape.domain.loops
     if request.first_cell is None or request.walls or (loops[0].corner_cells < 2).any():
         return request

@@ -1,12 +1,12 @@
-"""A grid from coarser copies of itself: solve on every 2^k-th boundary node, then refine and solve again.
+"""Solves on every 2^k-th boundary node, then refines and solves again.
 
 ::
 
-    res              2 res - 1             4 res - 3
+    res              2 res - 1          4 res - 3
     solve --prolong--> solve --prolong-->  solve
 
-The nodes of each boundary are among those of the next finer one. A solution is evaluated at the finer nodes
-as a coarse one is (`meshonet.solvers.algebraic.resample.grids`).
+The boundary nodes of each grid are among those of the next finer one. A solution is evaluated at the finer
+nodes like a coarse one (`meshonet.solvers.algebraic.resample.grids`).
 """
 
 from collections.abc import Callable
@@ -22,22 +22,22 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class Sequenced(Wrapper):
-    """Solves by `method` on every 2^levels-th node, then on twice as many cells, up to all of them."""
+    """Solves by `method` on every 2^levels-th node, then on twice as many cells, and so on to all nodes."""
 
     levels: int
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; a grid to start from has the coarsest counts."""
+        """Return the solution of a boundary; an initial grid must have the coarsest node counts."""
         return solve_refined(boundary, self.inner, self.levels, start)
 
 
 def solve_refined(
     boundary: Boundary, solve: Callable[..., Solution], levels: int, initial: Grid | None = None
 ) -> Solution:
-    """Solve on every 2^levels-th node of `boundary`, from `initial`, and again on twice the cells to all.
+    """Solve on every 2^levels-th node of `boundary`, then on grids with twice as many cells, up to all nodes.
 
-    `solve` takes ``initial``, a grid to start from. The solution has the seconds of all, and a note the
-    counts of each. Raises InputError: counts that cannot be halved.
+    `solve` takes ``initial``, an initial grid; that of the coarsest level is `initial`. The solution has the
+    total time, and a note with the counts of all levels. Raises InputError: counts that cannot be halved.
     """
     solution = solve(coarser_boundary(boundary, 2**levels), initial=initial)
     seconds, counts = dict(solution.seconds), [_counts(solution)]

@@ -1,4 +1,4 @@
-"""Stacks of sections: a wing's surface and the volume marched from it, lofted blades and ducts; measured."""
+"""Wings, blades and ducts from sections: the surface, and the volume that is marched or lofted."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _REMEDY = "use more nodes {around}, a larger {first_cell} or a higher {base}"  #
 def stack_surface(stack: Stack, request: StackRequest | None = None) -> tuple[Grid, tuple[str, ...]]:
     """Return the surface patches of a wing, and notes.
 
-    Raises InputError: a stack that is no wing; nodes that do not suffice.
+    Raises InputError: a stack that is not a wing; node counts that are too small.
     """
     if stack.kind == "duct":
         raise InputError("a duct has no surface of its own", "leave {surface} out", parameter="surface")
@@ -32,10 +32,10 @@ def stack_surface(stack: Stack, request: StackRequest | None = None) -> tuple[Gr
 
 
 def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
-    """Return the volume around or inside a stack, measured.
+    """Return the volume grid around or inside a stack, measured.
 
-    Raises InputError: parameters and stack do not go together; NoValidGridError: cells are folded, and that
-    was not allowed.
+    Raises InputError: parameters that do not suit the stack; NoValidGridError: folded cells, unless these are
+    allowed.
     """
     request = request or StackRequest()
     seconds: dict[str, float] = {}
@@ -46,7 +46,7 @@ def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
 
 
 def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
-    """Return the volume between the planar grids of a blade's or a duct's sections."""
+    """Return the volume between the planar grids of the sections of a blade or duct."""
     with stage("grid", seconds):
         from meshonet.solvers.pipeline.lofts import blade_volume, duct_volume
 
@@ -59,7 +59,7 @@ def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
 
 
 def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
-    """Return the volume marched from the surface of a wing, whose root lies in a plane of symmetry."""
+    """Return the volume marched from the surface of a wing, whose root is in a plane of symmetry."""
     if request.turn is not None:
         problem = "a wing is not turned about an axis"
         raise InputError(problem, "leave {revolve} out, or make a blade or duct", parameter="revolve")
@@ -75,7 +75,7 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
         symmetry="z", growth=request.growth,
     )  # fmt: skip
     with stage("grid", seconds):
-        solution = march_surface(surface, settings)
+        solution = march_surface(surface, settings, wing=True)
     note = request.height_note(f"on a chord of {chord:.6g}", chord)
     facts = wall_facts(solution.grid, settings.limit if request.layers is None else request.growth)
     notes = (*notes, *[note] * bool(note), *solution.notes, *facts)

@@ -1,4 +1,4 @@
-"""Sections carried along paths: the planar grid is made, swept and measured."""
+"""Sweeps the planar grid of a section along a path and measures the volume."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def make_sweep(
     shape: Shape | Grid, path: Path | Revolution, request: GridRequest, settings: Sweep | None = None,
     around: int | None = None,
 ) -> Result:  # fmt: skip
-    """Return the volume of a cross-section carried along a path, or about an axis, measured.
+    """Return the volume grid of a cross-section swept along a path or about an axis, measured.
 
-    `request` and `around` say how the planar grid of the section is made (`section_grid`).
+    `request` and `around` describe the planar grid of the section (`section_grid`).
 
-    Raises InputError: parameters, section and path do not go together; NoValidGridError: cells are
-    folded, and that was not allowed.
+    Raises InputError: parameters, section and path that do not suit each other; NoValidGridError: folded
+    cells, unless these are allowed.
     """
     seconds: dict[str, float] = {}
     with limited_to(request.threads):
@@ -43,7 +43,7 @@ def make_sweep(
 
 
 def _crossing_notes(path: Path, section: Grid) -> tuple[str, ...]:
-    """Return what there is to say of a path that comes back to itself."""
+    """Return notes about a path that comes close to itself."""
     crossing = self_crossing(path, reach_of(section))
     if crossing is None:
         return ()

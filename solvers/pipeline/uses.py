@@ -1,6 +1,7 @@
-"""What applies to what: the one table of options and of the ways of making grids that have a use for them.
+"""The table of options and of the kinds of grids to which each applies.
 
-An option is a field of `GridRequest` or `Sampling`, whose counts are ``res``, or a setting of a method.
+An option is a field of `GridRequest` or `Sampling` (the node counts together are ``res``), or a setting of a
+method.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ def _row(*options: str) -> frozenset[str]:
 
 
 COUNTED = ("ni", "nj", "nk")
-"""Fields of `Sampling` that are ``res``."""
+"""Fields of `Sampling` that form the option ``res``."""
 ALWAYS = _row("sampling method settings repair allow_invalid percentiles history threads")
-"""Fields of `GridRequest` that are none of the table: what is made, how it is measured and where."""
+"""Fields of `GridRequest` that apply to all kinds of grids."""
 SETTINGS = {"polish": "auto", "answer": "valid", "blending": "arclength"}
-"""Values of settings that say nothing; of others None is one."""
+"""Defaults of settings; that of other settings is None."""
 
 
 _SHAPE = "topology spacing le_spacing te_spacing far_field corners normalise te wake wake_nodes "
@@ -47,7 +48,7 @@ GIVEN_SECTION = "a section that is a grid"
 _OF_MARCHED = _row("res", _SHAPE, _FIRST, "constant_layers repair_margin blocks", _SIDES)
 _OF_ONE = _OF_MARCHED | _row("slide wall_angle coarse refine initial")
 _OF_MANY = _row("res far_field te normalise", _FIRST, "constant_layers refine") | _row(
-    "cells cell_size walls pitch inlet outlet layout"
+    "cells cell_size walls pitch inlet outlet layout periodic"
 )
 USES: dict[str, frozenset[str]] = {
     MARCHED: _OF_MARCHED,
@@ -64,16 +65,18 @@ USES: dict[str, frozenset[str]] = {
     JOINED: _row("slide max_cycles"),
     GIVEN_SECTION: frozenset(),
 }
-"""Options by the way that has a use for them."""
+"""Options that apply, by the kind of grid."""
 
 FOR_MANY = tuple(sorted(USES[MANY] - USES[ONE]))
 """Options any of which asks for many blocks."""
-IN_SPACE = _row("layers symmetry energy")
+OF_SURFACE = _row("layers symmetry")
+"""Options that only marching from a surface has a use for."""
+IN_SPACE = OF_SURFACE | _row("energy")
 """Options that no grid in the plane has a use for."""
 
 
 def chosen(request: Request) -> tuple[str, ...]:
-    """Return names of the options that are not what they are by default, settings at the end."""
+    """Return the names of the options that differ from their defaults, followed by settings."""
     names: list[str] = []
     plain = vars(Sampling())
     for name, value in vars(request.sampling).items():
@@ -90,7 +93,7 @@ def chosen(request: Request) -> tuple[str, ...]:
 
 
 def refuse(options: Iterable[str], way: str) -> None:
-    """Raise InputError for the first of the options that are of no use to a `way`, as the table has it."""
+    """Raise InputError for the first of the options that does not apply to the kind of grid `way`."""
     for name in options:
         if name not in USES[way]:
             raise InputError(f"{{{name}}} is of no use to {way}", f"drop {{{name}}}")

@@ -1,4 +1,4 @@
-"""Grids in space: which way a shape is made a volume, and what of a request is of use to it."""
+"""Three-dimensional grids: selects the method for a shape, and checks which options apply."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from meshonet.solvers.pipeline.uses import INSIDE, JOINED, OFF_SURFACE, refuse
 from meshonet.solvers.solution import Solution
 
 _OPEN = ("best", "auto")
-"""Names that leave the method open."""
+"""Method names that leave the choice to the program."""
 
 
 @dataclass(frozen=True)
 class _VolumeMethod:
-    """A way to volumes.
+    """A way to make volume grids.
 
     Parameters
     ----------
-    what : what it does, as in the table of uses.
-    methods : names of the methods that are made in this way.
-    make : the solution of a shape.
+    what : its name in the table of options.
+    methods : names of its methods.
+    make : function from a shape to a solution.
     """
 
     what: str
@@ -34,10 +34,10 @@ class _VolumeMethod:
 
 
 def make_volume(shape: SpatialShape, request: Volume) -> Solution:
-    """Return the volume grid that `request` makes of a shape: marched, filled from its faces, or smoothed.
+    """Return the volume grid that `request` makes of a shape: marched, inside six faces, or smoothed.
 
-    Raises InputError: method, parameters and shape do not go together; the shape bounds no volume;
-    NoValidGridError: cells stay folded.
+    Raises InputError: method, parameters and shape that do not suit each other; a shape that encloses no
+    volume; NoValidGridError: the grid has folded cells.
     """
     way = _way(shape, request)
     if request.method not in (*_OPEN, *way.methods):
@@ -93,7 +93,7 @@ def _fill(shape: SpatialShape, request: Volume) -> Solution:
 
 
 def _counts(sampling: Sampling) -> tuple[int, int, int] | None:
-    """Return the nodes along each direction that are asked for."""
+    """Return the requested node counts along each direction."""
     ni, nj, nk = sampling.ni, sampling.nj, sampling.nk
     if ni is None or nj is None:
         return None

@@ -1,4 +1,4 @@
-"""What a grid has at its walls and how much neighbouring cells differ, measured there: for the report."""
+"""First cells at walls and growth ratios, measured on the grid for the report."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from meshonet.geometry.quality.verdicts import named
 from meshonet.geometry.quality.walls import wall_rows
 
 _SAME = 1e-6
-"""Part by which first cells may differ and the growth may be above its limit, and count as equal."""
+"""Relative tolerance for equal first cells, and for growth above its limit."""
 
 
 def wall_facts(grid: Grid, growth: float | None) -> tuple[str, ...]:
-    """Return notes on first cells and growth at each wall of a grid of blocks, planar or in space.
+    """Return notes on first cells and growth at each wall of a multi-block grid, planar or in space.
 
-    A further one says where neighbouring cells differ most, along a line that leaves a wall or across an
-    interface, if by more than `growth`.
+    If neighbouring cells differ by more than `growth`, a further note gives the place of the largest ratio,
+    along a line that leaves a wall or across an interface.
     """
     run = solid_lines(grid, percentiles=False) if grid.form == "volume" else lines(grid, vertices(grid))
     notes = []

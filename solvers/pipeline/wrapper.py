@@ -1,4 +1,4 @@
-"""Methods that solve by another one: on fewer nodes, in several steps, with layers."""
+"""Base of methods that call another method: on fewer nodes, in several steps, or with layers."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Wrapper(OneByOne):
-    """Solves by calling another method, whose name it has."""
+    """Solves by another method, and has its name."""
 
     method: Method
 
     @property
     def name(self) -> str:
-        """That of the method."""
+        """Name of the other method."""
         return self.method.name
 
     def inner(self, boundary: Boundary, initial: Grid | None = None) -> Solution:

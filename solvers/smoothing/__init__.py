@@ -1,1 +1,1 @@
-"""Grids of many blocks that were given, smoothed across their interfaces."""
+"""Smoothing of given multi-block grids across their interfaces."""

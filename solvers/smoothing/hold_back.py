@@ -1,4 +1,4 @@
-"""A smoothed grid whose nodes go only part of the way from the given one where a face would become worse."""
+"""Reduces the displacements of a smoothed grid where they would worsen a face."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from meshonet.geometry.quality.checkmesh import cells_beyond
 from meshonet.solvers.smoothing.judge import PlaneMeasures, measures
 
 _ROUNDS, _GENTLE = 30, 8
-"""Tries at the most, and those after which nodes of bad cells stay where they were at once."""
+"""Largest number of rounds, and the number after which nodes of bad cells are reset at once."""
 _SHARES = (0.5, 0.7, 0.85)
-"""Of its way that a node of a bad cell keeps in a round, and nodes one and two cells from it."""
+"""Factors per round of the displacement of a bad cell's nodes, and of nodes one and two cells away."""
 _SMALL = 0.02
-"""Part of the way below which a node stays where it was."""
+"""Fraction of the displacement below which a node is reset."""
 
 
 def held_back(grid: Grid, given: Layout, layout: Layout, before: PlaneMeasures) -> Grid | None:
-    """Return `grid`, of which `given` is the layout, moved towards `layout` without becoming worse.
+    """Return `grid`, whose layout is `given`, moved towards `layout` only where it does not become worse.
 
-    `before` are its measures. None where hardly anything would move.
+    `before` are its measures. The result is None if hardly any node would move.
     """
     part = np.ones(len(given.mesh.nodes))
     for number in range(_ROUNDS):
@@ -54,7 +54,7 @@ def _dilated(nodes: np.ndarray[tuple[int], np.dtype[np.bool_]], quads: np.ndarra
 
 
 def part_of_the_way(given: Layout, layout: Layout, part: Floats) -> Layout:
-    """Return the layout with nodes at `part` (n,), 0 to 1, of the way between two; boundary nodes slide."""
+    """Return the layout with nodes at the fraction `part` (n,) between two layouts; boundary nodes slide."""
     old, mesh = given.mesh, layout.mesh
     nodes = old.nodes + part[:, None] * (mesh.nodes - old.nodes)
     arc = old.places.arc.copy()
@@ -65,7 +65,4 @@ def part_of_the_way(given: Layout, layout: Layout, part: Floats) -> Layout:
         way = np.mod(mesh.places.arc[on] - arc[on] + 0.5 * loop.length, loop.length) - 0.5 * loop.length
         arc[on] = np.mod(arc[on] + part[on] * way, loop.length)
         nodes[on] = loop.at(arc[on])
-    periodic, tied = old.domain.periodic, np.flatnonzero(old.places.partner >= 0)
-    if periodic is not None:
-        nodes[tied] = nodes[old.places.partner[tied]] + np.array(periodic.shift)
-    return replace(layout, mesh=mesh.with_nodes(nodes, arc))
+    return replace(layout, mesh=mesh.with_nodes(old.beside_partners(nodes), arc))

@@ -1,4 +1,4 @@
-"""Whether a smoothed grid of blocks is no worse than the one that was given, and which of several is best."""
+"""Compares a smoothed planar multi-block grid with the given one, and candidates with each other."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.quality.measure import count_folded_in
 
 _SLACK = 1e-7
-"""Degrees, and parts of a skewness, that rounding may add."""
+"""Tolerance for rounding, in degrees and for skewness."""
 _NOTHING = 1.0, 0.05, 0.1
-"""Non-orthogonality, skewness and mean deviation up to which one is as good as the other."""
+"""Non-orthogonality, skewness and mean deviation below which differences are ignored."""
 
 
 @dataclass(frozen=True)
 class PlaneMeasures:
-    """Folded cells and what must not become worse; the score, of which less is better, is of all together."""
+    """Folded cells, and the measures that must not become worse; a smaller score is better."""
 
     folded: int
     angle: float
-    """Largest non-orthogonality of a face, degrees."""
+    """Largest non-orthogonality of a face in degrees."""
     skew: float
     """Largest skewness of a face."""
     mean: float
-    """Mean deviation of corners from 90 degrees."""
+    """Mean deviation of corner angles from 90 degrees."""
     score: float
 
     def no_worse(self, than: PlaneMeasures) -> bool:
-        """Say whether no figure is larger."""
+        """Return whether no measure is larger."""
         if than.folded or self.folded:
             return self.folded < than.folded
         pairs = (self.angle, than.angle), (self.skew, than.skew), (self.mean, than.mean)
@@ -39,7 +39,7 @@ class PlaneMeasures:
 
 
 def measures(grid: Grid) -> PlaneMeasures:
-    """Return the measures of a grid of planar blocks."""
+    """Return the measures of a planar multi-block grid."""
     of_faces, figures = faces(grid), block_figures(grid)
     angle = of_faces.non_orthogonality.max if of_faces.non_orthogonality else 0.0
     skew = of_faces.face_skewness.max if of_faces.face_skewness else 0.0

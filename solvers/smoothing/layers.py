@@ -1,9 +1,9 @@
-"""Layers at the boundary with the heights that they had, before what is beyond them is optimised once more.
+"""Restores the heights of boundary layers after an optimisation; the other nodes are then optimised again.
 
 ::
 
     wall |-o--o---o-----o-----      nodes of thin cells are moved along the optimised line that leaves the
-         |-o--o---o------o----      wall to where their old heights add up, and held there
+         |-o--o---o------o----      wall, to the sum of their given heights, and held there
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from meshonet.kernels._native import line_neighbours
 from meshonet.solvers.smoothing.spacing import THIN, lengths, thin_heights
 
 ROWS = 200
-"""Rows of layers at the most."""
+"""Largest number of rows of layers."""
 
 
 def with_layers(mesh: QuadMesh, given: QuadMesh) -> tuple[QuadMesh, NDArray[np.bool_]]:
-    """Return `mesh` with the heights of layers that `given`, the same quads, has, and their nodes (n,).
+    """Return `mesh` with the layer heights of `given`, the same quads, and a mask (n,) of their nodes.
 
-    Layers are rows of cells from the boundary on that are `THIN`. Where wall nodes slid, heights are those at
-    the same arc length. Nodes in the layers of two walls stay where they are.
+    Layers are rows of cells at the boundary that are `THIN`. If wall nodes have moved, heights are those at
+    the same arc length. Nodes in the layers of two walls do not move.
     """
     lines = _lines(given)
     held = np.zeros(len(given.nodes), dtype=bool)
@@ -56,9 +56,10 @@ def with_layers(mesh: QuadMesh, given: QuadMesh) -> tuple[QuadMesh, NDArray[np.b
 
 @dataclass(frozen=True)
 class _WallLines:
-    """Lines that leave the boundary: nodes (n, m), the wall first, and whether they end a thin cell (n, m-1).
+    """Lines that leave the boundary: nodes (n, m), wall nodes first, and masks (n, m-1) of thin cells.
 
-    A line that ends earlier repeats its last node. There is a step beyond the thin ones, if there is one.
+    A line that ends earlier repeats its last node. One step beyond the thin cells is included, if there is
+    one.
     """
 
     nodes: Indices
@@ -92,7 +93,7 @@ def _lines(mesh: QuadMesh) -> _WallLines:
 
 
 def _thin(mesh: QuadMesh) -> NDArray[np.bool_]:
-    """Say of each edge (e,) whether it is the short side of all cells beside it, by `THIN`."""
+    """Return for each edge (e,) whether it is the short side of all adjacent cells, by `THIN`."""
     ratio = mesh.aspects(lengths(mesh))[:, None]
     short = np.concatenate([ratio, 1.0 / ratio, ratio, 1.0 / ratio], axis=1) > THIN
     wide = np.zeros(len(mesh.edges), dtype=bool)
@@ -105,7 +106,7 @@ def _heights(nodes: Floats, lines: _WallLines) -> Floats:
 
 
 def _at_new_places(heights: Floats, lines: _WallLines, mesh: QuadMesh, given: QuadMesh) -> Floats:
-    """Return heights (n, m) of lines whose wall nodes slid, between those at the places they came from."""
+    """Return heights (n, m) of lines with moved wall nodes, interpolated along the wall."""
     wall = lines.nodes[:, 0]
     new = heights.copy()
     for number, loop in enumerate(given.domain.loops):

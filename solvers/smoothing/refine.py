@@ -1,4 +1,4 @@
-"""A grid of many blocks with a multiple of its cells, by splines along its lines and around its boundary."""
+"""Refines a multi-block grid by splines along its lines and around its boundary."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from meshonet.solvers.blocking.sizes.refine import multiplied
 
 
 def refined(grid: Grid, times: int) -> Grid:
-    """Return `grid` with each cell divided into `times` x `times`; its nodes are kept.
+    """Return `grid` with each cell divided into `times` x `times` cells; its nodes are kept.
 
-    Raises InputError: as `layout_of`; a connection of a part of a side.
+    Raises InputError: as `layout_of`; a connection that covers only a part of a side.
     """
     for each in grid.connections:
         if not joins_whole_sides(grid, each):

@@ -1,4 +1,4 @@
-"""Nodes of flat outer patches: they may slide in their planes, and along the lines where two of them meet."""
+"""Sliding nodes of flat outer patches: in their planes, and along the lines where two planes meet."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
 from meshonet.solvers.energy.hexes import Slides
 
 FLAT = 1e-9
-"""Part of the size of a patch by which its nodes may leave a plane."""
+"""Largest deviation of a patch from a plane, relative to its size."""
 _SAME = 1e-6
-"""Between unit normals of one plane."""
+"""Largest difference of unit normals of the same plane."""
 
 
 def slides_of(grid: Grid, mesh: HexMesh) -> tuple[Slides, Bools]:
-    """Return how outer nodes slide, and which ones (n,) of all nodes do.
+    """Return the constraints of sliding outer nodes, and a mask (n,) of them among all nodes.
 
-    Nodes of patches that are not flat, of borders between patches of different names in one plane, and where
-    three planes meet stay where they are.
+    Nodes are fixed on patches that are not flat, on borders between different patches in one plane, and where
+    three planes meet.
     """
     fixed = mesh.outer.copy()
     known = np.zeros(len(mesh.nodes), dtype=bool)
@@ -47,7 +47,7 @@ def slides_of(grid: Grid, mesh: HexMesh) -> tuple[Slides, Bools]:
 
 
 def _normal(points: Floats) -> Floats | None:
-    """Return the unit normal (3,) of the plane of points (n, 3), None where they are in none."""
+    """Return the unit normal (3,) of the plane through points (n, 3), None if they are not in a plane."""
     size = extent_of(points)
     centred = points - points.mean(axis=0)
     values, vectors = symmetric_eigen(product(centred.T, centred))
@@ -63,7 +63,7 @@ def _normal(points: Floats) -> Floats | None:
 def _add_plane(
     nodes: Indices, normal: Floats | None, name: int, normals: Floats, count: Indices, names: Indices
 ) -> None:  # fmt: skip
-    """Add a plane to those of nodes; `count` becomes 3 or more for nodes that stay."""
+    """Add a plane to those of nodes; `count` becomes 3 or more for fixed nodes."""
     if normal is None:
         count[nodes] = 9
         return
@@ -79,7 +79,7 @@ def _add_plane(
 
 
 def _projections(normals: Floats, count: Indices) -> Floats:
-    """Return the projections (k, 3, 3) on the planes of normals (k, 2, 3), or on lines where two meet."""
+    """Return the projections (k, 3, 3) onto planes with normals (k, 2, 3), or onto lines of two planes."""
     first, second = normals[:, 0], normals[:, 1]
     second = second - (first * second).sum(axis=1)[:, None] * first
     size = norms(second)

@@ -1,11 +1,11 @@
-"""Given grids of many blocks, smoothed: the joint optimum of their nodes, with the spacing that they have.
+"""Smooths planar multi-block grids: the joint optimum of all nodes, with the spacing of the given grid.
 
-The optimum is `meshonet.solvers.energy.quads`'s, which wants cells as long to wide, and edges as long to
-their neighbours, as they were given (`meshonet.solvers.smoothing.spacing`); layers at the boundary keep their
-heights (`meshonet.solvers.smoothing.layers`). It is looked for twice, with jumps from block to block evened
-out and with all of them kept, and the better one is taken. No face of it has a larger non-orthogonality or
-skewness than the worst of the given grid, nor is the mean deviation from 90 degrees larger: where it would
-be, nodes go part of the way.
+The optimum is computed by `meshonet.solvers.energy.quads`. Its targets are the aspect ratios of cells and the
+ratios of neighbouring edges in the given grid (`meshonet.solvers.smoothing.spacing`). Layers at the boundary
+keep their heights (`meshonet.solvers.smoothing.layers`). Two optima are computed, with and without evening
+out jumps of the spacing between blocks, and the better one is used. Neither the largest non-orthogonality and
+skewness of a face nor the mean deviation from 90 degrees may exceed those of the given grid; if they would,
+displacements are reduced.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from meshonet.solvers.solution import Outcome, Solution, timed
 
 METHOD = "variational"
 EVEN = 1.3
-"""Factor between neighbouring edges from which on a jump is evened out."""
+"""Largest ratio of neighbouring edges that is not evened out."""
 ITERATIONS = 300  # of the optimum, at the most
 TOLERANCE = 1e-5  # relative gain of the functional at which it ends before
 _AS_GOOD = "the grid is kept as it was: its optimum is no better"
@@ -37,9 +37,9 @@ _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 
 @timed
 def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> Solution:
-    """Return `grid` with its nodes moved to the optimum of all blocks; those of the boundary may `slide`.
+    """Return `grid` with its nodes moved to the optimum of all blocks; boundary nodes may `slide`.
 
-    Raises InputError: blocks that are not in the plane, or do not close to a domain.
+    Raises InputError: blocks that are not planar, or do not form a domain.
     """
     given = layout_of(grid)
     before = measures(grid)
@@ -60,7 +60,7 @@ def smooth(grid: Grid, *, slide: bool = False, iterations: int = ITERATIONS) -> 
 
 
 def _optima(given: Layout, *, slide: bool, iterations: int) -> Iterator[Layout]:
-    """Yield the optimum with jumps evened out, if there are any, and that with all ratios kept."""
+    """Yield the optimum with jumps evened out, if there are any, and the optimum with all ratios kept."""
     mesh = given.mesh
     places = mesh.places
     fixed = (places.loop >= 0) & (places.partner < 0)

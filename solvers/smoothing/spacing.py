@@ -1,12 +1,12 @@
-"""What lengths the edges of a given grid should have: its own, but for jumps from one to the next.
+"""Target lengths of the edges of a given grid: its own, with jumps evened out.
 
 ::
 
-    given    o---o---o---o---o-o-o-o-o-o      where neighbours differ by more than a factor,
-    wanted   o---o---o--o--o-o-o-o-o-o-o      that of both is diffused along grid lines and across
+    given    o---o---o---o---o-o-o-o-o-o      if neighbours differ by more than a factor, the
+    target   o---o---o--o--o-o-o-o-o-o-o      excess is diffused along and across grid lines
 
-Only ratios of neighbours count. Edges that are not to change stay as they are: those that leave thin first
-cells at the boundary, and those of a boundary whose nodes are fixed.
+Only ratios of neighbours matter. Edges that leave thin first cells at the boundary, and edges of a boundary
+with fixed nodes, keep their lengths.
 """
 
 from __future__ import annotations
@@ -22,10 +22,12 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.kernels._native import line_neighbours
 
 THIN = 3.0
-"""Ratio of sides from which a cell at the boundary is one of layers, whose height is meant."""
+"""Aspect ratio above which a boundary cell belongs to layers, whose heights are kept."""
 _ROUNDS = 200
 _SHARE = 0.17
-"""Of what is too much between two edges, that each gives way by in a round; four neighbours at the most."""
+"""Fraction of the excess ratio between two edges by which each changes in a round; an edge has up to four
+neighbours.
+"""
 
 
 def lengths(mesh: QuadMesh) -> Floats:
@@ -35,7 +37,7 @@ def lengths(mesh: QuadMesh) -> Floats:
 
 
 def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
-    """Return lengths (e,) of `mesh.edges` of which no neighbours differ by much more than a factor `most`.
+    """Return target lengths (e,) of `mesh.edges` whose neighbours differ by about the factor `most` at most.
 
     Nodes of the boundary are fixed unless they `slide`.
     """
@@ -59,7 +61,7 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
 
 
 def thin_heights(mesh: QuadMesh) -> NDArray[np.bool_]:
-    """Say of each edge (e,) whether it leaves the boundary beside a cell that is thin along it."""
+    """Return for each edge (e,) whether it leaves the boundary at a cell that is thin in its direction."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     ratio = mesh.aspects(lengths(mesh))[cell]
     thin = np.where(side % 2 == 0, ratio < 1.0 / THIN, ratio > THIN)

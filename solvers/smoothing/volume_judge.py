@@ -1,4 +1,4 @@
-"""Whether a smoothed grid of volumes is no worse than the one that was given."""
+"""Compares a smoothed volume grid with the given one."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ from meshonet.geometry.quality.volumes import measure_volumes, solid_metric
 from meshonet.geometry.volume.hex_mesh import HexMesh
 
 _SLACK = 1e-9
-"""Degrees that rounding may add."""
+"""Tolerance for rounding in degrees."""
 _NOTHING = 0.05
-"""Mean deviation up to which one is as good as the other."""
+"""Mean deviation below which differences are ignored."""
 _GOOD, _PART = 0.7, 0.98
-"""Scaled Jacobian from which on one is as good as the other, and the part of a smaller one to be left."""
+"""Scaled Jacobian above which differences are ignored, and the fraction of a smaller one that must remain."""
 
 
 @dataclass(frozen=True)
 class VolumeMeasures:
-    """Folded cells and what must not become worse."""
+    """Folded cells, and the measures that must not become worse."""
 
     folded: int
     mean: float
     """Mean over all cells of the deviation of their angles from 90 degrees."""
     least: float
-    """Least scaled Jacobian of a corner."""
+    """Smallest scaled Jacobian of a corner."""
 
     def no_worse(self, than: VolumeMeasures) -> bool:
-        """Say whether no figure is worse."""
+        """Return whether no measure is worse."""
         if than.folded or self.folded:
             return self.folded < than.folded
         return self.mean <= max(than.mean + _SLACK, _NOTHING) and self.least >= than.bound
 
     @property
     def bound(self) -> float:
-        """Scaled Jacobian that another mesh has to have at least to be no worse."""
+        """Smallest scaled Jacobian of another mesh that is no worse."""
         return min(_PART * self.least, _GOOD)
 
 
@@ -50,7 +50,10 @@ def measures(mesh: HexMesh) -> VolumeMeasures:
 
 
 def cells_below(mesh: HexMesh, bound: float) -> list[NDArray[np.bool_]]:
-    """Say of each cell of each block whether its scaled Jacobian is below a bound; at 0, if it is folded."""
+    """Return for each cell of each block whether its scaled Jacobian is below `bound`.
+
+    At 0, whether it is folded.
+    """
     scaled = solid_metric(_grid(mesh), "scaled_jacobian")
     return [least < bound if bound > 0 else least <= 0.0 for least in scaled]
 

@@ -1,8 +1,7 @@
-"""Layers at the outer sides of volumes, with the heights that they had.
+"""Restores the heights of layers at the outer sides of volumes.
 
-As `meshonet.solvers.smoothing.layers` in the plane: nodes of thin cells are moved along the optimised line
-that leaves the side to where their old heights add up, and held there while the rest is optimised once
-more.
+As in `meshonet.solvers.smoothing.layers`, nodes of thin cells are moved along the optimised line that leaves
+the side, to the sum of their given heights. They are held there while the rest is optimised again.
 """
 
 from __future__ import annotations
@@ -20,21 +19,23 @@ from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
 from meshonet.solvers.energy.hex_tables import Targets
 
 THIN = 3.0
-"""Ratio of the shorter of the other sides to the height from which on a cell is one of layers."""
+"""Ratio of the shorter of the other sides to the height above which a cell belongs to layers."""
 _LOW = 3.0
-"""Ratio of the mean height along a line to that of its first cell, from which on this one is of layers."""
+"""Ratio of the mean height along a line to that of its first cell above which this cell belongs to layers."""
 _UNLIKE = math.log(1.5)
-"""By how much a height may differ from what is wanted around it; else it is not one that was meant."""
+"""Largest logarithmic difference between a height and its target; a larger one is taken for an error of
+the grid.
+"""
 _ROOM = 0.9
-"""Part of a line up to its last node inside that layers may take."""
+"""Largest fraction of a line, up to its last interior node, that layers may take."""
 
 
 @dataclass(frozen=True, eq=False)
 class VolumeLayers:
-    """Lines from outer sides inwards, of nodes (n,) each of which the first is on the side.
+    """Lines from outer sides into the volume, as node numbers (n,), the first one on the side.
 
-    `rows` (m,) of lines (m, n) are how many edges from the side on end thin cells, `heights` (m, n-1) those
-    that the edges should have.
+    For each of m lines, `rows` (m,) is the number of thin cells and `heights` (m, n-1) are the target lengths
+    of its edges.
     """
 
     lines: Indices
@@ -42,12 +43,12 @@ class VolumeLayers:
     heights: Floats
 
     def only_first(self) -> VolumeLayers:
-        """Return layers of one row."""
+        """Return layers with one row."""
         return replace(self, rows=np.minimum(self.rows, 1))
 
 
 def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[VolumeLayers]:
-    """Return the layers at outer sides of a mesh of which nodes `moves` (n,) are free."""
+    """Return the layers at outer sides of a mesh with free nodes `moves` (n,)."""
     layers = []
     for number, (block, wanted) in enumerate(zip(mesh.blocks, targets, strict=True)):
         for side, (axis, end) in PLACES.items():
@@ -76,7 +77,7 @@ def _own(logs: Floats, direction: int, axis: int) -> Floats:
 
 
 def _rows(logs: list[Floats], free: Bools) -> Indices:
-    """Return how many rows from a side on are thin at each of its nodes (n, m)."""
+    """Return the number of thin rows from a side on at each of its nodes (n, m)."""
     height, first, second = logs
     mean = 0.25 * (height[:, 1:, 1:] + height[:, 1:, :-1] + height[:, :-1, 1:] + height[:, :-1, :-1])
     low = exp(mean).mean(axis=0) > _LOW * exp(mean[0])
@@ -93,7 +94,7 @@ def _rows(logs: list[Floats], free: Bools) -> Indices:
 
 
 def _heights(points: Floats, logs: Floats) -> Floats:
-    """Return the lengths (m, n-1) along lines (m, n, 3), or what is wanted where one is quite another."""
+    """Return the lengths (m, n-1) along lines (m, n, 3), or the targets where these differ too much."""
     steps = np.diff(points, axis=1)
     squares = (steps**2).sum(axis=-1)
     own = 0.5 * log(np.maximum(squares, 1e-300))
@@ -101,7 +102,7 @@ def _heights(points: Floats, logs: Floats) -> Floats:
 
 
 def _of_one_foot(layers: list[VolumeLayers], count: int) -> list[VolumeLayers]:
-    """Return layers whose rows end where nodes are over more than one node of outer sides."""
+    """Return layers that end before nodes that belong to lines from more than one outer node."""
     low, high = np.full(count, count), np.full(count, -1)
     for each in layers:
         for row in range(int(each.rows.max())):
@@ -114,7 +115,7 @@ def _of_one_foot(layers: list[VolumeLayers], count: int) -> list[VolumeLayers]:
 
 
 def with_layers(nodes: Floats, layers: list[VolumeLayers]) -> tuple[Floats, Bools]:
-    """Return `nodes` (n, 3) with layers as high as they should be, and which of them (n,) are in layers."""
+    """Return `nodes` (n, 3) with layers at their target heights, and a mask (n,) of nodes in layers."""
     moved, held = nodes.copy(), np.zeros(len(nodes), dtype=bool)
     for each in layers:
         points = nodes[each.lines]
@@ -132,7 +133,7 @@ def with_layers(nodes: Floats, layers: list[VolumeLayers]) -> tuple[Floats, Bool
 
 
 def _at(points: Floats, place: Floats, wanted: Floats) -> Floats:
-    """Return the points (m, 3) at arc lengths (m,) of lines (m, n, 3) with arc lengths `place` (m, n-1)."""
+    """Return the points (m, 3) at arc lengths (m,) on lines (m, n, 3) with arc lengths `place` (m, n-1)."""
     k = np.minimum((place < wanted[:, None]).sum(axis=1), place.shape[1] - 1)
     line = np.arange(len(points))
     before = np.where(k > 0, place[line, k - 1], 0.0)
@@ -141,7 +142,7 @@ def _at(points: Floats, place: Floats, wanted: Floats) -> Floats:
 
 
 def with_first_heights(nodes: Floats, first: Indices, heights: Floats) -> Floats:
-    """Return `nodes` with the second node of each edge (m, 2) exactly at a height (m,) over the first."""
+    """Return `nodes` with the second node of each edge (m, 2) exactly at a height (m,) above the first."""
     foot = nodes[first[:, 0]]
     way = nodes[first[:, 1]] - foot
     moved = nodes.copy()

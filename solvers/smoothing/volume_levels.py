@@ -1,9 +1,9 @@
-"""A coarser copy of a mesh of hexahedra, about every second node of it, and moves carried back from it.
+"""A coarser copy of a hexahedral mesh with about every second node, and interpolation from it.
 
 ::
 
-    fine     o--o--o--o--o--o--o--o      from both ends of a line, or of a piece of it that a connection
-    coarse   o-----o--------o-----o      joins, so that blocks agree whichever way they count
+    fine     o--o--o--o--o--o--o--o      counted from both ends of a line, or of a connected piece of
+    coarse   o-----o--------o-----o      it, so that blocks with opposite directions agree
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from meshonet.geometry.volume.hex_mesh import HexMesh
 from meshonet.solvers.energy.hex_tables import Targets
 
 FEW = 12
-"""Cells of a piece of a line up to which it is not coarsened."""
+"""Largest number of cells in a piece of a line that is not coarsened."""
 SMALL = 4000
-"""Nodes up to which a mesh has no coarser copy."""
+"""Largest number of nodes of a mesh without a coarser copy."""
 FEWER = 0.6
-"""Part of the nodes that a copy has at the most: another one would cost more than it gains."""
+"""Largest fraction of nodes in a useful copy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,8 +37,8 @@ class CoarserCopy:
     Parameters
     ----------
     mesh : the copy.
-    nodes : (m,) of each of its nodes, which one of the finer mesh it is.
-    kept : of each block and direction, which layers of nodes are in the copy.
+    nodes : (m,) numbers of its nodes in the finer mesh.
+    kept : for each block and direction, the layers of nodes in the copy.
     """
 
     mesh: HexMesh
@@ -63,7 +63,7 @@ def coarser(mesh: HexMesh) -> CoarserCopy | None:
 
 
 def _cuts(mesh: HexMesh) -> list[tuple[set[int], set[int], set[int]]]:
-    """Return the layers of nodes, of each block and direction, at which a connection begins or ends."""
+    """Return, for each block and direction, the layers of nodes at which a connection starts or ends."""
     cuts = [({0, ni - 1}, {0, nj - 1}, {0, nk - 1}) for ni, nj, nk in (b.shape for b in mesh.blocks)]
     changed = True
     while changed:
@@ -86,7 +86,7 @@ _Direction = tuple[tuple[int, int], tuple[int, int], tuple[int, int], tuple[int,
 
 
 def _directions(connection: Connection) -> Iterator[_Direction]:
-    """Yield of both directions of a connection: block, axis and span, those joined to it, whether opposed."""
+    """Yield for both directions of a connection: block, axis and range of either side, whether reversed."""
     (block, side, spans), (donor, donor_side, donor_spans) = connection.ends
     own = [axis for axis in range(3) if axis != PLACES[side][0]]
     other = [axis for axis in range(3) if axis != PLACES[donor_side][0]]
@@ -96,7 +96,7 @@ def _directions(connection: Connection) -> Iterator[_Direction]:
 
 
 def _halved(cuts: list[int]) -> Indices:
-    """Return every second layer between cuts, counted from both."""
+    """Return every second layer between cuts, counted from both ends."""
     kept = {cuts[0]}
     for a, b in pairwise(cuts):
         step = 2 if b - a > FEW else 1
@@ -105,7 +105,7 @@ def _halved(cuts: list[int]) -> Indices:
 
 
 def _thinned(connection: Connection, kept: tuple[tuple[Indices, ...], ...]) -> Connection:
-    """Return a connection of the copies of its blocks."""
+    """Return a connection between the copies of its blocks."""
     ranges = []
     for block, side, spans in connection.ends:
         axes = [axis for axis in range(3) if axis != PLACES[side][0]]
@@ -115,7 +115,7 @@ def _thinned(connection: Connection, kept: tuple[tuple[Indices, ...], ...]) -> C
 
 
 def carried(mesh: HexMesh, copy: CoarserCopy, values: Floats, targets: Targets) -> Floats:
-    """Return `values` (m, 3) of a copy's nodes at all nodes (n, 3), linear in wanted lengths between them."""
+    """Return `values` (m, 3) of the copy interpolated to all nodes (n, 3), linearly in target lengths."""
     result = np.empty((len(mesh.nodes), 3))
     for block, coarse, kept, wanted in zip(mesh.blocks, copy.mesh.blocks, copy.kept, targets, strict=True):
         here = values[coarse]
@@ -130,7 +130,7 @@ def carried(mesh: HexMesh, copy: CoarserCopy, values: Floats, targets: Targets) 
 
 
 def _between(values: Floats, kept: Indices, lengths: Floats) -> Floats:
-    """Return values (n, ..., 3) between those at layers `kept`, by the lengths (n-1, ...) of edges."""
+    """Return values (n, ..., 3) interpolated between layers `kept`, by the lengths (n-1, ...) of edges."""
     place = np.concatenate([np.zeros((1, *lengths.shape[1:])), np.cumsum(lengths, axis=0)])
     low = np.clip(np.searchsorted(kept, np.arange(len(place)), side="right") - 1, 0, len(kept) - 2)
     before, after = place[kept[low]], place[kept[low + 1]]

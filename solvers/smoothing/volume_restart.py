@@ -1,6 +1,6 @@
-"""Nodes of volumes inside their outer sides, begun anew where the given ones are of no use.
+"""New interior nodes for volumes whose given nodes are unusable.
 
-Each node becomes the mean of those that it shares an edge with: Laplace's equation on the graph of edges, by
+Each node becomes the mean of its neighbours along edges: Laplace's equation on the graph of edges, solved by
 conjugate gradients.
 
 Tutte, Proc. London Math. Soc. 13 (1963) 743-767.
@@ -15,11 +15,11 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
 
 _MOST, _SMALL = 500, 1e-8
-"""Iterations at the most, and part of the first residual at which they end."""
+"""Largest number of iterations, and the relative residual at which they end."""
 
 
 def harmonic(mesh: HexMesh, moves: Bools) -> Floats:
-    """Return the nodes (n, 3) of a mesh, those that do not move as they are."""
+    """Return the nodes (n, 3) of a mesh; fixed nodes are unchanged."""
     edges = _edges(mesh)
     start = mesh.nodes.copy()
     start[moves] = mesh.nodes[~moves].mean(axis=0)
@@ -43,7 +43,7 @@ def harmonic(mesh: HexMesh, moves: Bools) -> Floats:
 
 
 def _edges(mesh: HexMesh) -> Indices:
-    """Return the edges (e, 2) of a mesh, those of interfaces once for each block."""
+    """Return the edges (e, 2) of a mesh; edges of interfaces occur once per block."""
     edges = []
     for block in mesh.blocks:
         for axis in range(3):

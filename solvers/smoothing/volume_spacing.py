@@ -1,7 +1,7 @@
-"""What lengths the edges of a given grid of volumes should have: its own, without noise and without jumps.
+"""Target lengths of the edges of a given volume grid: its own, without noise and jumps.
 
-Logarithms of lengths are diffused along grid lines and across them, where there are neighbours on both
-sides, so that geometric growth stays what it is. Edges between nodes that do not move keep their lengths.
+Logarithms of lengths are diffused along and across grid lines wherever there are neighbours on both sides, so
+that geometric growth does not change. Edges between fixed nodes keep their lengths.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, exchange, second_l
 from meshonet.solvers.energy.hex_tables import BlockTargets, Targets
 
 ROUNDS = 12
-"""Of diffusion: over about so many cells as their root."""
+"""Number of diffusion steps; they act over about the square root of as many cells."""
 _SHARE = 0.1
-"""Of the second differences along three directions, that an edge gives way by in a round."""
+"""Fraction of the second differences in three directions by which an edge changes in a step."""
 _OUTLIER = math.log(2.0)
-"""By which an edge may differ from the mean of its neighbours."""
+"""Largest logarithmic difference between an edge and the mean of its neighbours in the first steps."""
 _CLIPPED = 4
-"""Rounds in which it is held to that."""
+"""Number of steps in which this limit applies."""
 
 
 def wanted_edges(mesh: HexMesh, moves: Bools, rounds: int = ROUNDS) -> Targets:
-    """Return the logarithms of wanted lengths of edges of a mesh of which nodes `moves` (n,) are free."""
+    """Return the logarithms of target lengths of the edges of a mesh with free nodes `moves` (n,)."""
     logs: list[BlockTargets] = [
         tuple(_logs(mesh.nodes[block], axis) for axis in range(3))  # type: ignore[misc]
         for block in mesh.blocks
@@ -46,7 +46,7 @@ def wanted_edges(mesh: HexMesh, moves: Bools, rounds: int = ROUNDS) -> Targets:
 def _logs(nodes: Floats, axis: int) -> Floats:
     """Return the logarithms of lengths along a direction, with NaN for one edge beyond either end.
 
-    Edges without a length have that of the middle one.
+    Edges without length get the value of the middle one.
     """
     steps = np.diff(nodes, axis=axis)
     squares = (steps**2).sum(axis=-1)
@@ -62,7 +62,7 @@ def _stays(moves: Bools, axis: int) -> Bools:
 
 
 def _fill_beyond(mesh: HexMesh, logs: list[BlockTargets]) -> None:
-    """Copy the first edges across each connection to what is beyond the sides that it joins."""
+    """Copy the first edges on the other side of each connection to the entries beyond the sides."""
 
     def edges(number: int, side: Side) -> Floats:
         return logs[number][PLACES[side][0]]
@@ -75,7 +75,7 @@ def _fill_beyond(mesh: HexMesh, logs: list[BlockTargets]) -> None:
 
 
 def _diffuse(logs: Floats, axis: int, stays: Bools, *, clip: bool) -> None:
-    """Move logarithms along `axis` towards those around, where they may."""
+    """Diffuse logarithms along `axis`, except those that are fixed."""
     own = np.moveaxis(np.moveaxis(logs, axis, 0)[1:-1], 0, axis)
     bend, mean, count = (np.zeros(own.shape) for _ in range(3))
     for direction in range(3):

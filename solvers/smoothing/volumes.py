@@ -1,10 +1,10 @@
-"""Given grids of many blocks in space, smoothed: the joint optimum of their nodes, with their own spacing.
+"""Smooths multi-block volume grids: the joint optimum of all nodes, with the spacing of the given grid.
 
-The optimum is `meshonet.solvers.energy.hexes`'s, which wants cells and edges as long as they were given,
-without noise (`meshonet.solvers.smoothing.volume_spacing`); layers at outer sides keep their heights
-(`meshonet.solvers.smoothing.volume_layers`). Folded cells are unfolded first, from around them on. Neither
-the least scaled Jacobian nor the mean deviation from 90 degrees becomes worse
-(`meshonet.solvers.smoothing.volume_judge`): where they would, nodes go part of the way.
+The optimum is computed by `meshonet.solvers.energy.hexes`. Its targets are the edge lengths of the given grid
+without noise (`meshonet.solvers.smoothing.volume_spacing`). Layers at outer sides keep their heights
+(`meshonet.solvers.smoothing.volume_layers`). Folded cells are untangled first, starting with the nodes around
+them. Neither the smallest scaled Jacobian nor the mean deviation from 90 degrees becomes worse
+(`meshonet.solvers.smoothing.volume_judge`); if they would, displacements are reduced.
 """
 
 from __future__ import annotations
@@ -31,15 +31,17 @@ METHOD = "variational"
 ITERATIONS = 40  # of the optimum, at the most
 TOLERANCE = 1e-5  # relative gain of the functional at which it ends before
 _AROUND = (2, 4)
-"""Cells around folded ones that unfold with them, before all of them do."""
+"""Numbers of cells around folded ones that are untangled first."""
 _SOME = 0.02
-"""Part of the cells that is folded up to which cells around these are moved before all are."""
+"""Largest fraction of folded cells for which only cells around them are moved first."""
 _FEW_ROUNDS = 5  # of unfolding, where layers at their heights folded what was valid
 _COARSE = 60  # iterations of the optimum of a coarser copy, at the most
 _ROUNDS, _GENTLE = 12, 5
-"""Tries to go part of the way at the most, and those after which nodes of bad cells stay at once."""
+"""Largest number of rounds of reducing displacements, and the number after which bad cells are reset at
+once.
+"""
 _SHARES = (0.5, 0.7, 0.85)
-"""Of its way that a node of a bad cell keeps in a round, and nodes one and two cells from it."""
+"""Factors per round of the displacement of a bad cell's nodes, and of nodes one and two cells away."""
 _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 
 
@@ -47,10 +49,10 @@ _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = False) -> Solution:
     """Return `grid` with its nodes moved to the optimum of all blocks.
 
-    Nodes of outer sides stay bitwise, and so do those of periodic ones; with `slide` those of flat patches
-    move in their planes. `iterations` are those of the optimum at the most.
+    Nodes of outer and periodic sides are bitwise unchanged; with `slide`, those of flat patches move in their
+    planes. `iterations` limits those of the optimisation.
 
-    Raises InputError: blocks that are no volumes, or left-handed.
+    Raises InputError: blocks that are not volumes, or are left-handed.
     """
     given = hex_mesh_of(grid)
     before = measures(given)
@@ -72,7 +74,7 @@ def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = Fa
 def _best(
     given: HexMesh, before: VolumeMeasures, moves: Bools, slides: Slides, iterations: int
 ) -> tuple[HexMesh, VolumeMeasures]:
-    """Return the smoothed mesh and its measures, the given one where it is no better."""
+    """Return the smoothed mesh and its measures, or the given one if smoothing does not improve it."""
     targets = wanted_edges(given, moves)
     layers = layers_of(given, moves, targets)
     start, valid = given, before
@@ -90,10 +92,10 @@ def _best(
 def _unfolded(
     given: HexMesh, before: VolumeMeasures, moves: Bools, targets: Targets, slides: Slides
 ) -> tuple[HexMesh, VolumeMeasures, Targets]:
-    """Return the mesh without folded cells, or with fewer, and the edges that are wanted.
+    """Return the mesh without folded cells, or with fewer, its measures, and the target lengths.
 
-    What is around a few folded cells is moved first; then all, from where a coarser copy leads; from where
-    they are; and from a new beginning.
+    If few cells are folded, the nodes around them are moved first. Then all nodes are moved, from several
+    starts: the optimum of a coarser copy, the given nodes, and a harmonic restart.
     """
     mesh, measured = given, before
     for reach in _AROUND if before.folded < _SOME * given.cells else ():
@@ -113,7 +115,7 @@ def _unfolded(
 def _starts(
     mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides
 ) -> Iterator[tuple[HexMesh, Targets]]:  # fmt: skip
-    """Yield what all nodes may be unfolded from, and the edges that are then wanted."""
+    """Yield initial meshes for untangling all nodes, each with the target lengths."""
     begun = _begun(mesh, moves, targets, slides)
     if begun is not mesh:
         yield begun, targets
@@ -123,7 +125,7 @@ def _starts(
 
 
 def _begun(mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides) -> HexMesh:
-    """Return a mesh moved as the optimum of a coarser copy is; as it is where there is none."""
+    """Return a mesh displaced like the optimum of a coarser copy; unchanged if there is none."""
     copy = coarser(mesh)
     optimum = None if copy is None else _nested(copy.mesh, moves[copy.nodes], slides.among(copy.nodes))
     if copy is None or optimum is None:
@@ -137,7 +139,7 @@ def _begun(mesh: HexMesh, moves: Bools, targets: Targets, slides: Slides) -> Hex
 
 
 def _nested(mesh: HexMesh, moves: Bools, slides: Slides) -> Floats | None:
-    """Return the nodes of the optimum of a mesh, begun on a coarser copy; None where it stays folded."""
+    """Return the nodes of the optimum of a mesh, starting on a coarser copy; None if it stays folded."""
     targets, before = wanted_edges(mesh, moves), measures(mesh)
     if before.folded:
         mesh, before, targets = _unfolded(mesh, before, moves, targets, slides)
@@ -151,7 +153,7 @@ def _nested(mesh: HexMesh, moves: Bools, slides: Slides) -> Floats | None:
 def _with_fewer(
     mesh: HexMesh, start: HexMesh, measured: VolumeMeasures, moves: Bools, targets: Targets, slides: Slides
 ) -> tuple[HexMesh, VolumeMeasures]:
-    """Return `start` unfolded, and its measures, where it has fewer folded cells than `mesh`; else that."""
+    """Return `start` untangled, and its measures, if it has fewer folded cells than `mesh`; else `mesh`."""
     problem = HexProblem(start, moves, targets, slides)
     problem.unfold(problem.smallest())
     tried = start.with_nodes(problem.result())
@@ -160,7 +162,7 @@ def _with_fewer(
 
 
 def _around(mesh: HexMesh, reach: int) -> Bools:
-    """Return which nodes (n,) are within a distance, in cells, of folded cells."""
+    """Return a mask (n,) of the nodes within `reach` cells of folded cells."""
     near = _nodes_of(mesh, cells_below(mesh, 0.0))
     for _ in range(reach):
         near = _dilated(near, mesh)
@@ -168,7 +170,7 @@ def _around(mesh: HexMesh, reach: int) -> Bools:
 
 
 def _nodes_of(mesh: HexMesh, cells: list[Bools]) -> Bools:
-    """Return which nodes (n,) are corners of some cells of each block."""
+    """Return a mask (n,) of the nodes that are corners of the given cells of each block."""
     nodes = np.zeros(len(mesh.nodes), dtype=bool)
     for block, some in zip(mesh.blocks, cells, strict=True):
         for corner in corners_of(block):
@@ -177,7 +179,7 @@ def _nodes_of(mesh: HexMesh, cells: list[Bools]) -> Bools:
 
 
 def _dilated(nodes: Bools, mesh: HexMesh) -> Bools:
-    """Return which nodes are in a cell with one of some."""
+    """Return a mask of the nodes that share a cell with one of `nodes`."""
     return _nodes_of(mesh, [any_corner(nodes[block]) for block in mesh.blocks])
 
 
@@ -189,9 +191,9 @@ def _optima(
     slides: Slides,
     iterations: int,
 ) -> Iterator[tuple[HexMesh, bool]]:
-    """Yield what there is of optima, the better first: all layers at their heights, or only first cells.
+    """Yield optima with all layers at their heights, with only first cells, and without, in this order.
 
-    The optimum itself comes last; whether layers, if there are any, have their heights comes with each.
+    Each comes with a flag that says whether its layers have their heights.
     """
     towards = partial(optimise, targets=targets, slides=slides, iterations=iterations, tolerance=TOLERANCE)
     begun = _begun(start, moves, targets, slides)
@@ -211,7 +213,7 @@ def _optima(
 def _held_back(
     start: HexMesh, made: HexMesh, before: VolumeMeasures, layers: list[VolumeLayers]
 ) -> tuple[HexMesh, VolumeMeasures] | None:
-    """Return `made` moved back towards `start` until it is no worse, None where nothing would move."""
+    """Return `made` moved back towards `start` until it is no worse, None if nothing would move."""
     part = np.ones(len(start.nodes))
     for number in range(_ROUNDS):
         tried = start.with_nodes(_part_of_the_way(start.nodes, made.nodes, part, layers))
@@ -230,7 +232,7 @@ def _held_back(
 
 
 def _part_of_the_way(old: Floats, new: Floats, part: Floats, layers: list[VolumeLayers]) -> Floats:
-    """Return nodes at `part` (n,) of the way between two positions, with unchanged first cells of layers."""
+    """Return nodes at the fraction `part` (n,) between two positions; first cells of layers are kept."""
     nodes = old + part[:, None] * (new - old)
     still = part == 0.0
     nodes[still], nodes[part == 1.0] = old[still], new[part == 1.0]

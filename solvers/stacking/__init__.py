@@ -1,1 +1,1 @@
-"""Surfaces and volumes from sections placed in space."""
+"""Surfaces and volumes from sections that are placed in space."""

@@ -1,4 +1,4 @@
-"""How a stack becomes a surface or a volume."""
+"""Options for the surface or volume of a stack."""
 
 from __future__ import annotations
 
@@ -17,37 +17,37 @@ DEFAULT_FIRST_CELL, DEFAULT_FAR_FIELD = 1e-3, 15.0  # chords
 
 @dataclass(frozen=True)
 class StackRequest(FirstCell):
-    """How a stack becomes a surface or a volume; validates itself. Lengths are in longest chords.
+    """Options for the surface or volume of a stack, checked on construction. Lengths are in longest chords.
 
     Parameters
     ----------
     around : int, optional
-        Nodes around a section, the first one repeated; odd.
+        Number of nodes around a section, including the repeated first one; odd.
     span : int, optional
-        Nodes from the first section to the last.
+        Number of nodes from the first section to the last.
     base : float, optional
-        Least height of trailing edges, in chords of their section.
+        Smallest height of trailing edges, in chords of their section.
     first_cell : float, optional
-        Height of the first cell at every node of the wall; None is 1e-3.
+        First-cell height at every wall node; None is 1e-3.
     y_plus, reynolds, chord_fraction : float, optional
-        The same height by its y+, converted for a flat plate; the Reynolds number is that of the longest
+        First-cell height as y+, converted for a flat plate; the Reynolds number is based on the longest
         chord.
     layers : int, optional
-        Nodes away from the wall, the wall's included; None: what `growth` needs.
+        Number of nodes along each line away from the wall, including the wall node; None: as many as `growth`
+        needs.
     growth : float, optional
-        Ratio of neighbouring cells away from the wall, where `layers` is not given; None is 1.2.
+        Ratio of neighbouring cells away from the wall if `layers` is not given; None is 1.2.
     far_field : float, optional
         Distance of the far field.
     revolve : float, optional
-        Degrees about an axis that z becomes, from the first section of a blade or duct to the last.
-    axis : AxisLine, optional
-        That axis, in the plane of the sections; None is the x axis.
+        Angle in degrees about `axis` from the first section of a blade or duct to the last, instead of z.
+    axis : AxisLine, optional Axis in the plane of the sections; None is the x axis.
     threads : int, optional
-        Threads that kernels work with; None: all there are.
+        Number of threads; None: all cores.
     percentiles : bool, optional
         Whether the quality includes percentiles.
     allow_invalid : bool, optional
-        Whether a folded grid is a result.
+        Whether a folded grid is returned.
 
     Raises
     ------
@@ -88,24 +88,25 @@ class StackRequest(FirstCell):
 
     @property
     def turn(self) -> Revolution | None:
-        """How z becomes an angle."""
+        """The revolution that replaces z, if any."""
         return revolution(self.revolve, None, self.axis)
 
     @property
     def surface(self) -> WingSurface:
-        """Its nodes on the surface."""
+        """Node counts of the surface."""
         return WingSurface(self.around, self.span, self.base)
 
     def height(self, unit: float = 1.0) -> float:
-        """Return the height of the first cell in chords, that of a y+ where a chord is `unit`."""
+        """Return the first-cell height in chords; a y+ is converted with `unit` as the chord."""
         height = super().height(unit)
         return DEFAULT_FIRST_CELL if height is None else height
 
 
 def stack_request(**parameters: Any) -> StackRequest:
-    """Return the request with the parameters, fields of `StackRequest`; ``wall_spacing`` is ``first_cell``.
+    """Return a request from keyword parameters, which are the fields of `StackRequest`.
 
-    Raises InputError: as `StackRequest`, or a parameter that it does not have.
+    ``wall_spacing`` is another name of ``first_cell``. Raises InputError: as `StackRequest`, or an unknown
+    parameter.
     """
     if "wall_spacing" in parameters:
         parameters["first_cell"] = parameters.pop("wall_spacing")

@@ -1,14 +1,14 @@
-"""Nodes around the sections of a stack, at the same places of each.
+"""Nodes around the sections of a stack, with the same distribution on all sections.
 
 ::
 
-            n - h ...  upper side  ... nose        0 is the middle of the base; h cells go from there to each
-      0 |                                )         of its corners, the rest to the two sides in equal parts,
-        h  ...  lower side  ...  nose  '           by laws of arc length
-                                                   (drawn clockwise; nodes run upper side first)
+            n - h ...  upper side  ... nose        0 is the middle of the base; h cells lead from it to each
+      0 |                                )         of its corners, the other cells are divided equally between
+        h  ...  lower side  ...  nose  '           the two sides, by laws of arc length
+                                                   (drawn clockwise; nodes run along the upper side first)
 
-A section whose base is lower than `gap` is opened to it: its thickness grows by what is missing, in
-proportion to the distance from the nose.
+A section whose base is lower than `gap` is opened to this height. Its thickness increases in proportion to
+the distance from the nose.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from meshonet.geometry.spacing.tanh_law import TanhLaw
 
 BASE_CELLS = 8  # across a base
 GAP = 0.005
-"""Least height of a base in chords."""
+"""Smallest height of a base in chords."""
 _NOSE_CELL = 0.35  # of the mean cell of a side
 _EDGE_CELL = 1.2  # of the mean cell of a base
 LEAST_AROUND, MOST_AROUND = 33, 10_001  # nodes
@@ -39,15 +39,15 @@ LEAST_AROUND, MOST_AROUND = 33, 10_001  # nodes
 
 @dataclass(frozen=True)
 class Around:
-    """Where nodes lie around every section.
+    """Distribution of nodes around every section.
 
     Parameters
     ----------
-    cells : of a side.
-    base : cells of the base, an even number.
-    gap : least height of the base in chords.
-    edge, nose : cells beside the base and at the nose, in chords; None: `_EDGE_CELL` of those on the base,
-        and `_NOSE_CELL` of the mean cell.
+    cells : number of cells on a side.
+    base : number of cells on the base, even.
+    gap : smallest height of the base in chords.
+    edge, nose : lengths of the cells next to the base and at the nose, in chords; None: `_EDGE_CELL` times
+        the cells on the base, and `_NOSE_CELL` times the mean cell.
     """
 
     cells: int
@@ -58,13 +58,13 @@ class Around:
 
     @property
     def nodes(self) -> int:
-        """Nodes around, the first repeated."""
+        """Number of nodes around, including the repeated first one."""
         return 2 * self.cells + self.base + 1
 
     def law(self, height: float, length: float) -> TanhLaw:
-        """Return the law from base to nose on a side so long, beside a base so high, both in chords.
+        """Return the law from base to nose for a side of the given length and base height, both in chords.
 
-        Raises InputError: cells of a length that so many nodes do not allow.
+        Raises InputError: cell lengths that are impossible with this number of nodes.
         """
         edge = min(_EDGE_CELL * max(height, self.gap) / self.base, 1.0 / self.cells)
         first = edge if self.edge is None else self.edge / length
@@ -76,7 +76,7 @@ def around(
     nodes: int, *, gap: float = GAP, base: int = BASE_CELLS,
     edge: float | None = None, nose: float | None = None,
 ) -> Around:  # fmt: skip
-    """Return where `nodes` nodes lie around sections, the first node repeated at the end.
+    """Return the distribution of `nodes` nodes around sections, including the repeated first one.
 
     Raises InputError: too few nodes, or an even number.
     """
@@ -92,7 +92,7 @@ def around(
 def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
     """Return nodes (n, 2) around a section of unit chord, upper side first, and a note if it was changed.
 
-    Raises InputError: the nodes cross themselves.
+    Raises InputError: the outline through the nodes intersects itself.
     """
     shape, note = section.shape, ""
     name = shape.name or "a section"
@@ -121,7 +121,7 @@ def unit_nodes(section: Section, plan: Around) -> tuple[Floats, str]:
 
 
 def _airfoil_sides(shape: Airfoil, plan: Around) -> tuple[Floats, Floats]:
-    """Return nodes (cells + 1, 2) of the upper and of the lower side, both from the base to the nose."""
+    """Return nodes (cells + 1, 2) of the upper and of the lower side, from the base to the nose."""
     stations, q = shape.stations, np.linspace(0.0, 1.0, plan.cells + 1)
     height = shape.gap / shape.unit if shape.blunt else 0.0
     below, above = stations.nose - stations.half_base, stations.upper - stations.nose
@@ -134,9 +134,9 @@ def _airfoil_sides(shape: Airfoil, plan: Around) -> tuple[Floats, Floats]:
 
 
 def _outline_sides(shape: Outline, plan: Around) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return nodes of the upper half of what stands for a base, the upper side, and the same below.
+    """Return nodes of the upper half of an equivalent base and of the upper side, then of the lower ones.
 
-    Steps are equal on each half of the curve, from its rightmost place to that which is farthest from it.
+    Steps are equal on each half of the curve, from its rightmost point to the point farthest from it.
     """
     if plan.edge is not None or plan.nose is not None:
         problem = f"{shape.name or 'a closed curve'} has neither leading nor trailing edge"
@@ -151,7 +151,7 @@ def _outline_sides(shape: Outline, plan: Around) -> tuple[Floats, Floats, Floats
 
 
 def _opened(upper: Floats, lower: Floats, gap: float) -> tuple[Floats, Floats]:
-    """Return sides (n, 2) from base to nose, moved apart so that the base is `gap` high."""
+    """Return sides (n, 2) from base to nose, moved apart so that the base has the height `gap`."""
     across = upper[0] - lower[0]
     chord = 0.5 * (upper[0] + lower[0]) - upper[-1]
     normal = np.array([-chord[1], chord[0]]) / np.hypot(*chord)

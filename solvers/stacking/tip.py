@@ -1,15 +1,15 @@
-r"""The cap on the end of a wing: a ring along the edge of the last section, and a core inside it.
+r"""The cap of a wing tip: a ring along the edge of the last section, and a core inside it.
 
 ::
 
       upper side               m cells on each side of the trailing and of the leading edge end at the two
-     .-------------------.     short sides of the core, the others at its long ones: no corner of a cell is
-    /|   ring            |\    wider than it must be. A core that fills the whole section has corners of
-    ||  .-------------.  ||    160 degrees at both edges, and a surface without one ends in a line of nodes
-   LE|  |    core     |  |TE   where cells of the volume have corners of 180.
+     .-------------------.     short sides of the core, all others at its long sides, which keeps angles
+    /|   ring            |\    small. A core that fills the whole section would have angles of 160 degrees
+    ||  .-------------.  ||    at both edges. A surface without core would end in a line of nodes, where
+   LE|  |    core     |  |TE   cells of the volume have angles of 180 degrees.
     ||  '-------------'  ||
-    \|                   |/    The core reaches across the middle half of the thickness. A round cap stands
-     '-------------------'     as high over every place as the section is thick there: half an ellipse.
+    \|                   |/    The core covers the middle half of the thickness. The height of a round cap at
+     '-------------------'     each point is half the local thickness of the section: half an ellipse.
       lower side
 """
 
@@ -23,15 +23,19 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.elementary import cos, product, sin
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.sweeping.ring_steps import ring_steps
 
 CORE = 0.5
-"""Part of the thickness that the core reaches across."""
+"""Fraction of the thickness that the core covers."""
 ROWS = 6
-"""Rows of the ring."""
-_EVEN = 1.12  # ratio of the last cells of the ring and those of the core, which needs not be 1
-_RATIO = 1.5  # of neighbouring rows of the ring, at the most
+"""Number of rows of the ring."""
+_EVEN = 1.17  # ratio of the last cells of the ring and those of the core, which needs not be 1
+_RATIO = 1.7  # of neighbouring rows of the ring, at the most
+_SWEEPS = 50  # of smoothing around the ring
 _FINE = 65  # places on each line of the ring by which its length is measured
+_ENDS = tuple(0.5 + 0.1 * k for k in range(10))
+"""Distances of the core from nose and edge that are tried, over the usual ones."""
 _CLEAR = 1.3  # by which the core stays farther from nose and edge than the nodes that face its ends
 _NOSE, _EDGE = 0.35, 0.3  # and at least so many thicknesses of the section there
 
@@ -42,9 +46,9 @@ class Cap:
 
     Parameters
     ----------
-    short : cells on each side of an edge that end at a short side of the core.
-    rows : cells of the ring, from the section's edge to the core, whose cells they lead to by one ratio.
-    bulge : height over the height of a half circle on the section; 0 is flat.
+    short : number of cells on each side of an edge that end at a short side of the core.
+    rows : number of cells of the ring from the section's edge to the core; they grow by a constant ratio.
+    bulge : height relative to that of a half circle over the section; 0 is flat.
     """
 
     short: int = 4
@@ -54,31 +58,49 @@ class Cap:
     def patches(self, loop: Floats) -> tuple[Floats, Floats]:
         """Return nodes of the ring (n, rows + 1, 3) and of the core (n // 2 - 2 short + 1, 2 short + 1, 3).
 
-        The `loop` (n, 3), closed, lies in a plane of constant z and runs from the trailing edge over the
-        upper side; the cap stands above it. Both patches turn their outer side to +z.
+        The closed `loop` (n, 3) is in a plane of constant z and runs from the trailing edge along the upper
+        side first. The cap is above it; the normals of both patches point to +z.
         """
-        plane, m = loop[:, :2], self.short
-        upper, lower, half = self._inner(plane)
-        b = np.linspace(0.0, 1.0, 2 * m + 1)[None, :]
+        made = {(1.0, 1.0): self._placed(loop, 1.0, 1.0)}
+        best = 1.0, 1.0
+        for axis in (0, 1, 0):
+            tried = [(end, best[1]) if axis == 0 else (best[0], end) for end in _ENDS]
+            made |= {ends: self._placed(loop, *ends) for ends in tried if ends not in made}
+            best = max(tried, key=lambda ends: self._worth(*made[ends]))
+        return made[best]
+
+    def _placed(self, loop: Floats, nose: float, edge: float) -> tuple[Floats, Floats]:
+        """Return ring and core (see `patches`); `nose` and `edge` are factors of the core's distances."""
+        upper, lower, half = self._inner(loop[:, :2], nose, edge)
+        b = np.linspace(0.0, 1.0, 2 * self.short + 1)[None, :]
         across = (1.0 - b[..., None]) * upper[:, None] + b[..., None] * lower[:, None]
         height = self.bulge * half[:, None] * np.sqrt(1.0 - (CORE * (1.0 - 2.0 * b)) ** 2)
         core = np.concatenate([across, loop[0, 2] + height[..., None]], axis=-1)
         return self._ring(loop, core), core
 
+    def _worth(self, ring: Floats, core: Floats) -> float:
+        """Return the least sine in the corners of cells, less where ring and core differ too much."""
+        ratio = norms(_edge(core, 1) - _edge(core)) / norms(ring[:, -1] - ring[:, -2])
+        ratio[self._corners(len(ring))] = 1.0
+        uneven = float(np.maximum(ratio, 1.0 / ratio).max())
+        return min(least_sine(ring), least_sine(core)) / math.pow(max(1.0, uneven / (_EVEN + 0.01)), 4)
+
+    def _corners(self, n: int) -> Indices:
+        """Return the lines of a ring, of `n`, that end at corners of the core: none runs on from these."""
+        m, half = self.short, (n - 1) // 2
+        return np.array([m, half - m, half + m, n - 1 - m])
+
     def _ring(self, loop: Floats, core: Floats) -> Floats:
-        """Return the nodes (n, rows + 1, 3) between the edge of the section and that of the core."""
+        """Return the nodes (n, rows + 1, 3) between the edges of section and core."""
         inner = _edge(core)
         sizes = norms(_edge(core, 1) - inner)
-        m, half = self.short, (len(loop) - 1) // 2
-        corners = np.array([m, half - m, half + m, len(loop) - 1 - m])  # no line runs on from these
+        corners = self._corners(len(loop))
         sizes[corners] = 0.5 * (sizes[corners - 1] + sizes[corners + 1])
         part = np.linspace(0.0, 1.0, _FINE)
         fine = norms(np.diff(self._lines(loop, inner, np.broadcast_to(part, (len(loop), _FINE))), axis=1))
         away = np.concatenate([np.zeros((len(loop), 1)), np.cumsum(fine, axis=1)], axis=1)
         length = away[:, -1]
-        ends = np.clip(length / self.rows, sizes / _EVEN, sizes * _EVEN)
-        shares = [1.0 / sum(math.pow(ratio, k) for k in range(self.rows)) for ratio in (_RATIO, 1.0 / _RATIO)]
-        ends = np.clip(ends, shares[0] * length, shares[1] * length)
+        ends = self._ends(length, sizes, corners)
         places = np.cumsum(ring_steps(length, ends, self.rows, None), axis=1)
         parts = [np.interp(places[k, :-1], away[k], part) for k in range(len(loop))]
         ring = np.empty((len(loop), self.rows + 1, 3))
@@ -87,8 +109,28 @@ class Cap:
         ring[-1] = ring[0]
         return ring
 
+    def _ends(self, length: Floats, sizes: Floats, corners: Indices) -> Floats:
+        """Return the last cells (n,) of lines of the ring, of this `length`, before cells of these `sizes`.
+
+        They are as even as these allow, and change little from one line to the next.
+        """
+        least, most = (
+            1.0 / sum(math.pow(ratio, k) for k in range(self.rows)) for ratio in (_RATIO, 1.0 / _RATIO)
+        )
+        free = np.full(len(length), 1.0)
+        free[corners] = np.inf
+        low, high = (
+            np.clip(sizes * factor / length, least, most) for factor in (1.0 / (_EVEN * free), _EVEN * free)
+        )
+        share = np.clip(1.0 / self.rows, low, high)
+        for _ in range(_SWEEPS):
+            around = share[:-1]
+            smooth = 0.5 * around + 0.25 * (np.roll(around, 1) + np.roll(around, -1))
+            share = np.clip(np.append(smooth, smooth[:1]), low, high)
+        return share * length
+
     def _lines(self, loop: Floats, inner: Floats, part: Floats) -> Floats:
-        """Return the places (n, k, 3) that are `part` (n, k) of the way, in angle, from edge to core."""
+        """Return the points (n, k, 3) at the fraction `part` (n, k) of the angle from edge to core."""
         inwards, rise = part, np.zeros(part.shape)
         if self.bulge:
             phi = part * math.acos(CORE)
@@ -97,7 +139,7 @@ class Cap:
         along = np.stack([inwards, inwards, rise], axis=-1)
         return np.asarray(loop[:, None] + along * away)
 
-    def _inner(self, plane: Floats) -> tuple[Floats, Floats, Floats]:
+    def _inner(self, plane: Floats, nose_factor: float, edge_factor: float) -> tuple[Floats, Floats, Floats]:
         """Return the long sides (k, 2) of the core from the trailing edge on, and half the thickness (k,)."""
         m = self.short
         camber, half = _sides(plane)
@@ -107,8 +149,8 @@ class Cap:
         along = np.maximum.accumulate((product(camber - nose, axis) / length**2)[::-1])[::-1]
         front, back = along[-1 - m], along[m]
         thick = 2.0 * np.hypot(*half.T) / length
-        first = _CLEAR * max(front, _NOSE * thick[-1 - m])
-        last = 1.0 - max(_CLEAR * (1.0 - back), _EDGE * thick[m])
+        first = nose_factor * _CLEAR * max(front, _NOSE * thick[-1 - m])
+        last = 1.0 - edge_factor * max(_CLEAR * (1.0 - back), _EDGE * thick[m])
         places = first + (last - first) * (along[m : len(along) - m] - front) / (back - front)
         rising = along[::-1]
 
@@ -119,7 +161,7 @@ class Cap:
         return middle + CORE * across, middle - CORE * across, np.hypot(*across.T)
 
     def connections(self, n: int, ring: int, core: int) -> tuple[Connection, ...]:
-        """Return where the numbered blocks of a ring of `n` nodes around and of its core touch themselves."""
+        """Return the connections of the blocks `ring`, with `n` nodes around, and `core`."""
         m, half = self.short, (n - 1) // 2
         whole = ((0, self.rows),)
         parts = (
@@ -137,6 +179,18 @@ class Cap:
         return seam, *joined
 
 
+def least_sine(nodes: Floats) -> float:
+    """Return the least sine of an angle between neighbouring edges of cells, of nodes (n, m, 3)."""
+    least = 1.0
+    along, across = np.diff(nodes, axis=0), np.diff(nodes, axis=1)
+    for a in (along[:, :-1], along[:, 1:]):
+        for b in (across[:-1], across[1:]):
+            normal = np.cross(a, b)
+            sine = np.copysign(norms(normal), normal[..., 2]) / (norms(a) * norms(b))
+            least = min(least, float(sine.min()))
+    return least
+
+
 def _sides(plane: Floats) -> tuple[Floats, Floats]:
     """Return the camber line (k, 2) from trailing edge to nose, and vectors from it to the upper side."""
     k = len(plane) // 2 + 1
@@ -147,7 +201,7 @@ def _sides(plane: Floats) -> tuple[Floats, Floats]:
 def _edge(core: Floats, k: int = 0) -> Floats:
     """Return the nodes around a core (., ., 3) in the order of its ring, from the middle of its west side.
 
-    With `k` those so many steps inside of them.
+    With `k`, they are the nodes k layers further inside.
     """
     m, last = core.shape[1] // 2, -1 - k
     west, east = core[k], core[last]

@@ -1,4 +1,4 @@
-"""The surface of a wing: one patch around its sections from root to tip, and the two of its cap."""
+"""The surface of a wing: one patch around its sections from root to tip, and two patches of its cap."""
 
 from __future__ import annotations
 
@@ -22,25 +22,27 @@ from meshonet.solvers.stacking.tip import Cap
 DEFAULT_AROUND, DEFAULT_SPAN = 129, 49  # nodes
 LEAST_SPAN, MOST_SPAN = 5, 10_001  # nodes
 EDGE, MOST_EDGE = 2.2, 2.5
-"""Ratio of neighbouring cells across the edge of a tip that is looked for, and the largest."""
+"""Intended and largest ratio of neighbouring cells across the edge of a tip."""
 _SWEEPS = 20  # of smoothing around the section
 FADE = 8
-"""Cells from the tip on that have different lengths around the section."""
+"""Number of cells from the tip whose lengths vary around the section."""
 REACH = 0.05
-"""Distance from the tip, in its chords, within which such cells end at the most."""
+"""Largest distance from the tip, in its chords, over which such cells extend."""
+_NEAR = 1e-3
+"""Part of the last panel over which the slope of its lines at the tip is measured."""
 _ROOT_CELL = 1.4
-"""Cell at the root, in mean cells along the span."""
+"""Length of the cell at the root relative to the mean cell along the span."""
 
 
 @dataclass(frozen=True)
 class WingSurface:
-    """Nodes of the surface of a wing; validates itself.
+    """Node counts of the surface of a wing, checked on construction.
 
     Parameters
     ----------
-    around : nodes around a section, the first one repeated; odd.
-    span : nodes from the root to the last section.
-    base : least height of trailing edges, in chords.
+    around : number of nodes around a section, including the repeated first one; odd.
+    span : number of nodes from the root to the last section.
+    base : smallest height of trailing edges, in chords.
     """
 
     around: int = DEFAULT_AROUND
@@ -54,12 +56,12 @@ class WingSurface:
 
 
 def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Grid, tuple[str, ...]]:
-    """Return the surface patches of a wing, whose normals point outwards, and notes of what was changed.
+    """Return the surface patches of a wing, with normals that point outwards, and notes about changes.
 
-    The first block goes around the sections, from the trailing edge over the upper side, and along the span;
-    a round or flat tip adds the ring and the core of its cap. The root is a patch named ``symmetry``.
+    The first block goes around the sections, from the trailing edge along the upper side first, and along the
+    span. A round or flat tip adds the ring and the core of its cap. The root is the patch ``symmetry``.
 
-    Raises InputError: counts that do not suffice, sections whose nodes cross.
+    Raises InputError: node counts that are too small; sections whose outlines intersect themselves.
     """
     settings = settings or WingSurface()
     plan = around(settings.around, gap=settings.base, edge=stack.te_spacing, nose=stack.le_spacing)
@@ -86,10 +88,10 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
 
 
 def _tip_cells(ring: Floats) -> Floats:
-    """Return the last cells along the span (n,) that go with the ring (n, ., 3) of a cap.
+    """Return the lengths of the last cells along the span (n,) for the ring (n, ., 3) of a cap.
 
-    They differ from the cells of the ring by `EDGE` at the most, so that they are as thin as at the trailing
-    edge only where they must be.
+    They differ from the cells of the ring by at most the factor `EDGE`, so that they are as thin as at the
+    trailing edge only where necessary.
     """
     first = norms(ring[:-1, 1] - ring[:-1, 0])
     cells = np.maximum(EDGE * first.min(), first / EDGE)
@@ -105,7 +107,7 @@ def _lofted(stack: Stack, unit: Floats, ring: Floats | None, nodes: int) -> Floa
         tip = None if stack.tip_spacing is None else stack.tip_spacing * stack.sections[-1].chord
         main = stack.lofted(unit, span_heights(stack.z, nodes, tip)).transpose(1, 0, 2)
     else:
-        last = _tip_cells(ring)
+        last = _tip_cells(ring) / _slant(stack, unit)
         z = span_heights(stack.z, nodes, float(last.min()))
         panel = int(np.searchsorted(z, stack.z[-2]))
         heights = np.tile(z, (len(last), 1))
@@ -117,10 +119,18 @@ def _lofted(stack: Stack, unit: Floats, ring: Floats | None, nodes: int) -> Floa
     return main
 
 
+def _slant(stack: Stack, unit: Floats) -> Floats:
+    """Return the lengths (n,) of lines along the span that go with a unit of height at the tip."""
+    height = _NEAR * (stack.z[-1] - stack.z[-2])
+    below, tip = stack.lofted(unit, np.array([stack.z[-1] - height, stack.z[-1]]))
+    return norms(tip - below) / height
+
+
 def _with_last(z: Floats, last: Floats, reach: float) -> Floats:
     """Return heights (n, m) between the ends of `z` (m,) whose last cells are `last` (n,).
 
-    They differ from `z` by a factor that fades away from the tip on, which the cells beyond make up for.
+    The cells differ from those of `z` by a factor that decays away from the tip; the cells beyond compensate
+    for it.
     """
     steps = np.diff(z)
     cells = len(steps)
@@ -134,9 +144,9 @@ def _with_last(z: Floats, last: Floats, reach: float) -> Floats:
 
 
 def span_heights(sections: Floats, nodes: int, last: float | None) -> Floats:
-    """Return z (nodes,) from the first of the `sections` to the last, all of which are among them.
+    """Return z (nodes,) from the first of the `sections` to the last, with a node at each of them.
 
-    Cells shrink towards the tip to the length `last`; without it they are equal but for what that moves.
+    Cells decrease towards the tip to the length `last`; without it they are nearly equal.
 
     Raises InputError: more sections than nodes.
     """

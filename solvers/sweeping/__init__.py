@@ -1,1 +1,1 @@
-"""Volumes swept along curves by sections of the plane."""
+"""Volume grids by sweeping planar sections along curves."""

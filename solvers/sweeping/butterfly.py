@@ -1,13 +1,13 @@
-r"""The inside of a closed curve in five blocks: a core, and a ring of four around it.
+r"""Divides the inside of a closed curve into five blocks: a core, and a ring of four around it.
 
 ::
 
-         .-----------.          Corners of the core lie on the diagonals, and its sides are bent outwards,
-       .' \         / '.        part of the way from lines to arcs, so that no corner is far from a right
-      /    +-------+    \       angle: 120 degrees, which three blocks that meet cannot stay below.
+         .-----------.          Corners of the core are on the diagonals. Its sides are bent from lines
+       .' \         / '.        towards arcs, so that angles are near 90 degrees, except 120 degrees at the
+      /    +-------+    \       corners of the core, where three blocks meet.
       |    |  core |    |
       \    +-------+    /       Ring blocks count i along the wall, counter-clockwise, and j away from it.
-       '. /         \ .'        The core is as large as the growth of the rows around it lets it be.
+       '. /         \ .'        The core is as large as the growth limit of the rows around it permits.
          '-----------'
 """
 
@@ -28,21 +28,23 @@ from meshonet.geometry.elementary import tan
 from meshonet.solvers.sweeping.ring_steps import TRIED, fewest_rows, largest_ratio, ring_steps
 
 GROWTH = 1.2
-"""Largest ratio of neighbouring cells away from walls, where none is given."""
+"""Default of the largest ratio of neighbouring cells away from walls."""
 _BEND, _BEND_RADIAL = 0.25, 0.4
-"""How far the sides of the core are bent from lines, 0, to arcs, 1; further where lines are radii."""
+"""Bending of the core's sides, from 0 for lines to 1 for arcs; the second value is for radial lines."""
 _SIZES = (0.6, 0.55, 0.5, 0.45, 0.4, 0.35, 0.3, 0.25, 0.2, 0.15, 0.1)
-"""Sizes of the core in sizes of the section, the first of which is taken that the growth allows."""
+"""Sizes of the core relative to the section; the first one that the growth limit permits is used."""
 _ROUNDING = 1e-9
 _RADIAL = (1.0, 0.75, 0.5, 0.25, 0.0)
-"""How near lines through the ring of a circle are to radii, tried likewise; 0 has equal cells in the core."""
+"""Alignment of the ring's lines with radii of a circle, tried in this order; 0 gives equal cells in the
+core.
+"""
 
 Sides: TypeAlias = Sequence[Floats]
-"""Nodes (n, 2) on the east, north, west and south of a closed curve, counter-clockwise."""
+"""Nodes (n, 2) on east, north, west and south of a closed curve, counter-clockwise."""
 
 
 class FiveBlocks(NamedTuple):
-    """How the inside of closed curves is divided: size of the core, rows of the ring, how radial it is."""
+    """Division of the inside of closed curves: size of the core, rows of the ring, alignment with radii."""
 
     core: float
     rows: int
@@ -51,12 +53,12 @@ class FiveBlocks(NamedTuple):
 
 @dataclass(frozen=True)
 class CrossSection:
-    """A closed curve whose inside is filled.
+    """A closed curve whose inside is divided.
 
     Parameters
     ----------
-    arcs : its nodes on four sides that meet in corners of blocks.
-    first : height of the first cell at the wall; None: about that of the cells of the core.
+    arcs : its nodes on four sides, which meet at corners of blocks.
+    first : first-cell height at the wall; None: about that of the cells of the core.
     """
 
     arcs: Sides
@@ -74,9 +76,9 @@ class CrossSection:
         return [middle + core * ((1.0 - bend) * line + bend * arc - middle) for line, arc in both]
 
     def across(self, core: float, radial: float, *, eighth: bool = False) -> tuple[Floats, Floats]:
-        """Return how long lines through the ring are, and the cells of the core that they lead to (k,).
+        """Return the lengths of lines through the ring, and of the core cells at their ends, (k,) each.
 
-        An `eighth` of them has all that there is in a circle.
+        With `eighth`, only an eighth of the lines is used, which suffices for a circle.
         """
         inner = self.inner(core, radial)
         lengths = [norms(side - arc) for side, arc in zip(inner, self.arcs, strict=True)]
@@ -99,10 +101,10 @@ class CrossSection:
 def planned(
     sections: Sequence[CrossSection], growth: float = GROWTH, rows: int | None = None, *, radial: bool = False
 ) -> FiveBlocks:
-    """Return the plan, one for all sections, in which neighbouring cells differ by at most `growth`.
+    """Return one division for all sections in which neighbouring cells differ by at most `growth`.
 
-    If there is none, that in which they differ least. Without `rows` there are as many as it takes; `radial`
-    is for circles.
+    If there is none, the one with the smallest difference is returned. Without `rows` their number is
+    determined; `radial` is for circles.
     """
     best, least = FiveBlocks(_SIZES[0], rows or 1), np.inf
     for core in _SIZES:
@@ -119,7 +121,7 @@ def planned(
 
 
 def _most_radial(sections: Sequence[CrossSection], core: float, growth: float) -> tuple[float, float]:
-    """Return how radial the lines can be, and the ratio of neighbouring cells along the core's sides then."""
+    """Return the best alignment with radii, and the ratio of neighbouring cells along the core's sides."""
     for way in _RADIAL:
         inside = max(_side_ratio(section.inner(core, way)) for section in sections)
         if inside <= growth:
@@ -140,7 +142,7 @@ def _side_ratio(sides: Sides) -> float:
 
 
 def filled(section: CrossSection, plan: FiveBlocks) -> Grid:
-    """Return the five blocks inside a closed curve, its wall named ``wall``."""
+    """Return the five blocks inside a closed curve, with the wall ``wall``."""
     side = len(section.arcs[0]) - 1
     inner = section.inner(plan.core, plan.radial)
     lengths, sizes = section.across(plan.core, plan.radial)
@@ -160,7 +162,7 @@ def filled(section: CrossSection, plan: FiveBlocks) -> Grid:
 
 
 def _core(inner: Sides) -> Floats:
-    """Return the nodes (n, n, 2) of the core by transfinite interpolation; its sides run along x and y."""
+    """Return the nodes (n, n, 2) of the core by transfinite interpolation; its sides are along x and y."""
     nodes = _between(inner)
     east, north, west, south = inner
     nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1] = south, north[::-1], west[::-1], east
@@ -168,7 +170,7 @@ def _core(inner: Sides) -> Floats:
 
 
 def _between(inner: Sides, rows: slice = slice(None), columns: slice = slice(None)) -> Floats:
-    """Return nodes (n, n, 2) between the sides of the core, or those of some `rows` i or `columns` j."""
+    """Return nodes (n, n, 2) between the sides of the core, or only `rows` i or `columns` j."""
     east, north, west, south = inner[0], inner[1][::-1], inner[2][::-1], inner[3]
     a = np.linspace(0.0, 1.0, len(south))
     i, j = a[rows, None, None], a[None, columns, None]
@@ -178,7 +180,7 @@ def _between(inner: Sides, rows: slice = slice(None), columns: slice = slice(Non
 
 
 def _connections(side: int, rows: int) -> tuple[Connection, ...]:
-    """Return how the core, block 0, and the ring blocks, 1 east to 4 south, counter-clockwise, join."""
+    """Return the connections of the core, block 0, and the ring, 1 east to 4 south, counter-clockwise."""
     core, away = ((0, side),), ((0, rows),)
     inner = (("east", 1), ("north", -1), ("west", -1), ("south", 1))
     joined = [

@@ -1,4 +1,4 @@
-"""A circle and its cells: how many around, how many rows, and what a user should know of them."""
+"""Division of a circle into cells: numbers of cells around and of rows, and notes for the user."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from meshonet.geometry.spacing.growth import check_growth
 from meshonet.solvers.sweeping.butterfly import GROWTH, CrossSection, FiveBlocks, filled, planned
 
 AROUND = 88
-"""Cells around a circle that leave its area within 0.1 %: 1 - sin(x)/x with x = 2 pi / 88 is 0.08 %."""
+"""Cells around a circle with which its area is accurate to 0.1 %: 1 - sin(x)/x with x = 2 pi / 88 is 0.08
+%.
+"""
 _FEWER = 40  # cells around that leave it within 0.4 %
 # quarter turns: east, north, west, south
 _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1, 0)))
@@ -23,17 +25,17 @@ _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1,
 
 @dataclass(frozen=True)
 class Disc:
-    """A circle and its cells.
+    """A circle and its division into cells.
 
     Parameters
     ----------
-    radius : in any unit.
-    cells : about how many; None: as few as `around` allows.
-    first_cell : height of the first cell at the wall; None: about that of the cells in the middle.
+    radius : radius in any unit.
+    cells : approximate number of cells; None: as few as `around` permits.
+    first_cell : first-cell height at the wall; None: about that of the cells in the middle.
     growth : largest ratio of neighbouring cells; None is 1.2.
-    around : cells along the circle, a multiple of four; None: what `cells` needs, and at least `AROUND`.
+    around : cells along the circle, a multiple of four; None: as many as `cells` requires, at least `AROUND`.
 
-    Raises InputError: a value that is not positive, a first cell wider than the ring, no multiple of four,
+    Raises InputError: a value that is not positive; a first cell wider than the ring; no multiple of four;
     both `cells` and `around`.
     """
 
@@ -65,16 +67,16 @@ class Disc:
         return CrossSection([product(arc, np.array(turn).T) for turn in _TURNS], self.first_cell)
 
     def plan(self, side: int) -> FiveBlocks:
-        """Return how the inside is divided with `side` cells on each quarter."""
+        """Return the division with `side` cells on each quarter."""
         return planned([self.section(side)], self.growth or GROWTH, radial=True)
 
     def count(self, side: int) -> int:
-        """Return the cells that there are with `side` cells on each quarter."""
+        """Return the number of cells with `side` cells on each quarter."""
         return side * side + 4 * side * self.plan(side).rows
 
     @cached_property
     def side(self) -> int:
-        """Cells on each quarter."""
+        """Number of cells on each quarter."""
         if self.around is not None:
             return self.around // 4
         low, high = AROUND // 4, math.isqrt(self.cells or 0)
@@ -86,7 +88,7 @@ class Disc:
 
     @property
     def note(self) -> str:
-        """That there are more cells than were asked for, and why."""
+        """Note that there are more cells than requested, with the reason."""
         if self.cells is None or self.side > AROUND // 4 or self.count(self.side) <= 1.1 * self.cells:
             return ""
         fewer = replace(self, around=_FEWER, cells=None)
@@ -97,5 +99,5 @@ class Disc:
 
 
 def butterfly(disc: Disc) -> Grid:
-    """Return the grid of a disc around the origin, its wall named ``wall``."""
+    """Return the grid of a disc around the origin, with the wall ``wall``."""
     return replace(filled(disc.section(disc.side), disc.plan(disc.side)), name="circle")

@@ -1,9 +1,9 @@
-"""Steps along the lines of a ring, from a wall to cells of a given size that they join.
+"""Steps along the lines of a ring, from a wall to cells of a given size.
 
 ::
 
-    wall |-|--|---|----|-----|------|------|------|  core      the first is given; they grow by a constant
-         first                              size               ratio up to the size of the cells that follow
+    wall |-|--|---|----|-----|------|------|------|  core      the first step is given; steps grow by a
+         first                              size               constant ratio up to the size of the core cells
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from meshonet.geometry.elementary import exp
 from meshonet.geometry.spacing.growth import LARGEST
 
 TRIED = 8
-"""Counts of rows from the fewest on, of which one is even enough if any is."""
+"""Number of row counts that are tried, starting with the smallest; one of these is good if any is."""
 _HALVINGS = 60  # of the range that the ratio lies in: to the last digit
 _CLOSE = 1e-9  # of the length, to which steps fill it
 
 
 def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -> Floats:
-    """Return steps (k, rows) that fill `lengths` (k,) and lead to cells as long as `sizes` (k,).
+    """Return steps (k, rows) that fill `lengths` (k,) and end in cells of length `sizes` (k,).
 
-    The ones at the wall are `first` long, or as long as a constant ratio makes them. Where no ratio up to
-    `LARGEST` fills a length, they do not (see `largest_ratio`).
+    The steps at the wall are `first`, or follow from a constant ratio. If no ratio up to `LARGEST` fills a
+    length, the steps do not fill it (see `largest_ratio`).
     """
     most = math.log(LARGEST)
     low, high = np.full(len(lengths), 0.0 if first else -most), np.full(len(lengths), most)
@@ -39,7 +39,7 @@ def ring_steps(lengths: Floats, sizes: Floats, rows: int, first: float | None) -
 
 
 def _steps(sizes: Floats, rows: int, first: float | None, rate: Floats) -> Floats:
-    """Return steps (k, rows) that change by a ratio, whose logarithm is `rate` (k,), up to the sizes."""
+    """Return steps (k, rows) that grow by a ratio with the logarithm `rate` (k,), up to the sizes."""
     grown = exp(rate[:, None] * np.arange(rows))
     if first is None:
         return np.asarray(sizes[:, None] * grown[:, ::-1])
@@ -48,7 +48,7 @@ def _steps(sizes: Floats, rows: int, first: float | None, rate: Floats) -> Float
 
 
 def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: float) -> int:
-    """Return the fewest rows with which steps (see `ring_steps`) may grow by no more than `growth`."""
+    """Return the smallest number of rows with which `ring_steps` grow by at most `growth`."""
     if first is None:
         return max(1, round(float((lengths / sizes).mean())) - TRIED // 2)
     even = math.ceil(float((lengths / np.maximum(sizes, first)).max()) - _CLOSE)
@@ -59,9 +59,9 @@ def fewest_rows(lengths: Floats, sizes: Floats, first: float | None, growth: flo
 
 
 def largest_ratio(lengths: Floats, sizes: Floats, steps: Floats) -> float:
-    """Return the largest ratio of neighbouring cells along lines, the cells that follow included.
+    """Return the largest ratio of neighbouring cells along lines, including the cells at their ends.
 
-    It is infinite where the steps (k, rows) do not fill the `lengths` (k,).
+    It is infinite if the steps (k, rows) do not fill the `lengths` (k,).
     """
     if np.abs(steps.sum(axis=1) - lengths).max() > _CLOSE * lengths.max():
         return math.inf

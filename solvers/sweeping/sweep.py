@@ -1,11 +1,11 @@
-"""A planar grid carried along a curve in space to blocks of volume.
+"""Sweeps a planar grid along a curve in space.
 
 ::
 
-      inlet                                   Planes of nodes stand across the path; the x and y axes of the
-      .--.          _.--._                    section lie in frames that do not turn about it. k runs along
-      |  |--------''      ''-------.  outlet  the path, from `bottom`, the inlet, to `top`, the outlet.
-      |  |--------..____..---------'
+      inlet                                   Planes of nodes are normal to the path; the x and y axes of the
+      .--.          _.--._                    section are those of frames that do not rotate about the path.
+      |  |--------''      ''-------.  outlet  k runs along the path, from `bottom`, the inlet, to `top`, the
+      |  |--------..____..---------'          outlet.
       '--'
 """
 
@@ -25,9 +25,10 @@ from meshonet.geometry.curves.frames import STEPS, frames_along, turned
 from meshonet.geometry.curves.path import Path
 from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.reach import check_reach
 
 TURN_DEG = 4.0
-"""Largest angle that the path turns by within a cell, unless the number of planes is given."""
+"""Largest turning angle of the path within a cell, unless the number of planes is given."""
 _LONG = 3.0  # mean edges of the section's cells that a cell is long along the path, at the most
 _LOOKED_AT = 1025  # places along the path where it is asked how much it bends
 _UNNAMED = (*SIDES, "outer")
@@ -35,20 +36,20 @@ _UNNAMED = (*SIDES, "outer")
 
 @dataclass(frozen=True)
 class Sweep:
-    """How a section is carried along a path.
+    """How a section is swept along a path.
 
     Parameters
     ----------
     planes : int, optional
-        Planes of nodes; None: cells turn by at most `TURN_DEG` and are at most three times as long as those
-        of the section are wide in the mean.
+        Number of planes of nodes. None: cells turn by at most `TURN_DEG` and are at most three times as long
+        as the mean width of the section's cells.
     up : tuple of 3 float, optional
-        Direction (3,) that the section's y axis is nearest to where the path starts; None is z, or y for a
-        path along z.
+        Direction (3,) to which the section's y axis is closest at the start of the path; None is z, or y for
+        a path along z.
     twist : float, optional
-        Degrees that the section turns by from start to end, in addition.
+        Additional rotation of the section from start to end, in degrees.
     scale : float, optional
-        Its size at the end, in sizes at the start.
+        Size of the section at the end relative to the start.
 
     Raises
     ------
@@ -71,13 +72,14 @@ class Sweep:
 
 
 def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
-    """Return the volume that a planar section makes when it is carried along a path.
+    """Return the volume grid of a planar section swept along a path.
 
-    The first plane is the patch ``inlet`` and the last ``outlet``; a closed path has none and is connected to
-    itself. Outer patches that nobody named are called ``wall``; those whose names tell no kind are walls too.
+    The first plane is the patch ``inlet`` and the last ``outlet``; a closed path has neither and is connected
+    to itself. Outer patches without a name are called ``wall``; those whose names imply no kind are walls
+    too.
 
-    Raises InputError: a section that is not planar or is periodic; a bend that is too tight for it, with the
-    place; as `frames_along`.
+    Raises InputError: a section that is not planar or is periodic; with the place, a bend that is too tight
+    for the section; a path that takes too many planes; as `frames_along`.
     """
     settings = settings or Sweep()
     section = walled(section)
@@ -97,7 +99,7 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
 
 
 def _carried(plane: Floats, points: Floats, x: Floats, y: Floats) -> Floats:
-    """Return nodes (ni, nj, nk, 3), in planar layout, of a plane (ni, nj, 2) at points (nk, 3) with axes."""
+    """Return planar nodes (ni, nj, nk, 3) of a plane (ni, nj, 2) at points (nk, 3) with given axes."""
     ni, nj = plane.shape[:2]
     nodes = np.empty((3, ni, nj, len(points)))
     for d in range(3):
@@ -108,7 +110,7 @@ def _carried(plane: Floats, points: Floats, x: Floats, y: Floats) -> Floats:
 
 
 def _axes(path: Path, s: Floats, settings: Sweep, steps: int = STEPS) -> tuple[Floats, Floats]:
-    """Return x and y axes (n, 3) of the section at arc lengths, its twist included."""
+    """Return x and y axes (n, 3) of the section at arc lengths, including its twist."""
     up = None if settings.up is None else np.array(settings.up, dtype=np.float64)
     x, y = frames_along(path, s, up, steps=steps)
     if settings.twist:
@@ -129,7 +131,7 @@ def _check_closed(path: Path, settings: Sweep) -> None:
 
 
 def _planes(section: Grid, path: Path) -> int:
-    """Return the planes of nodes that a path needs (see `Sweep`)."""
+    """Return the number of planes of nodes that a path needs (see `Sweep`)."""
     places = path.at(np.linspace(0.0, path.length, _LOOKED_AT))
     bend = float(norms(places.curvature).max())
     area = cells = 0.0
@@ -140,13 +142,17 @@ def _planes(section: Grid, path: Path) -> int:
         cells += u.size
     step = _LONG * math.sqrt(area / cells)
     step = min(step, math.radians(TURN_DEG) / bend) if bend else step
+    check_reach(
+        path.length / step * cells, "cells", f"a path of length {path.length:.4g} that bends with a radius "
+        f"of {1.0 / bend if bend else math.inf:.3g}", "smooth the path, or give {planes}",
+    )  # fmt: skip
     return max(2, math.ceil(path.length / step - 1e-9) + 1)
 
 
 def _check_bends(
     outline: Floats, path: Path, s: Floats, axes: tuple[Floats, Floats], settings: Sweep
 ) -> None:
-    """Raise InputError where the path bends more tightly than the section reaches to its inside."""
+    """Raise InputError if the section extends beyond the centre of curvature of the path."""
     points, _, curvature = path.at(s)
     size = _sizes(path, s, settings)
     inwards = np.stack([(curvature * axis).sum(axis=1) for axis in axes], axis=1) * size[:, None]
@@ -164,7 +170,7 @@ def _check_bends(
 
 
 def walled(section: Grid) -> Grid:
-    """Return a section whose whole outer boundary has patches, each of a kind."""
+    """Return a section whose whole outer boundary has patches with a kind."""
     if any(connection.transform for connection in section.connections):
         raise InputError("the section is periodic", "leave its periodic connections out")
     patches: list[Patch] = []
@@ -177,10 +183,10 @@ def walled(section: Grid) -> Grid:
 
 
 def self_crossing(path: Path, reach: float) -> tuple[float, float, float] | None:
-    """Return a place where a section that reaches so far about the path runs through itself, if there is one.
+    """Return a place where a swept section with the extent `reach` intersects itself, if there is one.
 
-    Places of the path that are farther apart along it than half a circle of that reach, and nearer to each
-    other than twice the reach, are such.
+    It is a place where two points of the path are closer than twice the reach, although the path between them
+    is longer than half a circle with this radius.
     """
     count = int(min(1500, max(64, 4 * path.length / max(reach, 1e-300))))
     s = np.linspace(0.0, path.length, count)
@@ -197,6 +203,6 @@ def self_crossing(path: Path, reach: float) -> tuple[float, float, float] | None
 
 
 def reach_of(section: Grid) -> float:
-    """Return how far a section reaches from its origin."""
+    """Return the largest distance of a section from its origin."""
     corners: Sequence[Floats] = [block.nodes.reshape(-1, 2) for block in section.blocks]
     return max(float(np.hypot(*each.T).max()) for each in corners)

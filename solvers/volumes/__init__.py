@@ -1,1 +1,1 @@
-"""Volumes inside six faces."""
+"""Volume grids inside six faces."""

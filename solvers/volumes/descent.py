@@ -1,4 +1,4 @@
-"""Descents of the functional over the inner nodes of one block, its edges measured by their means."""
+"""Minimisation of the functional over the interior nodes of one block, with mean lengths as targets."""
 
 from itertools import product
 
@@ -12,9 +12,9 @@ from meshonet.solvers.energy.hexes import HexProblem, Slides, descent_of
 
 
 class PlanesDescent(HexProblem):
-    """Descents from planes of nodes (3, ni, nj, nk), which they change in place, at inner nodes only.
+    """Minimisation over planes of nodes (3, ni, nj, nk), in place, at interior nodes.
 
-    Edges of all directions are measured by the same length where cells are to be like `cubes`.
+    With `cubes`, edges of all directions have the same target length.
     """
 
     def __init__(self, planes: Floats, cubes: bool = False) -> None:
@@ -34,14 +34,14 @@ class PlanesDescent(HexProblem):
         self.descent = descent_of(self.nodes, tables, sizes, self.mesh.cells, slides, over)
 
     def run(self, weights: HexWeights, most: int, epsilon: float = 0.0) -> tuple[float, float]:
-        """Take `most` iterations, fewer without gain; return the smallest Jacobian and the value."""
+        """Do at most `most` iterations; return the smallest Jacobian and the value."""
         found = super().run(weights, most, epsilon)
         self.planes[...] = self.nodes.T.reshape(self.planes.shape)
         return found
 
 
 def inverse_lengths(planes: Floats) -> tuple[float, float, float]:
-    """Return 1 / root mean square step of the four edges along each direction of planes (3, ni, nj, nk)."""
+    """Return the inverse root mean square step of the edges in each direction of planes (3, ni, nj, nk)."""
     lengths = []
     for axis in range(3):
         rows = np.moveaxis(planes, axis + 1, -1)

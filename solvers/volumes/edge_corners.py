@@ -1,4 +1,4 @@
-"""Corners of cells that lie in two faces at once: no inner node can open them."""
+"""Checks corners of cells that lie in two faces, which no interior node can improve."""
 
 import numpy as np
 
@@ -10,10 +10,10 @@ from meshonet.solvers.volumes.near_faces import closed_place
 
 
 def check_corners(faces: SixFaces) -> None:
-    """Raise InputError, with the node, where `faces` fold a cell whatever its inner nodes are.
+    """Raise InputError, with the node, if `faces` fold a cell for any interior nodes.
 
-    At a node of an edge of the volume the three edges of a cell that meet there lie in the two faces. If
-    their Jacobian is not positive the cell is folded.
+    At a node of an edge of the volume, the three edges of a cell that meet there lie in the two faces. If
+    their Jacobian is not positive, the cell is folded.
     """
     check_hand(faces)
     worst = []
@@ -44,7 +44,7 @@ def check_corners(faces: SixFaces) -> None:
 
 
 def check_hand(faces: SixFaces) -> None:
-    """Raise InputError where the cells at all eight corners of the volume are left-handed."""
+    """Raise InputError if the cells at all eight corners of the volume are left-handed."""
     steps = [np.diff(np.stack(faces.edges_along(axis)), axis=1)[:, [0, -1]] for axis in range(3)]
     places = np.array(list(np.ndindex(2, 2, 2))).T
     edges = []
@@ -56,7 +56,7 @@ def check_hand(faces: SixFaces) -> None:
 
 
 def _near(faces: SixFaces, place: tuple[int, int, int]) -> str:
-    """Return the text of the node of a face that an inner node is next to."""
+    """Return a description of the node of a face next to an interior node."""
     for side, (axis, end) in PLACES.items():
         if place[axis] == (1 if end == 0 else faces.counts[axis] - 2):
             first, second = (place[each] for each in range(3) if each != axis)

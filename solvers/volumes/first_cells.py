@@ -1,8 +1,8 @@
-"""Cells at a face as high as the faces beside it say: nodes of a volume moved along their lines.
+"""Restores first-cell heights at faces by moving nodes along grid lines.
 
-Splines carry the faces' laws inside as parameters; heights then follow how far lines stretch there. Where
-nodes crowd at a face, its first cells are to be what its four edges say: heights are blended between these,
-and each line is respaced, less and less away from the face.
+Splines continue the node distributions of the faces into the volume as parameters; heights of cells then
+depend on the lengths of the lines. If nodes are clustered at a face, its first-cell heights are interpolated
+between those of its four edges, and each line is redistributed, less and less away from the face.
 """
 
 import numpy as np
@@ -16,13 +16,13 @@ from meshonet.kernels._native import volume_lines
 from meshonet.solvers.volumes.laws import Laws
 
 CROWDED = 0.5
-"""First steps of a law, in its mean step, below which nodes crowd at that end."""
+"""Ratio of the first step to the mean step below which nodes count as clustered at that end."""
 REACH = 12.0
-"""Steps over which the change of a line's first one fades by e."""
+"""Number of steps over which the change of the first step decays by a factor e."""
 
 
 def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, ...]:
-    """Respace lines of planes (3, ni, nj, nk) in place where `faces` crowd; return the sides that do."""
+    """Redistribute lines of planes (3, ni, nj, nk), in place, at clustered `faces`; return their sides."""
     kept: list[str] = []
     for axis in range(3):
         heights: list[Floats | None] = [None, None]
@@ -39,7 +39,10 @@ def keep_first_cells(planes: Floats, faces: SixFaces, laws: Laws) -> tuple[str, 
 
 
 def _heights(faces: SixFaces, face: Side) -> Floats:
-    """Return the lengths (n, m) of first steps at a face, blended between those of its edges; 0 on these."""
+    """Return the first-cell heights (n, m) at a face, interpolated between those of its edges.
+
+    0 on the edges.
+    """
     axis = PLACES[face][0]
     first, second = (each for each in range(3) if each != axis)
     beside = [side for side in FACES if PLACES[side][0] != axis]

@@ -1,4 +1,4 @@
-"""Nodes inside six faces by transfinite interpolation, with a spline added where one is given."""
+"""Transfinite interpolation inside six faces, with an optional spline that is added."""
 
 from dataclasses import dataclass
 
@@ -14,13 +14,13 @@ from meshonet.solvers.volumes.laws import Laws
 
 @dataclass(frozen=True, eq=False)
 class Spline:
-    """A tensor product of cubic B-splines over the nodes of a volume.
+    """A tensor product of cubic B-splines, evaluated at the nodes of a volume.
 
     Parameters
     ----------
     coefficients : (3, m1, m2, m3)
-    first : for each direction the first (n,) of the four coefficients that reach a node.
-    weights : of these four, (n, 4) along xi and eta, (4, n) along zeta.
+    first : (n,) for each direction, index of the first of four coefficients at a node.
+    weights : weights of these four, (n, 4) along xi and eta, (4, n) along zeta.
     """
 
     coefficients: Floats
@@ -31,10 +31,10 @@ class Spline:
 def interpolate(
     faces: SixFaces, laws: Laws, spline: Spline | None = None, out: Floats | None = None
 ) -> Floats:
-    """Return nodes (ni, nj, nk, 3), planar: the Boolean sum of the three directions at `laws`, plus `spline`.
+    """Return planar nodes (ni, nj, nk, 3): the Boolean sum of the three directions at `laws`, plus `spline`.
 
-    `out` (3, ni, nj, nk) takes them where fresh memory, which costs as much as the nodes, is not wanted.
-    Gordon and Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
+    `out` (3, ni, nj, nk) is used for the result if given; allocating memory costs as much as computing the
+    nodes. Gordon and Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
     """
     planes = np.empty((3, *faces.counts)) if out is None else out
     sides = tuple(np.moveaxis(face, -1, 0) for face in faces.faces)

@@ -1,7 +1,7 @@
-"""Parameters from 0 to 1 of nodes along the edges of a volume: what interpolation between faces goes by.
+"""Node distributions along the edges of a volume, as parameters from 0 to 1 for the interpolation.
 
-The laws of one direction are (4, n), of its edges at the (low, low), (high, low), (low, high) and (high,
-high) ends of the other two directions.
+The laws of one direction are (4, n): those of its edges at the (low, low), (high, low), (low, high) and
+(high, high) ends of the other two directions.
 """
 
 from typing import TypeAlias
@@ -13,10 +13,10 @@ from meshonet.geometry.blocks.six_faces import SixFaces, place_of
 from meshonet.geometry.errors import InputError
 
 Laws: TypeAlias = tuple[Floats, Floats, Floats]
-"""Those of xi, eta and zeta."""
+"""Laws of xi, eta and zeta."""
 
 SAME = 1e-9
-"""Laws that differ by no more are the same one: rounding, which would only cost time."""
+"""Largest difference of laws that count as equal."""
 
 
 def uniform_laws(counts: tuple[int, int, int]) -> Laws:
@@ -26,16 +26,13 @@ def uniform_laws(counts: tuple[int, int, int]) -> Laws:
 
 
 def arc_laws(faces: SixFaces) -> Laws:
-    """Return the arc lengths of the edges, each over its whole length.
-
-    Raises InputError: an edge of no length.
-    """
+    """Return the relative arc lengths of the edges. Raises InputError: an edge without length."""
     xi, eta, zeta = (_arcs(faces.edges_along(axis)) for axis in range(3))
     return xi, eta, zeta
 
 
 def mean_laws(laws: Laws) -> Laws:
-    """Return for each direction the mean of its four laws, four times."""
+    """Return for each direction the mean of its four laws, repeated four times."""
     xi, eta, zeta = (np.tile(law.mean(axis=0), (4, 1)) for law in laws)
     return xi, eta, zeta
 

@@ -1,8 +1,8 @@
 """Full approximation scheme for Winslow's equations in a volume, with semi-coarsening.
 
-Levels are coarsened in the directions in which nodes are near each other, until cells are as long as wide:
-lines in all three directions then smooth well on every level. Counts are free: a coarser level has every
-second node where that is possible, and else its own even steps.
+Levels are coarsened only in the directions with the shortest steps until cells are about as long as wide.
+Line relaxation in all three directions is then effective on every level. Node counts are arbitrary: a coarser
+level has every second node if possible, and equal steps of its own otherwise.
 
 Brandt, Math. Comp. 31 (1977) 333-390; Trottenberg, Oosterlee and Schüller, Multigrid (2001), section 5.1.
 """
@@ -29,10 +29,10 @@ SWEEPS, FIRST = 12, 30  # on the coarsest level: in a cycle, and to start with
 
 @dataclass(frozen=True, eq=False)
 class Transfer:
-    """Between a level's nodes along one direction and the coarser one's.
+    """Transfer between the nodes of a level along one direction and those of the coarser one.
 
-    Each is a first node and weights: `up` (n, 2) linear interpolation, `down` (m, terms) its transpose over
-    the ratio of steps, `at` (m, 4) cubic interpolation at the coarse nodes.
+    Each operator is a first node and weights: `up` (n, 2) is linear interpolation, `down` (m, terms) its
+    transpose divided by the ratio of steps, `at` (m, 4) cubic interpolation at the coarse nodes.
     """
 
     up: tuple[NDArray[np.intp], Floats]
@@ -41,7 +41,7 @@ class Transfer:
 
 
 class Level:
-    """Nodes on which the equations are solved, and the way to the next coarser ones."""
+    """Nodes of a level, and the transfer to the next coarser one."""
 
     def __init__(self, faces: SixFaces, *, coarse: bool) -> None:
         self.faces = faces
@@ -59,13 +59,13 @@ class Level:
             winslow_smooth(x, self.right if forced else None, factor, self.threads, self.room)
 
     def norm(self, x: Floats, forced: bool) -> float:
-        """Return the norm of the residual of x, which is kept in `residual`."""
+        """Return the norm of the residual of x, which is stored in `residual`."""
         right = self.right if forced else None
         return float(np.sqrt(winslow_residual(x, right, self.residual, self.threads, self.room)))
 
 
 class VolumeMultigrid:
-    """Cycles over the levels of a volume inside `faces`, each relaxed `sweeps` times before and after."""
+    """Cycles over the levels of a volume inside `faces`, with `sweeps` relaxations before and after."""
 
     def __init__(self, faces: SixFaces, sweeps: int = 1, factor: float = 1.0) -> None:
         self.levels = [Level(faces, coarse=False)]
@@ -78,11 +78,11 @@ class VolumeMultigrid:
             self.levels.append(Level(level.faces.resampled(counts), coarse=True))
 
     def nested(self) -> tuple[Floats, float, float]:
-        """Return x after a cycle on each level; how far it is from the level below; the change.
+        """Return x after a cycle on each level, its difference from the coarser level, and the last change.
 
-        What is carried up is the difference from the interpolation. The numbers are the largest differences
-        of a coordinate: from the next coarser level, about three times the discretisation error, and by the
-        last cycle.
+        The difference from the interpolation is transferred to finer levels. Both numbers are the largest
+        differences of a coordinate: from the next coarser level, which is about three times the
+        discretisation error, and by the last cycle.
         """
         last = len(self.levels) - 1
         x = self.levels[last].start.copy()
@@ -100,7 +100,10 @@ class VolumeMultigrid:
         return x, apart, change
 
     def cycle(self, x: Floats) -> tuple[float, float]:
-        """Do one V cycle in place; return the norm of the residual before it and the change of some nodes."""
+        """Do one V cycle in place.
+
+        Return the norm of the residual before it, and the change of some nodes.
+        """
         some = x[:, ::SOME, ::SOME, ::SOME]
         before = some.copy()
         norm = self._cycle(0, x, False)
@@ -136,9 +139,9 @@ class VolumeMultigrid:
         return norm
 
     def _moved(self, depth: int, way: str, values: Floats, to: Floats | None = None) -> Floats:
-        """Return values between a level and the next coarser one, in memory that is used again; or add `to`.
+        """Return values transferred to the next level, in reused memory; or add them to `to`.
 
-        Differences are zero on faces, and stay so.
+        Differences are zero on faces before and after.
         """
         fine, coarse = self.levels[depth].faces.counts, self.levels[depth + 1].faces.counts
         counts = fine if way == "up" else coarse
@@ -161,7 +164,7 @@ class VolumeMultigrid:
 
 
 def transfer(n: int, m: int) -> Transfer:
-    """Return the transfer between n nodes of even steps and m fewer of them over the same length."""
+    """Return the transfer between n equally spaced nodes and m fewer ones."""
     at = np.arange(n) * ((m - 1) / (n - 1))
     first = np.minimum(at.astype(np.intp), m - 2)
     weights = np.stack([1.0 - (at - first), at - first], axis=1)
@@ -182,7 +185,7 @@ def transfer(n: int, m: int) -> Transfer:
 
 
 def _lagrange(t: Floats, terms: int) -> Floats:
-    """Return the weights (n, terms) of values at 0, 1, ... for the polynomial through them at t (n,)."""
+    """Return the weights (n, terms) of values at 0, 1, ... for the interpolation polynomial at t (n,)."""
     weights = np.ones((len(t), terms))
     for a in range(terms):
         for b in range(terms):
@@ -193,7 +196,7 @@ def _lagrange(t: Floats, terms: int) -> Floats:
 
 
 def _coarser(faces: SixFaces) -> tuple[int, int, int] | None:
-    """Return the counts of the next coarser level, halved where steps are short; None: there is none."""
+    """Return the node counts of the next coarser level, or None if there is none."""
     counts = faces.counts
     steps = []
     for axis in range(3):

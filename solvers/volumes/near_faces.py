@@ -1,9 +1,9 @@
-"""Inner nodes next to faces: whether there is any place for them at which the corners on the faces are open.
+"""Checks whether interior nodes next to faces have a valid position.
 
-The corners of cells at a node q of a face have one edge inside, to the inner node p next to it, and two in
-the face, with the normal n; they are open where n · (p - q) > 0. So p must lie in half-spaces: four from each
-face that it is next to. By Helly's theorem these have no point in common exactly when four of them have none,
-and by Farkas' lemma four have none when λ >= 0 with Σ λ n = 0 has Σ λ n·q >= 0; for four normals λ are the
+The corners of cells at a node q of a face have one edge into the volume, to the interior node p, and two
+edges in the face with the normal n. They are valid if n · (p - q) > 0. So p must lie in half-spaces, four for
+each face next to it. By Helly's theorem these have no common point exactly if four of them have none. By
+Farkas' lemma, four have none if λ >= 0 with Σ λ n = 0 implies Σ λ n·q >= 0; for four normals, λ are the
 determinants of three of them.
 """
 
@@ -22,11 +22,11 @@ Place = tuple[int, int, int]
 
 
 Ranges = list[tuple[int, int]]
-"""First and last (excluded) node along each direction."""
+"""First and end index of nodes along each direction."""
 
 
 def closed_place(faces: SixFaces) -> Place | None:
-    """Return i, j, k of an inner node that has no place at which the corners around it are open, or None."""
+    """Return i, j, k of an interior node without a valid position, or None."""
     for sides, ranges in next_to_faces(faces.counts):
         walls = tuple((np.ascontiguousarray(getattr(faces, side)), *PLACES[side]) for side in sides)
         sizes = [last - low for low, last in ranges]
@@ -39,7 +39,7 @@ def closed_place(faces: SixFaces) -> Place | None:
 
 
 def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ...], Ranges]]:
-    """Yield sets of sides, those of three first, and the inner nodes next to all of them, if any."""
+    """Yield sets of sides, those of three first, and the interior nodes next to all of them."""
     for size in (3, 2, 1) if min(counts) > 2 else ():
         for sides in combinations(FACES, size):
             if len({PLACES[side][0] for side in sides}) == size:
@@ -47,7 +47,7 @@ def next_to_faces(counts: tuple[int, int, int]) -> Iterator[tuple[tuple[Side, ..
 
 
 def _ranges(sides: tuple[Side, ...], counts: tuple[int, int, int]) -> Ranges:
-    """Return the inner nodes next to all `sides`."""
+    """Return the interior nodes next to all `sides`."""
     ranges = [(1, n - 1) for n in counts]
     for side in sides:
         axis, end = PLACES[side]

@@ -1,9 +1,9 @@
-"""A volume grid refined to any resolution: splines of its difference from transfinite interpolation.
+"""Refines a volume grid to any resolution, by splines of its difference from transfinite interpolation.
 
     x = T(fine faces) + S (x_c - T(coarse faces))
 
-with T the transfinite interpolation in the parameters of the nodes and S tricubic splines on the coarse
-grid's uniform knots: the difference is smooth, and the faces' own detail is in T.
+T is transfinite interpolation in the parameters of the nodes, S tricubic spline interpolation on the uniform
+knots of the coarse grid. The difference is smooth, and T contains the details of the faces.
 """
 
 from functools import lru_cache
@@ -20,9 +20,9 @@ from meshonet.solvers.volumes.laws import Laws, uniform_laws
 
 
 def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws) -> Floats:
-    """Return nodes (3, ni, nj, nk) inside `faces`, at the parameters `laws`, each law four times.
+    """Return nodes (3, ni, nj, nk) inside `faces` at the parameters `laws`, four equal ones per direction.
 
-    `coarse` (3, mi, mj, mk) are those inside `coarse_faces`, of equal steps in the same parameters.
+    `coarse` (3, mi, mj, mk) are the nodes inside `coarse_faces`, with equal steps in the same parameters.
     """
     start = interpolate(coarse_faces, uniform_laws(coarse_faces.counts))
     spline = spline_of(coarse - np.moveaxis(start, -1, 0), tuple(law[0] for law in laws))
@@ -30,7 +30,7 @@ def refine_volume(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws:
 
 
 def spline_of(values: Floats, places: tuple[Floats, ...]) -> Spline:
-    """Return the spline through `values` (3, mi, mj, mk) on uniform knots, at `places` (n,) a direction."""
+    """Return the spline through `values` (3, mi, mj, mk) on uniform knots, at `places` (n,) per direction."""
     coefficients = values
     for axis in range(3):
         matrix = coefficient_matrix(values.shape[axis + 1])
@@ -61,7 +61,7 @@ def coefficient_matrix(m: int) -> Floats:
 
 
 def _reached(m: int, places: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """Return of places (n,) from 0 to 1 the first of four coefficients that count, and weights (n, 4)."""
+    """Return for `places` (n,), 0 to 1, the index of the first of four coefficients, and weights (n, 4)."""
     at = places * (m - 1)
     first = np.clip(at.astype(np.intp), 0, m - 2)
     t = at - first

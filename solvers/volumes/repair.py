@@ -1,4 +1,4 @@
-"""Unfold the folded cells of a volume on windows around them, whose faces stay."""
+"""Repairs the folded cells of a volume in windows around them, with fixed faces."""
 
 import numpy as np
 
@@ -12,17 +12,17 @@ from meshonet.solvers.volumes.descent import PlanesDescent
 from meshonet.solvers.volumes.windows import Window, windows
 
 MARGINS = 5, 8, 11, 14
-"""Nodes around a group of folded cells that windows reach, round by round while cells stay folded."""
+"""Numbers of nodes around a group of folded cells in a window, for successive rounds."""
 ROUNDS, ROUND = 20, 8
-"""Rounds of unfolding in a window at the most, and iterations of each."""
+"""Largest number of rounds of untangling in a window, and iterations of each."""
 FIRST, OPEN, LAST = 15, 8, 10
-"""Iterations of the stages that open what has been unfolded."""
+"""Iterations of the stages that improve the cells after untangling."""
 ENOUGH = 0.02
-"""Smallest Jacobian from which on the whole functional is of use in a window."""
+"""Smallest Jacobian above which the complete functional is used in a window."""
 
 
 def repair(planes: Floats) -> int:
-    """Unfold cells of planes (3, ni, nj, nk) in place; return how many stay folded."""
+    """Untangle cells of planes (3, ni, nj, nk) in place; return the number of folded cells left."""
     nodes = np.moveaxis(planes, 0, -1)
     bad = folded_cells(nodes)
     if min(planes.shape[1:]) < 3:
@@ -37,7 +37,7 @@ def repair(planes: Floats) -> int:
 
 
 def open_flat_cells(planes: Floats) -> None:
-    """Open flat cells of planes (3, ni, nj, nk) on windows, in place."""
+    """Open flat cells of planes (3, ni, nj, nk) in windows, in place."""
     (scaled,) = solid_metric(Grid.from_nodes(np.moveaxis(planes, 0, -1)), "scaled_jacobian")
     for window in windows(np.argwhere(scaled < NEARLY), MARGINS[0], planes.shape[1:]):
         _mend(planes, window)
@@ -51,7 +51,7 @@ def _mend(planes: Floats, window: Window) -> None:
 
 
 def _unfold(part: Floats) -> None:
-    """Unfold a window and open its cells, in place."""
+    """Untangle a window and open its cells, in place."""
     descent = PlanesDescent(part)
     if descent.unfold(descent.smallest(), ROUNDS, ROUND) <= 0.0:
         return

@@ -13,13 +13,13 @@ from meshonet.solvers.volumes.laws import arc_laws, uniform_laws
 
 @timed
 def tfi(faces: SixFaces, *, blending: Blending = "arclength") -> Solution:
-    """Fill a volume between its faces, each a smooth weight of itself.
+    """Return the grid of a volume by transfinite interpolation between its six faces.
 
-    With `blending` ``arclength`` a node's parameters are the arc lengths of the edges around it, blended, so
-    that nodes crowd inside where they do along the edges; ``linear`` goes by node numbers. Folds are possible
-    wherever faces are bent.
+    With `blending` ``arclength`` the parameters of a node are interpolated between the relative arc lengths
+    of the edges, so that clustering along the edges continues inside. With ``linear`` they are relative
+    indices. Cells may fold where faces are bent.
 
-    Raises InputError: an edge of no length; an unknown `blending`; a left-handed volume.
+    Raises InputError: an edge without length; an unknown `blending`; a left-handed volume.
     """
     if blending not in get_args(Blending):
         remedy = "use " + "/".join(get_args(Blending))

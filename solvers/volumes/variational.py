@@ -1,4 +1,4 @@
-"""Variational volumes from six faces: an optimum on few nodes, refined to all nodes and repaired there."""
+"""Variational volumes inside six faces: optimised on few nodes, refined to all nodes, and repaired there."""
 
 import time
 from typing import Literal
@@ -22,16 +22,16 @@ from meshonet.solvers.volumes.refine import refine_volume
 from meshonet.solvers.volumes.repair import open_flat_cells, repair
 
 COARSE = 33
-"""Nodes along a direction on which the optimum is found, unless chosen."""
+"""Default node count along a direction for the optimisation."""
 SPARE = 41
-"""Nodes along a direction up to which the faces' own take the place of coarse ones."""
+"""Largest node count along a direction for which the nodes of the faces are used instead of coarse ones."""
 EVEN = 1.5
-"""Ratio of steps along edges, longest to shortest of a direction, up to which nodes are evenly spaced."""
+"""Largest ratio of the longest to the shortest step of an edge that counts as evenly spaced."""
 COARSEST = 11  # a copy of no more nodes along each direction is solved from the interpolation
 ITERATIONS = 30, 20, 40
-"""At the most: on coarser levels, on the last but one, on the last."""
+"""Largest numbers of iterations: on coarser levels, on the last but one, on the last."""
 FEW = 20
-"""Nodes a direction of levels up to which flat cells are opened first: finer ones start from open cells."""
+"""Largest node count of levels on which flat cells are opened first; finer ones start without flat cells."""
 LEAST = 5  # nodes along a direction of coarse faces
 
 
@@ -44,14 +44,14 @@ def variational(
 ) -> Solution:
     """Minimise a functional of `meshonet.solvers.energy.hex_functional` over the nodes inside `faces`.
 
-    The optimum is found on at most `coarse` nodes a direction, evenly spaced in the mean arc length of the
-    edges ("auto": 33; None: as many as the faces have), from coarser copies, and evaluated at the nodes of
-    the faces by splines; folds that this leaves at faces are unfolded on windows. `max_cycles` are
-    iterations on the finest level that is solved. `energy` is what is minimised: ``angles``, with lengths
-    that change gradually, or ``shape``, for cells like cubes.
+    The minimum is computed on at most `coarse` nodes in each direction ("auto": 33; None: those of the
+    faces), evenly spaced in the mean arc length of the edges, by nested iteration. It is then evaluated at
+    all nodes by splines, and cells that this folds at faces are repaired in windows. `max_cycles` limits the
+    iterations on the finest level that is solved. `energy` selects the functional: ``angles``, with gradual
+    changes of lengths, or ``shape``, for cells like cubes.
 
-    Raises InputError: faces that fold cells whatever is inside, with the node, before any work; an edge of no
-    length; settings not positive.
+    Raises InputError: faces that fold cells for any interior nodes (with the node, before the computation);
+    an edge without length; settings that are not positive.
     """
     begun = time.perf_counter()
     _check(max_cycles, coarse, energy)
@@ -79,17 +79,17 @@ def variational(
 
 
 def _terms(weights: HexWeights) -> dict[str, float]:
-    """Return the weights that a grid's provenance names."""
+    """Return the weights for the grid's provenance."""
     return {} if weights.of_cubes else {"shape": weights.shape, "smoothness": weights.smoothness}
 
 
 def optimum(
     faces: SixFaces, most: int | None = None, weights: HexWeights = OPTIMAL
 ) -> tuple[Floats, int]:  # fmt: skip
-    """Return the optimum inside evenly spaced `faces`, (3, ni, nj, nk), and iterations on the finest level.
+    """Return the minimum inside evenly spaced `faces`, (3, ni, nj, nk), and iterations on the finest level.
 
-    Coarser copies come first, the coarsest from the interpolation. A grid that could not be unfolded is
-    returned as it is.
+    Coarser copies are solved first, the coarsest from the interpolation. A grid that cannot be untangled is
+    returned folded.
     """
     levels = [faces]
     while max(levels[-1].counts) > COARSEST:
@@ -113,10 +113,10 @@ def _interpolated(faces: SixFaces) -> Floats:
 
 
 def _solved(planes: Floats, faces: SixFaces, most: int, weights: HexWeights) -> tuple[Floats, int]:
-    """Return the optimum from planes, which may change, and the iterations.
+    """Return the minimum from planes, which are overwritten, and the iterations.
 
-    Where these stay folded, as splines leave them that overshoot at kinks of faces, the interpolation is the
-    start if it is less so.
+    If the planes stay folded, for example because splines overshoot at kinks of faces, the iteration starts
+    from the interpolation if that has fewer folded cells.
     """
     count, smallest = _settle(planes, most, weights)
     if smallest <= 0.0:
@@ -127,7 +127,7 @@ def _solved(planes: Floats, faces: SixFaces, most: int, weights: HexWeights) -> 
 
 
 def _settle(planes: Floats, most: int, weights: HexWeights) -> tuple[int, float]:
-    """Minimise over planes in place, unfolded first; return the iterations and the smallest Jacobian."""
+    """Untangle and minimise planes in place; return the iterations and the smallest Jacobian."""
     if min(planes.shape[1:]) < 3:
         return 0, np.inf
     descent = PlanesDescent(planes, weights.of_cubes)
@@ -148,13 +148,13 @@ def _settle(planes: Floats, most: int, weights: HexWeights) -> tuple[int, float]
 
 
 def _halved(counts: tuple[int, int, int]) -> tuple[int, int, int]:
-    """Return the counts of every second node, of directions that have more than `COARSEST`."""
+    """Return the counts of every second node, in directions with more than `COARSEST`."""
     ni, nj, nk = (n // 2 + 1 if n > COARSEST else n for n in counts)
     return ni, nj, nk
 
 
 def _coarse_faces(faces: SixFaces, laws: Laws, coarse: int | Literal["auto"] | None) -> SixFaces:
-    """Return the faces that the optimum is found inside: `faces` themselves where they are few and even."""
+    """Return the faces for the optimisation: `faces` themselves if they have few, evenly spaced nodes."""
     most = max(faces.counts) if coarse is None else COARSE if coarse == "auto" else coarse
     spare = SPARE if coarse == "auto" else most
     steps = [np.diff(law[0]) for law in laws]

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 NEIGHBOURS = [step for step in product((-1, 0, 1), repeat=3) if any(step)]
 TILE = 5
-"""Cells a side of the tiles that bad cells are grouped by: those of touching tiles are one group."""
+"""Cells along each side of a tile; bad cells in touching tiles form a group."""
 LARGEST = 36
-"""Nodes a side of a window at the most; larger groups are halved."""
+"""Largest number of nodes along a side of a window; larger groups are halved."""
 
 Window = tuple[slice, slice, slice]
 

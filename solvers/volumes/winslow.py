@@ -1,4 +1,4 @@
-"""Winslow's grid in a volume from its six faces, solved to the accuracy of the discretisation."""
+"""Winslow's grid inside six faces, solved to the accuracy of the discretisation."""
 
 import numpy as np
 
@@ -12,13 +12,13 @@ from meshonet.solvers.volumes.edge_corners import check_corners
 from meshonet.solvers.volumes.multigrid import VolumeMultigrid
 
 CYCLES = 100
-"""Cycles on all nodes at the most."""
+"""Largest number of cycles on all nodes."""
 RATE = 0.4
-"""What a cycle leaves of an error, until two of them tell."""
+"""Assumed convergence factor of a cycle until two cycles have measured it."""
 ENOUGH = 1.0
-"""Part of the discretisation error that may be left of the equations' own."""
+"""Allowed iteration error relative to the discretisation error."""
 CAREFUL = ((1, 1.0), (2, 0.7))
-"""Sweeps before and after coarser levels, and their relaxation factor: tried in turn while cycles diverge."""
+"""Sweeps before and after coarser levels, and relaxation factors, tried in turn if cycles diverge."""
 
 
 @timed

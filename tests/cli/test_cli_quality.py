@@ -33,9 +33,10 @@ def test_the_table_is_the_result(meshonet: Meshonet, grid_vts: Path) -> None:
     assert (done.code, done.err) == (0, "")
     assert "grid.vts: 21 x 11 nodes, quad grid, 200 cells, none folded" in done.out
     lines = done.out.splitlines()
-    table, growth = lines[1:-3], lines[-3:]
+    table, walls, growth = lines[1:-8], lines[-8:-3], lines[-3:]
     assert {line.split()[0] for line in table[1:]} == set(NAMES)
     assert [line[:9] for line in growth] == ["growth   ", "along xi ", "along eta"]
+    assert [line.split(":")[0] for line in walls[1:]] == ["south", "south", "north", "north"]
     assert [len({len(line) for line in rows}) for rows in (table, growth)] == [1, 1]  # columns are aligned
 
 

@@ -1,4 +1,4 @@
-"""Grids in space by the commands: surfaces marched off, six faces filled, and what is refused."""
+"""Grids in space by the commands: volumes marched from surfaces, six faces filled, and what is refused."""
 
 from pathlib import Path
 
@@ -47,6 +47,36 @@ def test_a_surface_is_marched_off(meshonet: Meshonet, sphere: str, tmp_path: Pat
         )  # corners of patches are marched a little farther
         assert far.mean() == pytest.approx(5.0, rel=0.06)
         assert far == pytest.approx(5.0, rel=0.12)
+
+
+@pytest.mark.parametrize("height", [0.0, 0.3])
+def test_a_flat_patch_in_space_is_a_surface(meshonet: Meshonet, tmp_path: Path, height: float) -> None:
+    x, y = np.meshgrid(np.linspace(0, 2, 9), np.linspace(0, 1, 5), indexing="ij")
+    plate = np.stack([x, y, np.full_like(x, height)], axis=-1)
+    library.write(Grid((Block(plate),)), tmp_path / "plate.xyz")
+    out = tmp_path / "volume.cgns"
+    words = "--first-cell 1e-3 --layers 21 --far-field 2"
+    done = meshonet("solve-pde", tmp_path / "plate.xyz", "--method", "hyperbolic", *words.split(), "-o", out)
+    assert done.code == 0, done.err
+    nodes = library.read(out).blocks[0].nodes
+    assert nodes.shape == (9, 5, 21, 3)
+    assert np.array_equal(nodes[:, :, 0], plate)
+    assert nodes[..., -1, 2] == pytest.approx(height + 2.0)
+    same = library.grid(
+        tmp_path / "plate.xyz", method="hyperbolic", first_cell=1e-3, layers=21, far_field=2.0
+    )
+    assert np.array_equal(same.blocks[0].nodes, nodes)
+
+
+def test_a_plane_of_symmetry_that_closes_in_is_refused(meshonet: Meshonet, tmp_path: Path) -> None:
+    a, b = np.meshgrid(np.linspace(0, 1, 7), np.linspace(0, 1, 7), indexing="ij")
+    floor, wall = (np.stack(each, axis=-1) for each in ((a, b, 0 * a), (0 * a, a, b)))
+    library.write(Grid((Block(floor), Block(wall))), tmp_path / "corner.xyz")
+    words = (*MARCH, "--symmetry", "x")
+    done = meshonet("solve-pde", tmp_path / "corner.xyz", *words, "-o", tmp_path / "none.cgns")
+    assert done.code == 2
+    assert "the plane x = 1 closes in before the far field" in done.err
+    assert not (tmp_path / "none.cgns").exists()
 
 
 @pytest.mark.usefixtures("eager_threads")

@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from blade_row import write_row
 from command_line import Meshonet, dataset, duct, wave
 from spatial_shapes import cubed_sphere, half_sphere
 
@@ -131,6 +132,7 @@ DOMAINS = {
     "--cells": (f"step.wkt {MADE}", "OPTION 400", "nodes"),
     "--cell-size": (f"step.wkt {MADE}", "OPTION .2", "nodes"),
     "--layout": (f"step.wkt --cells 400 {MADE}", "OPTION tall.json", "nodes"),
+    "--periodic": (f"named.geojson {MADE}", "OPTION left,right", "nodes"),
     "--pitch": (f"naca:0012 --cells 900 {MADE}", "OPTION 0,0", "code"),
     "--inlet": (f"naca:0012 --cells 900 {MADE}", "OPTION .7", "code"),
     "--outlet": (f"naca:0012 --cells 900 {MADE}", "OPTION .7", "code"),
@@ -246,6 +248,11 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--around": (f"{WING} {MADE}", "OPTION 61", "nodes"),
         "--span": (f"{WING} {MADE}", "OPTION 11", "nodes"),
         "--base": (f"{WING} {MADE}", "OPTION .01", "nodes"),
+        "--cells": (
+            f"row.toml --first-cell .01 --growth 1.5 --cells 20000 {MADE}",
+            "OPTION 60000",
+            "nodes",
+        ),
         "--far-field": (f"{WING} {MADE}", "OPTION 7", "nodes"),
         "--tip": (f"{WING} --surface {MADE}", "OPTION flat", "nodes"),
         "--surface": (f"{WING} {MADE}", "OPTION", "nodes"),
@@ -370,11 +377,17 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "tail.csv").write_text("2,0\n2.2,.1\n2.4,0\n2.2,-.1\n2.05,-.08\n")
     (folder / "step.wkt").write_text("POLYGON ((0 1, 2 1, 2 0, 6 0, 6 2, 0 2, 0 1))")
     (folder / "tall.wkt").write_text("POLYGON ((0 1, 2 1, 2 0, 6 0, 6 3, 0 3, 0 1))")
+    (folder / "named.geojson").write_text(
+        '{"type": "Feature", "properties": {"names": [["bottom", "right", "top", "left"], "hole"]}, '
+        '"geometry": {"type": "Polygon", "coordinates": [[[0, 0], [3, 0], [3, 3], [0, 3], [0, 0]], '
+        "[[1, 1.2], [1, 2.2], [2, 2.2], [2, 1.2], [1, 1.2]]]}}"
+    )
     (folder / "hole.wkt").write_text("POLYGON ((0 0, 3 0, 3 3, 0 3, 0 0), (1 1, 1 2, 2 2, 2 1, 1 1))")
     (folder / "box.csv").write_text("0,0\n2,0\n3,1\n0,1\n")
     (folder / "hump.csv").write_text("0,0\n1,0.3\n2,0\n2,1\n0,1\n")
     for name, span in (("wing", 2), ("short", 1)):
         (folder / f"{name}.toml").write_text(SECTIONS.format(span))
+    write_row(folder)
     moon = SECTIONS.format(1).replace("naca:0012", "moon.csv")
     (folder / "moon.toml").write_text(f'kind = "duct"\n{moon}')
     t = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)

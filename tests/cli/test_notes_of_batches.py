@@ -34,7 +34,7 @@ def test_changes_stand_below_the_line_of_a_grid_and_are_counted(meshonet: Meshon
     assert lines[0].startswith("naca:0012 -> ")
     assert lines[1].startswith(f"  {WEDGE}")
     assert (lines[2].startswith("torn.dat -> "), lines[3]) == (True, f"  {LEFT_OUT}")
-    assert "leaves the straight lines between them by up to 0.012 chords" in lines[4]
+    assert "up to 0.012 chords away from straight lines between them" in lines[4]
     assert lines[5].startswith("naca:0012-sharp -> ")
     assert lines[7:] == ["2 shapes were changed, as is said below the line of the grid", FAR]
     assert meshonet("infer", *shapes, *C_GRIDS, "-o", "{index}.vts", "-q").err == ""
@@ -93,7 +93,7 @@ def test_a_hole_in_the_points_is_told_in_a_batch(meshonet: Meshonet) -> None:
     Path("hole.dat").write_text("hole\n" + "\n".join(f"{x:.8f} {y:.8f}" for x, y in points[~gap]))
     words = ("infer", "hole.dat", "naca:0012", "--topology", "o", "--res", "80x30", "-o", "{index}.vts")
     lines = meshonet(*words).err.splitlines()
-    assert re.match(r"  the wall is a smooth curve .* by up to 0[.]00\d+ chords", lines[1])
+    assert re.match(r"  the wall is a smooth curve .* up to 0[.]00\d+ chords away", lines[1])
     assert lines[2].startswith("naca:0012 -> ")
     reports = meshonet(*words, "--json").objects
     assert [len(one["changes"]) for one in reports] == [1, 0]

@@ -74,8 +74,7 @@ def periodic_duct(shift: tuple[float, float] = (0.0, 1.0)) -> Grid:
 
 def test_periodic_sides_are_stretches_of_the_loop_and_their_nodes_partners() -> None:
     mesh = layout_of(periodic_duct()).mesh
-    period = mesh.domain.periodic
-    assert period is not None
+    (period,) = mesh.domain.periodic
     assert (period.first, period.shift) == ((0.0, 4.0), (0.0, 1.0))
     assert period.second == pytest.approx((5.0, 9.0))
     moved = np.flatnonzero(mesh.places.partner >= 0)

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.blocks.connection import o_seam
-from meshonet.geometry.domain.domain import Domain, Periodic
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.layout.to_grid import to_grid
@@ -102,7 +103,7 @@ def test_periodic_sides_are_moved_exactly():
     partner = np.full(15, -1)
     partner[top] = bottom
     loop = Loop.of_polygon(nodes[[0, 12, 14, 2]])
-    domain = Domain((loop,), periodic=Periodic((0, 2 / 3), (1, 2), shift))
+    domain = Domain((loop,), periodic=(Periodic((0, 2 / 3), (1, 2), shift),))
     mesh = QuadMesh(domain, nodes, mesh.quads, replace(mesh.places, partner=partner))
     grid = to_grid(Layout(mesh, layout.blocks))
     moved = [connection for connection in grid.connections if connection.transform]

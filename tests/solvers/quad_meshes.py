@@ -6,8 +6,9 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
-from meshonet.geometry.domain.domain import Domain, Periodic
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 
@@ -104,7 +105,7 @@ def passage(n: int = 12, m: int = 8) -> QuadMesh:
     loop = Loop.of_polygon(outline, corners=corners)
     arcs = [float(a) for a in loop.corner_arcs]
     periodic = Periodic((arcs[0], arcs[1]), (arcs[2], arcs[3]), (float(shift[0]), float(shift[1])))
-    domain = Domain((loop,), periodic=periodic)
+    domain = Domain((loop,), periodic=(periodic,))
     t = np.linspace(0.0, 1.0, m + 1)
     nodes = (low[:, None] + t[:, None] * shift).reshape(-1, 2)
     lattice = np.arange(len(nodes)).reshape(n + 1, m + 1)

@@ -1,4 +1,4 @@
-"""Surfaces of patches to march from, made here."""
+"""Surfaces of patches to march from, made here, and what is measured of volumes."""
 
 from collections.abc import Callable, Sequence
 
@@ -130,6 +130,37 @@ def room_corner(cells: int = 16, planes: int = 2) -> list[Floats]:
     return patches
 
 
+def wedge(degrees: float, cells: int = 24, rows: int = 6, ratio: float = 1.15) -> list[Floats]:
+    """Two walls of length 1 that enclose an angle, cells growing by `ratio` from their common edge."""
+    steps = ratio ** np.arange(cells)
+    along = np.append(0.0, np.cumsum(steps / steps.sum()))
+    z = np.linspace(0.0, 1.0, rows + 1)
+    angle = np.deg2rad(degrees)
+    walls = []
+    for x, y in ((1.0, 0.0), (np.cos(angle), np.sin(angle))):
+        walls.append(np.stack(np.broadcast_arrays(along[:, None] * x, along[:, None] * y, z), axis=-1))
+    return [walls[0][:, ::-1].copy(), walls[1].copy()]
+
+
+def boxes(cubes: set[tuple[int, int, int]], cells: int = 8) -> list[Floats]:
+    """The surface of unit cubes at whole places, a patch for each free face."""
+    s = np.linspace(0.0, 1.0, cells + 1)
+    a, b = np.meshgrid(s, s, indexing="ij")
+    patches = []
+    for cube in sorted(cubes):
+        for axis in range(3):
+            for end in (0, 1):
+                beside = list(cube)
+                beside[axis] += 2 * end - 1
+                if tuple(beside) in cubes:
+                    continue
+                points = np.empty((*a.shape, 3))
+                points[..., axis] = end
+                points[..., axis - 2], points[..., axis - 1] = (a, b) if end else (b, a)
+                patches.append(points + np.array(cube, dtype=float))
+    return patches
+
+
 def plate(cells: int = 16, width: float = 1.0) -> list[Floats]:
     """A square in the plane z = 0, facing up."""
     s = np.linspace(0.0, 1.0, cells + 1)
@@ -220,3 +251,14 @@ def wing_tip(tip: Floats, m: int, rows: int, inner: float = 0.5, bulge: float = 
     ring[:, -1, 2] = tip[0, 2] + height * (1.0 - inner**2)
     ring[-1] = ring[0]
     return ring, core
+
+
+def corner_quality(grid: Grid) -> float:
+    """The least ratio of the smallest to the largest determinant at the eight corners of a cell."""
+    least, ends = np.inf, (slice(None, -1), slice(1, None))
+    for block in grid.blocks:
+        u, v, w = (np.diff(block.nodes, axis=axis) for axis in range(3))
+        corners = [np.cross(u[:, b, c], v[a, :, c]) * w[a, b] for a in ends for b in ends for c in ends]
+        values = np.stack([corner.sum(axis=-1) for corner in corners])
+        least = min(least, float((values.min(axis=0) / np.abs(values).max(axis=0)).min()))
+    return least

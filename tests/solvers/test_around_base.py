@@ -99,3 +99,23 @@ def test_a_wedge_is_made_where_it_is_asked_for_only() -> None:
     kept = meshonet.grid("naca:0012", topology="c", first_cell=1e-4)
     assert len(kept.blocks) == 2
     assert "changes" not in kept.provenance
+
+
+def test_a_base_stays_without_layers_unless_it_is_thin() -> None:
+    kept = meshonet.grid(blunt(0.04), topology="c", res=(401, 101))
+    assert kept.quality().folded == 0
+    assert len(kept.blocks) == 2
+    np.testing.assert_allclose(kept.blocks[1].nodes[0, [0, -1], 1], [-0.02, 0.02], atol=1e-12)
+    assert meshonet.grid("naca:0012", topology="c").topology == "c"
+    assert len(meshonet.grid("naca:0012", topology="c", te="exact").blocks) == 2
+    assert meshonet.grid(blunt(0.04), topology="c", te="wedge").topology == "c"
+
+
+@pytest.mark.parametrize(("ni", "most"), [(81, 0.18), (121, 0.13)])
+def test_few_nodes_are_shared_between_wake_and_wall(ni: int, most: float) -> None:
+    result = made(blunt(0.08), first=1e-4, growth=None, ni=ni, nj=33)
+    assert result.quality.folded == 0
+    (row,) = (p for p in result.grid.patches if p.name == "wall" and p.block == 0)
+    wall = result.grid.blocks[0].nodes[row.start : row.stop + 1, 0]
+    longest = np.linalg.norm(np.diff(wall, axis=0), axis=1).max()
+    assert longest < most  # 0.32 and 0.25 chords where cells at the corners are as long as high

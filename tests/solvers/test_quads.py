@@ -213,7 +213,7 @@ def test_partners_are_one_node() -> None:
     found = optimise(mesh, iterations=300, tolerance=1e-8)
     assert found.valid
     tied = np.flatnonzero((mesh.places.partner >= 0) & (mesh.places.cells == 0))
-    partner, shift = mesh.places.partner[tied], np.array(mesh.domain.periodic.shift)  # type: ignore[union-attr]
+    partner, shift = mesh.places.partner[tied], np.array(mesh.domain.periodic[0].shift)
     np.testing.assert_array_equal(found.mesh.nodes[tied], found.mesh.nodes[partner] + shift)
     assert np.abs(found.mesh.nodes[tied] - mesh.nodes[tied]).max() > 0.01
 
@@ -227,7 +227,7 @@ def test_it_does_not_matter_where_a_period_is_cut() -> None:
     mesh = replace(mesh, places=free)
     first = optimise(mesh, held=held.ravel(), iterations=400, tolerance=1e-9)
     rows = first.mesh.nodes.reshape(13, 9, 2)
-    higher = np.concatenate([rows[:, 3:], rows[:, 1:4] + np.array(mesh.domain.periodic.shift)], axis=1)  # type: ignore[union-attr]
+    higher = np.concatenate([rows[:, 3:], rows[:, 1:4] + np.array(mesh.domain.periodic[0].shift)], axis=1)
     second = optimise(mesh.with_nodes(higher.reshape(-1, 2)), held=held.ravel(), tolerance=1e-9)
     assert second.value == pytest.approx(first.value, rel=1e-8)
     np.testing.assert_allclose(second.mesh.nodes.reshape(13, 9, 2), higher, atol=1e-4)

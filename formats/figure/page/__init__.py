@@ -1,1 +1,1 @@
-"""A grid as one interactive page: data, program and style in a single file that opens without a network."""
+"""Interactive pages of grids: data, program and style in a single HTML file that needs no network."""

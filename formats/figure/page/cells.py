@@ -1,4 +1,4 @@
-"""What a page says of a metric: its values as whole numbers, their distribution, the worst places."""
+"""Quality metrics in an interactive page: values as integers, their histogram, and the worst cells."""
 
 from __future__ import annotations
 
@@ -14,22 +14,25 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.metrics import Metric
 
 BARS = 48
-"""Bars of a histogram."""
+"""Number of bars of a histogram."""
 LEVELS = 65535
-"""Steps that values are rounded to between the least and the greatest."""
+"""Number of levels between the smallest and the largest value to which values are rounded."""
 _RATIO = 50.0
-"""99th over 1st percentile from which a scale is logarithmic."""
+"""Ratio of the 99th to the 1st percentile above which a scale is logarithmic."""
 _CANDIDATES = 20_000
-"""Cells, the worst ones, among which places are looked for."""
+"""Number of worst cells from which the listed ones are selected."""
 _NEAR = 3
-"""Least distance of two worst places, in cells."""
+"""Smallest distance between two listed cells, in cells."""
 _NEAR_PART = 0.06
-"""Worst places are further apart than this many cells, and this part of the cells along some direction."""
+"""Smallest distance between two listed cells relative to the number of cells along some direction."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """A scale of values from `low` to `high`, logarithmic if `log`; `start` and `stop` have 98 % of them."""
+    """A colour scale from `low` to `high`, logarithmic if `log`.
+
+    98 % of the values are between `start` and `stop`.
+    """
 
     low: float
     high: float
@@ -38,14 +41,14 @@ class Scale:
     stop: float
 
     def parts(self, values: Floats) -> Floats:
-        """Return where values are on the scale, 0 at `low` and 1 at `high`."""
+        """Return the positions of values on the scale, 0 at `low` and 1 at `high`."""
         turn = np.log if self.log else np.positive
         low, high = turn(self.low), turn(self.high)
         return np.asarray((turn(values) - low) / max(high - low, 1e-300))
 
 
 def scale_of(values: Floats) -> Scale:
-    """Return the scale of values (n,)."""
+    """Return the scale for values (n,)."""
     low, high = float(values.min()), float(values.max())
     start, stop = (float(value) for value in np.percentile(values, (1, 99)))
     log = low > 0 and stop > _RATIO * start
@@ -54,9 +57,9 @@ def scale_of(values: Floats) -> Scale:
 
 
 def histogram(values: Floats, scale: Scale) -> list[int]:
-    """Return how many of the values (n,) are in each of `BARS` equal parts of what `scale` shows.
+    """Return the number of values (n,) in each of `BARS` equal intervals of the visible part of `scale`.
 
-    The first and the last bar have what lies beyond too.
+    The first and the last bar include the values beyond the ends.
     """
     first, last = scale.parts(np.array([scale.start, scale.stop]))
     part = (scale.parts(values) - first) / max(last - first, 1e-300)
@@ -67,9 +70,9 @@ def histogram(values: Floats, scale: Scale) -> list[int]:
 def worst_places(
     values: Sequence[Floats], metric: Metric, most: int = 10
 ) -> Iterator[tuple[int, tuple[int, ...], float]]:
-    """Yield block, cell and value of the worst cells, worst first, no two of them side by side.
+    """Yield block, cell and value of the worst cells in descending order, without neighbours of earlier ones.
 
-    `values` are those of the cells of each block.
+    `values` are the cell values of each block.
     """
     every = np.concatenate([cells.ravel() for cells in values])
     badness = every if metric.worst == "min" else -every
@@ -95,7 +98,7 @@ def worst_places(
 
 
 def corners_of(grid: Grid, block: int, cell: tuple[int, ...]) -> Floats:
-    """Return the corners (4, d) or (8, 3) of a cell, in the order of their indices, the last one fastest."""
+    """Return the corners (4, d) or (8, 3) of a cell, ordered by their indices, the last index fastest."""
     nodes = grid.blocks[block].nodes
     part = nodes[tuple(slice(index, index + 2) for index in cell)]
     return part.reshape(-1, nodes.shape[-1])

@@ -1,4 +1,4 @@
-"""What all HTML files from here have: a document in one file."""
+"""HTML documents that consist of a single file."""
 
 import html
 from importlib.resources import files
@@ -18,7 +18,7 @@ _PAGE = """<!doctype html>
 </body>
 </html>
 """
-"""The document around a title, a style and a body."""
+"""Template of a document with title, style and body."""
 
 
 def document(title: str, style: str, body: str) -> str:
@@ -27,5 +27,5 @@ def document(title: str, style: str, body: str) -> str:
 
 
 def file_text(package: str, name: str) -> str:
-    """Return a text file that lies in a package."""
+    """Return the content of a text file in a package."""
     return (files(package) / name).read_text(encoding="utf-8")

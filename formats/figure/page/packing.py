@@ -1,9 +1,9 @@
-"""Whole numbers as text for a page, which the browser unpacks (``unpack.js``).
+"""Integers as compressed text in a page, unpacked in the browser by ``unpack.js``.
 
-Neighbours in a grid differ little, so that it is differences that are stored::
+Neighbouring values of a grid differ little, so their differences are stored::
 
-    numbers -> differences -> without sign (0, -1, 1, -2 ...) -> bytes of equal weight together -> deflate
-    -> base64
+    numbers -> differences -> unsigned (0, -1, 1, -2 ... as 0, 1, 2, 3 ...) -> bytes of equal significance
+    together -> deflate -> base64
 """
 
 import base64
@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats
 
 _PARTS = 256
-"""Parts of the shortest edge that coordinates are rounded to."""
+"""Number of rounding steps in the shortest edge."""
 _MOST = 2.0**50
-"""Coordinates are counted up to this, which differences and a browser's numbers hold."""
+"""Largest integer coordinate; differences of such numbers are exact in JavaScript."""
 
 
 @dataclass(frozen=True)
 class Packed:
-    """Numbers as base64, how many, and the bytes of each."""
+    """Base64 text of integers, how many they are, and the number of bytes of each."""
 
     text: str
     count: int
@@ -31,7 +31,7 @@ class Packed:
 
 
 def packed(numbers: NDArray[np.integer]) -> Packed:
-    """Return whole `numbers` (n,) packed; they are within 2^50 of zero.
+    """Return integers (n,) in packed form; their magnitude must be below 2^50.
 
     >>> packed(np.array([5, 6, 7])).width
     1
@@ -46,13 +46,16 @@ def packed(numbers: NDArray[np.integer]) -> Packed:
 
 
 def rounding_step(shortest: float, extent: float) -> float:
-    """Return what coordinates of a grid of `extent` are rounded to: a part of its `shortest` edge."""
+    """Return the step to which coordinates are rounded, a fraction of the `shortest` edge of a grid."""
     smallest = extent / _MOST
     return max(2.0 ** np.floor(np.log2(max(shortest / _PARTS, smallest, 1e-300))), smallest)
 
 
 def shortest_edge(nodes: Floats, extent: float) -> float:
-    """Return the shortest edge along the directions of `nodes` (..., d) that is one, not a pole's."""
+    """Return the length of the shortest edge of `nodes` (..., d).
+
+    Edges of zero length, as at a pole, are ignored.
+    """
     least = extent
     for axis in range(nodes.ndim - 1):
         step = np.diff(nodes, axis=axis)

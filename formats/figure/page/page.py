@@ -1,4 +1,4 @@
-"""The interactive page of a grid, written to a file."""
+"""Writes the interactive page of a grid."""
 
 from __future__ import annotations
 
@@ -30,21 +30,21 @@ _PROGRAM = (
     "pointer.js",
     "main.js",
 )
-"""Files of the program, in this order."""
+"""Files of the program, in the order in which the page contains them."""
 _BODY = """{body}
 <script type="application/json" id="facts">{facts}</script>
 {numbers}
 <script type="module">
 {program}
 </script>"""
-"""The body of a page: markup, facts, numbers, program."""
+"""Body of a page: markup, facts, numbers, program."""
 
 
 def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: View | None = None) -> None:
-    """Write the page of `grid`; it begins with the cells coloured by `metric` and with a `view`.
+    """Write the page of `grid`, which opens with the cells coloured by `metric` and with the given `view`.
 
-    Raises InputError: a metric that these cells do not have; a view that shows nothing, or that the grid does
-    not have.
+    Raises InputError: a metric that is not defined for these cells; a view without cells, or of another
+    dimension than the grid.
     """
     start = _start(grid, metric, view or View())
     scene = scene_of(grid)
@@ -52,12 +52,12 @@ def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: V
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the page of the only grid of `grids`."""
+    """Write the page of the only grid in `grids`."""
     write_page(path, only_one(grids, "a page"))
 
 
 def page_text(name: str, scene: Scene, start: dict[str, Any]) -> str:
-    """Return the page of a scene; `start` is what it shows first."""
+    """Return the page of a scene as text; `start` describes the initial view."""
     import matplotlib as mpl
 
     table = mpl.colormaps["YlGnBu"](np.linspace(0.0, 1.0, 256))[:, :3]  # light to dark
@@ -74,7 +74,7 @@ def page_text(name: str, scene: Scene, start: dict[str, Any]) -> str:
 
 
 def own_file(name: str) -> str:
-    """Return a file of this folder."""
+    """Return the content of a file in this folder."""
     return file_text("meshonet.formats.figure.page", name)
 
 
@@ -93,9 +93,9 @@ def _start(grid: Grid, metric: str | None, view: View) -> dict[str, Any]:
 
 
 def _zoom(grid: Grid, zoom: tuple[float, ...], at: Slice | None) -> list[float]:
-    """Return a box, of a flat one beside a cut by a plane that in space.
+    """Return a box in space; a planar box is extended normal to the plane of the slice `at`.
 
-    Raises InputError: one of another kind, or that has nothing of the grid.
+    Raises InputError: a box of another dimension, or one without cells.
     """
     if len(zoom) == 4 and at is not None and at.index is None:
         zoom = (*zoom[: 2 * at.direction], at.coordinate, at.coordinate, *zoom[2 * at.direction :])
@@ -110,7 +110,10 @@ def _zoom(grid: Grid, zoom: tuple[float, ...], at: Slice | None) -> list[float]:
 
 
 def _slice(grid: Grid, at: Slice) -> dict[str, Any]:
-    """Return which slice is shown first; raise InputError for one that the grid does not have."""
+    """Return the description of the slice that is shown first.
+
+    Raises InputError: the grid has no such slice.
+    """
     if grid.form != "volume":
         raise InputError("a surface has no slices", "slice volumes", parameter="slice")
     if at.index is None:

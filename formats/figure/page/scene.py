@@ -1,9 +1,9 @@
-"""What a page holds of a grid: lattices of nodes, sheets of cells to show, metrics, worst places.
+"""Data of a grid in an interactive page: lattices of nodes, sheets of cells, metrics, worst cells.
 
 ::
 
-    lattice   the nodes of a block; of a volume that is too large for a page, those of a patch
-    sheet     a layer of cells of a lattice that is drawn: a block of the plane, a patch of a volume
+    lattice   the nodes of a block; if a volume is too large for a page, the nodes of a patch
+    sheet     a layer of cells of a lattice that is drawn: a planar block, or a patch of a volume
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import Metric, metrics_of
 
 MOST_NODES = 1_500_000
-"""Nodes of a volume that are in a page; of a larger one it has the outer boundary alone."""
+"""Largest number of nodes of a volume in a page; of a larger volume, the page has only the outer boundary."""
 
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """Nodes (ni, nj, d) or (ni, nj, nk, 3) of a block, or of a patch of it.
+    """Nodes (ni, nj, d) or (ni, nj, nk, 3) of a block, or of a patch of a block.
 
-    `start` are the cell's indices in the block of the lattice's first cell; a patch has `fixed`, the
-    direction across it.
+    `start` are the indices in the block of the first cell of the lattice; for a patch, `fixed` is the
+    direction normal to it.
     """
 
     block: int
@@ -49,20 +49,21 @@ class Lattice:
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """Nodes along each direction."""
+        """Number of nodes along each direction."""
         return self.nodes.shape[:-1]
 
     def facts(self) -> dict[str, Any]:
-        """Return what the page's program needs to know."""
+        """Return the data that the program of the page needs."""
         facts: dict[str, Any] = {"block": self.block, "counts": list(self.counts), "start": list(self.start)}
         return facts if self.fixed is None else facts | {"fixed": self.fixed}
 
 
 @dataclass(frozen=True)
 class SceneSheet:
-    """A layer of a lattice: `axis` is the direction across it, None where the lattice is a layer itself.
+    """A layer of cells of a lattice.
 
-    `node` is its index along `axis`, `ranges` the first and last node along the others.
+    `axis` is the direction normal to the layer, None if the lattice itself is a layer. `node` is the index of
+    the layer along `axis`, `ranges` are the first and last node along the other directions.
     """
 
     lattice: int
@@ -73,20 +74,20 @@ class SceneSheet:
     ranges: tuple[tuple[int, int], ...]
 
     def facts(self) -> dict[str, Any]:
-        """Return what the page's program needs to know."""
+        """Return the data that the program of the page needs."""
         return dict(vars(self))
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """All of a page: facts for JSON, and numbers."""
+    """Content of a page: facts for JSON, and arrays of numbers."""
 
     facts: dict[str, Any]
     numbers: dict[str, Packed] = field(default_factory=dict)
 
 
 def scene_of(grid: Grid) -> Scene:
-    """Return the scene of a grid, with all of its metrics."""
+    """Return the scene of a grid, with all its metrics."""
     lattices, sheets = _whole(grid) if _fits(grid) else _shell(grid)
     low = np.min([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).min(axis=0) for lattice in lattices], 0)
     high = np.max([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).max(axis=0) for lattice in lattices], 0)
@@ -121,7 +122,7 @@ def scene_of(grid: Grid) -> Scene:
 
 
 def _walls(grid: Grid) -> list[list[float]] | None:
-    """Return the lowest and highest coordinates of walls; None without any."""
+    """Return the lowest and highest coordinates of the walls; None if there are no walls."""
     nodes = [grid.at(patch).reshape(-1, grid.blocks[0].nodes.shape[-1]) for patch in grid.walls()]
     if not nodes:
         return None
@@ -130,7 +131,7 @@ def _walls(grid: Grid) -> list[list[float]] | None:
 
 
 def _edges(grid: Grid) -> dict[str, Any]:
-    """Return the outer boundary in the plane, and the vertices where other than four cells meet."""
+    """Return the outer boundary of a planar grid, and its irregular vertices."""
     edges = [
         {"block": patch.block, "axis": patch.place[0], "end": patch.place[1], "start": patch.start,
          "stop": patch.stop, "name": patch.name, "kind": patch.kind}
@@ -147,7 +148,7 @@ def _fits(grid: Grid) -> bool:
 
 
 def _whole(grid: Grid) -> tuple[list[Lattice], list[SceneSheet]]:
-    """Return every block, and its cells or its patches to show."""
+    """Return all blocks as lattices, and the sheets that show their cells or patches."""
     lattices = [
         Lattice(number, block.nodes, (0,) * len(block.counts)) for number, block in enumerate(grid.blocks)
     ]
@@ -167,7 +168,7 @@ def _whole(grid: Grid) -> tuple[list[Lattice], list[SceneSheet]]:
 
 
 def _shell(grid: Grid) -> tuple[list[Lattice], list[SceneSheet]]:
-    """Return the patches of a volume, each as a lattice and a sheet of its own."""
+    """Return the patches of a volume, each as a lattice and a sheet."""
     lattices, sheets = [], []
     for number, patch in enumerate(grid.outer_patches()):
         lattices.append(_of_patch(grid, patch))
@@ -184,7 +185,7 @@ def _of_patch(grid: Grid, patch: Patch) -> Lattice:
 
 
 def _of(lattice: Lattice, values: Sequence[Floats]) -> Floats:
-    """Return the values of the cells of a lattice, of those of every block."""
+    """Return the values of the cells of a lattice from the values of all blocks."""
     cells = values[lattice.block]
     if lattice.fixed is None:
         return cells
@@ -195,7 +196,7 @@ def _of(lattice: Lattice, values: Sequence[Floats]) -> Floats:
 
 
 def _whole_numbers(planes: Sequence[Floats]) -> Any:
-    """Return values (n, m) of every lattice behind one another, rounded."""
+    """Return the rounded values (n, m) of all lattices, concatenated."""
     return np.concatenate([np.rint(plane).astype(np.int64).ravel() for plane in planes])
 
 

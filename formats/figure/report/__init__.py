@@ -1,1 +1,1 @@
-"""The quality of grids as a page to read and to print."""
+"""Quality reports of grids as HTML pages."""

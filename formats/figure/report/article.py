@@ -1,4 +1,4 @@
-"""What a report says of one grid."""
+"""Section of a quality report about one grid."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from meshonet.geometry.quality.report import QualityReport
 from meshonet.geometry.quality.verdicts import verdict_word
 
 _WORST = 3
-"""Worst places of a metric that are listed."""
+"""Number of worst cells listed per metric."""
 _DOTS = 110
-"""Dots an inch of pictures."""
+"""Dots per inch of the pictures."""
 
 _WIDTH, _HEIGHT, _FOOT = 240, 64, 16
-"""Size of a histogram and the room for numbers below it, pixels."""
+"""Width and height of a histogram and of the space for numbers below it, in pixels."""
 _TINY = 1e-300
-"""Keeps a division by a scale without extent finite."""
+"""Smallest divisor, so that a scale of zero length does not cause a division by zero."""
 
 
 def article(label: str, report: QualityReport, gates: Sequence[Gate], number: int) -> str:
-    """Return the part of a page about one grid, called `label`; links lead to it by its `number`."""
+    """Return the section of a page about one grid with the name `label`; `number` is its anchor for links."""
     grid = report.grid
     verdicts = _gates(report, gates) + _profile(report)
     values = {m.name: [np.asarray(v) for v in per_cell_of_blocks(grid, m.name)] for m in metrics_of(grid)}
@@ -54,7 +54,7 @@ def article(label: str, report: QualityReport, gates: Sequence[Gate], number: in
 
 
 def size_words(report: QualityReport) -> str:
-    """Return counts of blocks, nodes and cells, and how many cells are folded."""
+    """Return the numbers of blocks, nodes, cells and folded cells as text."""
     grid, quality = report.grid, report.quality
     folded = f"{quality.folded:,} folded" if quality.folded else "none folded"
     if len(grid.blocks) == 1:
@@ -64,17 +64,17 @@ def size_words(report: QualityReport) -> str:
 
 
 def passed(report: QualityReport, gates: Sequence[Gate]) -> bool:
-    """Say whether no gate and no check of the profile is broken, and no cell folded."""
+    """Return whether no gate and no check of a profile has failed, and no cell is folded."""
     return not report.broken(gates) and not report.quality.folded
 
 
 def verdict(name: str, words: str = "") -> str:
-    """Return ``pass``, ``warn`` or ``fail`` as a word in its colour."""
+    """Return ``pass``, ``warn`` or ``fail`` as a coloured word."""
     return f'<span class="{name}">{words or verdict_word(name)}</span>'
 
 
 def _picture(grid: Grid) -> str:
-    """Return a picture of the grid as an address that holds it."""
+    """Return a picture of the grid as a data URI."""
     data = io.BytesIO()
     Picture().draw("png", data, [grid], dots=_DOTS)
     return "data:image/png;base64," + base64.b64encode(data.getvalue()).decode("ascii")
@@ -156,7 +156,7 @@ def _name(metric: Metric) -> str:
 
 
 def _table(head: Iterable[str], rows: Iterable[Sequence[str]], words: int | None = None) -> str:
-    """Return a table; cells are HTML, the column `words` has text that may wrap."""
+    """Return a table. Cells are HTML; the column with the index `words` has text that may wrap."""
 
     def row(tag: str, cells: Iterable[str]) -> str:
         kinds = (' class="words"' if k == words else "" for k in range(99))
@@ -171,9 +171,9 @@ def _table(head: Iterable[str], rows: Iterable[Sequence[str]], words: int | None
 
 
 def histogram_svg(values: Floats, scale: Scale, limits: Sequence[float] = ()) -> str:
-    """Return a drawing of how values (n,) are distributed; `limits` are marked where they are on the scale.
+    """Return a histogram of values (n,) as SVG; `limits` are marked if they are within the scale.
 
-    Heights grow with the square root of the count, so that a few bad cells can be seen.
+    Heights are proportional to the square root of the count, so that a few bad cells are visible.
     """
     counts = np.array(histogram(values, scale), dtype=float)
     heights = np.sqrt(counts / max(counts.max(), 1.0)) * _HEIGHT
@@ -198,7 +198,10 @@ def histogram_svg(values: Floats, scale: Scale, limits: Sequence[float] = ()) ->
 
 
 def _shown_part(value: float, scale: Scale) -> float:
-    """Return where a value is between the ends that are shown, 0 to 1; beyond them less or more."""
+    """Return the position of a value on the scale, 0 to 1.
+
+    Outside of this range for values beyond the ends.
+    """
     if scale.log and value <= 0:
         return -1.0
     part, first, last = scale.parts(np.array([value, scale.start, scale.stop]))

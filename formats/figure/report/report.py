@@ -1,4 +1,4 @@
-"""A report of the quality of one or many grids: a page in one file, for screens and for paper."""
+"""Quality report of one or more grids: one HTML file for screen and print."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from meshonet.geometry.quality.gates import Gate
 from meshonet.geometry.quality.report import QualityReport
 
 SHOWN = 20
-"""Grids that a report shows with pictures; of more the worst."""
+"""Largest number of grids with pictures in a report; of more grids, the worst are shown."""
 
 
 class QualityPage:
-    """Collects reports, one after the other, and keeps the grids of the `SHOWN` worst of them only.
+    """Collects quality reports of grids and keeps only the `SHOWN` worst grids in memory.
 
-    Worst are those with broken gates, then those with the largest angle. `software` is said to have made it.
+    Grids with failed gates are worst, then grids with the largest angle. `software` is named as the author.
     """
 
     def __init__(self, gates: Sequence[Gate] = (), software: str = "meshonet") -> None:
@@ -30,7 +30,10 @@ class QualityPage:
         self._numbers = itertools.count()
 
     def add(self, label: str, report: QualityReport) -> None:
-        """Add the report of a grid called `label`; raise InputError for a gate that it has no figure for."""
+        """Add the report of a grid with the name `label`.
+
+        Raises InputError: a gate for a figure that it lacks.
+        """
         report = report.under(self._gates)
         good, angle = passed(report, self._gates), report.quality["max_angle"].max
         number = next(self._numbers)
@@ -61,7 +64,7 @@ class QualityPage:
         path.write_text(self.text(), encoding="utf-8")
 
     def _summary(self, shown: set[int]) -> str:
-        """Return the table of all grids, with links to those that are shown."""
+        """Return the table of all grids, with links to the sections of the `shown` ones."""
         if len(self._rows) == 1:
             good = self._rows[0][3]
             return f"<p>{verdict('pass' if good else 'fail', 'passed' if good else 'failed')}</p>"

@@ -17,9 +17,10 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Change
 from meshonet.geometry.polygon.self_intersection import find_crossing
-from meshonet.geometry.shapes.airfoil.base_cells import base_note, edge_notes
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, clean_section
 from meshonet.geometry.shapes.airfoil.section_curve import (
+    base_note,
+    edge_notes,
     farthest_arc,
     moved_note,
     section_curve,
@@ -258,15 +259,12 @@ class Airfoil:
         centre = 0.5 * (body.leading_edge + body.trailing_edge)
         wall, replaced = body._wall(sampling.ni or DEFAULT_NI, sampling)
         radius, nj = sampling.radius * body.chord, sampling.nj or DEFAULT_NJ
-        notes, turned = notes + replaced + body._base_note(wall), not sampling.viscous
+        notes += replaced
+        if body.blunt:
+            first = body._arcs[0]
+            notes += base_note(wall, body.curve.at(np.array([first]))[0], 2.0 * first, body.chord)
+        turned = not sampling.viscous
         return o_boundary(wall, nj, centre, radius, body.curve, self.name, self.unit, turned, notes)
-
-    def _base_note(self, wall: Floats) -> tuple[str, ...]:
-        """Return a note if cell sizes along the wall (n, 2) jump at the corners of the base."""
-        if not self.blunt:
-            return ()
-        corner = self.curve.at(np.array([self._arcs[0]]))[0]
-        return base_note(wall, corner, 2.0 * self._arcs[0], self.chord)
 
     def _c_boundary(self, sampling: Sampling, original: Airfoil, notes: tuple[str, ...]) -> Boundary:
         """Return the C boundary around this body, in the units of the `original` airfoil."""

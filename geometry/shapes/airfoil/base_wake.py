@@ -40,7 +40,12 @@ GROWTH = 1.2  # growth ratio along wake and base unless given
 _WITHIN = 0.92  # fraction of the growth beyond 1 used along wake and base: the lines bend, which adds growth
 _STEEPEST = math.radians(60.0)  # largest angle at which a wake line leaves its corner
 _LOST = 0.35  # largest change of the distance between both lines, over the width of the base
-_COARSEST = 1.0 / 12.0  # largest cell on a base, over its width
+COARSEST = 1.0 / 12.0  # largest cell on a base, over its width
+_SHARE, _SHARE_OF_FEW = (
+    0.3,
+    0.2,
+)  # largest part of the nodes that each wake line has, the second where few are
+_STEEP = 1.5  # growth along a wall of few nodes
 LEAST_BASE = 4  # fewest cells on a base
 _LEAST_WALL = 24  # fewest cells on a wall
 
@@ -63,6 +68,7 @@ class BaseWake:
     name: str
     chord: float
     notes: tuple[str, ...]
+    first: float  # height of the first cells at wall and base
 
 
 def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float | None) -> BaseWake:
@@ -86,7 +92,8 @@ def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float |
             f"{ni} nodes along a C grid, twice {cells + 1} of them behind a base, leave too few for the wall",
             f"use at least {2 * _whole(cells, MULTIPLES) + _LEAST_WALL + 1} or fewer {{wake_nodes}}",
         )
-    wall = _wall(body, ni - 1 - 2 * cells, sampling, first, ratio)
+    corner = first if growth else corner_cell(ni - 1 - 2 * cells, first, body.chord)
+    wall = _wall(body, ni - 1 - 2 * cells, sampling, corner, ratio if corner == first else _STEEP)
     axis = wake_axis(body.leading_edge, body.trailing_edge)
     lower, upper = _lines(wall, axis, body.chord, length, first, cells)
     centre = 0.5 * (body.leading_edge + body.trailing_edge)
@@ -96,13 +103,14 @@ def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float |
         raise InputError("the wake does not reach the outlet inside the far field", "use a larger far field")
     north = c_far_field(len(wall) - 1, cells, centre, radius, axis, float(behind))
     nj = sampling.nj or DEFAULT_NJ
-    return BaseWake(wall, base, lower, upper, north, nj, body.curve, body.name, body.unit, body.outline_notes)
+    notes = body.outline_notes
+    return BaseWake(wall, base, lower, upper, north, nj, body.curve, body.name, body.unit, notes, first)
 
 
 def _wall(body: Airfoil, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
     """Return the nodes (cells + 1, 2) of the wall, from the lower corner of the base round to the upper one.
 
-    At the corners cells have the length `first` of the first wake cells, and grow by `ratio`.
+    At the corners cells have the length `first`, that of the first wake cells, and grow by `ratio`.
     """
     if sampling.spacing not in ("auto", "curvature"):
         problem = f"{sampling.spacing} spacing around a base, from which a C grid has two wakes"
@@ -145,13 +153,13 @@ def _base(
 
 
 def _fewest(width: float, first: float, ratio: float) -> int:
-    """Return the fewest cells of a base with growth at most `ratio`, none larger than `_COARSEST`."""
+    """Return the fewest cells of a base with growth at most `ratio`, none larger than `COARSEST`."""
     cells = LEAST_BASE
     while True:
         steps = np.empty(cells)
         end = min(first, width / cells)
         grown = layer_steps(steps, width, end, end, 1)
-        if end < first or (grown <= ratio and steps.max() <= max(_COARSEST * width, first)):
+        if end < first or (grown <= ratio and steps.max() <= max(COARSEST * width, first)):
             return cells
         cells = max(cells + 1, int(1.03 * cells))
 
@@ -181,8 +189,18 @@ def _wake_cells(
         return sampling.wake_nodes - 1
     cells = cells_for_growth(first, length, ratio) + 6  # growth sets in slowly, and ends a little faster
     if growth is None and sampling.ni is not None:
-        cells = min(cells, round(0.3 * (sampling.ni - 1)))
+        few = corner_cell(0.4 * (sampling.ni - 1), 0.0, length / (sampling.wake or sampling.radius)) > first
+        cells = min(cells, round((_SHARE_OF_FEW if few else _SHARE) * (sampling.ni - 1)))
     return _whole(cells, every)
+
+
+def corner_cell(cells: float, first: float, chord: float) -> float:
+    """Return the length of cells beside a base, `first` unless the `cells` of the wall are few for it.
+
+    From these lengths they grow to the mean by `_STEEP` over half of each side.
+    """
+    side = 0.5 * cells
+    return max(first, chord / side * math.pow(_STEEP, -0.5 * side))
 
 
 def _whole(cells: int, steps: tuple[int, ...]) -> int:

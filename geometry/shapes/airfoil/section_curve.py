@@ -1,7 +1,10 @@
-"""The smooth curve through the points of an airfoil, and its point farthest from the trailing edge."""
+"""The smooth curve through the points of an airfoil, its point farthest from the trailing edge, and notes."""
+
+from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +17,10 @@ from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing, find_crossings
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, CleanSection
 
+if TYPE_CHECKING:
+    from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+    from meshonet.geometry.spacing.sampling import TrailingEdge
+
 _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31 / 32])
 """Where an interval of the curve is cut into straight pieces to be searched for crossings."""
 DEPARTURE, FAR_OFF = 1e-3, 5e-3
@@ -23,6 +30,8 @@ RIPPLES = 10
 _FLAT = 0.1  # curvature times chord below which its sign is ignored
 OBLIQUE = 30.0  # least angle in degrees between a base and the normal of the chord to be called oblique
 MOST_BASE = 0.25  # chords; a longer last segment of a surface is no base
+UNLIKE = 1.5
+"""Ratio of the two wall cells at a corner of the base beyond which it is noted."""
 _PARTS = 128  # parts of a stretch in the search for the point farthest from the trailing edge
 
 
@@ -94,8 +103,8 @@ def shape_notes(section: CleanSection, curve: Curve, chord: float) -> tuple[str,
     off = departure(curve) / chord
     if off > DEPARTURE:
         note = (
-            f"the wall is a smooth curve through the points, which leaves the straight lines between them by "
-            f"up to {off:.2g} chords; more points would say where it runs"
+            f"the wall is a smooth curve through the points, up to {off:.2g} chords away from straight lines "
+            "between them; give more points where it matters"
         )
         notes += (Change(note) if off > FAR_OFF else note,)
     return notes
@@ -131,6 +140,38 @@ def departure(curve: Curve) -> float:
     return float((np.abs(across) / np.hypot(ways[..., 0], ways[..., 1])).max())
 
 
+def base_note(wall: Floats, corner: Floats, base: float, chord: float) -> tuple[str, ...]:
+    """Return a note if wall cell sizes jump at the lower corner of a base; the upper corner mirrors it.
+
+    `wall` (n, 2) runs from the middle of the base, which has length `base` and ends at `corner` (2,).
+    """
+    k = int(np.argmin(np.hypot(*(wall[: len(wall) // 2] - corner).T)))
+    if k == 0:
+        return ()
+    on, beside = (float(np.hypot(*(wall[i + 1] - wall[i]))) for i in (k - 1, k))
+    ratio = beside / on
+    if 1.0 / UNLIKE <= ratio <= UNLIKE:
+        return ()
+    times, word = (ratio, "smaller") if ratio > 1.0 else (1.0 / ratio, "larger")
+    return (
+        f"cells on the base are {times:.2g} times {word} than those beside it: use {{te_spacing}} near "
+        f"{base / (2 * k) / chord:.2g}, the base over its {2 * k} cells, or {{te}} round",
+    )
+
+
+def edge_notes(before: Airfoil, after: Airfoil, te: TrailingEdge, asked: TrailingEdge) -> tuple[str, ...]:
+    """Return a note on how `te` changed a base, or that there is none although a change was `asked` for."""
+    base = f"the outline is changed: its base, {before.gap / before.chord:.3g} chords wide,"
+    if before.blunt and te == "wedge":
+        length = float(np.hypot(*(after.trailing_edge - before.trailing_edge))) / before.chord
+        return (Change(f"{base} is closed by a wedge {length:.3g} chords long"),)
+    if before.blunt and te == "round":
+        return (Change(f"{base} is rounded at its corners"),)
+    if not before.blunt and asked in ("round", "wedge"):
+        return (f"{{te}} {te} changes nothing, as the trailing edge is not blunt",)
+    return ()
+
+
 def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -> InputError:
     """Return the error for surfaces that cross, with the place and the points around it."""
     n = len(section.points)
@@ -146,7 +187,7 @@ def _crossed(section: CleanSection, crossing: Crossing, places: Sequence[str]) -
 def farthest_arc(curve: Curve, point: Floats) -> float:
     """Return the arc length of the point of the curve that is farthest from `point`.
 
-    Of several equally far points (a flat nose) it is the middle one, so that a symmetric section stays
+    If several points are equally far (a flat nose), it is the middle one, so that a symmetric section stays
     symmetric. Where the distance is smooth, the zero of its derivative is found.
     """
     s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])

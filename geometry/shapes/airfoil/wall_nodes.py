@@ -87,13 +87,23 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     if steps_given and not LAWS[sampling.spacing].sets_ends:
         remedy = "use tanh, cosine or curvature with it"
         raise InputError(f"{sampling.spacing} spacing leaves no cell size to choose", remedy)
+    steps = sampling.corner_steps(ni - 1)
     if sampling.spacing == "conformal":
         blunt = stations.half_base and not stations.rounded
         corners = np.array([stations.half_base, stations.upper]) if blunt else np.zeros(0)
         half = _asked_half(ni - 1, sampling.base_nodes, sampling) if sampling.base_nodes else 0
         at = np.array([half, ni - 1 - half]) if half else None
-        steps = sampling.corner_steps(ni - 1)
-        return _on_inner_corners(conformal_knots(stations.curve, corners, ni, at, steps), stations, steps)
+        arcs = conformal_knots(stations.curve, corners, ni, at, steps)
+    else:
+        arcs = _planned_arcs(stations, ni, sampling)
+    corners = stations.curve.corners  # those of the trailing edge are already on nodes
+    inside = corners[(corners > stations.half_base) & (corners < stations.upper)]
+    ends = np.searchsorted(arcs, [stations.half_base, stations.upper])
+    return on_corners(arcs, inside, (int(ends[0]), int(ends[1])), steps[0])
+
+
+def _planned_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
+    """Return arc lengths (ni,) whose cells have the sizes of a plan."""
     plan = _plan(stations, ni - 1, sampling)
     if sampling.spacing == "curvature":
         from meshonet.geometry.spacing.size_field import arcs_by_curvature
@@ -114,11 +124,9 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
         nose = [stations.nose] if float(plan.cells).is_integer() else []
         sides = np.concatenate([[stations.half_base], lower, nose, upper[::-1], [stations.upper]])
     if plan.half == 0:
-        arcs = sides
-    else:
-        lower, upper = plan.base or (_half_base(plan, stations.half_base),) * 2
-        arcs = np.concatenate([lower[:-1], sides, stations.curve.length - upper[-2::-1]])
-    return _on_inner_corners(arcs, stations, sampling.corner_steps(ni - 1))
+        return sides
+    lower, upper = plan.base or (_half_base(plan, stations.half_base),) * 2
+    return np.concatenate([lower[:-1], sides, stations.curve.length - upper[-2::-1]])
 
 
 def arcs_to_corners(stations: Stations, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
@@ -140,17 +148,6 @@ def arcs_to_corners(stations: Stations, cells: int, sampling: Sampling, first: f
         exact=(True, sampling.le_spacing is not None),
         at_edge=math.log(ratio),
     )
-
-
-def _on_inner_corners(arcs: Floats, stations: Stations, steps: tuple[int, ...]) -> Floats:
-    """Return the arcs with corners inside the two sides on nodes, if possible multiples of the first step.
-
-    The corners of the trailing edge are already on nodes.
-    """
-    corners = stations.curve.corners
-    inside = corners[(corners > stations.half_base) & (corners < stations.upper)]
-    ends = np.searchsorted(arcs, [stations.half_base, stations.upper])
-    return on_corners(arcs, inside, (int(ends[0]), int(ends[1])), steps[0])
 
 
 def _asked_half(cells: int, nodes: int, sampling: Sampling) -> int:

@@ -1,1 +1,1 @@
-"""Engines that work on members of a batch: each gives a `concurrent.futures.Executor`."""
+"""Engines that distribute a batch: each returns a `concurrent.futures.Executor`."""

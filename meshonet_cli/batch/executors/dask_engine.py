@@ -1,6 +1,6 @@
-"""The workers of a Dask cluster: one that is there already, or one of processes of this machine.
+"""Workers of a Dask cluster: an existing one, or one of processes on this machine.
 
-Dask does what a dead worker had again by itself; a task whose workers keep dying ends in KilledWorker.
+Dask itself repeats the tasks of a dead worker. A task whose workers keep dying ends in KilledWorker.
 https://distributed.dask.org
 """
 
@@ -43,12 +43,12 @@ _SETTINGS = {
     "distributed.admin.tick.interval": "1s",
     "distributed.admin.system-monitor.interval": "10s",
 }
-"""Of a cluster of processes of this machine, beside its defaults."""
+"""Settings of a cluster on this machine that differ from the defaults."""
 
 
 @contextmanager
 def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
-    """Give the workers of the cluster at the engine's scheduler, or of one of its own."""
+    """Return a context with the workers of the cluster at the engine's scheduler, or of a local cluster."""
     try:
         import distributed  # noqa: F401  (a second)
     except ImportError:
@@ -64,7 +64,7 @@ def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
 
 
 def _silence() -> None:
-    """Keep the packages from saying in many lines what is said here in one: who died."""
+    """Suppress the log messages of Dask; the program itself reports dead workers in one line."""
     for name in list(logging.root.manager.loggerDict):
         if name.startswith(("distributed", "tornado")):
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
@@ -72,7 +72,7 @@ def _silence() -> None:
 
 @contextmanager
 def _local(count: int) -> Iterator[Client]:
-    """Give the client of a cluster of processes of this machine, which work on one task at a time each."""
+    """Return a context with the client of a local cluster, whose processes work on one task at a time."""
     import dask
     from distributed import Client, LocalCluster
 
@@ -92,7 +92,10 @@ def _local(count: int) -> Iterator[Client]:
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Keep Ctrl-C from threads and processes that start inside; it comes after the block."""
+    """Return a context in which new threads and processes ignore Ctrl-C.
+
+    It takes effect after the context.
+    """
     ensure_running()  # which would let interrupts through in the thread that starts the first process
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -103,7 +106,7 @@ def _without_interrupts() -> Iterator[None]:
 
 @contextmanager
 def _at(address: str) -> Iterator[Client]:
-    """Give the client of the scheduler at an address."""
+    """Return a context with the client of the scheduler at an address."""
     from distributed import Client
 
     try:
@@ -121,7 +124,10 @@ def _at(address: str) -> Iterator[Client]:
 
 
 class _Dask(Workers):
-    """Workers of a cluster; deaths are events of the scheduler, and said where results are waited for."""
+    """Workers of a Dask cluster.
+
+    Their deaths are events of the scheduler, reported while waiting for results.
+    """
 
     def __init__(self, client: Client, warn: Warn) -> None:
         self._client, self._warn = client, warn
@@ -135,13 +141,13 @@ class _Dask(Workers):
         self._check_versions()
 
     def leave(self) -> None:
-        """Drop what is under way and listen no more."""
+        """Cancel the tasks in progress, and stop listening to events."""
         with suppress(Exception):  # the scheduler may be gone
             self._client.unsubscribe_topic("all")
             self.executor.shutdown(wait=False)
 
     def check(self) -> None:
-        """Say which workers died, count those that came, and see that the scheduler is there."""
+        """Report dead workers, count new ones, and check that the scheduler responds."""
         while self._events:
             event = self._events.popleft()
             self.count = max(1, self.count + (1 if event["action"] == "add-worker" else -1))
@@ -151,12 +157,12 @@ class _Dask(Workers):
             raise self.lost()
 
     def lost(self) -> EngineLostError:
-        """Return the error of a scheduler that is gone."""
+        """Return the error for a scheduler that does not respond."""
         problem = f"the Dask scheduler at {self._address} is gone"
         return EngineLostError(problem, "run it again with another one; {skip_existing} keeps what is done")
 
     def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
-        """Have a worker do a task, where the program was started and by its words."""
+        """Submit a task, which runs in the working directory and with the command line of this program."""
         from distributed.client import ClosedClientError
 
         try:
@@ -167,7 +173,7 @@ class _Dask(Workers):
         return future
 
     def result(self, future: Any) -> Any:
-        """Return the result of a task, or raise what it ended in."""
+        """Return the result of a task, or raise its error."""
         from distributed import KilledWorker
         from distributed.comm import CommClosedError
 
@@ -192,7 +198,7 @@ class _Dask(Workers):
             self._client.wait_for_workers(1)
 
     def _check_versions(self) -> None:
-        """Raise InputError where a worker cannot run this program."""
+        """Raise InputError if a worker cannot run this program."""
         for worker, version in self._client.run(_version, on_error="return").items():
             if version != __version__:
                 has = f"meshonet {version}" if isinstance(version, str) else "no meshonet"
@@ -203,9 +209,10 @@ class _Dask(Workers):
 
 
 def _died_with_its_result(error: TypeError) -> bool:
-    """Return whether a worker died while its result was handed on.
+    """Return whether a worker died while its result was transferred.
 
-    Dask's executor then takes the result for an error, of three parts (distributed 2026.8, cfexecutor.py).
+    Dask's executor then interprets the result as an error with three parts (distributed 2026.8,
+    cfexecutor.py).
     """
     frames = list(walk_tb(error.__traceback__))
     return bool(frames) and frames[-1][0].f_code.co_name == "_cascade_future"
@@ -219,9 +226,9 @@ _one_at_a_time = threading.Lock()
 
 
 def _call(function: Callable[[T], R], task: T, folder: str, words: list[str]) -> R:
-    """Do a task as the program would, one at a time: of folder and words a process has one each.
+    """Run a task like the program itself, one at a time, since a process has one working directory.
 
-    Raises InputError: the folder is not there.
+    Raises InputError: the directory does not exist.
     """
     with _one_at_a_time:
         sys.argv = words  # which grids have in their provenance

@@ -1,7 +1,9 @@
-"""The ranks of MPI: ``mpiexec -n 9 meshonet ... --engine mpi`` has eight workers, and rank 0 is the program.
+"""Ranks of MPI as workers: ``mpiexec -n 9 meshonet ...
 
-MPI starts the program on every rank, so it runs inside `on_ranks`: rank 0 reads the command line, and the
-others work for it until it ends, however it does. MPI ends all ranks when one dies.
+--engine mpi`` has eight workers; rank 0 is the program.
+
+MPI starts the program on every rank, so it runs inside `on_ranks`. Rank 0 reads the command line; the other
+ranks work for it until it ends. If a rank dies, MPI ends all ranks.
 https://mpi4py.readthedocs.io/en/stable/mpi4py.futures.html
 """
 
@@ -21,11 +23,14 @@ if TYPE_CHECKING:
     from meshonet_cli.batch.settings import Engine
 
 _ranks: MPIPoolExecutor | None = None
-"""The ranks that work for this one, while it runs inside `on_ranks`."""
+"""Executor of the other ranks, while the program runs inside `on_ranks`."""
 
 
 def on_ranks(run: Callable[[], int]) -> int:
-    """Call `run` on rank 0, with the other ranks as workers, and return its exit code; 0 on other ranks."""
+    """Call `run` on rank 0 with the other ranks as workers, and return its exit code.
+
+    Other ranks return 0.
+    """
     global _ranks
     try:
         from mpi4py import MPI
@@ -49,7 +54,7 @@ def on_ranks(run: Callable[[], int]) -> int:
 
 @contextmanager
 def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:  # noqa: ARG001  (the signature of all engines)
-    """Give the ranks other than this one."""
+    """Return a context with the other ranks as workers."""
     if _ranks is None:
         _check_installed()
         remedy = "start the program as mpiexec -n 3 meshonet ..., which has two workers"

@@ -1,4 +1,4 @@
-"""Processes of this machine."""
+"""Processes of this machine as workers."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 R = TypeVar("R")
 _TERMINATED = 143
-"""Exit code of a process that was asked to end (SIGTERM)."""
+"""Exit code of a process after SIGTERM."""
 _GRACE = 10.0  # seconds that a process has to remove what it was writing
 
 
 @contextmanager
 def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
-    """Give fresh processes, which are ended at once when the block ends in an error."""
+    """Return a context with new processes, which are terminated if the context ends in an error."""
     share_cores()
     others = set(active_children())
     workers = _Processes(engine.jobs, warn)
@@ -42,7 +42,7 @@ def opened(engine: Engine, warn: Warn) -> Iterator[Workers]:
 
 
 def share_cores() -> None:
-    """Have NumPy's linear algebra work with one thread in processes started from here on."""
+    """Limit NumPy's linear algebra to one thread in processes that start from now on."""
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
 
@@ -58,18 +58,18 @@ class _Processes(Workers):
         self._warn = warn
 
     def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
-        """Have a process do a task."""
+        """Submit a task to a process."""
         return self.executor.submit(_call, function, task)
 
     def renew(self) -> None:
-        """Replace the pool, all of whose processes end when one does."""
+        """Replace the pool after the death of a process, which ends all others of the pool."""
         self._warn("a worker process died; what was under way is done again")
         self.executor.shutdown(cancel_futures=True)
         self.executor = _pool(self.count)
 
 
 def _begin() -> None:
-    """Leave Ctrl-C to the main process, end when it does, and warn of nothing that it would not."""
+    """Initialise a worker: it ignores Ctrl-C, ends with the main process, and shows no warnings."""
     hide_warnings()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _leave)
@@ -77,13 +77,13 @@ def _begin() -> None:
 
 
 class _Here:
-    """What a signal must know of this process: whether it is in a task, and whether it is to end."""
+    """State of this process for signal handlers: whether it runs a task, and whether it should end."""
 
     working = ending = False
 
 
 def _leave(*_: object) -> None:
-    """End: from within a task by an exception, so that unfinished files go."""
+    """End the process; within a task by an exception, so that unfinished files are removed."""
     if not _Here.working:
         os._exit(_TERMINATED)
     if _Here.ending:  # the pool ends the others when one has ended: they are at their clean-up
@@ -117,7 +117,7 @@ def _call(function: Callable[[T], R], task: T) -> R:
 
 
 def _end(processes: set[BaseProcess]) -> None:
-    """End processes, by force those that take too long."""
+    """Terminate processes, and kill those that take too long."""
     for process in processes:
         process.terminate()
     for process in processes:

@@ -1,4 +1,4 @@
-"""Members of a batch shared out among workers, several a task where they are done in no time."""
+"""Distributes the members of a batch over workers; fast members are grouped into one task."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Group = list[Item[Any]]
 
 @dataclass(frozen=True)
 class _Timed:
-    """Does the work on a group of members at once, and takes the time."""
+    """Works on a group of members, and measures the time."""
 
     work: Callable[[Iterable[Item[Any]]], Iterator[Pair]]
 
@@ -34,9 +34,9 @@ def shared(
     work: Callable[[Iterable[Item[Any]]], Iterator[Pair]], todo: Iterator[Item[Any]], size: int,
     engine: Engine, warn: Warn,
 ) -> Iterator[Pair]:  # fmt: skip
-    """Yield members in order and what comes of each, by the workers of `engine`.
+    """Yield members in order with their results, computed by the workers of `engine`.
 
-    A task has `size` members, or, if that is 1, as many as are done in no time.
+    A task has `size` members; if that is 1, members that take little time are grouped.
     """
     timed, grows, most = _Timed(work), size == 1, size
 
@@ -58,7 +58,7 @@ def shared(
 
 
 def _apart(timed: _Timed, group: Group, error: Exception, workers: Workers) -> Iterator[Pair]:
-    """Yield what workers make of a group, one by one, of which one ended its worker twice."""
+    """Yield the members of a group one by one with their results, after the group ended its worker twice."""
     for item in group:
         pairs: list[Pair] = [(item.without_content(), error)]
         if len(group) > 1:

@@ -1,4 +1,4 @@
-"""Workers behind an executor: tasks done in order, a few under way; what a dead worker had is done again."""
+"""Workers behind an executor: results in order, few tasks in progress, repetition after a worker died."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _PATIENCE = 0.5  # seconds between looks at the engine while a result is waited 
 
 
 class WorkerDiedError(MeshonetError):
-    """The worker died, and the one that did the same task after it too."""
+    """The worker of a task died, and so did the worker that repeated the task."""
 
     exit_code = 3
 
@@ -28,38 +28,38 @@ class WorkerDiedError(MeshonetError):
 
 
 class EngineLostError(InputError):
-    """The executor is gone for good, and with it what was under way."""
+    """The executor cannot be recovered, and the tasks in progress are lost."""
 
 
 class Workers:
-    """An executor and what is known of its workers; the base of engines that need to know more.
+    """An executor and the state of its workers; base class of the engines.
 
     Parameters
     ----------
-    executor : does the tasks.
-    count : tasks that it works on at a time.
+    executor : runs the tasks.
+    count : number of tasks that run at the same time.
     """
 
     def __init__(self, executor: Executor, count: int) -> None:
         self.executor, self.count = executor, count
 
     def submit(self, function: Callable[[T], R], task: T) -> Future[R]:
-        """Have a worker do a task."""
+        """Submit a task to a worker."""
         return self.executor.submit(function, task)
 
     def check(self) -> None:
-        """Say what became of workers; raises EngineLostError when there is nobody left to wait for."""
+        """Report dead workers. Raises EngineLostError: no worker is left."""
 
     def renew(self) -> None:
-        """Replace an executor that broke. Raises EngineLostError: it cannot be replaced."""
+        """Replace a broken executor. Raises EngineLostError: this is impossible."""
         raise self.lost()
 
     def lost(self) -> EngineLostError:
-        """Return the error of an executor that is gone for good."""
+        """Return the error for an executor that cannot be recovered."""
         return EngineLostError("the workers are gone", "run it again, with {skip_existing}")
 
     def result(self, future: Future[R]) -> R:
-        """Return the result of a task, or raise what it ended in."""
+        """Return the result of a task, or raise its error."""
         while True:
             self.check()
             try:
@@ -74,9 +74,9 @@ class Workers:
     def in_order(
         self, function: Callable[[T], R], tasks: Iterable[T], ahead: int
     ) -> Iterator[tuple[T, R | Exception]]:
-        """Yield each of the `tasks` and the result of `function`, or the error that it ended in.
+        """Yield each of the `tasks` with the result of `function`, or with its error.
 
-        Tasks are taken as results are, and `ahead` more than there are workers.
+        Tasks are read when results are requested; `ahead` more than the number of workers are in progress.
         """
         under_way: deque[tuple[T, Future[R]]] = deque()
         for task in tasks:
@@ -89,7 +89,7 @@ class Workers:
             yield left
 
     def alone(self, function: Callable[[T], R], task: T) -> R:
-        """Return the result of a task done while nothing else is. Raises WorkerDiedError: its worker died."""
+        """Return the result of a task that runs without others. Raises WorkerDiedError: its worker died."""
         try:
             return self.result(self.submit(function, task))
         except BrokenExecutor as error:
@@ -121,7 +121,7 @@ class Workers:
         return task, outcome
 
     def _do_again(self, function: Callable[[T], R], under_way: deque[tuple[T, Future[R]]]) -> None:
-        """Do once more what was under way when a worker died: one by one, to know which of them it is."""
+        """Repeat the tasks in progress at the death of a worker, one by one, to find its cause."""
         self.renew()
         for k, (task, future) in enumerate(under_way):
             if isinstance(future.exception(), BrokenExecutor):

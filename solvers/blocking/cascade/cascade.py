@@ -1,4 +1,4 @@
-"""A cascade: its blade with neighbours and layers, its passage, and how large cells are to be there."""
+"""A cascade: its blade with neighbours and layers, its passage, and the cell sizes in it."""
 
 from __future__ import annotations
 
@@ -15,23 +15,31 @@ from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import modulus, times
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.reach import MOST_CELLS, check_reach
 from meshonet.geometry.shapes.assembly import far_loop
-from meshonet.solvers.blocking.cascade.passage import Passage
+from meshonet.solvers.blocking.cascade.passage import NEAR, Passage
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.rings import Ring, march_ring
+from meshonet.solvers.blocking.request import CELLS
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 
 THICKNESS, COLUMNS = 0.018, 140
-"""Thickness of the layers and cells around the blade, by its length around, where there is room."""
+"""Thickness of the layers and number of cells around the blade; the thickness is relative to its
+perimeter.
+"""
 PLAIN_ROWS, PLAIN_GROWTH = 6.0, 1.1
-"""Rows in that thickness, and how they grow, where no height of first cells is asked for."""
+"""Number of rows within this thickness and their growth ratio, if no first-cell height is given."""
 GAP_PART = 0.25
-"""Part of the narrowest gap between blades that layers fill at the most: the channel is not to be a slit."""
+"""Largest fraction of the narrowest gap between blades that layers fill."""
 _SAMPLES = 400
 ACROSS = 12.0
-"""Cells in a pitch at the least, where nothing is near, before counts are made up to what was asked for."""
+"""Smallest number of cells per pitch, before the requested number of cells is distributed."""
+COARSEST = 20.0
+"""How many times as long cells may get along the blade."""
+MORE = 10.0
+"""Cells in those asked for, at the most, where a long inlet or outlet does not do with fewer."""
 SHORTEST = 0.08
-"""Pitches between blade, with its layers, and inlet or outlet at the least."""
+"""Smallest distance in pitches from the blade with its layers to inlet or outlet."""
 
 
 @dataclass(frozen=True)
@@ -40,11 +48,14 @@ class Cascade:
 
     Parameters
     ----------
-    blade : the passage on its left.
-    pitch : vector from a blade to the next.
-    inlet, outlet : lengths of the passage before and behind the blade, in axial chords.
-    settings : of the layers at the blade; by default a few rows of cells of equal size.
-    name : of the blade.
+    blade : loop of the blade, with the passage on its left.
+    pitch : displacement from a blade to the next.
+    inlet, outlet : lengths of the passage upstream and downstream of the blade, in axial chords.
+    settings : layers at the blade; the default is a few rows of equal cells.
+    name : name of the blade.
+    near : distances upstream and downstream of the blade, in pitches, at which straight rows begin, if
+        inlet and outlet are that far away.
+    centre : centre of the map of the passage, inside the blade; the default is a point far from its surface.
     """
 
     blade: Loop
@@ -53,15 +64,17 @@ class Cascade:
     outlet: float = 1.0
     settings: LayerSettings | None = None
     name: str = ""
+    near: tuple[float, float] = (NEAR, NEAR)
+    centre: complex | None = None
 
     @property
     def opposite(self) -> bool:
-        """Whether the pitch leads to the blade on the right of the flow, which is one of rising x."""
+        """Whether the pitch points to the next blade on the right of the flow, which is towards larger x."""
         return self.pitch[1] < 0.0 or (self.pitch[1] == 0.0 and self.pitch[0] > 0.0)
 
     @property
     def left(self) -> complex:
-        """Vector to the next blade on the left of the flow."""
+        """Displacement to the next blade on the left of the flow."""
         pitch = complex(*self.pitch)
         return -pitch if self.opposite else pitch
 
@@ -77,7 +90,7 @@ class Cascade:
 
     @property
     def extent(self) -> float:
-        """The longer one of the passage's length and its pitch."""
+        """Length of the passage or its pitch, whichever is larger."""
         return max((1.0 + self.inlet + self.outlet) * self.chord, abs(self.left))
 
     def _axial(self, loop: Loop) -> Floats:
@@ -85,10 +98,7 @@ class Cascade:
 
     @cached_property
     def blades(self) -> Domain:
-        """The blade and its neighbours on both sides.
-
-        Raises InputError: they cross.
-        """
+        """The blade and its neighbours on both sides. Raises InputError: they intersect."""
         shift = pairs_of(np.array([-self.left, self.left]))
         curve = self.blade.curve
         beside = [_moved(self.blade, curve, each) for each in shift]
@@ -103,21 +113,21 @@ class Cascade:
 
     @cached_property
     def thickness(self) -> float:
-        """Thickness of the layers where there is room."""
+        """Thickness of the layers where the gap permits it."""
         arcs = np.linspace(0.0, self.blade.length, _SAMPLES, endpoint=False)
         gap = float(wall_gaps(self.blades, self.blade, arcs).min())
         return min(THICKNESS * self.blade.length, GAP_PART * gap)
 
     @cached_property
     def layers(self) -> LayerSettings:
-        """What the layers around the blade are like."""
+        """Settings of the layers around the blade."""
         return self.settings or LayerSettings(self.thickness / PLAIN_ROWS, PLAIN_GROWTH)
 
     @cached_property
     def ring(self) -> Ring:
         """The layers around the blade."""
         largest = self.blade.length / COLUMNS
-        return march_ring(self.blades, self.blade, self.layers.first, self.thickness, largest)
+        return march_ring(self.blades, 0, self.layers.first, self.thickness, largest)
 
     @cached_property
     def ends(self) -> tuple[float, float]:
@@ -137,16 +147,17 @@ class Cascade:
     @cached_property
     def passage(self) -> Passage:
         """The passage around the blade or its layers."""
-        return Passage.around(self.ring.front, self.left, *self.ends, self.name)
+        front = self.ring.front
+        return Passage.around(front, self.left, *self.ends, self.name, self.near, self.centre)
 
     @cached_property
     def rows_of_layers(self) -> int:
-        """Rows of cells in the layers."""
+        """Number of rows of the layers."""
         return self.layers.rows(float(self.ring.thickness.max()))
 
     @cached_property
     def metric(self) -> SizeMetric:
-        """Sizes of cells outside the layers, in the plane of the passage's map."""
+        """Cell sizes outside of the layers, in the plane of the conformal map."""
         sizes = ring_metric(self.ring, self.layers)
         to = self.passage.map
         points = to.forward(sizes.points)
@@ -156,9 +167,20 @@ class Cascade:
         return replace(sizes, points=points, normals=normals, largest=largest, scale=to.stretching)
 
     def scaled(self, scale: float) -> SizeMetric:
-        """Return sizes of cells `scale` times as long along the blade."""
+        """Return cell sizes for cells `scale` times as long along the blade."""
         metric = self.metric
         return replace(metric, along=scale * metric.along, largest=metric.largest * scale**0.5)
+
+    def check_reach(self, cells: int | None, cell_size: float | None) -> None:
+        """Raise InputError where the largest cells are far more than `cells`, or too many of a size."""
+        largest = cell_size or abs(self.left) / ACROSS * COARSEST**0.5
+        length = (1.0 + self.inlet + self.outlet) * self.chord
+        most = MOST_CELLS if cell_size else min(MORE * (cells or CELLS), MOST_CELLS)
+        long = "inlet" if self.inlet > self.outlet else "outlet"
+        check_reach(
+            length / largest * (abs(self.left) / largest), "cells", f"a passage of length {length:.3g}",
+            f"use a shorter {{{long}}}, or " + ("larger cells" if cell_size else "more {cells}"), most=most,
+        )  # fmt: skip
 
 
 def _moved(blade: Loop, curve: Curve, shift: Floats) -> Loop:

@@ -19,7 +19,7 @@ from meshonet.geometry.elementary import log
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.cascade.cascade import Cascade
+from meshonet.solvers.blocking.cascade.cascade import COARSEST, Cascade
 from meshonet.solvers.blocking.cascade.passage import (
     BLADE,
     INLET,
@@ -41,16 +41,18 @@ from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
 from meshonet.solvers.energy.quads import optimise
 
 MOST_OPTIMISED = 4000
-"""Cells that are optimised at the most; finer grids are splines through these."""
+"""Largest number of cells that are optimised directly; finer grids are splines through these."""
 CORNERS = ("at first", "later", "nowhere")
-"""When nodes are put at the corners of the blade, in the order of attempts."""
+"""When nodes are moved to the corners of the blade, in the order of attempts."""
 LEAST = 4
-"""Cells along the side of a block that is optimised."""
+"""Smallest number of cells along the side of an optimised block."""
 FIRST, ITERATIONS, PASSES = 150, 120, 2
 WEIGHTS = 0.95, 1e-3
-"""w and β of the functional: with less β angles are better, but rounding moves nodes by 1 % of a passage."""
+"""Weights w and β of the functional. A smaller β improves angles, but lets rounding errors move nodes by 1
+%.
+"""
 ROW_GROWTH = 1.1
-"""Ratio of neighbouring cells on the way to inlet and outlet."""
+"""Growth ratio of cells towards inlet and outlet."""
 _BISECTIONS = 14
 
 
@@ -58,12 +60,14 @@ def cascade_layout(
     cascade: Cascade, *, cells: int | None = None, cell_size: float | None = None,
     timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
-    """Return a fine layout of a passage of about so many `cells`, or of cells of a size away from the blade.
+    """Return a fine layout of a passage with about `cells` cells, or with a cell size away from the blade.
 
-    Its outer loop is named periodic1, outlet, periodic2 and inlet; nodes of periodic2 are those of periodic1
-    moved by the pitch. Raises InputError: no room for layers, inlet or outlet; NoValidGridError: folds.
+    Its outer loop has the parts periodic1, outlet, periodic2 and inlet; nodes of periodic2 are those of
+    periodic1 plus the pitch. Raises InputError: too little room for layers, inlet or outlet,
+    far more cells than requested; NoValidGridError: folded cells.
     """
     timings = timings or Timings()
+    cascade.check_reach(cells, cell_size)
     with timings.stage("layers"):
         passage = cascade.passage
     for attempt in CORNERS:
@@ -95,18 +99,19 @@ def _outside(
         smooth = replace(blade, corners=(), names=blade.names[:1])
         passage = replace(passage, domain=replace(passage.domain, loops=(smooth, *ends)))
     with timings.stage("first optimum"):
-        coarse = _optimised(template(passage, at_corners=corners == "at first"), FIRST, None)
+        coarse = passage_optimum(template(passage, at_corners=corners == "at first"), FIRST, None)
     with timings.stage("refine"):
         chords = Chords.of(coarse)
-        counts, times, metric = _counts(cascade, chords, cells, cell_size)
+        counts, times, metric = counts_of(cascade, chords, cells, cell_size)
         coarse = refine(coarse, counts, chords)
     with timings.stage("optimum"):
         for _ in range(PASSES):
-            coarse = _optimised(coarse, ITERATIONS, metric)
+            coarse = passage_optimum(coarse, ITERATIONS, metric)
     return coarse, times, metric
 
 
-def _optimised(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
+def passage_optimum(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
+    """Return the layout of a passage with its nodes where the functional is least, for sizes if given."""
     targets = metric.gradual(layout.mesh) if metric else None
     optimum = optimise(layout.mesh, iterations=iterations, targets=targets, weights=WEIGHTS)
     if not optimum.valid:
@@ -120,16 +125,16 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
     inner = heights_inside(layout, BLADE)
     rows = [ring_rows(mesh, BLADE, cascade.ring, cascade.rows_of_layers, cascade.layers, inner)]
     axis = np.array([passage.map.axis.real, passage.map.axis.imag])
-    for number, length, way in _straight(cascade):
+    for number, length, way in straight_rows(cascade):
         if length > 0.0:
             start = mesh.nodes[loop_nodes(mesh, number)]
-            steps = _steps(math.exp(log(heights_inside(layout, number)).mean()), length, metric.largest)
+            steps = row_steps(math.exp(log(heights_inside(layout, number)).mean()), length, metric.largest)
             nodes = start[:, None] + steps[:, None] * (way * axis)
             rows.append(Rows(number, nodes, np.zeros(len(start)), False))
     return rows
 
 
-def _straight(cascade: Cascade) -> list[tuple[int, float, float]]:
+def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
     """Return loop, length and direction of the rows to inlet and outlet."""
     passage = cascade.passage
     axial = passage.map.axial(passage.front.curve.points)
@@ -139,17 +144,19 @@ def _straight(cascade: Cascade) -> list[tuple[int, float, float]]:
     return [(INLET, before if before > some else 0.0, -1.0), (OUTLET, behind if behind > some else 0.0, 1.0)]
 
 
-def _steps(first: float, length: float, largest: float) -> Floats:
+def row_steps(first: float, length: float, largest: float) -> Floats:
     """Return distances from 0 to a length, of cells that grow from `first` to about `largest`."""
     cells = [min(first * ROW_GROWTH**0.5, length)]
-    while sum(cells) < length - 0.5 * cells[-1]:
+    total = cells[0]
+    while total < length - 0.5 * cells[-1]:
         cells.append(max(min(cells[-1] * ROW_GROWTH, largest), cells[0]))
-    steps = np.concatenate([[0.0], np.cumsum(cells)]) * (length / sum(cells))
+        total += cells[-1]
+    steps = np.concatenate([[0.0], np.cumsum(cells)]) * (length / total)
     steps[-1] = length
     return np.asarray(steps)
 
 
-def _counts(
+def counts_of(
     cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
     """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
@@ -159,7 +166,7 @@ def _counts(
         metric = replace(cascade.metric, across=sizes, along=sizes, largest=cell_size)
         counts = wanted.counts(metric)
     else:
-        low, high = math.log(0.05), math.log(20.0)
+        low, high = math.log(0.05), math.log(COARSEST)
         for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)
             metric = cascade.scaled(math.exp(middle))
@@ -180,9 +187,9 @@ def _attached_cells(cascade: Cascade, chords: Chords, counts: Indices, metric: S
     for edge in np.flatnonzero(chords.wall):
         along[mesh.places.loop[chords.edges[edge][0]]] += counts[chords.chord[edge]]
     total = int(along[BLADE]) * cascade.rows_of_layers
-    for number, length, _ in _straight(cascade):
+    for number, length, _ in straight_rows(cascade):
         if length > 0.0:
             total += int(along[number]) * (
-                len(_steps(abs(cascade.left) / along[number], length, metric.largest)) - 1
+                len(row_steps(abs(cascade.left) / along[number], length, metric.largest)) - 1
             )
     return total

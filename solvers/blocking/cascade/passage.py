@@ -1,9 +1,9 @@
-"""The passage of a cascade: the plane of its map, where blocks are optimised, and the way back.
+"""The passage of a cascade: the plane of its conformal map, in which blocks are optimised, and the way back.
 
 ::
 
-    blade (or the front of its layers), pitch --map--> a domain with two holes, blocks in it
-    layout --cut, laid out beside the blade--> layers of the blade, rows to inlet and outlet attached
+    blade (or the front of its layers), pitch --map--> a domain with two holes, and blocks in it
+    layout --cut, moved next to the blade--> with layers of the blade, and rows to inlet and outlet
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
-from meshonet.geometry.domain.domain import Domain, Periodic
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.periodic import Periodic
 from meshonet.geometry.elementary import product
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -28,21 +29,21 @@ from meshonet.solvers.blocking.layers.attach import Rows, attach, loop_nodes
 BLADE, INLET, OUTLET = 0, 1, 2
 """Numbers of the loops of a passage in the plane of its map."""
 NEAR = 0.3
-"""Pitches in front of and behind a blade that blocks end at; straight rows lead on from there."""
+"""Distance in pitches, upstream and downstream of a blade, at which blocks end and straight rows start."""
 _ROUND = 96  # points of the circles that inlet and outlet are in the plane of the map
 STRETCH_NAMES = ("periodic1", "outlet", "periodic2", "inlet")
 
 
 @dataclass(frozen=True, eq=False)
 class Passage:
-    """A cascade around one blade.
+    """The passage around one blade of a cascade.
 
     Parameters
     ----------
-    front : the blade, or the front of its layers, the passage on its left.
-    map : to the plane in which it is an ordinary domain.
-    domain : that domain: front, inlet, outlet.
-    inlet, outlet : distances from the centre of the map, along its axis, at which blocks end.
+    front : the blade, or the front of its layers, with the passage on its left.
+    map : conformal map to a plane in which the passage is an ordinary domain.
+    domain : this domain, with the loops front, inlet, outlet.
+    inlet, outlet : axial distances from the centre of the map at which blocks end.
     """
 
     front: Loop
@@ -52,16 +53,20 @@ class Passage:
     outlet: float
 
     @classmethod
-    def around(cls, front: Loop, pitch: complex, inlet: float, outlet: float, name: str = "") -> Passage:
-        """Return the passage around a closed front; `pitch` leads to the next blade, left of the flow.
+    def around(
+        cls, front: Loop, pitch: complex, inlet: float, outlet: float, name: str = "",
+        near: tuple[float, float] = (NEAR, NEAR), centre: complex | None = None,
+    ) -> Passage:  # fmt: skip
+        """Return the passage around a closed front; `pitch` points to the next blade, left of the flow.
 
-        `inlet` and `outlet` are the distances before and behind the front at which blocks end at the latest.
+        `inlet` and `outlet` are the largest distances from the front at which blocks end, `near` their usual
+        distances in pitches; `centre` is that of the map.
         """
         points = front.curve.points
-        passage = PassageMap(pitch, inner_point(points))
+        passage = PassageMap(pitch, inner_point(points) if centre is None else centre)
         axial = passage.axial(points)
-        near = NEAR * abs(pitch)
-        first, last = float(axial.min()) - min(near, inlet), float(axial.max()) + min(near, outlet)
+        before, behind = min(near[0] * abs(pitch), inlet), min(near[1] * abs(pitch), outlet)
+        first, last = float(axial.min()) - before, float(axial.max()) + behind
         blade = Loop(_polygon(passage.forward(points)), front.corners, front.names)
         ends = [
             Loop(_polygon(passage.line(distance, _ROUND)), (), (side,))
@@ -71,11 +76,11 @@ class Passage:
 
     @property
     def pitch(self) -> Floats:
-        """(2,) vector from a blade to the next."""
+        """(2,) displacement from a blade to the next."""
         return np.array([self.map.pitch.real, self.map.pitch.imag])
 
     def line_arcs(self, number: int, places: Floats) -> Floats:
-        """Return the arc lengths (n,), on the circle that inlet or outlet is, of `places` (n, 2) near it."""
+        """Return the arc lengths (n,), on the circle of inlet or outlet, of `places` (n, 2) near it."""
         circle = self.domain.loops[number].curve
         along = self.map.along(self.map.back(np.concatenate([circle.points[:1], places])))
         share = np.mod((along[1:] - along[0]) * (1.0 if number == OUTLET else -1.0), 1.0)
@@ -84,7 +89,7 @@ class Passage:
         return np.asarray(np.interp(share * count, np.arange(count + 1.0), knots) % circle.length)
 
     def front_arcs(self, arcs: Floats) -> Floats:
-        """Return the arc lengths (n,) of the front at those of its image in the plane of the map."""
+        """Return the arc lengths (n,) on the front for those of its image in the plane of the map."""
         loop = self.domain.loops[BLADE]
         here = np.append(loop.curve.knots, loop.length)
         there = np.append(self.front.curve.knots, self.front.length)
@@ -96,10 +101,10 @@ def _polygon(points: Floats) -> Curve:
 
 
 def laid_out(layout: Layout, passage: Passage, cut: Indices) -> tuple[Layout, Indices]:
-    """Return the layout beside the blade, cut along its nodes `cut` (k,).
+    """Return the layout in the plane of the blade, cut along its nodes `cut` (k,).
 
-    Its loops are those of the map's plane: the front, and lines of nodes at inlet and outlet, on which nodes
-    lie. With it come the nodes (k,) of the lower side of the cut; each has its image one number on.
+    Its loops are those of the map's plane: the front, and lines at inlet and outlet. Also returned are the
+    nodes (k,) of the lower side of the cut; the image of each has the next number.
     """
     flat, lower = unwrap(layout, passage.map, cut)
     nodes, places, pitch = flat.mesh.nodes, flat.mesh.places, passage.pitch
@@ -120,7 +125,7 @@ def laid_out(layout: Layout, passage: Passage, cut: Indices) -> tuple[Layout, In
 
 
 def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
-    """Return the layout with `rows` attached, around a `wall`, as a domain of its own with periodic sides.
+    """Return the layout with `rows` attached, around a `wall`, as a domain with periodic sides.
 
     `cut` (k,) are the nodes of the lower side of its cut.
     """
@@ -167,23 +172,24 @@ def _closed(layout: Layout, passage: Passage, lower: Indices, upper: Indices) ->
     knots = outer.curve.knots[corners]
     shift = (float(pitch[0]), float(pitch[1]))
     periodic = Periodic((float(knots[0]), float(knots[1])), (float(knots[2]), float(knots[3])), shift)
-    domain = Domain((outer, mesh.domain.loops[BLADE]), passage.domain.name, periodic=periodic)
+    domain = Domain((outer, mesh.domain.loops[BLADE]), passage.domain.name, periodic=(periodic,))
     moved = replace(places, loop=loop, arc=arc, cells=cells)
     return Layout(QuadMesh(domain, nodes, mesh.quads, moved), layout.blocks, layout.layers)
 
 
 def turned_round(layout: Layout) -> Layout:
-    """Return a passage whose second periodic side is the first, moved by the opposite of the pitch."""
+    """Return a passage with its periodic sides exchanged, so that the pitch is reversed."""
     mesh, places = layout.mesh, layout.mesh.places
     images = np.flatnonzero(places.partner >= 0)
     partner = np.full(len(places.partner), -1, dtype=np.intp)
     partner[places.partner[images]] = images
-    loops, periodic = mesh.domain.loops, mesh.domain.periodic
-    if periodic is None:
+    loops = mesh.domain.loops
+    if not mesh.domain.periodic:
         return layout
     names = tuple(loops[0].names[k] for k in (2, 1, 0, 3))
     outer = Loop(loops[0].curve, loops[0].corners, names)
+    (periodic,) = mesh.domain.periodic
     shift = (-periodic.shift[0], -periodic.shift[1])
     swapped = Periodic(periodic.second, periodic.first, shift)
-    domain = replace(mesh.domain, loops=(outer, *loops[1:]), periodic=swapped)
+    domain = replace(mesh.domain, loops=(outer, *loops[1:]), periodic=(swapped,))
     return replace(layout, mesh=replace(mesh, domain=domain, places=replace(places, partner=partner)))

@@ -1,14 +1,18 @@
-r"""Flow through a cascade at no circulation: its potential is a conformal map to flat plates at no stagger.
+r"""Flow through a cascade without circulation.
 
-With ζ = π z / (p n), n along the axis and p the pitch, the complex potential is
+Its potential is a conformal map to flat plates without stagger.
+
+With ζ = π z / (p n), where n is the axial direction and p the pitch, the complex potential is
 
     G = ζ + ∫ γ(s) log sinh(ζ - s) ds,   Im G = const along the blade,   ∫ γ ds = 0.
 
-The blade becomes a slit from -h to h that repeats every iπ. The slits' outside is the strip |Im σ| < π / 2,
+The blade becomes a slit from -h to h that repeats every iπ. The region between the slits is mapped to the
+strip
+|Im σ| < π / 2 by
 
     σ = log(sinh(G + h) / sinh(G - h)) / 2,   inlet and outlet at -h and h.
 
-The vortex sheet γ is found with panels. Martensen, Arch. Rat. Mech. Anal. 3 (1959) 235-270.
+The vortex sheet γ is computed with panels. Martensen, Arch. Rat. Mech. Anal. 3 (1959) 235-270.
 """
 
 from __future__ import annotations
@@ -36,9 +40,9 @@ class PassageFlow:
     Parameters
     ----------
     half : half the length of the slit, h.
-    around : (n,) angles ν of the blade's points, and of others at equal steps between them in long channels,
-        whose places on the slit are h cos ν: they grow by 2π.
-    strip : (n,) places σ of the points; those at the slit's ends are infinite.
+    around : (n,) increasing angles ν of points on the blade, at h cos ν on the slit. In long channels, points
+        at equal steps are added.
+    strip : (n,) positions σ of the points, infinite at the ends of the slit.
     away : (n,) ζ - G at the points.
     """
 
@@ -73,26 +77,26 @@ class PassageFlow:
         return cls(half, np.unwrap(angle), along + edge, points - phi)
 
     def to_strip(self, places: Complexes) -> Complexes:
-        """Return the places σ of places G, those between the slits."""
+        """Return the positions σ of points G between the slits."""
         ratio = sinh(places + self.half) / sinh(places - self.half)
         return np.asarray(0.5 * log(ratio))
 
     def to_places(self, places: Complexes) -> Complexes:
-        """Return the places ζ (...) of places G, those between the slits."""
+        """Return the positions ζ (...) of points G between the slits."""
         away = self.inside(self.to_strip(places.ravel()))
         return np.asarray(places + away.reshape(places.shape))
 
     @cached_property
     def far(self) -> tuple[float, float]:
-        """Re (ζ - G) far before and far behind the blades."""
+        """Re (ζ - G) far upstream and far downstream of the blades."""
         before, behind = self.inside(self.half * np.array([-1.0, 1.0], dtype=np.complex128))
         return float(before.real), float(behind.real)
 
     def inside(self, places: Complexes) -> Complexes:
-        """Return ζ - G at places σ (m,), a function without singularities, from what it is on the blade.
+        """Return ζ - G, a function without singularities, at points σ (m,), from its values on the blade.
 
-        Cauchy's integral in the disc of tanh σ/2 by the trapezoidal rule, over that of 1 (Helsing, Ojala,
-        J. Comput. Phys. 227 (2008) 2899-2921).
+        It is Cauchy's integral in the disc of tanh σ/2 by the trapezoidal rule, divided by that of 1
+        (Helsing, Ojala, J. Comput. Phys. 227 (2008) 2899-2921).
         """
         finite = np.isfinite(self.strip)
         strip, away = self.strip[finite], self.away[finite]

@@ -1,11 +1,12 @@
-r"""A cascade's passage as a plane domain with two holes: no side of it is periodic there.
+r"""Conformal map of a cascade's passage to a plane domain with two holes and without periodic sides.
 
-With p the pitch and z₀ a point of the blade, the conformal map
+With p the pitch and z₀ a point inside the blade, the map
 
     ζ = iπ (z - z₀) / p,   w = coth ζ
 
-is the same for z and z + p. The blade becomes the outer loop (it surrounds the pole z₀), and a line across
-the flow, Re ζ = ±a, the circle around ±coth 2a of radius 1/sinh 2a: inlet and outlet. Angles stay the same.
+has the same value at z and z + p. The blade becomes the outer loop, because it surrounds the pole z₀. A line
+across the flow, Re ζ = ±a, becomes the circle around ±coth 2a with radius 1/sinh 2a: inlet and outlet. Angles
+are preserved.
 """
 
 from __future__ import annotations
@@ -22,22 +23,22 @@ _SMALL = 1e-12
 
 @dataclass(frozen=True)
 class PassageMap:
-    """The map of a cascade of period `pitch`, a vector as a complex number, around the pole `centre`."""
+    """The map of a cascade with the period `pitch`, as a complex number, and the pole `centre`."""
 
     pitch: complex
     centre: complex
 
     @property
     def axis(self) -> complex:
-        """Unit vector from inlet to outlet, at a right angle to the pitch."""
+        """Unit vector from inlet to outlet, perpendicular to the pitch."""
         return self.pitch / (1j * abs(self.pitch))
 
     def axial(self, points: Floats) -> Floats:
-        """Return how far (n,) points (n, 2) are from the centre along the axis."""
+        """Return the axial distances (n,) of points (n, 2) from the centre."""
         return np.asarray(times(complex_of(points) - self.centre, np.conj(self.axis)).real)
 
     def along(self, points: Floats) -> Floats:
-        """Return how many pitches (n,) points (n, 2) are from the centre in the direction of the pitch."""
+        """Return the distances (n,) of points (n, 2) from the centre along the pitch, in pitches."""
         return np.asarray(((complex_of(points) - self.centre) / self.pitch).real)
 
     def zeta(self, points: Floats) -> Complexes:
@@ -45,28 +46,28 @@ class PassageMap:
         return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.pitch)
 
     def forward(self, points: Floats) -> Floats:
-        """Return the places w (n, 2) of points z (n, 2)."""
+        """Return the images w (n, 2) of points z (n, 2)."""
         return of_zeta(self.zeta(points))
 
     def back(self, places: Floats) -> Floats:
-        """Return the points z (n, 2) of places w (n, 2), within half a pitch of the axis of the centre."""
+        """Return the points z (n, 2) with images w (n, 2), within half a pitch of the axis of the centre."""
         w = complex_of(places)
         zeta = 0.5 * log((w + 1.0) / (w - 1.0))
         return pairs_of(self.centre + times(zeta, self.pitch) / (1j * np.pi))
 
     def derivative(self, places: Floats) -> Complexes:
-        """Return dw/dz (n,) at places w (n, 2)."""
+        """Return dw/dz (n,) at w (n, 2)."""
         w = complex_of(places)
         return np.asarray(times(1j * np.pi / self.pitch, (1.0 - times(w, w))))
 
     def stretching(self, places: Floats) -> Floats:
-        """Return |dw/dz| (n,) at places w (n, 2)."""
+        """Return |dw/dz| (n,) at w (n, 2)."""
         return modulus(self.derivative(places))
 
     def line(self, distance: float, count: int) -> Floats:
-        """Return `count` places w (count, 2) of the line across the flow at an axial distance of the centre.
+        """Return `count` points w (count, 2) on the line across the flow at an axial distance of the centre.
 
-        They run clockwise around the hole that it becomes, in equal steps along the line.
+        They run clockwise around the hole that is its image, with equal steps along the line.
         """
         steps = np.arange(count) / count
         way = 1.0 if distance > 0 else -1.0
@@ -75,12 +76,12 @@ class PassageMap:
 
 
 def of_zeta(zeta: Complexes) -> Floats:
-    """Return the places w (n, 2) of places ζ (n,)."""
+    """Return w (n, 2) at ζ (n,)."""
     return pairs_of(1.0 / tanh(zeta))
 
 
 def inner_point(polygon: Floats) -> complex:
-    """Return the point inside a polygon (n, 2) that is, of a lattice, the farthest from it."""
+    """Return the point of a lattice inside a polygon (n, 2) that is farthest from the polygon."""
     low, high = polygon.min(axis=0), polygon.max(axis=0)
     best, most = complex(*polygon.mean(axis=0)), -1.0
     for rows in (40, 160, 640):

@@ -1,6 +1,6 @@
 r"""Blocks of a cascade's passage: a ring around the blade, the channel, and rows to inlet and outlet.
 
-In the plane G of a `PassageFlow`, whose slit is the blade, all but the ring are rectangles::
+In the plane G of a `PassageFlow`, where the blade is a slit, all blocks except the ring are rectangles::
 
     iπ - e  +----------+=====================+----------+     = the ring's outer side
             |          |       channel       |          |
@@ -8,8 +8,9 @@ In the plane G of a `PassageFlow`, whose slit is the blade, all but the ring are
       inlet |          | ring [--slit--] ring|          | outlet
       -i e  +----------s=====================s----------+
 
-Five blocks meet at each s, four at all other nodes inside. The channel and what lies before and behind it
-are two rows of blocks each, so that a line of nodes leads straight from inlet to outlet: the cut.
+Five blocks meet at each s, four at all other interior vertices. The channel, and the parts upstream and
+downstream of it, are two rows of blocks each. The grid line between them leads from inlet to outlet and is
+called the cut.
 """
 
 from __future__ import annotations
@@ -28,11 +29,11 @@ from meshonet.solvers.blocking.cascade.passage_flow import PassageFlow
 from meshonet.solvers.blocking.cascade.passage_map import of_zeta
 
 CELLS = 6
-"""Cells across the ring, and at the least along each side of a block."""
+"""Number of cells across the ring, and smallest number along each side of a block."""
 LONG = np.pi / 12.0
-"""Length of cells along the channel, in the plane of the flow."""
+"""Length of cells along the channel in the plane G."""
 ASIDE, AHEAD = 0.45, 0.12
-"""Distances of the ring's outer side from the slit, aside and at its ends; the period is π."""
+"""Distances of the ring's outer side from the slit, beside it and at its ends; the period is π."""
 
 
 _SAME = 1e-9  # distance at which nodes are one
@@ -40,7 +41,7 @@ _FEET = 1e3  # a place that is not used
 
 
 def template(passage: Passage, *, at_corners: bool = True) -> Layout:
-    """Return the layout of a passage in the plane of its map, if wanted with nodes at the blade's corners."""
+    """Return the layout of a passage in the plane of its map; nodes may be moved to the blade's corners."""
     flow = PassageFlow.of(passage.map.zeta(passage.front.curve.points))
     x = flow.half + AHEAD
     to_axis = np.pi / abs(passage.map.pitch)
@@ -67,8 +68,8 @@ def template(passage: Passage, *, at_corners: bool = True) -> Layout:
 def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], list[Floats]]:
     """Return the four blocks of the ring, i clockwise around the blade, j away from it.
 
-    Their feet are not where they should be; the second list has the angles (n,) of these instead. Lines lead
-    away along hyperbolae, G = h cosh(μ + iν).
+    Their first nodes are not on the blade yet; the second result has their angles (n,) instead. Lines leave
+    the slit along hyperbolae, G = h cosh(μ + iν).
     """
     along, up = np.linspace(-x, x, cells + 1), np.linspace(-ASIDE, ASIDE, CELLS + 1)
     blocks, angles = [], []
@@ -82,9 +83,9 @@ def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], lis
 
 
 def _joined(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
-    """Return the places of nodes, and blocks of their numbers.
+    """Return the positions of nodes, and blocks of their numbers.
 
-    What coincides, but for periods iπ, is one node.
+    Nodes that coincide up to multiples of the period iπ are merged.
     """
     places = np.concatenate([piece.ravel() for piece in pieces])
     inner = np.zeros(len(places), dtype=bool)
@@ -104,7 +105,7 @@ def _joined(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
 def _placed(
     passage: Passage, flow: PassageFlow, nodes: Complexes, blocks: tuple[Indices, ...], angles: list[Floats]
 ) -> Layout:
-    """Return the layout with `nodes` taken to the plane of the map, those of walls on its loops.
+    """Return the layout with `nodes` mapped to the plane of the map, and wall nodes on its loops.
 
     Those of the blade are at `angles` around the slit, for each block of the ring.
     """
@@ -128,7 +129,7 @@ def _placed(
 
 
 def _put_at_corners(layout: Layout, front: Loop) -> None:
-    """Put the nearest node, none twice, at each corner of the blade or of its layers, in place."""
+    """Move the nearest node to each corner of the blade or of its layers, in place; no node is used twice."""
     places = layout.mesh.places
     free = places.loop == BLADE
     for arc, cells in zip(front.corner_arcs, front.corner_cells, strict=True):
@@ -140,7 +141,7 @@ def _put_at_corners(layout: Layout, front: Loop) -> None:
 
 
 def _arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
-    """Return the arc lengths (k,) of angles (k,) around the slit, on the loop whose points `flow` has."""
+    """Return the arc lengths (k,) on the loop of the blade for angles (k,) around the slit."""
     turn = 2.0 * np.pi
     around, knots = flow.around, np.append(front.curve.knots, front.length)
     parts = len(around) // (len(knots) - 1)
@@ -153,5 +154,5 @@ def _arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
 
 
 def cut_of(layout: Layout) -> Indices:
-    """Return the nodes (k,) of the cut of a layout with the template's blocks, from the inlet."""
+    """Return the nodes (k,) of the cut of a layout with the template's blocks, starting at the inlet."""
     return np.concatenate([layout.blocks[1][:, -1], layout.blocks[3][1:, -1], layout.blocks[6][1:, -1]])

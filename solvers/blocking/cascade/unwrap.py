@@ -1,9 +1,9 @@
-"""A layout in the plane of a passage map, cut from inlet to outlet and laid out beside its blade.
+"""Cuts a layout in the plane of a passage map from inlet to outlet, and moves it next to the blade.
 
 ::
 
     inlet -------- cut, moved by the pitch -------- outlet      the cut runs along sides of blocks; its nodes
-      |                                               |        are there twice, the second time as partners
+      |                                               |        occur twice, the second time as partners
     inlet ----------------- cut ------------------- outlet
 """
 
@@ -22,8 +22,8 @@ from meshonet.solvers.blocking.cascade.passage_map import PassageMap
 def unwrap(layout: Layout, passage: PassageMap, cut: Indices) -> tuple[Layout, Indices]:
     """Return the layout of a passage in its own plane, cut along nodes (k,) on sides of blocks.
 
-    Loops and arc lengths are those in the plane of the map. With it come the nodes (k,) of the lower side of
-    the cut, from the inlet; the next number each has the node above, of which it is the partner.
+    Loops and arc lengths are those in the plane of the map. Also returned are the nodes (k,) of the lower
+    side of the cut, starting at the inlet; the node above each has the next number and is its partner.
     """
     mesh = layout.mesh
     principal = passage.back(mesh.nodes)

@@ -1,1 +1,1 @@
-"""A planar domain cut into four-sided blocks."""
+"""Decomposition of a planar domain into four-sided blocks."""

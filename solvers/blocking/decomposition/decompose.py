@@ -1,4 +1,6 @@
-"""Any planar domain cut into four-sided blocks: all stages, again with another triangulation where one fails.
+"""Decomposes any planar domain into four-sided blocks.
+
+Runs all stages, if necessary on another triangulation.
 
 ::
 
@@ -26,6 +28,7 @@ from meshonet.solvers.blocking.decomposition.collapse.collapse import simplify
 from meshonet.solvers.blocking.decomposition.collapse.score import PRICE, score
 from meshonet.solvers.blocking.decomposition.errors import BlockingError, most_folded
 from meshonet.solvers.blocking.decomposition.field.seamless_map import seamless_map
+from meshonet.solvers.blocking.decomposition.periodic_counts import check_sides
 from meshonet.solvers.blocking.decomposition.quads.padding import (
     Span,
     loops_to_pad,
@@ -40,33 +43,35 @@ from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.stages import reached
 
 ATTEMPTS = 5
-"""Triangulations tried: of 201 domains two needed a second one, and none a third."""
+"""Number of triangulations that are tried; of 201 domains two needed a second one, and none a third."""
 HELD_ITERATIONS, FIRST_ITERATIONS, BEFORE_PADDING = 10, 60, 25
-"""Iterations with wall nodes held, which unfold; with them free; with them free before rows of quads come."""
+"""Iterations with fixed wall nodes, which untangle; with free wall nodes; with free ones before rows are
+inserted.
+"""
 CELLS = 900
-"""Cells of the quad mesh that blocks are found in and judged on."""
+"""Number of cells of the quad mesh from which blocks are derived."""
 MOST = 9_000
-"""Blocks, before any collapse, beyond which there is no answer in good time: of too many corners, say."""
+"""Largest number of blocks before the collapse; more would take too long."""
 COUNT = 1500
-"""About how many points the triangulation has."""
+"""Approximate number of points of the triangulation."""
 FEWER = 1
-"""Attempts with as few singularities as are worth it; the smoothest field of all comes after these."""
+"""Number of attempts with a reduced number of singularities; later attempts use the smoothest field."""
 PADDED = 3
-"""Attempts in which stretches without singularities are asked for."""
+"""Number of attempts in which stretches without singularities are required."""
 
 
 @dataclass
 class Timings:
-    """Seconds each stage took, over all attempts, and how many attempts there were."""
+    """Seconds of each stage over all attempts, and the number of attempts."""
 
     seconds: dict[str, float] = field(default_factory=dict)
     attempts: int = 0
     blocks_found: int = 0
-    """Blocks before any chord was collapsed."""
+    """Number of blocks before the collapse."""
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Add the time spent inside to a stage."""
+        """Return a context whose time is added to a stage."""
         reached(name)
         begun = time.perf_counter()
         try:
@@ -84,12 +89,11 @@ def decompose(
     attempts: int = ATTEMPTS,
     timings: Timings | None = None,
     sizes: SizeMetric | None = None,
-    spans: Sequence[Span] = (),
+    symmetric: bool = True,
 ) -> Layout:
-    """Return a layout of the blocks of a domain, its quad mesh optimised.
+    """Return a layout of the blocks of a domain, with an optimised quad mesh.
 
-    Of a symmetric domain they are symmetric (`symmetry.symmetric`), but with `sizes` or `spans`, which are of
-    what layers leave of a domain: its nodes are symmetric to fewer digits.
+    The nodes of a domain with periodic sides are not made symmetric.
 
     Parameters
     ----------
@@ -99,25 +103,31 @@ def decompose(
     attempts : how often to try, each time with a finer triangulation and another seed.
     timings : filled with what the stages took.
     sizes : of the edges of the quad mesh, in place of `cells`; by default they are all alike.
-    spans : stretches of loops between convex corners along which no singularity is to lie.
+    symmetric : whether those of a symmetric domain are to be symmetric (`symmetry.symmetric`).
 
-    Raises BlockingError: no attempt came to a valid layout, or the domain has too many corners.
+    Raises BlockingError: no attempt gave a valid layout, or the domain has too many corners.
     """
     timings = timings or Timings()
-    blocks = _found(domain, cells, count, price, attempts, timings, sizes, spans)
-    if sizes is not None or spans:
+    blocks = _found(domain, cells, count, price, attempts, timings, sizes, ())
+    if not symmetric or domain.periodic:
         return blocks.layout
     part_timings = Timings(timings.seconds)
 
     def of_part(part: Domain, parts: int, rows: Sequence[Span]) -> QuadMesh:
         shares = cells // parts, count // parts
-        return _found(part, *shares, parts * price, attempts, part_timings, None, rows).mesh
+        return _found(part, *shares, parts * price, attempts, part_timings, sizes, rows).mesh
 
     def optimised(mesh: QuadMesh) -> QuadMesh:
         with timings.stage("first optimum"):
-            return _optimised(mesh, FIRST_ITERATIONS, None)
+            return _optimised(mesh, FIRST_ITERATIONS, sizes)
 
-    return symmetric_blocks(blocks, of_part, optimised, lambda blocks: score(blocks, price)).layout
+    def scored(blocks: BaseComplex) -> float:
+        return score(blocks, price, sizes.edges(blocks.mesh) if sizes else None)
+
+    def unsized() -> QuadMesh:
+        return decompose(domain, cells=cells, count=count, price=price, timings=part_timings).mesh
+
+    return symmetric_blocks(blocks, of_part, optimised, scored, unsized if sizes else None).layout
 
 
 def _found(
@@ -133,7 +143,9 @@ def _found(
             mesh = _quad_mesh(domain, *finer, attempt, timings, sizes)
             if len(mesh.quads) > MOST and len(base_complex(mesh).blocks) > MOST:
                 break
-            return _blocks(mesh, price, timings, sizes, spans if attempt < PADDED else ())
+            blocks = _blocks(mesh, price, timings, sizes, spans if attempt < PADDED else ())
+            check_sides(blocks.layout)
+            return blocks
         except SolverError as error:
             problem = error
     else:

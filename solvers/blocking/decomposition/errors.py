@@ -1,4 +1,4 @@
-"""What a stage of the decomposition says when it cannot go on, and where."""
+"""Error of a stage of the decomposition, with its place."""
 
 import numpy as np
 
@@ -8,11 +8,11 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 
 
 class BlockingError(SolverError):
-    """A stage failed for one triangulation of a domain; another triangulation may do."""
+    """A stage failed for one triangulation of a domain; another triangulation may succeed."""
 
 
 def most_folded(mesh: QuadMesh) -> str:
-    """Return where the corner is that is folded most, for a message.
+    """Return the place of the most folded corner for a message.
 
     A corner whose Jacobian is not a number counts as the most folded one.
     """

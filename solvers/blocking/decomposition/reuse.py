@@ -1,9 +1,10 @@
-"""A layout carried over to another domain of the same kind: a family of shapes with one topology.
+"""Transfers a layout to another domain of the same kind, for families of shapes with one topology.
 
-Loops belong together by their names, else by their order; corners in order around each loop, and where a loop
-has none, its places as they lie around its box. Nodes on a loop keep their part of the way between corners.
-The others move along: by the affine map that suits all nodes on loops best, and by a harmonic displacement
-that carries the rest inwards (Helenbrook, Int. J. Numer. Meth. Engng 56 (2003) 1007-1021, the first of two).
+Loops are matched by their names, else by their order; corners are matched in order around each loop. Loops
+without corners are matched by their position relative to the bounding box. Nodes on a loop keep their
+fraction of arc length between corners. Interior nodes are moved by the affine map that best fits the nodes on
+loops, then by a harmonic displacement that removes the rest (Helenbrook, Int. J. Numer. Meth. Engng 56 (2003)
+1007-1021, the first of two).
 """
 
 from __future__ import annotations
@@ -24,13 +25,13 @@ from meshonet.geometry.linear import least_squares
 from meshonet.solvers.sparse import SparsePattern
 
 OFFSETS = 128
-"""Places around a loop without corners at which it is compared with another."""
+"""Number of points around a loop without corners at which it is compared with another loop."""
 
 
 def carried_over(layout: Layout, domain: Domain) -> Layout:
-    """Return the layout with its nodes on and inside the loops of another domain; they may be folded.
+    """Return the layout with its nodes on and inside the loops of another domain; cells may be folded.
 
-    Raises InputError: another number of loops, or of corners on one of them; says what differs.
+    Raises InputError, with the difference: another number of loops, or of corners on a loop.
     """
     mesh = layout.mesh
     pairs = _pairs(mesh.domain.loops, domain.loops)
@@ -68,7 +69,7 @@ def _pairs(old: tuple[Loop, ...], new: tuple[Loop, ...]) -> dict[int, int]:
 
 
 def _by_name(holes: tuple[Loop, ...]) -> dict[tuple[str, ...], int]:
-    """Return the number of each hole by its names, nothing where some share them."""
+    """Return the index of each hole by its names; empty if several holes share names."""
     numbers = {tuple(sorted(set(loop.names))): k for k, loop in enumerate(holes, start=1)}
     return numbers if len(numbers) == len(holes) else {}
 

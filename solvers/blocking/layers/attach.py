@@ -1,4 +1,4 @@
-"""Blocks attached to a loop of a layout: layers at a wall, or rows out to a distant far field."""
+"""Attaches blocks to a loop of a layout: layers at a wall, or rows out to a distant far field."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class Rows:
 
     Parameters
     ----------
-    loop : number of the loop, the same in the layout's domain and in the one it is to have.
-    nodes : (k, m, 2) the lines, in the order of `loop_nodes`; the first node of each is the layout's.
-    arcs : (k,) arc lengths at which they end on the loop of the new domain.
-    layers : whether they end at a wall whose layers no optimisation moves.
+    loop : number of the loop, the same in the layout's domain and in the extended one.
+    nodes : (k, m, 2) lines, in the order of `loop_nodes`; the first node of each is the layout's.
+    arcs : (k,) arc lengths of their ends on the loop of the extended domain.
+    layers : whether they end at a wall with layers, which no optimisation moves.
     """
 
     loop: int
@@ -40,9 +40,9 @@ def loop_nodes(mesh: QuadMesh, loop: int) -> Indices:
 
 
 def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
-    """Return a layout with blocks of `rows` beside every block that has a side on their loops.
+    """Return a layout with blocks of `rows` next to every block with a side on their loops.
 
-    `domain` is what both cover together: the same loops, those of `rows` in new places.
+    `domain` is the extended domain: it has the same loops, of which those of `rows` are in new positions.
     """
     mesh = layout.mesh
     nodes, places = [mesh.nodes], [replace(mesh.places, loop=mesh.places.loop.copy())]
@@ -89,7 +89,7 @@ def _places(rows: Rows, domain: Domain) -> Places:
 
 
 def beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Indices]:
-    """Return positions (n,) along the loop, ascending by one, of every side of a block that lies on it."""
+    """Return indices (n,) along the loop, ascending by one, of every side of a block on the loop."""
     along = []
     for block in blocks:
         for side in (block[:, 0], block[-1], block[::-1, -1], block[0, ::-1]):
@@ -100,7 +100,7 @@ def beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Ind
 
 
 def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
-    """Return lines (k, n, 2): lines (k, m, 2) at the arcs (k, n) that `law` makes of their lengths."""
+    """Return lines (k, m, 2) with new nodes (k, n, 2) at arc lengths that `law` gives for their lengths."""
     step = np.diff(lines, axis=1)
     length = np.hypot(step[..., 0], step[..., 1])
     arc = np.concatenate([np.zeros((len(lines), 1)), np.cumsum(length, axis=1)], axis=1)
@@ -109,7 +109,7 @@ def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
 
 
 def sampled(lines: Floats, arc: Floats, at: Floats) -> Floats:
-    """Return points (k, n, 2) at arcs (k, n): cubic pieces, tangents those of parabolas through three."""
+    """Return points (k, n, 2) at arcs (k, n) on cubic pieces whose tangents are those of parabolas."""
     h = np.diff(arc, axis=1)[..., None]
     delta = np.diff(lines, axis=1) / h
     slope = np.empty_like(lines)

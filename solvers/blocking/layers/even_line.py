@@ -1,11 +1,12 @@
-"""Nodes moved along a curve so that neighbouring steps differ by at most a ratio, in several measures.
+"""Moves nodes along a curve so that the ratio of neighbouring steps is limited, in several measures.
 
-A measure rises along the curve: its arc length, that of a wall beneath it. With the places t of the nodes
-and ρ the logarithms of the ratios of neighbouring steps of each measure::
+A measure increases along the curve, for example its arc length, or that of a wall below it. Let t be the
+positions of the nodes and ρ the logarithms of the ratios of neighbouring steps of each measure. The nodes
+minimise::
 
     E = the term of `growth_limit` in ρ + σ Σ (t - t0)² / s²
 
-t0 are the places at first, s the steps there.
+t0 are the initial positions, s the steps there.
 """
 
 from __future__ import annotations
@@ -28,13 +29,13 @@ from meshonet.solvers.least_squares import NormalEquations
 MOVE = 1e-2
 """σ."""
 MARGIN = 0.006
-"""How far below the limit, in logarithms, ratios are to come."""
+"""Margin by which ratios, in logarithms, should be below the limit."""
 STEPS = 24
 MOST, RELAXED, TRIES = 6.0, 1.5, 6
 """Steps by which places may move, and by what limits that take more are multiplied, so often."""
 
 FINER = 8
-"""Parts of a column in which measures are told apart."""
+"""Number of points per column at which measures are tabulated."""
 SLACK = np.array([2.0, 1.0, 0.9])
 """Logarithms of ratios along fronts, at walls, and in the level next to these, by that of the limit."""
 
@@ -43,13 +44,13 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class Measures:
-    """What steps along a curve are to be even in.
+    """Measures along a curve whose steps should be even.
 
     Parameters
     ----------
-    arcs : (m,) places along the curve, ascending.
-    values : (k, m) measures there, each rising; between these places they are linear.
-    slack : (k,) what the limit, a logarithm, is multiplied by for each.
+    arcs : (m,) positions along the curve, ascending.
+    values : (k, m) increasing measures there, linear in between.
+    slack : (k,) factor of the limit, a logarithm, for each measure.
     """
 
     arcs: Floats
@@ -57,7 +58,7 @@ class Measures:
     slack: Floats | float = 1.0
 
     def at(self, places: Floats, closed: bool) -> tuple[Floats, Floats]:
-        """Return the measures (k, n) at `places` (n,), which may go round closed curves, and their slopes."""
+        """Return the measures (k, n) at `places` (n,), periodic on closed curves, and their slopes."""
         turns = np.zeros(len(places))
         if closed:
             turns, places = np.divmod(places, self.arcs[-1])
@@ -67,16 +68,15 @@ class Measures:
 
     @property
     def whole(self) -> Floats:
-        """(k, 1) by how much they rise in all."""
+        """(k, 1) total increase of each measure."""
         return self.values[:, -1:] - self.values[:, :1]
 
 
 def evened_places(places: Floats, fixed: Bools, measures: Measures, limit: float, closed: bool) -> Floats:
-    """Return places (n,) near ascending ones of which neighbouring steps differ by a limited ratio.
+    """Return places (n,) near the given ascending ones whose neighbouring steps differ by a limited ratio.
 
-    Those that are `fixed` (n,) stay. `limit` is the logarithm of the ratio; where it cannot be kept it is
-    exceeded by as little as may be. Of a closed curve, that of `measures`, the last step leads to the first
-    place.
+    Places that are `fixed` (n,) do not change. `limit` is the logarithm of the ratio; if it cannot be kept,
+    it is exceeded as little as possible. On a closed curve the last step leads to the first place.
     """
     line = _Line.of(places, fixed, measures, closed)
     new = places
@@ -100,10 +100,10 @@ def evened_steps(steps: Floats, limit: float) -> Floats:
 
 
 def evened_loops(layout: Layout, measures: Mapping[int, Measures], limit: float) -> Layout:
-    """Return the layout with nodes moved along some loops, and less and less in the blocks beside them.
+    """Return the layout with nodes moved along some loops, and less and less in the adjacent blocks.
 
-    Neighbouring steps of the measures of each loop differ by no more than the exponential of `limit`; corners
-    stay.
+    Neighbouring steps of the measures of each loop then differ by at most the exponential of `limit`; corners
+    are fixed.
     """
     mesh = layout.mesh
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()

@@ -1,13 +1,15 @@
-"""Nodes of a mesh moved so that neighbouring edges along its lines differ by at most a given ratio.
+"""Moves nodes of a mesh so that the ratio of consecutive edges along grid lines is limited.
 
-With the logarithms ρ of the ratios of consecutive edges, the angles θ of corners of cells, and the nodes z::
+Let ρ be the logarithms of the ratios of consecutive edges, θ the angles at corners of cells, and z the nodes.
+The nodes minimise::
 
     E = the term of `growth_limit` in ρ + ν Σ (θ - θ0)² + σ Σ |z - z0|² / h²
 
-θ0, z0 are those at first, angles cut to between 60 and 120 degrees, and h is the shortest edge at a node.
-ρ and θ are parts of logarithms of edges as complex numbers: of the quotient of two that follow each other,
-and of two that leave a corner. So cells a thousand times as long as high are no harder than squares, and each
-step of Gauss-Newton solves one sparse system. Only nodes near ratios that exceed the limit move.
+θ0 and z0 are the initial values, where angles are limited to between 60 and 120 degrees, and h is the
+shortest edge at a node. ρ and θ are the real and imaginary parts of logarithms of quotients of edges as
+complex numbers: of consecutive edges, and of two edges that leave a corner. Therefore cells a thousand times
+as long as high are no more difficult than squares. Each Gauss-Newton step solves one sparse system. Only
+nodes near ratios above the limit move.
 """
 
 from __future__ import annotations
@@ -46,14 +48,17 @@ Bools = NDArray[np.bool_]
 
 
 def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:
-    """Return the mesh with nodes, but for `held` (n,) ones, moved where edges along lines grow too fast.
+    """Return the mesh with nodes moved where edges along grid lines grow too fast.
 
-    Nodes on loops that are not held slide along them, all but corners and those with a partner.
-    `limit` is the logarithm of the ratio that neighbouring edges may have. Where that cannot be reached they
-    differ by as little more as cells of good angles allow.
+    `held` (n,) nodes are fixed.
+
+    Other nodes on loops slide along them, except corners and periodic sides. `limit` is the logarithm
+    of the largest ratio of neighbouring edges. If it cannot be reached, it is exceeded as little as good
+    angles permit.
     """
     lines = consecutive_edges(mesh)
-    sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0) & (mesh.places.partner < 0)
+    sliding = mesh.wall_nodes & ~held & (mesh.places.cells == 0)
+    sliding[_periodic(mesh)] = False  # both nodes of a pair would have to move alike
     fixed = held | (mesh.wall_nodes & ~sliding)
     weight, before = EXCESS, np.inf
     for _ in range(ROUNDS):
@@ -70,6 +75,12 @@ def evened_mesh(mesh: QuadMesh, held: Bools, limit: float) -> QuadMesh:
     return mesh
 
 
+def _periodic(mesh: QuadMesh) -> Indices:
+    """Return the nodes of both periodic sides."""
+    images = np.flatnonzero(mesh.places.partner >= 0)
+    return np.concatenate([images, mesh.places.partner[images]])
+
+
 def _tangents(mesh: QuadMesh, sliding: Bools) -> Complexes:
     """Return the directions (n,) of the loops at the nodes that slide, 0 at others."""
     tangents = np.zeros(len(mesh.nodes), dtype=np.complex128)
@@ -81,7 +92,7 @@ def _tangents(mesh: QuadMesh, sliding: Bools) -> Complexes:
 
 
 def consecutive_edges(mesh: QuadMesh) -> Indices:
-    """Return the nodes (k, 3) of all pairs of edges that follow each other along grid lines."""
+    """Return the nodes (k, 3) of all pairs of consecutive edges along grid lines."""
     edges = np.arange(len(mesh.edges))
     beside, _ = line_neighbours(
         np.ascontiguousarray(mesh.quads), mesh.edge_of, np.arange(len(mesh.nodes)), edges

@@ -1,4 +1,4 @@
-"""The last steps of grids with layers: cells made to grow evenly, folded ones unfolded."""
+"""Last steps of grids with layers: limitation of growth ratios, repair of folded cells."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from meshonet.geometry.layout.lattice import corner_jacobians
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.decomposition.collapse.score import deviations
+from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.energy.quads import optimise
@@ -34,9 +35,9 @@ Bools = NDArray[np.bool_]
 
 
 def finished(layout: Layout, settings: LayerSettings, held: Bools) -> Layout:
-    """Return the layout with its cells made to grow evenly.
+    """Return the layout with limited growth of its cells.
 
-    Nodes `held` (n,) stay. Raises NoValidGridError: cells are folded; with the place.
+    Nodes `held` (n,) are fixed. Raises NoValidGridError, with the place: cells are folded.
     """
     layout = evened(layout, settings, held)
     held = held.copy()
@@ -52,9 +53,9 @@ def finished(layout: Layout, settings: LayerSettings, held: Bools) -> Layout:
 
 
 def evened(layout: Layout, settings: LayerSettings, held: Bools | None = None) -> Layout:
-    """Return the layout with cells that grow by no more than a limit, as far as first cells allow it.
+    """Return the layout with cells whose growth is limited, as far as the first cells permit it.
 
-    Nodes `held` (n,) stay.
+    Nodes `held` (n,) are fixed.
     """
     held = np.zeros(len(layout.mesh.nodes), dtype=bool) if held is None else held.copy()
     for number in layout.layers:
@@ -64,12 +65,13 @@ def evened(layout: Layout, settings: LayerSettings, held: Bools | None = None) -
         mesh = evened_mesh(layout.mesh, held, limit)
     except SolverError:  # nodes that coincide
         return layout
+    mesh = made_symmetric(mesh)
     before, after = (float(deviations(each).mean()) for each in (layout.mesh, mesh))
     return replace(layout, mesh=mesh) if after <= DEARER * before + DEARER_DEG else layout
 
 
 def unfolded(layout: Layout, held: Bools) -> Layout:
-    """Return the layout with nodes near folded cells, but for `held` (n,) ones, moved to unfold them."""
+    """Return the layout with nodes near folded cells moved to unfold them; `held` (n,) nodes are fixed."""
     mesh = layout.mesh
     bad = smallest_corners(mesh) <= 0.0
     if not bad.any():
@@ -79,11 +81,11 @@ def unfolded(layout: Layout, held: Bools) -> Layout:
     for _ in range(NEAR_FOLDS):
         free[mesh.quads[free[mesh.quads].any(axis=1)]] = True
     optimum = optimise(mesh, iterations=FEW_ITERATIONS, held=held | ~free)
-    return replace(layout, mesh=optimum.mesh) if optimum.valid else layout
+    return replace(layout, mesh=made_symmetric(optimum.mesh)) if optimum.valid else layout
 
 
 def smallest_corner(mesh: QuadMesh) -> float:
-    """Return the smallest Jacobian, of parallelograms at corners, of the quads of a mesh."""
+    """Return the smallest corner Jacobian of the quads of a mesh."""
     return float(smallest_corners(mesh).min())
 
 

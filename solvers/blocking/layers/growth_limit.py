@@ -1,11 +1,12 @@
-"""A limit on the growth of cells as a term of a function that is minimised.
+"""Limits the growth of cells by a penalty term of a functional.
 
-With ρ the logarithms of the ratios of neighbouring cells, ρ0 those at first, cut to at most L::
+Let ρ be the logarithms of the ratios of neighbouring cells and ρ0 their initial values, limited to L. The
+term is::
 
     w Σ max(0, |ρ| - L)² + μ Σ (ρ - ρ0)²
 
-w rises from step to step. In steps of Gauss-Newton ratios that nearly exceed the limit count as if they did:
-that bounds the function from above, and steps do not alternate.
+The weight w increases from step to step. In Gauss-Newton steps, ratios slightly below the limit are treated
+as if they exceeded it: this bounds the function from above and prevents oscillations.
 """
 
 from __future__ import annotations
@@ -21,13 +22,15 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.least_squares import Residuals
 
 EXCESS, RISE, MOST_WEIGHT = 10.0, 1.6, 1e4
-"""w at first, what it is multiplied by in each step, and at the most."""
+"""Initial w, its factor in each step, and its largest value."""
 CHANGE = 1.0
 """μ."""
 NEARLY = 0.05
-"""How far below the limit, in logarithms, ratios count as if they exceeded it."""
+"""Difference from the limit, in logarithms, within which ratios are treated as if they exceeded it."""
 LINEAR = 0.1
-"""Excess beyond which it counts in proportion: what cannot be mended is not to bend all cells around."""
+"""Excess beyond which the penalty is linear, so that a ratio that cannot be reduced does not bend all
+cells.
+"""
 HALVINGS = 10
 
 Numbers = TypeVar("Numbers", Floats, Complexes)
@@ -35,24 +38,24 @@ Numbers = TypeVar("Numbers", Floats, Complexes)
 
 @dataclass(frozen=True, eq=False)
 class GrowthLimit:
-    """The term for logarithms of ratios (k,): `limit` is L, `wanted` (k,) ρ0."""
+    """The term for logarithms of ratios (k,): `limit` is L, `wanted` (k,) is ρ0."""
 
     limit: float
     wanted: Floats
 
     @classmethod
     def at(cls, growth: Floats, limit: float) -> GrowthLimit:
-        """Return the term of a limit where ratios have the logarithms `growth` (k,) at first."""
+        """Return the term of a limit for initial logarithms `growth` (k,) of the ratios."""
         return cls(limit, np.clip(growth, -limit, limit))
 
     def values(self, growth: Floats, weight: float) -> Floats:
-        """Return what each ratio (k,) adds to the term, for w = `weight`."""
+        """Return the contribution of each ratio (k,) to the term, for w = `weight`."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         near = np.minimum(excess, LINEAR)
         return np.asarray(weight * near * (2.0 * excess - near) + CHANGE * (growth - self.wanted) ** 2)
 
     def residuals(self, growth: Floats, derivatives: Floats, weight: float) -> Residuals:
-        """Return what a step of Gauss-Newton needs, of derivatives (k, m) of the logarithms."""
+        """Return the residuals for a Gauss-Newton step, from derivatives (k, m) of the logarithms."""
         excess = np.maximum(np.abs(growth) - self.limit, 0.0)
         pull = weight * np.minimum(1.0, LINEAR / np.maximum(excess, LINEAR))
         stiffness = np.where(np.abs(growth) > self.limit - NEARLY, CHANGE + pull, CHANGE)
@@ -61,9 +64,9 @@ class GrowthLimit:
 
 
 def damped(values: Callable[[Numbers], Floats], at: Numbers, step: Numbers, part: Indices) -> Numbers:
-    """Return parts of a step (m,) that lower each of several `values` (p,), 0 where none is found that does.
+    """Return a step (m,) whose parts are reduced until each of several `values` (p,) decreases, or are 0.
 
-    `part` (m,) is the number of the value that each unknown changes.
+    `part` (m,) is the index of the value that depends on each unknown.
     """
     start = values(at)
     share = np.ones(len(start))

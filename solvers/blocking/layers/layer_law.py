@@ -1,4 +1,4 @@
-"""Heights of layers from a wall, of which the first and about the last are given."""
+"""Heights of layers from a wall, with a given first and an approximate last height."""
 
 import math
 from collections.abc import Callable
@@ -11,17 +11,17 @@ from meshonet.geometry.elementary import exp, log
 _STEPS = 60
 _MOST = 60.0  # of the logarithm of the last cell over the first
 STEEPER = 0.2
-"""By how much more than with a constant ratio, as a part of its logarithm, neighbouring cells may differ."""
+"""Fraction by which the logarithm of a ratio of neighbouring cells may exceed that of the constant ratio."""
 
 
 def layer_arcs(
     length: Floats, first: float, last: Floats, cells: int, constant: int = 1, growth: float = 1.0
 ) -> Floats:
-    """Return arcs (k, cells + 1) from 0 to `length` (k,) of cells that start with `first` at the wall.
+    """Return distances (k, cells + 1) from 0 to `length` (k,) of cells that start with `first` at the wall.
 
-    The first `constant` cells are equal. The logarithm of the others is a parabola of their number that ends
-    at about `last` (k,), or where a constant ratio has it if that is infinite: as far as neighbouring cells
-    then grow by at most `growth`, or a fifth more, in logarithms, than with a constant ratio. They do not
+    The first `constant` cells are equal. The logarithm of the others is a quadratic function of their index.
+    It ends at about `last` (k,), or at the value for a constant ratio if that is infinite. Neighbouring cells
+    grow by at most `growth`, or by a fifth more, in logarithms, than with a constant ratio. They do not
     shrink.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow

@@ -1,4 +1,4 @@
-"""Layers in a ring: what their front asks of the cells beyond it, and the rows under the nodes of a front."""
+"""Layers in a ring: cell sizes that its front requires, and rows below the nodes of the front."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class LayerSettings:
 
     Parameters
     ----------
-    first : height of the first cells, in the domain's unit.
-    growth : largest ratio of neighbouring cells, on average along a column.
-    constant : cells of that height.
-    multiple : the number of layers is a multiple of it, so that coarser grids are nested.
+    first : first-cell height in the domain's unit.
+    growth : largest mean ratio of neighbouring cells along a column.
+    constant : number of cells with the height of the first one.
+    multiple : divisor of the number of layers, so that coarser grids are nested.
     """
 
     first: float
@@ -39,14 +39,14 @@ class LayerSettings:
     multiple: int = 1
 
     def rows(self, thickness: float) -> int:
-        """Return how many layers fill a thickness."""
+        """Return the number of layers that fill a thickness."""
         rest = max(thickness - (self.constant - 1) * self.first, self.first)
         rows = self.constant - 1 + max(2, cells_for_growth(self.first, rest, self.growth))
         return -(-rows // self.multiple) * self.multiple
 
 
 def ring_metric(ring: Ring, settings: LayerSettings) -> SizeMetric:
-    """Return the sizes that the front of a ring asks for: its columns and its last layer."""
+    """Return the cell sizes that the front of a ring requires: those of its columns and its last layer."""
     points = ring.front.curve.points
     step = np.roll(points, -1, axis=0) - points
     length = np.hypot(*step.T)
@@ -57,7 +57,7 @@ def ring_metric(ring: Ring, settings: LayerSettings) -> SizeMetric:
 
 
 def last_layers(thickness: Floats, rows: int, settings: LayerSettings) -> Floats:
-    """Return the heights (n,) that cells beyond so many layers, `thickness` (n,) in all, begin with."""
+    """Return the heights (n,) of the first cells beyond `rows` layers with the total `thickness` (n,)."""
     none = np.full_like(thickness, np.inf)
     arcs = layer_arcs(thickness, settings.first, none, rows, settings.constant)
     return np.asarray(JOIN * (arcs[:, -1] - arcs[:, -2]))
@@ -72,7 +72,7 @@ def _normals(tangents: Floats) -> Floats:
 def ring_rows(
     mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats
 ) -> Rows:
-    """Return the layers under the nodes of a front, `inner` (k,) the heights of the cells beyond it."""
+    """Return the layers below the nodes of a front; `inner` (k,) are the heights of the cells beyond it."""
     order = loop_nodes(mesh, loop)
     columns, starts = ring.columns(mesh.places.arc[order])
     lines = layer_lines(columns, mesh.nodes[order], inner, rows, settings)
@@ -95,7 +95,7 @@ def layer_lines(columns: Floats, ends: Floats, inner: Floats, rows: int, setting
 
 
 def heights_inside(layout: Layout, loop: int) -> Floats:
-    """Return the lengths (k,) of the edges that leave the nodes of a loop for the inside, by arc length."""
+    """Return the lengths (k,) of the edges that leave the nodes of a loop into the domain, by arc length."""
     mesh = layout.mesh
     height = np.zeros(len(mesh.nodes))
     for block in layout.blocks:
@@ -117,13 +117,13 @@ def _smooth(values: Floats, window: int = _WINDOW) -> Floats:
 
 
 def arc_shares(lines: Floats) -> Floats:
-    """Return how far (k, m) along their length the nodes of lines (k, m, 2) are, 0 to 1."""
+    """Return the relative arc lengths (k, m), 0 to 1, of the nodes of lines (k, m, 2)."""
     length = np.hypot(*np.diff(lines, axis=1).transpose(2, 0, 1))
     total = np.cumsum(length, axis=1)
     return np.concatenate([np.zeros((len(lines), 1)), total / total[:, -1:]], axis=1)
 
 
 def exact(lines: Floats, first: float) -> None:
-    """Put the first node of each line (k, m, 2) exactly `first` from the wall, in place."""
+    """Move the first node of each line (k, m, 2) exactly to the distance `first` from the wall, in place."""
     step = lines[:, 1] - lines[:, 0]
     lines[:, 1] = lines[:, 0] + step * (first / np.hypot(*step.T))[:, None]

@@ -1,4 +1,4 @@
-"""Grids of blocks with layers at walls: rings around loops, rows of quads elsewhere, rows to a far field.
+"""Multi-block grids with layers at walls: rings around loops, rows of quads elsewhere, rows to a far field.
 
 ::
 
@@ -21,11 +21,14 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats, middle
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.elementary import exp, log
-from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
+from meshonet.solvers.blocking.decomposition.periodic_counts import alike_along_sides
+from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric, node_images
 from meshonet.solvers.blocking.layers.attach import attach
 from meshonet.solvers.blocking.layers.even_line import evened_loops
 from meshonet.solvers.blocking.layers.even_mesh import evened_mesh
@@ -59,11 +62,11 @@ def layered(
     domain: Domain, loops: Sequence[int], settings: LayerSettings, *, stretches: Sequence[Stretch] = (),
     cells: int = 0, cell_size: float = 0.0, layout: Layout | None = None, timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
-    """Return a fine layout of about so many cells, with layers at loops of a domain and stretches of others.
+    """Return a fine layout of about `cells` cells, with layers at loops of a domain and some stretches.
 
-    Without `cells`, none away from walls is longer than `cell_size`. `layout` is to be taken instead of one
-    that is found: of a domain like it outside rings like these, or of the whole of it.
-    Raises InputError, BlockingError; NoValidGridError: cells stay folded.
+    Without `cells`, edges away from walls are at most `cell_size` long. `layout`, if given, is used instead
+    of a decomposition; it belongs to a similar domain, outside of rings like these or as a whole. Raises
+    InputError; BlockingError; NoValidGridError: folded cells.
     """
     timings = timings or Timings()
     sheets = () if layout else tuple(k for k in loops if k and has_sharp_edge(domain.loops[k]))
@@ -72,11 +75,11 @@ def layered(
             rings = [k for k in loops if k not in sheets]
             walls = WallLayers.of(domain, rings, settings, stretches, sheets)
         coarse = layout and taken_outside(layout, walls.rest, walls.fronts)
-        coarse = coarse or found_outside(walls.rest, walls.fronts, timings)
+        coarse = coarse or found_outside(walls.rest, walls.fronts, timings, bool(walls.mirrors))
         free = tuple(k for k in sheets if walls.is_free(k, coarse.mesh, wake_of(coarse.mesh, k)))
         if free == sheets:
-            coarse, rows = with_wall_rows(coarse, walls.stretches, sheets)
-            coarse, counts = _optimum(walls, rows, coarse, (cells, cell_size), None, timings)
+            coarse, rows = with_wall_rows(coarse, walls.stretches, sheets, walls.mirrors)
+            coarse, counts = _optimum(walls, rows, walls.symmetric(coarse), (cells, cell_size), None, timings)
             for _ in range(1, COUNTINGS if rows.loops else COUNTINGS - 1):
                 coarse, counts = _optimum(walls, rows, coarse, (cells, cell_size), counts, timings)
             wakes = rows.wakes(coarse)  # they have moved
@@ -97,18 +100,18 @@ def _optimum(
     timings: Timings,
 ) -> tuple[Layout, Counts]:  # fmt: skip
     """Return the layout outside the rings with cells counted anew, optimised."""
-    chords = Chords.of(layout)
+    chords = Chords.of(layout, node_images(layout.mesh, walls.mirrors))
     with timings.stage("refine"):
         counts = wanted_counts(walls, rows, chords, *size, before)
         places = metric_places(chords, counts.coarse, counts.metric)
         for edge in np.flatnonzero(rows.of_chords(chords)[chords.chord] >= 0):
             places[edge] = np.linspace(0.0, len(chords.edges[edge]) - 1.0, ROWS + 1)
-        coarse = refine(layout, counts.coarse, chords, places)
+        coarse = _tied(walls.symmetric(refine(layout, counts.coarse, chords, places)))
     with timings.stage("optimum"):
         if counts.stride > 1:
             with suppress(NoValidGridError):  # so few cells may stay folded, and more not
                 coarse = _optimised(coarse, walls, rows, counts, STRIDING)
-            coarse = multiplied(coarse, counts.stride)
+            coarse = _tied(walls.symmetric(multiplied(coarse, counts.stride)))
         coarse = _optimised(coarse, walls, rows, counts, ITERATIONS)
     settings, known = walls.settings, before.layers if before else (1.0,) * len(rows.loops)
     layers = [
@@ -126,21 +129,32 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
     with timings.stage("optimum"):
         on = np.isin(coarse.mesh.places.loop, list(walls.measures))
         for limit in (EVEN * np.array(LIMITS)).tolist():
-            even = evened_loops(coarse, walls.measures, times * limit)
+            even = walls.symmetric(evened_loops(coarse, walls.measures, times * limit))
             if smallest_corner(even.mesh) > 0.0:
                 coarse = _optimised(even, walls, rows, counts, ITERATIONS, on)
                 break
-        coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on, times * EVEN))
+        coarse = replace(coarse, mesh=evened_mesh(coarse.mesh, on | coarse.mesh.tied, times * EVEN))
+        coarse = walls.symmetric(coarse)
     with timings.stage("refine"):
-        chords = Chords.of(coarse)
+        chords = Chords.of(coarse, node_images(coarse.mesh, walls.mirrors))
         row, cells = rows.of_chords(chords), times * chords.counts
-        for number in range(len(rows.loops)):
-            cells[row == number] = layers_of(coarse, rows, number, times, settings)
-        fine = refine(coarse, cells, chords)
-        fine = unfolded(fine, np.isin(fine.mesh.places.loop, list(walls.measures)))
-        moved = evened_loops(fine, walls.measures, EVEN)
+        layers = [layers_of(coarse, rows, number, times, settings) for number in range(len(rows.loops))]
+        cut = max((n for n, loop in zip(layers, rows.loops, strict=True) if loop == 0), default=0)
+        for number, loop in enumerate(rows.loops):  # walls that periodic sides cut have the same at both
+            cells[row == number] = cut if loop == 0 and walls.domain.periodic else layers[number]
+        if not alike_along_sides(chords, cells):
+            problem = "layers end at one of two periodic sides and not at the other"
+            raise InputError(problem, "name the walls at both", parameter="walls")
+        fine = _tied(walls.symmetric(refine(coarse, cells, chords)))
+        fine = walls.symmetric(unfolded(fine, np.isin(fine.mesh.places.loop, list(walls.measures))))
+        moved = walls.symmetric(evened_loops(fine, walls.measures, EVEN))
         fine = moved if smallest_corner(moved.mesh) > 0.0 else fine
-        return with_layers(fine, rows, settings)
+        return _tied(walls.symmetric(with_layers(fine, rows, settings)))
+
+
+def _tied(layout: Layout) -> Layout:
+    """Return the layout with the nodes of periodic sides in pairs."""
+    return replace(layout, mesh=with_tied_sides(layout.mesh))
 
 
 def _optimised(
@@ -161,11 +175,11 @@ def _optimised(
     optimum = optimise(mesh, iterations=iterations, targets=targets, aspects=mesh.aspects(targets), held=held)
     if not optimum.valid:
         raise NoValidGridError("cells outside the layers stay folded")
-    return replace(layout, mesh=optimum.mesh)
+    return walls.symmetric(replace(layout, mesh=optimum.mesh))
 
 
 def _thickness(walls: WallLayers, mesh: QuadMesh, base: Indices, loop: int, scale: float) -> Floats:
-    """Return how thick layers are to be over nodes (k,) of a wall, or of the wake behind it."""
+    """Return the thickness of layers at nodes (k,) of a wall, or of the wake behind it."""
     sizes = walls.sizes[loop]
     thick = sizes.thickness_at(mesh.places.arc[base], scale, walls.settings)
     behind = mesh.places.loop[base] != loop
@@ -186,6 +200,7 @@ def _joined(walls: WallLayers, rows: WallRows, layout: Layout) -> Layout:
     if walls.near is not None:
         attached.append(walls.near.rows(mesh, heights_inside(layout, 0), multiple=settings.multiple))
     whole = attach(layout, walls.domain, attached)
+    whole = replace(whole, mesh=made_symmetric(whole.mesh))
     held = np.zeros(len(whole.mesh.nodes), dtype=bool)
-    held[: len(mesh.nodes)] = held_nodes(layout, rows, settings)
+    held[: len(mesh.nodes)] = held_nodes(layout, rows, settings) | mesh.tied
     return finished(whole, settings, held)

@@ -1,4 +1,4 @@
-"""Levels of layers, marched from the columns of a wall as thick as is wanted at each."""
+"""Marches the levels of layers from the columns of a wall, with a prescribed thickness for each column."""
 
 from __future__ import annotations
 
@@ -18,16 +18,18 @@ from meshonet.solvers.hyperbolic.march import AREA_SMOOTHING
 from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
 GAP_PART = 0.38
-"""Part of the gap in front of a wall that layers may fill: those of two walls leave a fourth of it."""
+"""Largest fraction of the gap in front of a wall that layers fill; those of two walls leave a quarter of
+it.
+"""
 SLOPE = 0.25
-"""How fast the thickness of layers may change along the wall."""
+"""Largest change of the thickness of layers per length along the wall."""
 MARCH_GROWTH = 1.2
-"""Ratio of neighbouring levels of the march; the layers themselves are placed anew on its lines."""
+"""Ratio of neighbouring levels of the march; the layers are redistributed along its lines later."""
 THINNER = 0.6
-"""What the thickness is multiplied by when the march has folded with every setting."""
+"""Factor of the thickness after the march has folded with all settings."""
 TRIES = 4
 FEWEST_CELLS = 4.0
-"""Thickness of layers in first cells, at the least."""
+"""Smallest thickness of layers in first cells."""
 
 Bools = NDArray[np.bool_]
 
@@ -35,10 +37,10 @@ Bools = NDArray[np.bool_]
 def marched(
     start: Floats, thickness: Floats, first: float, attempts: Sequence[MarchSettings]
 ) -> tuple[Floats | None, Bools]:
-    """Return levels (n, m, 2), and which columns of cells are folded, of the best of several marches.
+    """Return levels (n, m, 2) and a mask of folded columns, for the best of several marches.
 
-    They start at the columns `start` (n, 2) of a wall that closes, the domain to its left, with cells as high
-    as `first`, and reach `thickness` (n,). No levels where all marches overflow.
+    They start at the columns `start` (n, 2) of a closed wall, with the domain on its left, with cells of
+    height `first`, and reach `thickness` (n,). The levels are None if all marches overflow.
     """
     cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
     ratios = np.array(
@@ -61,10 +63,10 @@ def fitted(
     start: Floats, arcs: Floats, length: float, room: Floats, thickness: float, first: float,
     attempts: Sequence[MarchSettings], *, place: Callable[[int], str],
 ) -> Floats:  # fmt: skip
-    """Return levels (n, m, 2) as thick as `thickness`, where `room` (n,) allows it, that are not folded.
+    """Return levels (n, m, 2) without folded cells, as thick as `thickness` where `room` (n,) permits it.
 
-    `arcs` (n,) are those of the columns on a wall that closes after `length`; `place` names that of a column.
-    Raises InputError: a gap that no layer fits in, or a wall that every march folds at.
+    `arcs` (n,) are the arc lengths of the columns on a closed wall of the given length; `place` describes a
+    column in messages. Raises InputError: a gap too narrow for layers; a wall at which every march folds.
     """
     check_room(room, first, place)
     least = FEWEST_CELLS * first
@@ -85,9 +87,9 @@ def fitted(
 
 
 def check_room(room: Floats, first: float, place: Callable[[int], str]) -> None:
-    """Raise InputError where `room` (n,) is too little for layers that start with `first`.
+    """Raise InputError if `room` (n,) is too small for layers that start with `first`.
 
-    `room` is `GAP_PART` of the gaps in front of the wall; `place` names that of the number k.
+    `room` is `GAP_PART` times the gaps in front of the wall; `place` describes index k in messages.
     """
     k = int(np.argmin(room))
     if room[k] < FEWEST_CELLS * first:
@@ -113,6 +115,6 @@ def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: Ma
 
 
 def folded_columns(levels: Floats) -> Bools:
-    """Return which columns of cells (n,) of levels (n, m, 2) around a wall have one with a folded corner."""
+    """Return which columns of cells (n,) of levels (n, m, 2) around a wall contain a folded corner."""
     cells = ring_of(np.concatenate([levels, levels[:1]])).transpose(1, 2, 0, 3)
     return np.asarray((corner_jacobians(cells.reshape(-1, 4, 2)) <= 0.0).reshape(len(levels), -1).any(axis=1))

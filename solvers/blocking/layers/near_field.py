@@ -1,4 +1,4 @@
-"""A distant outer loop, and the smaller circle that stands in for it while blocks are found."""
+"""A distant outer loop, and the smaller circle that replaces it during the decomposition."""
 
 from __future__ import annotations
 
@@ -14,13 +14,14 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import arctan2, cos, exp, log, sin
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.spacing.growth import growing_steps
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
 from meshonet.solvers.blocking.layers.even_line import evened_steps
 
 FAR = 4.0
-"""Radii of the circle around all bodies at which an outer loop counts as distant."""
+"""Distance of an outer loop, relative to the circle around all bodies, above which it counts as distant."""
 NEAR = 2.2
-"""The same radii of the circle that stands in for it."""
+"""Radius of the circle that replaces it, relative to the circle around all bodies."""
 _POINTS = 240
 _EVEN = 1.1
 _UNLIKE = 1.2  # first cells of rows over their mean
@@ -30,7 +31,7 @@ MOST_GROWTH = 1.18
 
 @dataclass(frozen=True, eq=False)
 class NearField:
-    """A circle around the bodies, and the outer loop as seen from its centre.
+    """A circle around the bodies, and the outer loop in polar coordinates about its centre.
 
     `angles` (n,) ascend over one turn, `radii` (n,) are those of the outer loop, `arcs` (n,) its arc lengths.
     """
@@ -45,12 +46,17 @@ class NearField:
 
     @classmethod
     def of(cls, domain: Domain) -> NearField | None:
-        """Return the near field of a domain; None unless its outer loop is smooth, distant and seen whole."""
+        """Return the near field of a domain.
+
+        None unless its outer loop is smooth, distant and star-shaped.
+        """
         outer = domain.loops[0]
         if len(domain.loops) < 2 or outer.corners:
             return None
         bodies = np.concatenate([loop.curve.points for loop in domain.loops[1:]])
-        centre = 0.5 * (bodies.min(axis=0) + bodies.max(axis=0))
+        centre, mirrors = 0.5 * (bodies.min(axis=0) + bodies.max(axis=0)), mirrors_of(domain)
+        for mirror in mirrors:
+            centre = 0.5 * (centre + mirror.images(centre))
         reach = float(np.hypot(*(bodies - centre).T).max())
         arcs = np.linspace(0.0, outer.length, 8 * _POINTS, endpoint=False)
         away = outer.at(arcs) - centre
@@ -61,13 +67,15 @@ class NearField:
         if (np.diff(angles) <= 0).any():
             return None
         turn = 2.0 * math.pi * np.arange(_POINTS) / _POINTS
+        if mirrors:  # from a mirror on
+            turn += math.atan2(mirrors[0].along[1], mirrors[0].along[0])
         points = centre + NEAR * reach * np.stack([cos(turn), sin(turn)], axis=1)
         curve = Curve(points, closed=True, corners=())
         circle = Loop(curve, (), outer.names[:1])
         return cls(circle, centre, NEAR * reach, outer, angles, radii, arcs)
 
     def cells(self, first: float, growth: float = MOST_GROWTH, multiple: int = 1) -> int:
-        """Return the cells of a row from a first one to the outer loop, a multiple of a number."""
+        """Return the number of cells in a row to the outer loop, a multiple of `multiple`."""
         distance = float(self.radii.mean()) - self.radius
         cells = max(2, math.ceil(math.log1p(distance / first * (growth - 1.0)) / math.log(growth)))
         return -(-cells // multiple) * multiple
@@ -75,8 +83,8 @@ class NearField:
     def rows(self, mesh: QuadMesh, heights: Floats, growth: float = MOST_GROWTH, multiple: int = 1) -> Rows:
         """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer loop.
 
-        `heights` (k,) are those of the cells inside the circle; the rows begin with them and grow by at most
-        `growth`; there are a multiple of `multiple` of them.
+        `heights` (k,) are those of the cells inside the circle. The rows start with these heights and grow by
+        at most `growth`; their number is a multiple of `multiple`.
         """
         order = loop_nodes(mesh, 0)
         start = mesh.nodes[order]

@@ -1,4 +1,4 @@
-"""The blocks of what layers leave of a domain: found, or taken from another domain of the same kind."""
+"""The blocks of the domain outside of layers: decomposed, or transferred from a similar domain."""
 
 from __future__ import annotations
 
@@ -14,24 +14,30 @@ from meshonet.solvers.blocking.decomposition.reuse import carried_over
 from meshonet.solvers.blocking.sizes.feature_sizes import feature_sizes
 
 PRICE = 0.08
-"""Degrees of mean deviation that a block costs: from .03 to .08 a tube bank has 70 blocks, at 0 it has 91."""
+"""Price of a block in degrees of mean deviation: from 0.03 to 0.08 a tube bank has 70 blocks, at 0 it has
+91.
+"""
 
 
-def found_outside(rest: Domain, fronts: Collection[int], timings: Timings | None = None) -> Layout:
+def found_outside(
+    rest: Domain, fronts: Collection[int], timings: Timings | None = None, symmetric: bool = True
+) -> Layout:
     """Return the blocks of a domain of which some loops are fronts of layers.
+
+    If they are to be `symmetric`, those of a symmetric domain are.
 
     Raises BlockingError: no blocks are found.
     """
     plain = replace(rest, loops=tuple(_smooth(loop) for loop in rest.loops))
-    layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
+    layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE, symmetric=symmetric)
     mesh = replace(layout.mesh, domain=rest)
     return replace(layout, mesh=mesh, fronts=tuple(sorted(fronts)))
 
 
 def taken_outside(layout: Layout, rest: Domain, fronts: Collection[int]) -> Layout:
-    """Return a layout carried over to a domain of which some loops are fronts of layers.
+    """Return a layout transferred to a domain of which `fronts` are the loops that are fronts of layers.
 
-    A layout without fronts may be taken if walls behind fronts have no corners that blocks go around. Raises
+    A layout without fronts can be used if the walls behind the fronts have no corners at blocks. Raises
     InputError: as `carried_over`; layers around other loops.
     """
     taken = carried_over(layout, rest)

@@ -1,4 +1,4 @@
-"""Layers in the rows of a layout: how many there are, and their nodes along the lines from walls."""
+"""Layers in the rows of a layout: their number, and their nodes along the lines from walls."""
 
 from __future__ import annotations
 
@@ -22,22 +22,24 @@ from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.blocking.sizes.on_loops import on_loops
 
 MOST_COLUMNS = 75
-"""Percentage of the columns of a row whose layers are enough to grow at one ratio to the cells beyond."""
+"""Percentage of the columns of a row in which a constant ratio must reach the size of the cells beyond."""
 SHORT_COLUMNS = 20
-"""Percentage of columns that may be too short for so many first cells: cells shrink from the wall there."""
+"""Percentage of columns that may be too short for so many first cells; cells shrink away from the wall
+there.
+"""
 STEEPEST = 0.6
-"""Part of a column that its last cell may have."""
+"""Largest fraction of a column that its last cell takes."""
 OPENS = 0.15
-"""Distance behind a sharp edge, in lengths of its loop, in which layers of a wake open: first cells grow."""
+"""Distance behind a sharp edge, relative to its loop, over which the first cells of a wake grow."""
 _STEPS = 50
 
 Bools = NDArray[np.bool_]
 
 
 def layers_of(layout: Layout, rows: WallRows, row: int, finer: int, settings: LayerSettings) -> int:
-    """Return how many layers lead at one ratio from the first cell to those beyond a row.
+    """Return the number of layers that lead at a constant ratio from the first cell to those beyond a row.
 
-    The layout is to have `finer` times as many cells along and beyond it.
+    The final layout has `finer` times as many cells along and beyond the row.
     """
     blocks = np.nonzero(rows.across == row)[0]
     tables = [
@@ -63,7 +65,7 @@ def layers_of(layout: Layout, rows: WallRows, row: int, finer: int, settings: La
 def with_layers(layout: Layout, rows: WallRows, settings: LayerSettings) -> Layout:
     """Return a fine layout with the nodes of its rows moved along the lines across them.
 
-    First cells are exact, the others grow to those beyond the front.
+    First cells are exact; the others grow to the size of those beyond the front.
     """
     mesh = layout.mesh
     moved = np.zeros(len(mesh.nodes), dtype=bool)
@@ -89,7 +91,7 @@ def with_layers(layout: Layout, rows: WallRows, settings: LayerSettings) -> Layo
 
 
 def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings) -> Bools:
-    """Return the nodes (n,) of rows that give first cells their height: those next to walls, and corners."""
+    """Return a mask (n,) of the nodes of rows that define first-cell heights: next to walls, and corners."""
     held = np.zeros(len(layout.mesh.nodes), dtype=bool)
     for row in range(len(rows.loops)):
         for table in rows.columns(layout, row):

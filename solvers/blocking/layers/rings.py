@@ -1,15 +1,16 @@
-"""Rings of layers around the loops of a domain: marched from the wall, no thicker than the gaps allow.
+"""Rings of layers around the loops of a domain: marched from the wall, limited by the gaps.
 
 ::
 
     wall --march, step by step as thick as the gap in front allows--> front
 
-The front is a smooth loop that stands in for the wall when the rest of the domain is decomposed; the ring
-itself is a map from (place along the front, height) that gives a column of nodes anywhere.
+The front is a smooth loop that replaces the wall when the rest of the domain is decomposed. The ring itself
+is a map from position along the front and height to the plane, so that it gives a column of nodes anywhere.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -22,9 +23,10 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
 from meshonet.solvers.blocking.layers.even_line import FINER, SLACK, Measures
 from meshonet.solvers.blocking.layers.marched import GAP_PART, fitted
-from meshonet.solvers.blocking.layers.wall_columns import wall_columns
+from meshonet.solvers.blocking.layers.wall_columns import nearest_arc, wall_columns
 from meshonet.solvers.hyperbolic.settings import ATTEMPTS
 
 
@@ -35,10 +37,11 @@ class Ring:
     Parameters
     ----------
     wall : the loop.
-    arcs : (n,) places on it where the columns of `levels` start, ascending from a corner's if there are any.
+    arcs : (n,) arc lengths at which the columns of `levels` start, ascending; the first is at a corner, if
+        there is one.
     levels : (n, m, 2) nodes from the wall (0) to the front (m - 1).
-    front : the loop along the last level, its points those of the columns in order. Corners of the wall have
-        a point there too, which is a corner at which two cells meet: a node.
+    front : loop along the last level, with one point per column. At corners of the wall it has a corner with
+        two cells, so that there is a node.
     """
 
     wall: Loop
@@ -52,10 +55,10 @@ class Ring:
         return line_lengths(self.levels)
 
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
-        """Return the lines (k, m, 2) to `places` (k,), arc lengths of the front, and where they start.
+        """Return the lines (k, m, 2) to arc lengths `places` (k,) of the front, and wall arc lengths (k,).
 
-        These are arc lengths (k,) of the wall. Between columns, cubics through four of them that do not
-        reach over a corner.
+        Between columns, cubic interpolation through four of them is used, which does not extend across a
+        corner.
         """
         n = len(self.arcs)
         knots = np.append(self.front.curve.knots, self.front.length)
@@ -104,14 +107,30 @@ class Ring:
         return low, high
 
 
-def march_ring(domain: Domain, loop: Loop, first: float, thickness: float, largest: float) -> Ring:
+def march_ring(
+    domain: Domain, number: int, first: float, thickness: float, largest: float,
+    mirrors: Sequence[Mirror] = (),
+) -> Ring:  # fmt: skip
     """Return the ring around a loop of a domain, as thick as `thickness` where there is room.
 
     `first` is the height of first cells, `largest` the length of cells along the wall, all in the domain's
-    unit. Raises InputError: a gap that no layer fits in, or a wall that every march folds at; with the place.
+    unit. The ring is symmetric to those of some mirrors of the domain that take the loop to itself. Raises
+    InputError: a gap that no layer fits in, or a wall that every march folds at; with the place.
     """
-    arcs = wall_columns(loop, largest)
+    loop = domain.loops[number]
+    own = [mirror for mirror in mirrors if mirror.loops[number] == number]
+    sums = [float(mirror.sums[number]) for mirror in own]
+    arcs = wall_columns(loop, largest, sums)
+    images = [
+        (nearest_arc(arcs, total - arcs[0], loop.length) - np.arange(len(arcs))) % len(arcs) for total in sums
+    ]
     room = GAP_PART * wall_gaps(domain, loop, arcs)
+    for total, to in zip(sums, images, strict=True):
+        step = (total - arcs[to] - arcs) / loop.length
+        arcs = arcs + 0.5 * loop.length * (step - np.round(step))
+        room = np.minimum(room, room[to])
+    if own:
+        arcs = _at_corners(loop, arcs)
     levels = fitted(
         loop.at(arcs),
         arcs,
@@ -122,11 +141,32 @@ def march_ring(domain: Domain, loop: Loop, first: float, thickness: float, large
         ATTEMPTS,
         place=lambda k: place(loop, arcs[k]),
     )
+    for mirror, to in zip(own, images, strict=True):
+        levels = 0.5 * (levels + mirror.images(levels[to]))
+    if own:
+        levels[:, 0] = loop.at(arcs)
     return _ring(loop, arcs, levels)
 
 
+def mirrored(ring: Ring, loop: Loop, mirror: Mirror, total: float) -> Ring:
+    """Return the mirror image of a ring, around another loop; `total` is the sum of arc lengths of both."""
+    arcs = _at_corners(loop, np.mod(total - ring.arcs[::-1], loop.length))
+    levels = mirror.images(ring.levels[::-1])
+    levels[:, 0] = loop.at(arcs)
+    first = -int(np.argmin(arcs))
+    return _ring(loop, np.roll(arcs, first), np.roll(levels, first, axis=0))
+
+
+def _at_corners(loop: Loop, arcs: Floats) -> Floats:
+    """Return arc lengths (n,) with those nearest to corners of a loop at these."""
+    arcs = arcs.copy()
+    for corner in loop.corner_arcs.tolist():
+        arcs[nearest_arc(arcs, corner, loop.length)] = corner
+    return arcs
+
+
 def place(loop: Loop, arc: float) -> str:
-    """Return the name and the coordinates of a place on a loop, for messages."""
+    """Return the name and the coordinates of a point on a loop, for messages."""
     x, y = loop.at(np.array([arc]))[0]
     return f"{loop.name_at(float(arc))}, ({x:.6g}, {y:.6g})"
 
@@ -147,16 +187,16 @@ def _corner_columns(loop: Loop, arcs: Floats) -> Indices:
 
 
 def whole_columns(index: Floats) -> Floats:
-    """Return column numbers (k,), those that are whole but for round-off made so."""
+    """Return column numbers (k,) with round-off errors of integers removed."""
     near = np.round(index)
     return np.where(np.abs(index - near) < 1e-7, near, index)
 
 
 def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, Indices]:
-    """Return weights (k, 4) of columns, and the first (k,) of them, at column numbers (k,) between columns.
+    """Return weights (k, 4) of columns, and the first column (k,), for fractional column numbers (k,).
 
-    `low` and `high` (k,) are the first and last column of the stretch between corners that each lies in; the
-    last weights are zero where that has fewer than four.
+    `low` and `high` (k,) are the first and last column between the same corners. If there are fewer than
+    four, the last weights are zero.
     """
     first = np.clip(index.astype(np.intp) - 1, low, np.maximum(high - 3, low))
     width = np.minimum(high - first, 3)
@@ -173,7 +213,10 @@ def column_weights(index: Floats, low: Indices, high: Indices) -> tuple[Floats, 
 
 
 def started(lines: Floats, begin: Floats) -> Floats:
-    """Return lines (k, m, 2) moved to begin at points (k, 2), less and less on the way to their ends."""
+    """Return lines (k, m, 2) with their first nodes moved to (k, 2).
+
+    The displacement decreases to 0 at the ends.
+    """
     step = np.diff(lines, axis=1)
     height = np.cumsum(np.hypot(step[..., 0], step[..., 1]), axis=1)
     left = 1.0 - np.pad(height / height[:, -1:], ((0, 0), (1, 0)))

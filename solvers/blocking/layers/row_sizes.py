@@ -1,4 +1,4 @@
-"""How long cells are along walls whose layers are rows of a layout, and how thick these layers."""
+"""Cell lengths along walls whose layers are rows of a layout, and the thickness of these layers."""
 
 from __future__ import annotations
 
@@ -20,34 +20,36 @@ from meshonet.solvers.blocking.sizes.size_metric import GRADING, SizeMetric
 from meshonet.solvers.blocking.sizes.wall_turning import wall_bend
 
 COLUMNS = 140.0
-"""Cells along a loop, if all were as long as the longest."""
+"""Number of cells along a loop if all were as long as the longest."""
 TURN = np.radians(3.5)
-"""By how much a wall turns along one cell of it, at the default count of cells."""
+"""Largest angle by which a wall turns along one cell, for the default number of cells."""
 CELLS_IN_GAP = 15.0
 ALONG = 0.2
-"""Growth of sizes along walls, over the length between."""
+"""Growth of sizes along walls per length."""
 UNEVEN = 2.0
-"""Thickest layers of a loop over the thinnest: all have as many cells."""
+"""Largest ratio of the thickest to the thinnest layers of a loop, which have the same number of cells."""
 THINNEST = 8.0
-"""Thickness of layers in first cells, at the least."""
+"""Smallest thickness of layers in first cells."""
 SPREAD = 0.1
-"""Growth of the thickness of layers along a wake, over the distance from the sharp edge."""
+"""Growth of the thickness of layers along a wake per distance from the sharp edge."""
 AROUND_CORNER = 2.5
-"""Way along a loop, in straight distances, up to which its own wall is around a corner and no gap."""
+"""Ratio of arc length to straight distance below which the same wall counts as around a corner, not as a
+gap.
+"""
 _SAMPLES, _WINDOW = 400, 3
 
 
 @dataclass(frozen=True, eq=False)
 class RowSizes:
-    """Sizes along the stretches of a loop that have layers.
+    """Sizes along the stretches of a loop with layers.
 
     Parameters
     ----------
     loop : the wall.
-    arcs : (n,) places on it, ascending.
-    length : (n,) of cells there at a scale of 1.
-    gap : (n,) distance to the next wall in front.
-    on : (n,) which places have layers.
+    arcs : (n,) arc lengths on it, ascending.
+    length : (n,) lengths of cells there, for a scale of 1.
+    gap : (n,) distances to the next wall in front.
+    on : (n,) mask of points with layers.
     """
 
     loop: Loop
@@ -58,7 +60,7 @@ class RowSizes:
 
     @classmethod
     def of(cls, domain: Domain, number: int, stretches: Sequence[Stretch]) -> RowSizes:
-        """Return the sizes along stretches of a loop of a domain, along all of it without any."""
+        """Return the sizes along stretches of a loop of a domain; without any, along the whole loop."""
         loop = domain.loops[number]
         arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
         gap = _gaps(domain, number, arcs)
@@ -70,7 +72,7 @@ class RowSizes:
         return cls(loop, arcs, length, gap, on)
 
     def thickness(self, scale: float, settings: LayerSettings) -> Floats:
-        """Return how thick (n,) layers are: until cells that grow at the limit are square, as gaps allow."""
+        """Return the thickness (n,) of layers: cells grow until they are square, or the gap is filled."""
         last = scale * self.length * settings.growth
         full = np.maximum((last - settings.first) / (settings.growth - 1.0), THINNEST * settings.first)
         full = np.minimum(full, GAP_PART * self.gap)
@@ -78,20 +80,20 @@ class RowSizes:
         return graded(full, self.arcs, self.loop.length, SLOPE)
 
     def thickness_at(self, arcs: Floats, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (k,) at places (k,) of the loop."""
+        """Return the thickness (k,) at arc lengths (k,) of the loop."""
         return np.interp(arcs, self.arcs, self.thickness(scale, settings), period=self.loop.length)
 
     def thickness_behind(self, away: Floats, scale: float, settings: LayerSettings) -> Floats:
-        """Return the thickness (k,) along a wake, `away` (k,) from the sharp edge."""
+        """Return the thickness (k,) along a wake at the distances `away` (k,) from the sharp edge."""
         edge = self.thickness_at(self.loop.corner_arcs[:1], scale, settings)
         return edge + SPREAD * away
 
     def rows(self, scale: float, settings: LayerSettings) -> int:
-        """Return about how many layers there are to be."""
+        """Return the approximate number of layers."""
         return settings.rows(float(self.thickness(scale, settings)[self.on].max()))
 
     def check_room(self, settings: LayerSettings) -> None:
-        """Raise InputError where a gap leaves no room for layers, with the place."""
+        """Raise InputError, with the place, if a gap is too narrow for layers."""
         room = np.where(self.on, GAP_PART * self.gap, np.inf)
         check_room(room, settings.first, lambda k: place(self.loop, self.arcs[k]))
 
@@ -105,7 +107,7 @@ class RowSizes:
         return SizeMetric(points[on], normals[on], across[on], along[on], np.inf)
 
     def wake_metric(self, wake: Floats, scale: float, settings: LayerSettings) -> SizeMetric:
-        """Return the sizes of cells beside a wake (k, 2), from the sharp edge on."""
+        """Return the sizes of cells next to a wake (k, 2), from the sharp edge on."""
         tangent = np.gradient(wake, axis=0)
         normals = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1) / np.hypot(*tangent.T)[:, None]
         away = np.hypot(*(wake - wake[0]).T)
@@ -115,7 +117,7 @@ class RowSizes:
 
 
 def _gaps(domain: Domain, number: int, arcs: Floats) -> Floats:
-    """Return the distance (n,) to the next wall in front, but for the loop's own around a corner."""
+    """Return the distance (n,) to the next wall in front, without the loop's own wall around a corner."""
     loop = domain.loops[number]
     points, along = loop.at(arcs), loop.tangent(arcs)
     others = [each for k, each in enumerate(domain.loops) if k != number]

@@ -1,4 +1,4 @@
-r"""A row of quads along a wall with a sharp edge, and along both sides of the line of the layout behind it.
+r"""A row of quads along a wall with a sharp edge, and along both sides of the grid line behind it.
 
 ::
 
@@ -17,17 +17,17 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 
 INSET = 0.25
-"""How far fronts are from the path at first, in lengths of the edges across."""
+"""Initial distance of fronts from the path, relative to the edges across."""
 Half = dict[tuple[int, int], tuple[int, int]]
 
 
 def has_sharp_edge(loop: Loop) -> bool:
-    """Return whether a loop has one corner, so sharp that four cells meet there."""
+    """Return whether a loop has a single corner that is so sharp that four cells meet there."""
     return len(loop.corners) == 1 and int(loop.corner_cells[0]) == 4
 
 
 def wake_of(mesh: QuadMesh, number: int) -> list[int]:
-    """Return the nodes of the grid line that leaves the sharp edge of a loop, from there to a boundary."""
+    """Return the nodes of the grid line from the sharp edge of a loop to a boundary."""
     half = _half_edges(mesh)
     edge, ahead = _edge(mesh, number)[:2]
     wake = [edge, _turned(mesh, half, edge, ahead, 2)]
@@ -37,7 +37,7 @@ def wake_of(mesh: QuadMesh, number: int) -> list[int]:
 
 
 def with_sheet(mesh: QuadMesh, number: int) -> QuadMesh:
-    """Return the mesh with the row, its quads last, each from the path to the front."""
+    """Return the mesh with this row; its quads are last, each from the path to the front."""
     half, wall, wake = _half_edges(mesh), _edge(mesh, number), wake_of(mesh, number)
     path = [*wake[:0:-1], *wall, *wake]
     n, count = len(mesh.nodes), len(path)
@@ -82,7 +82,7 @@ def _edge(mesh: QuadMesh, number: int) -> list[int]:
 
 
 def _turned(mesh: QuadMesh, half: Half, node: int, beside: int, steps: int) -> int:
-    """Return the neighbour of a node that comes so many quads after another one, counter-clockwise."""
+    """Return the neighbour of a node that follows another one after a number of quads, counter-clockwise."""
     for _ in range(steps):
         k, i = half[node, beside]
         beside = int(mesh.quads[k, (i + 3) % 4])

@@ -1,4 +1,4 @@
-"""Which walls layers go along: whole loops, and stretches of loops between convex corners."""
+"""Walls with layers: whole loops, and stretches of loops between convex corners."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a loop with layers that begins and ends at corners where one cell meets.
+    """A part of a loop with layers that starts and ends at corners with one cell.
 
     Parameters
     ----------
-    loop : its number.
-    first, last : numbers of the corners among those of the loop; the same where it is all of the loop.
-    joined : whether the wall beyond these corners has layers too: they meet in a block of their own. Else the
-        layers end on what lies there.
+    loop : number of the loop.
+    first, last : indices of the corners among those of the loop; equal if it is the whole loop.
+    joined : whether the walls beyond these corners have layers too, which meet in a block. Otherwise the
+        layers end at these walls.
     """
 
     loop: int
@@ -28,16 +28,16 @@ class Stretch:
     joined: tuple[bool, bool]
 
     def span(self, loop: Loop) -> tuple[float, float]:
-        """Return the arc lengths at which it begins and ends, the second the larger."""
+        """Return the arc lengths of its start and end, the second one larger."""
         begin, end = (float(loop.corner_arcs[k]) for k in (self.first, self.last))
         return begin, end if end > begin else end + loop.length
 
 
 def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int], tuple[Stretch, ...]]:
-    """Return the numbers of loops that have layers all around, and stretches of others, by names of walls.
+    """Return the numbers of loops with layers all around, and stretches of other loops, by names of walls.
 
-    Without names those are all holes. Raises InputError: there are none; layers would end where the boundary
-    goes straight on or turns away; with the place.
+    Without names, all holes have layers. Raises InputError, with the place: there are no holes; layers would
+    end at a point where the boundary is straight or turns away.
     """
     whole: list[int] = []
     stretches: list[Stretch] = []

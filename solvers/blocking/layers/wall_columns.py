@@ -1,6 +1,9 @@
-"""Where the columns of a layer of cells start on a wall: dense at corners and where the wall turns."""
+"""Starting points of the columns of layers on a wall, dense at corners and where the wall turns."""
 
 from __future__ import annotations
+
+import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -10,30 +13,40 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.solvers.blocking.sizes.wall_turning import wall_bend
 
 TURN = np.radians(4.0)
-"""How much of the wall's turning one cell takes."""
+"""Largest angle by which the wall turns along one cell."""
 GROWTH = 0.1
-"""By how much of the length between them cells may differ."""
+"""Largest difference of neighbouring cells relative to their length."""
 _SAMPLES = 4000
 _CORNER_PART = 1.0 / 40.0  # cell at a corner, in cells elsewhere
 _PIECE_PART = 1.0 / 3.0  # and at the most in lengths of the pieces of wall that end there
+_RESOLVED = 0.01  # samples that a cell at a corner is long, at the least, without more samples there
 
 
-def wall_columns(loop: Loop, largest: float) -> Floats:
+def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floats:
     """Return ascending arc lengths (n,) of columns around a loop, its corners among them.
 
-    `largest` is the length of the largest cell.
+    `largest` is the length of the largest cell; `sums` are those of mirrors that take the loop to itself: the
+    images of columns are columns.
     """
-    arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
+    arcs = np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs)
+    arcs = distinct(np.append(arcs, _beside_corners(loop, largest)))
     size = _sizes(loop, arcs, largest)
     closed = np.append(arcs, loop.length)
     density = 1.0 / np.append(size, size[0])
     count = np.append(0.0, np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(closed)))
-    starts = loop.corner_arcs if len(loop.corners) else np.zeros(1)
+    begin = 0.5 * sums[0] if sums else 0.0
+    starts, multiple = (loop.corner_arcs, 1) if len(loop.corners) else (np.array([begin]), max(len(sums), 1))
     ends = np.append(starts[1:], starts[0] + loop.length)
+    firsts, lasts = ([_counted(arc, closed, count, loop.length) for arc in arcs] for arcs in (starts, ends))
+    counts = [
+        multiple * max(2, round((last - first) / multiple)) for first, last in zip(firsts, lasts, strict=True)
+    ]
+    for total in sums:  # stretches between corners have as many columns as their images
+        for k, end in enumerate(ends.tolist()):
+            image = nearest_arc(starts, total - end, loop.length)
+            counts[max(k, image)] = counts[min(k, image)]
     columns = []
-    for start, end in zip(starts, ends, strict=True):
-        first, last = (_counted(arc, closed, count, loop.length) for arc in (start, end))
-        cells = max(2, round(last - first))
+    for start, first, last, cells in zip(starts, firsts, lasts, counts, strict=True):
         wanted = first + (last - first) * np.arange(cells) / cells
         turns, part = np.divmod(wanted, count[-1])
         column = np.interp(part, count, closed) + turns * loop.length
@@ -41,6 +54,12 @@ def wall_columns(loop: Loop, largest: float) -> Floats:
         columns.append(column)
     arcs = np.concatenate(columns) % loop.length
     return np.asarray(np.roll(arcs, -int(np.argmin(arcs))))
+
+
+def nearest_arc(arcs: Floats, arc: float, length: float) -> int:
+    """Return which of some arc lengths (n,) of a curve that closes after `length` is nearest to one."""
+    off = (arcs - arc) / length
+    return int(np.abs(off - np.round(off)).argmin())
 
 
 def _counted(arc: float, closed: Floats, count: Floats, length: float) -> float:
@@ -54,12 +73,29 @@ def _sizes(loop: Loop, arcs: Floats, largest: float) -> Floats:
     bend = wall_bend(loop, arcs, max(3, round(0.004 * len(arcs))))
     size = np.minimum(largest, TURN / np.maximum(bend, 1e-300))
     size = np.maximum(size, _CORNER_PART * largest)
-    corners = loop.corner_arcs
-    if len(corners):
-        pieces = np.diff(corners, append=corners[0] + length)
-        shortest = np.minimum(pieces, np.roll(pieces, 1))
-        at_corner = np.minimum(_CORNER_PART * largest, _PIECE_PART * shortest)
-        for arc, smallest, cells in zip(corners, at_corner, loop.corner_cells, strict=True):
-            if cells > 1:  # columns converge at convex corners, where layers end
-                size[np.searchsorted(arcs, arc)] = smallest
+    for arc, smallest in _at_corners(loop, largest):
+        size[np.searchsorted(arcs, arc)] = smallest
     return graded(size, arcs, length, GROWTH)
+
+
+def _at_corners(loop: Loop, largest: float) -> list[tuple[float, float]]:
+    """Return arc lengths of convex corners and the cells there: columns converge where layers end."""
+    corners = loop.corner_arcs
+    if len(corners) == 0:
+        return []
+    pieces = np.diff(corners, append=corners[0] + loop.length)
+    shortest = np.minimum(pieces, np.roll(pieces, 1))
+    sizes = np.minimum(_CORNER_PART * largest, _PIECE_PART * shortest)
+    every = zip(corners.tolist(), sizes.tolist(), loop.corner_cells, strict=True)
+    return [(arc, size) for arc, size, cells in every if cells > 1]
+
+
+def _beside_corners(loop: Loop, largest: float) -> Floats:
+    """Return arc lengths (k,) where cells grow from far smaller ones than samples tell apart."""
+    step = loop.length / _SAMPLES
+    beside = [np.zeros(0)]
+    for arc, size in _at_corners(loop, largest):
+        if 0.0 < size < _RESOLVED * step:
+            away = np.ldexp(size, np.arange(math.ceil(math.log2(step / size))))
+            beside.append(np.concatenate([arc - away, arc + away]) % loop.length)
+    return np.concatenate(beside)

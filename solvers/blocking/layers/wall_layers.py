@@ -1,4 +1,4 @@
-"""Walls with their layers, what these leave of a domain, and how fine cells there are to be."""
+"""Walls with their layers, the remaining domain, and the numbers of cells in it."""
 
 from __future__ import annotations
 
@@ -12,14 +12,18 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_points
+from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
+from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides
+from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 from meshonet.solvers.blocking.layers.even_line import Measures
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.layers.marched import GAP_PART
 from meshonet.solvers.blocking.layers.near_field import NearField
-from meshonet.solvers.blocking.layers.rings import Ring, march_ring
+from meshonet.solvers.blocking.layers.rings import Ring, march_ring, mirrored
 from meshonet.solvers.blocking.layers.row_sizes import RowSizes
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
@@ -42,11 +46,11 @@ _BISECTIONS = 14
 
 @dataclass(frozen=True, eq=False)
 class WallLayers:
-    """Walls with their layers, and the domain in which blocks are looked for.
+    """Walls with their layers, and the remaining domain, which is decomposed into blocks.
 
-    `rings` are by number of their loop, which is the same in both domains; along `stretches`, and around the
-    loops `sheets` and the wakes behind them, layers are rows of the layout itself, whose `sizes` are by loop;
-    `near` stands in for a distant outer loop.
+    `rings` are given by the number of their loop, which is the same in both domains. Along `stretches`,
+    around the loops `sheets` and along their wakes, layers are rows of the layout itself, with `sizes` given
+    by loop. `near` replaces a distant outer loop.
     """
 
     domain: Domain
@@ -65,17 +69,18 @@ class WallLayers:
     ) -> WallLayers:  # fmt: skip
         """Return the layers of a domain: rings around some loops, rows along stretches and around `sheets`.
 
-        Raises InputError: no room for layers; a wall that they fold at.
+        Raises InputError: too little room for layers; a wall at which layers fold.
         """
         rings = rings_around(domain, loops, settings)
         numbers = sorted({*sheets, *(stretch.loop for stretch in stretches)})
-        near = None if 0 in rings or 0 in numbers else NearField.of(domain)
+        outer = 0 in rings or 0 in numbers or domain.periodic
+        near = None if outer else NearField.of(domain)
         rest = list(domain.loops)
         if near is not None:
             rest[0] = near.circle
         for k, ring in rings.items():
             rest[k] = ring.front
-        left = Domain(tuple(rest), domain.name)
+        left = Domain(tuple(rest), domain.name, periodic=domain.periodic)
         sizes = {k: RowSizes.of(left, k, [s for s in stretches if s.loop == k]) for k in numbers}
         for each in sizes.values():
             each.check_room(settings)
@@ -86,8 +91,17 @@ class WallLayers:
         """Numbers of the loops of `rest` that are fronts of layers."""
         return tuple(self.rings)
 
+    @cached_property
+    def mirrors(self) -> tuple[Mirror, ...]:
+        """Mirrors of what the layers leave; none unless the domain has some."""
+        return mirrors_of(self.rest) if mirrors_of(self.domain) else ()
+
+    def symmetric(self, layout: Layout) -> Layout:
+        """Return the layout outside the layers with its nodes symmetric, if its quads are."""
+        return replace(layout, mesh=made_symmetric(layout.mesh, images_of(layout.mesh, self.mirrors)))
+
     def is_free(self, number: int, mesh: QuadMesh, wake: Sequence[int]) -> bool:
-        """Return whether a wake, nodes from a sharp edge on, has room for layers out to the outer loop."""
+        """Return whether a wake, nodes from a sharp edge on, has room for layers up to the outer loop."""
         return bool(mesh.places.loop[wake[-1]] == 0) and self.has_room(number, mesh.nodes[wake])
 
     def has_room(self, number: int, wake: Floats, scale: float = 1.0) -> bool:
@@ -107,9 +121,9 @@ class WallLayers:
     def metric(
         self, scale: float, size: float = 0.0, wakes: Mapping[int, Floats] | None = None
     ) -> SizeMetric:
-        """Return the sizes of cells outside the layers: at most `size`, or `scale` times their columns.
+        """Return the cell sizes outside the layers: at most `size`, or `scale` times those of the columns.
 
-        `wakes` (k, 2) are by the number of their loop.
+        `wakes` are lines (k, 2) by the number of their loop.
         """
         scale = 1.0 if size else scale
         parts = [sizes.metric(scale, self.settings) for sizes in self.sizes.values()]
@@ -128,7 +142,7 @@ class WallLayers:
 
     @property
     def measures(self) -> dict[int, Measures]:
-        """What steps are to be even in, besides arc length, along the loops that stand in for others."""
+        """Measures, besides arc length, whose steps should be even along the loops that replace others."""
         measures = {k: ring.along for k, ring in self.rings.items()}
         if self.near is not None:
             ends = np.array([0.0, self.near.circle.length])
@@ -136,11 +150,11 @@ class WallLayers:
         return measures
 
     def ring_rows(self, ring: Ring) -> int:
-        """Return the layers of a ring."""
+        """Return the number of layers of a ring."""
         return self.settings.rows(float(ring.thickness.max()))
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
-        """Return the cells of rings and of the rows to the far field, for counts (chords,)."""
+        """Return the number of cells in rings and in rows to the far field, for counts (chords,)."""
         along = np.zeros(len(self.rest.loops), dtype=np.intp)
         places = chords.layout.mesh.places
         for edge in np.flatnonzero(chords.wall):
@@ -155,9 +169,16 @@ class WallLayers:
 def rings_around(domain: Domain, loops: Sequence[int], settings: LayerSettings) -> dict[int, Ring]:
     """Return the rings around some loops of a domain, by number.
 
-    Raises InputError: no room for layers; a wall that they fold at.
+    Raises InputError: too little room for layers; a wall at which layers fold.
     """
-    return {k: march_ring(domain, domain.loops[k], settings.first, *_sizes(domain, k)) for k in loops}
+    mirrors, rings = mirrors_of(domain), dict[int, Ring]()
+    for k in loops:
+        mirror = next((each for each in mirrors if int(each.loops[k]) in rings), None)
+        if mirror is None:
+            rings[k] = march_ring(domain, k, settings.first, *_sizes(domain, k), mirrors)
+        else:
+            rings[k] = mirrored(rings[int(mirror.loops[k])], domain.loops[k], mirror, float(mirror.sums[k]))
+    return rings
 
 
 def _sizes(domain: Domain, number: int) -> tuple[float, float]:
@@ -172,16 +193,17 @@ def _sizes(domain: Domain, number: int) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class Counts:
-    """Cells along the chords of a coarse layout, and how a fine one comes from it.
+    """Numbers of cells along the chords of a coarse layout, and the refinement to the fine one.
 
     Parameters
     ----------
-    coarse : (chords,) counts of the layout that is optimised, over `stride`.
-    stride, times : by how much counts are multiplied before cells are optimised, and after.
-    scale : of the sizes along walls.
-    metric : the sizes that counts follow.
-    layers : (rows,) layers of each row over those that its thickness asked for, known after the optimum, and
-        the geometric mean with what was known before it: each changes the other.
+    coarse : (chords,) counts of the optimised layout, divided by `stride`.
+    stride, times : factors of the counts before and after the optimisation.
+    scale : factor of the sizes along walls.
+    metric : target sizes.
+    layers : (rows,) ratio of the layers of each row to the number that its thickness requires. It is known
+        after an optimisation and averaged geometrically with the previous value, because both depend on each
+        other.
     """
 
     coarse: Indices
@@ -195,10 +217,10 @@ class Counts:
 def wanted_counts(
     walls: WallLayers, rows: WallRows, chords: Chords, cells: int, size: float, before: Counts | None
 ) -> Counts:
-    """Return counts for about so many cells in all, or else for cells of a size.
+    """Return counts for about `cells` cells in total, or for cells of the given size.
 
-    A row has `ROWS` cells across while nodes are optimised, however many it is to have. `before` are the
-    counts of the optimum before this one.
+    During the optimisation each row has `ROWS` cells across, whatever its final number. `before` are the
+    counts of the previous optimisation.
     """
     multiple, row = walls.settings.multiple, rows.of_chords(chords)
     wakes = rows.wakes(chords.layout)
@@ -219,5 +241,9 @@ def wanted_counts(
     while times % multiple and multiple % times:  # either divides the other
         times -= 1
     stride = max(multiple // times, 1)
-    coarse = np.maximum(chords.least, np.round(counts / (times * stride)).astype(np.intp))
-    return Counts(np.where(inner, coarse, ROWS), stride, times, scale, metric)
+    around = times * stride * chords.multiple
+    least = -(-chords.least // chords.multiple)
+    coarse = chords.multiple * np.maximum(least, np.round(counts / around).astype(np.intp))
+    fixed = {int(chord): ROWS for chord in np.flatnonzero(~inner)}
+    coarse = counts_along_sides(chords, np.where(inner, coarse, ROWS), chords.least, fixed)
+    return Counts(coarse, stride, times, scale, metric)

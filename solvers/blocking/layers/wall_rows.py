@@ -1,4 +1,4 @@
-"""Rows of quads along walls of a finished layout: the blocks of the layers there.
+"""Rows of quads along walls of a finished layout, which become the blocks of the layers there.
 
 ::
 
@@ -21,8 +21,10 @@ from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.decomposition.collapse.base_complex import base_complex
 from meshonet.solvers.blocking.decomposition.quads.padding import pad_span
+from meshonet.solvers.blocking.decomposition.symmetry.images import images_of
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
+from meshonet.solvers.blocking.decomposition.symmetry.symmetric import cut_on_mirrors
 from meshonet.solvers.blocking.layers.even_mesh import consecutive_edges, growth_along
 from meshonet.solvers.blocking.layers.sheet import with_sheet
 from meshonet.solvers.blocking.layers.stretches import Stretch
@@ -33,14 +35,14 @@ Edge = tuple[int, int]
 
 @dataclass(frozen=True, eq=False)
 class WallRows:
-    """Which blocks of a layout are rows along walls.
+    """Blocks of a layout that are rows along walls.
 
     Parameters
     ----------
     loops : number of the loop of each row.
-    across : (b, 2) row that a block crosses from its south to its north side, and from west to east; -1 for
-        none. Refined layouts have the same blocks, so that it holds for these too.
-    back : (b, 2) whether it does so from the front to the wall.
+    across : (b, 2) row that a block crosses from south to north, and from west to east; -1 for none. Refined
+        layouts have the same blocks, so that it is valid for them too.
+    back : (b, 2) whether the block crosses the row from the front to the wall.
     """
 
     loops: tuple[int, ...]
@@ -55,7 +57,7 @@ class WallRows:
         return row
 
     def columns(self, layout: Layout, row: int) -> list[Indices]:
-        """Return the nodes (k, n) of the lines across a row, from wall or wake to front, a table a block."""
+        """Return the nodes (k, n) of lines across a row, from wall or wake to front, an array per block."""
         tables = []
         for block, direction in zip(*np.nonzero(self.across == row), strict=True):
             table = layout.blocks[block].T if direction else layout.blocks[block]
@@ -72,7 +74,7 @@ class WallRows:
         return float(np.abs(growth_along(z, lines[base[lines].all(axis=1)])).max())
 
     def wakes(self, layout: Layout) -> dict[int, Floats]:
-        """Return the lines (k, 2) behind sharp edges that rows go along, by the number of their loop."""
+        """Return the lines (k, 2) behind sharp edges that have rows, by the number of their loop."""
         mesh, lines = layout.mesh, {}
         for row, loop in enumerate(self.loops):
             base = distinct(np.concatenate([table[:, 0] for table in self.columns(layout, row)]))
@@ -85,11 +87,12 @@ class WallRows:
 
 
 def with_wall_rows(
-    layout: Layout, stretches: Sequence[Stretch], sheets: Sequence[int] = ()
+    layout: Layout, stretches: Sequence[Stretch], sheets: Sequence[int] = (), mirrors: Sequence[Mirror] = ()
 ) -> tuple[Layout, WallRows]:
-    """Return a layout with a row of quads along some stretches and around some loops with a sharp edge.
+    """Return a layout with rows of quads along stretches and around loops with a sharp edge, and the rows.
 
-    With it comes which blocks these are. Raises BlockingError: the lines of the mesh do not bound blocks.
+    With it comes which blocks these are; they are symmetric to `mirrors` if its quads are. Raises
+    BlockingError: the lines of the mesh do not bound blocks.
     """
     mesh = layout.mesh
     rungs: list[Edge] = []  # an edge across each row, from wall to front
@@ -114,7 +117,7 @@ def with_wall_rows(
         rungs.append(across[len(row) // 2])
     lines = np.zeros(len(mesh.edges), dtype=bool)
     lines[_edges(mesh, [edge for front in fronts for edge in front])] = True
-    parts = base_complex(mesh, lines & ~mesh.on_wall)
+    parts = cut_on_mirrors(mesh, images_of(mesh, mirrors), lines & ~mesh.on_wall)
     row_of = np.full(parts.chords, -1, dtype=np.intp)
     row_of[parts.chord[_edges(mesh, rungs)]] = np.arange(len(rungs))
     rows_across = row_of[parts.sides[2].reshape(-1, 4)][:, [2, 0]]

@@ -1,1 +1,1 @@
-"""How many cells the blocks of a layout have, and how long these are."""
+"""Numbers of cells of the blocks of a layout, and cell sizes."""

@@ -6,13 +6,14 @@ one count a chord. Edges of periodic sides have those of their partners.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.elementary import exp, log, times
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
@@ -21,9 +22,9 @@ from meshonet.kernels._native import joined_classes
 from meshonet.solvers.blocking.sizes.wall_turning import corners_between, turning_between
 
 LEAST = 2
-"""Fewest cells along an edge of a block."""
+"""Smallest number of cells along an edge of a block."""
 TURNING_DEG = 25.0
-"""Most degrees by which a wall turns along a cell."""
+"""Largest angle in degrees by which a wall turns along a cell."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +34,7 @@ class Chords:
     `sides` (b, 4) are the edges at south, north, west and east of each block, `reversed` (b, 4) says where
     the block runs the other way along one, `wall` (e,) which are walls; the `partner` (e,) of an
     edge is the one that it is, moved by the period, else -1, and `chord` (e,) numbers the chord of each.
+    `images` are the nodes (n,) that all become in each mirror: images of edges are of one chord.
     """
 
     layout: Layout
@@ -43,10 +45,11 @@ class Chords:
     partner: Indices
     chord: Indices
     count: int
+    images: Sequence[Indices]
 
     @classmethod
-    def of(cls, layout: Layout) -> Chords:
-        """Return the edges and chords of a layout."""
+    def of(cls, layout: Layout, images: Sequence[Indices] = ()) -> Chords:
+        """Return the edges and chords of a layout; mirror images are of the same chord."""
         edges: list[Indices] = []
         numbers: dict[tuple[int, ...], int] = {}
         sides = np.empty((len(layout.blocks), 4), dtype=np.intp)
@@ -62,16 +65,43 @@ class Chords:
         has = np.flatnonzero(partner >= 0)
         wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
         wall[has], wall[partner[has]] = False, False
-        pairs = np.concatenate([sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)])
-        chord, count = joined_classes(np.ascontiguousarray(pairs), len(edges))
-        return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count)
+        tied = layout.mesh.tied
+        if tied.any():
+            wall &= [not tied[edge[1:-1]].any() for edge in edges]
+        pairs = [sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)]
+        for to in images:
+            image = np.array([numbers.get(_key(to[edge])[0], -1) for edge in edges])
+            pairs.append(np.stack([np.arange(len(edges)), image], axis=1)[image >= 0])
+        chord, count = joined_classes(np.ascontiguousarray(np.concatenate(pairs)), len(edges))
+        return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count, images)
+
+    def of_refined(self, layout: Layout) -> Chords:
+        """Return the edges and the same chords of a layout with other counts."""
+        return replace(Chords.of(layout), chord=self.chord, count=self.count)
 
     @cached_property
     def counts(self) -> Indices:
-        """(chords,) cells along the edges of each chord, as the layout has them."""
+        """(chords,) numbers of cells along the edges of each chord in the layout."""
         cells = np.empty(self.count, dtype=np.intp)
         cells[self.chord] = [len(edge) - 1 for edge in self.edges]
         return cells
+
+    @cached_property
+    def multiple(self) -> Indices:
+        """(chords,) what divides counts of symmetric layouts, so that finer ones are symmetric.
+
+        Of a ring that is the number of its mirrors, and two where a corner lies on a mirror across a wall.
+        """
+        multiple = np.ones(self.count, dtype=np.intp)
+        for k, edge in enumerate(self.edges):
+            own = sum(np.array_equal(distinct(to[edge]), distinct(edge)) for to in self.images)
+            if own and self.wall[k] and edge[0] != edge[-1]:
+                loop = self.layout.mesh.domain.loops[self.layout.mesh.places.loop[edge[0]]]
+                own = 1 + len(corners_between(loop, *self.arcs(k)[[0, -1]].tolist())[0]) % 2
+            elif edge[0] != edge[-1]:
+                own = 1
+            multiple[self.chord[k]] = max(multiple[self.chord[k]], own)
+        return multiple
 
     @cached_property
     def lengths(self) -> Floats:
@@ -80,7 +110,7 @@ class Chords:
         return np.array([np.hypot(*np.diff(nodes[edge], axis=0).T).sum() for edge in self.edges])
 
     def arcs(self, edge: int) -> Floats:
-        """Return the arc lengths (n,) of the nodes of a wall edge, rising or falling without a jump."""
+        """Return the arc lengths (n,) of the nodes of a wall edge, monotonic without a jump."""
         nodes, places = self.edges[edge], self.layout.mesh.places
         length = self.layout.mesh.domain.loops[places.loop[nodes[0]]].length
         step = np.diff(places.arc[nodes])
@@ -92,7 +122,7 @@ class Chords:
 
     @cached_property
     def least(self) -> Indices:
-        """(chords,) fewest cells: `LEAST`, a node at each corner of the domain, `TURNING_DEG` at walls."""
+        """(chords,) smallest numbers of cells, due to `LEAST`, corners of the domain and `TURNING_DEG`."""
         least = np.full(self.count, LEAST, dtype=np.intp)
         mesh = self.layout.mesh
         for edge in np.flatnonzero(self.wall):
@@ -106,12 +136,12 @@ class Chords:
         return least
 
     def cells(self, counts: Indices) -> int:
-        """Return the cells of all blocks with these `counts` (chords,)."""
+        """Return the total number of cells for these `counts` (chords,)."""
         along = counts[self.chord[self.sides]]
         return int((along[:, 0] * along[:, 2]).sum())
 
     def cut_off(self) -> Floats:
-        """Return the areas (e,) between the walls and the cells along each edge, whatever their signs."""
+        """Return the absolute areas (e,) between the walls and the cells along each edge."""
         mesh, lost = self.layout.mesh, np.zeros(len(self.edges))
         part = np.linspace(0.0, 1.0, 5)
         for edge in np.flatnonzero(self.wall):
@@ -124,22 +154,27 @@ class Chords:
         return lost
 
     def bend(self, edge: int) -> float:
-        """Return the most radians by which the wall turns along one cell of a wall edge."""
+        """Return the largest angle in radians by which the wall turns along one cell of a wall edge."""
         arcs = np.sort(self.arcs(edge))
         loop = self.layout.mesh.domain.loops[self.layout.mesh.places.loop[self.edges[edge][0]]]
         return float(np.radians(turning_between(loop, arcs[:-1], arcs[1:]).max()))
 
     def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
-        """Return counts (chords,) for cells of a size: the geometric mean over edges of length / size.
+        """Return counts (chords,) for a cell size: the geometric mean over edges of length / size.
 
-        They are at least `least` (chords,), by default the property of that name.
+        They are at least `least` (chords,), by default the property with that name.
         """
         wanted = log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
-        return np.maximum(self.least if least is None else least, nearest_whole(exp(mean)).astype(np.intp))
+        return self.rounded(exp(mean), self.least if least is None else least)
+
+    def rounded(self, wanted: Floats, least: Indices) -> Indices:
+        """Return the counts (chords,) that are nearest to what is wanted, at least `least`."""
+        times = self.multiple
+        return times * np.maximum(-(-least // times), nearest_whole(wanted / times).astype(np.intp))
 
     def counts_for_cells(self, cells: int, least: Indices | None = None) -> Indices:
-        """Return counts (chords,) for about so many cells in all; more where the fewest possible are more."""
+        """Return counts (chords,) for about `cells` cells in total, or for the fewest possible."""
         size = np.sqrt(self.layout.mesh.domain.area / cells)
         best = self.counts_for_size(size, least)
         for _ in range(12):

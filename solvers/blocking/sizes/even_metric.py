@@ -1,7 +1,7 @@
-"""Places of new nodes along the edges of a layout that make cells follow wanted sizes from the start.
+"""Initial positions of new nodes along the edges of a layout, such that cells have their target sizes.
 
-Along each edge the integral of 1/size is divided into equal parts. Opposite edges of blocks then get the mean
-of what they want, again and again, so that lines across blocks begin nearly straight.
+Along each edge the integral of 1/size is divided into equal parts. The results for opposite edges of blocks
+are then averaged repeatedly, so that lines across blocks are initially nearly straight.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 
 SAMPLES = 64
-"""Parts of an edge in which sizes are looked at."""
+"""Number of intervals of an edge in which sizes are sampled."""
 ROUNDS = 4
-"""How often opposite edges are averaged."""
+"""Number of times opposite edges are averaged."""
 STEEPEST = 8.0
-"""Largest cell along an edge over the smallest."""
+"""Largest ratio of the largest to the smallest cell along an edge."""
 
 
 def metric_places(chords: Chords, counts: Indices, metric: SizeMetric) -> list[Floats]:
-    """Return where along each edge its new nodes are to be, (cells + 1,) in numbers of its old nodes.
+    """Return the positions of new nodes along each edge, (cells + 1,), as fractional indices of old nodes.
 
-    `counts` (chords,) are the new cells.
+    `counts` (chords,) are the new numbers of cells.
     """
     nodes = chords.layout.mesh.nodes
     cells = counts[chords.chord]

@@ -1,4 +1,4 @@
-"""The sizes that the features of a domain's walls ask for: their curvature, corners and gaps."""
+"""Cell sizes that resolve the curvature, the corners and the gaps of the walls of a domain."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.blocking.sizes.wall_turning import wall_bend
 
 TURN = np.radians(20.0)
-"""How much of a wall's turning one cell takes."""
+"""Largest angle by which a wall turns along one cell."""
 CELLS_IN_GAP = 2.5
 CELLS_AROUND = 24.0
-"""Cells around a loop at the least."""
+"""Smallest number of cells around a loop."""
 ALONG_WALL = 0.2
-"""Growth of sizes along walls, over the length between."""
+"""Growth of sizes along walls per length."""
 INSIDE = 0.2
 """Growth of sizes with the distance from walls."""
 CELLS_ACROSS = 30.0
-"""Cells across a domain at the least, where nothing is near."""
+"""Smallest number of cells across a domain, far from all features."""
 _SAMPLES, _WINDOW = 400, 3
 
 
 def feature_sizes(domain: Domain) -> SizeMetric:
-    """Return isotropic sizes of cells that show every feature of the walls of a domain."""
+    """Return isotropic cell sizes that resolve all features of the walls of a domain."""
     points, normals, sizes = [], [], []
     for loop in domain.loops:
         arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))

@@ -1,4 +1,4 @@
-"""Nodes of a mesh put back on the loops of its domain."""
+"""Moves nodes of a mesh back to the loops of its domain."""
 
 from __future__ import annotations
 
@@ -11,10 +11,7 @@ _STEPS = 3
 
 
 def on_loops(mesh: QuadMesh, which: NDArray[np.bool_]) -> QuadMesh:
-    """Return the mesh with nodes, `which` (n,) of those on loops, moved to the nearest place on their loop.
-
-    They are near it already.
-    """
+    """Return the mesh with the nodes `which` (n,) moved to the nearest point of their loop."""
     nodes, arc = mesh.nodes.copy(), mesh.places.arc.copy()
     for number, loop in enumerate(mesh.domain.loops):
         on = np.flatnonzero(which & (mesh.places.loop == number))

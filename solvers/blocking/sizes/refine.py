@@ -1,9 +1,9 @@
-"""A layout with other counts of cells: splines along its edges and through its blocks.
+"""Changes the numbers of cells of a layout, by splines along its edges and through its blocks.
 
 Every edge is resampled once, at equal steps of the index of its nodes: along walls by arc length, so that new
 nodes lie on the loop, inside by a spline. Blocks are splines that meet their edges bitwise
-(`meshonet.solvers.algebraic.resample.quad`). Twice the cells, or another whole multiple, keeps every node
-where it is: a family of nested grids.
+(`meshonet.solvers.algebraic.resample.quad`). With a multiple of the numbers of cells all old nodes are kept,
+so that the grids are nested.
 """
 
 from __future__ import annotations
@@ -33,15 +33,19 @@ def refine(
 ) -> Layout:
     """Return the layout with `counts` (chords,) of cells along the edges of each of its `Chords`.
 
-    Nodes of each edge lie at `places`, (cells + 1,) in numbers of its old nodes, at equal steps without.
-    Corners of the domain inside an edge become the wall node nearest to them. Layers are not kept track of.
+    New nodes of each edge are at `places`, (cells + 1,) fractional indices of its old nodes; without `places`
+    at equal steps. The wall node nearest to a corner of the domain inside an edge is moved to it. Layers are
+    not preserved.
     """
     chords = chords or Chords.of(layout)
     return _Refined(chords, counts, places).layout
 
 
 def multiplied(layout: Layout, times: int) -> Layout:
-    """Return the layout with `times` as many cells each way; its nodes are among the new ones, bitwise."""
+    """Return the layout with `times` as many cells in each direction.
+
+    Its nodes are bitwise among the new ones.
+    """
     chords = Chords.of(layout)
     return refine(layout, chords.counts * times, chords)
 
@@ -100,7 +104,7 @@ class _Refined:
 
     def _set_partners(self) -> None:
         of, domain = self.old.places.partner, self.old.domain
-        if not (of >= 0).any() or domain.periodic is None:
+        if not (of >= 0).any() or not domain.periodic:
             return
         kept = self.chords.layout.vertices
         has = of[kept] >= 0
@@ -113,7 +117,8 @@ class _Refined:
             )
             self.places.partner[self.edges[k]] = beyond if same else beyond[::-1]
         moved = np.flatnonzero(self.places.partner >= 0)
-        self.nodes[moved] = self.nodes[self.places.partner[moved]] + np.array(domain.periodic.shift)
+        known = QuadMesh(domain, self.nodes, np.empty((0, 4), dtype=np.intp), self.places)
+        self.nodes[moved] = self.nodes[self.places.partner[moved]] + known.shifts(moved)
 
     def _filled(self) -> Layout:
         """Return the layout of all blocks between the edges."""

@@ -1,4 +1,4 @@
-"""How long edges should be: at each place and in each direction, from what walls and fronts ask for."""
+"""Target lengths of edges, depending on position and direction, from the requirements of walls and fronts."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
 
 GRADING = 0.13
-"""How fast edges may grow with the distance from a wall."""
+"""Largest growth of edge lengths per distance from a wall."""
 
 SWEEPS = 20
-"""Sweeps over wanted lengths that make them change gradually."""
+"""Number of sweeps that smooth the target lengths."""
 
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """Edges, the nearest point of each part of a metric, and how they lie to these.
+    """Edges, and for each part of a metric the nearest point and its relation to them.
 
     Parameters
     ----------
-    point : (p, m) the nearest point of each of p parts to each edge.
-    distance : (p, m) to it.
-    square : (p, m) square of the cosine between edge and normal.
-    scale : (m,) of the map there.
+    point : (p, m) nearest point of each of p parts to each edge.
+    distance : (p, m) distance to this point.
+    square : (p, m) squared cosine of the angle between edge and normal.
+    scale : (m,) scale of the conformal map at the edge.
     """
 
     point: Indices
@@ -39,7 +39,7 @@ class Near:
     scale: Floats
 
     def length(self, sizes: SizeMetric) -> Floats:
-        """Return the lengths (m,) of the edges, the least of all parts, for any sizes at the same points."""
+        """Return the target lengths (m,) of the edges, the smallest of all parts, for other sizes."""
         rise = sizes.grading * self.distance
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
         wide = np.minimum(sizes.along[self.point] + rise, sizes.largest)
@@ -49,19 +49,22 @@ class Near:
 
 @dataclass(frozen=True, eq=False)
 class SizeMetric:
-    """Lengths of edges, across and along walls; between these the axes of an ellipse.
+    """Target lengths of edges across and along walls.
+
+    In other directions, those of an ellipse with these axes.
 
     Parameters
     ----------
-    points : (n, 2) places on walls and fronts.
+    points : (n, 2) points on walls and fronts.
     normals : (n, 2) unit normals there.
-    across, along : (n,) lengths of edges in their direction and in the other.
-    largest : the length of edges far from all of them.
-    grading : by how much lengths grow with the distance.
-    scale : of a conformal map, how much longer (n,) edges at places (n, 2) of its plane are; lengths and
-        distances above are those before the map, places, points and directions those behind it.
-    starts : numbers of the points at which parts begin, walls that ask for sizes of their own: an edge gets
-        the least of these, so that sizes change gradually from one wall to the next.
+    across, along : (n,) lengths of edges in the direction of the normal and perpendicular to it.
+    largest : length of edges far from all points.
+    grading : growth of lengths with the distance.
+    scale : of a conformal map, the factor by which (n,) edges at places (n, 2) of its plane are longer.
+        Lengths and distances above are those before the map; places, points and directions are those after
+        it.
+    starts : indices of the points at which parts start: walls with their own sizes. An edge gets the smallest
+        of their lengths, so that sizes change gradually from one wall to the next.
     """
 
     points: Floats
@@ -75,7 +78,7 @@ class SizeMetric:
 
     @classmethod
     def joined(cls, metrics: Sequence[SizeMetric]) -> SizeMetric:
-        """Return what several ask for together."""
+        """Return the metric of all requirements in `metrics`."""
         first = metrics[0]
         starts = np.cumsum([0, *(len(each.points) for each in metrics[:-1])])
         return cls(
@@ -90,11 +93,11 @@ class SizeMetric:
         )
 
     def length(self, places: Floats, directions: Floats) -> Floats:
-        """Return the lengths (m,) of edges at `places` (m, 2) in `directions` (m, 2) of any length."""
+        """Return the target lengths (m,) of edges at `places` (m, 2) with `directions` (m, 2)."""
         return self.near(places, directions).length(self)
 
     def near(self, places: Floats, directions: Floats) -> Near:
-        """Return what `length` needs of `places` (m, 2) and `directions` (m, 2) whatever the sizes are."""
+        """Return what `length` needs at `places` (m, 2) in `directions` (m, 2) independently of the sizes."""
         places = np.ascontiguousarray(places)
         scale = np.ones(len(places)) if self.scale is None else self.scale(places)
         size = np.maximum(np.hypot(directions[:, 0], directions[:, 1]), 1e-300)
@@ -111,15 +114,15 @@ class SizeMetric:
         return Near(point, away, square, scale)
 
     def edges(self, mesh: QuadMesh) -> Floats:
-        """Return the lengths (e,) of the edges of a mesh, where they are now."""
+        """Return the target lengths (e,) of the edges of a mesh at their present positions."""
         first, second = mesh.nodes[mesh.edges].transpose(1, 0, 2)
         return self.length(0.5 * (first + second), second - first)
 
     def gradual(self, mesh: QuadMesh, sweeps: int = SWEEPS) -> Floats:
-        """Return the lengths (e,) of the edges of a mesh, made to change gradually from edge to edge.
+        """Return the target lengths (e,) of the edges of a mesh, smoothed from edge to edge.
 
-        They jump where the nearest point does, on the middle lines between walls, and lines that follow them
-        have wrinkles there.
+        Unsmoothed lengths jump where the nearest point does, on the centre lines between walls; grid lines
+        would have wrinkles there.
         """
         return _evened(self.edges(mesh), mesh, sweeps)
 

@@ -1,4 +1,4 @@
-"""How sharply walls bend, by how much they turn between two places on them, and the corners there."""
+"""Curvature and turning angles of walls between two points, and the corners there."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ def _table(loop: Loop) -> tuple[Floats, Floats]:
 
 
 def turning_between(loop: Loop, first: Floats, last: Floats) -> Floats:
-    """Return the degrees (k,) by which a loop turns, either way, from arc lengths `first` to `last` beyond.
+    """Return the angles in degrees (k,) by which a loop turns, in absolute value, from `first` to `last`.
 
-    Corners are left out.
+    Corners are not included.
     """
     arcs, turned = _table(loop)
     return _turned(loop, last, arcs, turned) - _turned(loop, first, arcs, turned)
@@ -39,7 +39,7 @@ def _turned(loop: Loop, arc: Floats, arcs: Floats, turned: Floats) -> Floats:
 
 
 def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indices]:
-    """Return the corners of a loop strictly between two arc lengths, in that direction, and their cells."""
+    """Return the corners of a loop strictly between two arc lengths, in this direction, and their cells."""
     low, high = min(first, last), max(first, last)
     rounds = np.floor(low / loop.length) + np.arange(3)
     arcs = (loop.corner_arcs + rounds[:, None] * loop.length).ravel()
@@ -52,9 +52,10 @@ def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indi
 
 
 def wall_bend(loop: Loop, arcs: Floats, window: int) -> Floats:
-    """Return the curvature (n,) of a loop at ascending arc lengths (n,), averaged over `window` either way.
+    """Return the curvature (n,) of a loop at ascending arc lengths (n,), averaged over `window` each way.
 
-    In radians over the loop's unit, either way; its corners, which are among `arcs`, are no curvature.
+    It is an absolute value in radians per unit of the loop; its corners, which are among `arcs`, are not
+    included.
     """
     along = loop.tangent(arcs)
     direction = arctan2(along[:, 1], along[:, 0])

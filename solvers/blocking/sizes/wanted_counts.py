@@ -1,4 +1,4 @@
-"""Counts of cells along the chords of a layout that sizes of cells ask for."""
+"""Numbers of cells along the chords of a layout for given cell sizes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import numpy as np
 
 from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.ties import nearest_whole
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 
@@ -14,7 +13,7 @@ _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
 
 class WantedCounts:
-    """What edges of chords want, for any sizes at the same points."""
+    """Target numbers of cells of chords, for metrics that differ only in their sizes."""
 
     def __init__(self, chords: Chords, metric: SizeMetric) -> None:
         self.chords = chords
@@ -26,10 +25,10 @@ class WantedCounts:
         self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
 
     def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
-        """Return counts (chords,), multiples near what edges want: its geometric mean, by length."""
+        """Return counts (chords,), multiples of `multiple` near the geometric mean of those of the edges."""
         parts = [self.length / near.length(metric) for near in self.near]
         chords = self.chords
         wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
         weight = np.bincount(chords.chord, wanted, chords.count)
         mean = np.bincount(chords.chord, wanted * log(np.maximum(wanted, 1e-9)), chords.count) / weight
-        return multiple * np.maximum(chords.least, nearest_whole(exp(mean) / multiple).astype(np.intp))
+        return multiple * chords.rounded(exp(mean) / multiple, chords.least)

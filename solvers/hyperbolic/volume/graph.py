@@ -74,15 +74,17 @@ class MarchGraph:
     fixed_nodes: Indices
     moves: Floats
     boost: Floats
+    hollow: Floats
 
 
 def march_graph(
-    surface: Surface, planes: Sequence[Plane], in_plane: Indices, splay: float, boost: float
+    surface: Surface, planes: Sequence[Plane], in_plane: Indices, hollow: Floats, splay: float, boost: float
 ) -> MarchGraph:
     """Return the graph of a surface; mask `in_plane` (p, k) marks the open edges that lie in `planes`.
 
-    `splay` is the relative excess distance of ghosts at free edges (`Seen.opposite`), `boost` the additional
-    smoothing at irregular nodes, relative to others.
+    `hollow` (n,) are distances from concave edges (`meshonet.geometry.surface.hollows`), `splay` is the
+    relative excess distance of ghosts at free edges (`Seen.opposite`), `boost` the additional smoothing at
+    irregular nodes, relative to others.
     """
     n = len(surface.nodes)
     regular = surface.valence == 4
@@ -106,7 +108,8 @@ def march_graph(
         coupled[node] |= any(seen.own != 0.0 for seen in rings[node])
     red = _independent(surface, coupled)
     graph = _sorted(surface, red, rings, held)
-    return replace(graph, boost=1.0 + boost * _oddness(surface)[graph.order])
+    boosts = 1.0 + boost * _oddness(surface)[graph.order]
+    return replace(graph, boost=boosts, hollow=hollow[graph.order])
 
 
 def _closed(arc: list[Seen], before: list[Plane], after: list[Plane], splay: float) -> list[Seen]:
@@ -223,4 +226,5 @@ def _sorted(
         fixed_nodes=whole(k for k, _ in fixed),
         moves=moves,
         boost=np.ones(n),
+        hollow=np.ones(n),
     )

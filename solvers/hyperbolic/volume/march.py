@@ -12,6 +12,7 @@ The equations are in ``kernels/surfaces/step.c``, the settings tried while cells
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
@@ -25,6 +26,7 @@ from meshonet.geometry.elementary import exp
 from meshonet.geometry.errors import BadCell, NoValidGridError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, measure_volumes, worst_solids
+from meshonet.geometry.surface.hollows import Hollows, hollows_of
 from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 from meshonet.geometry.threads import MANY_VISITS, threads_for
@@ -36,13 +38,8 @@ from meshonet.solvers.hyperbolic.volume.limited_growth import (
     limit_growth,
     slower_steps,
 )
-from meshonet.solvers.hyperbolic.volume.settings import ATTEMPTS, Smoothing, VolumeMarch
-from meshonet.solvers.hyperbolic.volume.symmetry import (
-    free_edges_note,
-    in_planes,
-    planes_note,
-    symmetry_planes,
-)
+from meshonet.solvers.hyperbolic.volume.settings import Smoothing, VolumeMarch, attempts_for
+from meshonet.solvers.hyperbolic.volume.symmetry import in_planes, symmetry_of
 from meshonet.solvers.solution import Solution, timed
 from meshonet.solvers.stages import filling
 
@@ -51,6 +48,7 @@ __all__ = ["VolumeMarch", "march_surface"]
 FADE = 12.0  # cells over which the correction of first cells fades out along a line
 SWEEPS = 10  # of the smoothing of steps along lines
 _SLOWER = 2  # further marches by smaller steps where cells grow too much
+_POOR = 0.35  # least scaled Jacobian for which no other smoothing is tried
 WORST = 10  # folded cells named in the error message
 
 
@@ -63,28 +61,30 @@ class _Volume(NamedTuple):
 
 
 @timed
-def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
+def march_surface(surface: Surface, settings: VolumeMarch, *, wing: bool = False) -> Solution:
     """Return the volume between a surface and a far field, with one block per patch.
 
     i and j of a block are those of its patch, k goes from the wall (``bottom``) to the far field (``top``).
     Sides in planes of symmetry are patches ``symmetry``, free ones ``free``; all others are connected. First
-    cells have the given height along every line.
+    cells have the given height along every line. On the surface of a `wing` other smoothing is tried while
+    cells are poor, not only while they are folded.
 
     Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` has what differs.
 
     Raises InputError: settings that no march can meet; NoValidGridError with the worst cells: cells stay
     folded, by their corners or a Bezier coefficient of their Jacobian.
     """
-    planes, inside = symmetry_planes(surface, settings.symmetry)
-    nodes = in_planes(surface, planes, inside)
     steps = settings.steps(surface.size)
-    volume, tries = _best(surface, planes, inside, nodes, steps, settings.limit)
+    planes, inside, found = symmetry_of(surface, settings.symmetry, settings.distance(surface.size))
+    nodes = in_planes(surface, planes, inside)
+    hollows = hollows_of(surface)
+    volume, tries = _best(surface, planes, inside, nodes, hollows, steps, settings.limit, wing=wing)
     if volume.made < len(steps) or volume.folded:
-        raise _refusal(volume, len(steps))
+        raise _refusal(volume, len(steps), tries, surface, hollows)
     grid = volume_grid(surface, volume.blocks, np.any(inside, axis=0))
-    notes = [*surface.notes, planes_note(planes, settings.symmetry), free_edges_note(surface, inside)]
+    notes = [*surface.notes, *found]
     if tries > 1:
-        notes.append(f"{tries} marches were made: others left folded cells")
+        notes.append(f"{tries} marches were made: others left folded cells or worse ones")
     return Solution(
         grid,
         "hyperbolic",
@@ -94,16 +94,21 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
 
 
 def _best(
-    surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, steps: Floats,
-    growth: float,
+    surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, hollows: Hollows,
+    steps: Floats, growth: float, *, wing: bool,
 ) -> tuple[_Volume, int]:  # fmt: skip
-    """Return the first volume without folded cells, or else the best, and the number of attempts.
+    """Return the first volume that is good enough, or else the best, and how many were made.
 
-    The first is marched again by smaller steps where its cells grow by more than `growth`.
+    Without folded cells it is, and on a `wing` if no cell is worse than `_POOR`.
+
+    Each is marched again by smaller steps where its cells grow by more than `growth`.
     """
     best: _Volume | None = None
-    for tries, smoothing in enumerate(ATTEMPTS, start=1):
-        graph = march_graph(surface, planes, inside, smoothing.splay, smoothing.boost)
+    most = (0, -math.inf, 0.0)
+    tries = 0
+    for smoothing in attempts_for(concave=len(hollows.edges) > 0, wing=wing):
+        tries += 1
+        graph = march_graph(surface, planes, inside, hollows.distance, smoothing.splay, smoothing.boost)
 
         def marched(steps: Floats, graph: MarchGraph = graph, smoothing: Smoothing = smoothing) -> Floats:
             lines = _respaced(march_levels(surface, graph, nodes, steps, smoothing), graph, steps)
@@ -111,12 +116,16 @@ def _best(
             return lines
 
         lines = marched(steps)
-        volume = _volume(surface, lines)
+        volume, worth = _volume(surface, lines), 0.0
         if volume.made == len(steps) and not volume.folded:
-            return _with_growth(surface, lines, marched, steps, growth) or volume, tries
-        if best is None or (volume.made, -volume.folded) > (best.made, -best.folded):
-            best = volume
-    return best or volume, len(ATTEMPTS)
+            volume = _with_growth(surface, lines, marched, steps, growth) or volume
+            worth = _least_jacobian(volume.blocks) if wing else _POOR
+        found = min(volume.made, len(steps)), -volume.folded, worth
+        if best is None or found > most:
+            best, most = volume, found
+        if worth >= _POOR:
+            break
+    return best or volume, tries
 
 
 def _volume(surface: Surface, lines: Floats) -> _Volume:
@@ -128,10 +137,10 @@ def _volume(surface: Surface, lines: Floats) -> _Volume:
 def _with_growth(
     surface: Surface, lines: Floats, marched: Callable[[Floats], Floats], steps: Floats, growth: float
 ) -> _Volume | None:
-    """Return a valid volume whose cells grow by no more than `growth` along its lines, None where none is.
+    """Return a valid volume whose cells grow by at most `growth` along its lines, None if there is none.
 
-    Of marches by smaller and smaller steps, whose nodes are moved along the lines by what these leave, it is
-    that with the best cells.
+    Several marches with decreasing steps are made, and the nodes of each are moved along the lines to keep
+    the limit. The result is the one with the best cells.
     """
     tried = [(lines, steps)]
     for _ in range(_SLOWER):
@@ -190,16 +199,18 @@ def _keep_planes(lines: Floats, surface: Surface, planes: tuple[Plane, ...], ins
         lines[plane.axis, edges[flags]] = plane.value
 
 
-def _refusal(volume: _Volume, cells: int) -> NoValidGridError:
+def _refusal(volume: _Volume, cells: int, tries: int, surface: Surface, hollows: Hollows) -> NoValidGridError:
     if volume.made < cells:
         problem = f"the march stops after {volume.made} of {cells} cells from the wall"
     else:
         columns = sum((block.counts[0] - 1) * (block.counts[1] - 1) for block in volume.blocks)
         problem = f"{volume.folded} of {cells * columns} cells are folded"
-    remedy = (
-        f"after {len(ATTEMPTS)} tries with other smoothing; give a nearer {{far_field}}, or smoother patches"
-    )
-    return NoValidGridError(f"{problem} {remedy}", _worst(volume.blocks))
+    problem += f" after {tries} tries with other smoothing"
+    remedy, sharpest = "give a nearer {far_field}, or smoother patches", hollows.sharpest()
+    if sharpest is not None:
+        problem += f"; walls meet at an angle of {sharpest[0]:.0f} degrees at {surface.place(sharpest[1])}"
+        remedy = "give a nearer {far_field}, or a wider or rounded edge there"
+    return NoValidGridError(f"{problem}; {remedy}", _worst(volume.blocks))
 
 
 def _worst(blocks: tuple[Block, ...]) -> list[BadCell]:

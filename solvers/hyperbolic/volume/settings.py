@@ -57,12 +57,16 @@ class VolumeMarch:
         """Largest ratio of neighbouring cells; infinite where `layers` decide it."""
         return math.inf if self.layers is not None and self.growth is None else self.growth or GROWTH
 
+    def distance(self, size: float) -> float:
+        """Return how far a surface of extent `size` is marched."""
+        return FAR_FIELD * size if self.far_field is None else self.far_field
+
     def steps(self, size: float) -> Floats:
         """Return the steps (layers - 1,) of a march from a surface of extent `size`.
 
         Raises InputError: too few layers for the growth, or for any.
         """
-        far = FAR_FIELD * size if self.far_field is None else self.far_field
+        far = self.distance(size)
         if far < 2.0 * self.first_cell:
             problem = f"the far field at {far:.4g} is nearer than two first cells of {self.first_cell:.4g}"
             raise InputError(problem, "give a larger {far_field} or a smaller {first_cell}")
@@ -81,11 +85,15 @@ class VolumeMarch:
 
 
 class Smoothing(NamedTuple):
-    """Parameters of ``kernels/surfaces/march.h`` in its order, without the size of the surface."""
+    """Parameters of ``kernels/surfaces/march.h`` in its order, without the size of the surface.
+
+    With `outer` up to 6 the levels around a sphere stay spheres; 16 makes better cells behind swept wings.
+    """
 
     explicit: float = 0.3
     implicit: float = 1.2
     theta: float = 0.5
+    outer: float = 1.0
     sharp: float = -0.5
     longest: float = 3.0
     weight: float = 0.25
@@ -94,13 +102,17 @@ class Smoothing(NamedTuple):
     ramp: int = 10
     tolerance: float = 1e-3
     most: int = 150
+    relaxing: float = 0.0
+    settled: float = 0.25
+    near: float = 2.0
+    relaxations: int = 30
     splay: float = 0.0
     boost: float = 3.0
     """Of free edges, and where other than four faces meet (`meshonet.solvers.hyperbolic.volume.graph`)."""
 
     def numbers(self, size: float) -> tuple[float, ...]:
         """Return the parameters as kernels take them, with half the extent (`size`) of the surface."""
-        return (*self[:4], size, *self[4:11])
+        return (*self[:5], size, *self[5:16])
 
 
 ATTEMPTS = (
@@ -110,4 +122,23 @@ ATTEMPTS = (
     Smoothing(explicit=1.0, implicit=2.0, theta=0.0, longest=0.5, sweeps=60),
     Smoothing(explicit=2.0, implicit=4.0, theta=0.0, longest=0.5, sweeps=60),
 )
-"""Tried in turn while cells are folded."""
+"""Tried in turn while cells are folded, on surfaces without concave edges."""
+WING_ATTEMPTS = tuple(
+    one._replace(outer=outer) for one, outer in zip(ATTEMPTS, (6.0, 2.0, 2.0, 2.0, 1.0), strict=True)
+)
+"""The same for wings: levels are smoothed more far away, where lines behind a swept wing run together."""
+
+_RELAXED = Smoothing(explicit=1.0, implicit=2.0, theta=0.0, longest=1.0, blend=0.1, relaxing=3.0)
+CONCAVE_ATTEMPTS = (
+    _RELAXED,
+    _RELAXED._replace(near=4.0),
+    _RELAXED._replace(near=4.0, explicit=0.3, implicit=1.2),
+    _RELAXED._replace(near=4.0, longest=0.5),
+    *ATTEMPTS[2:],
+)
+"""The same for surfaces with concave edges: fronts are relaxed (``kernels/surfaces/relax.c``)."""
+
+
+def attempts_for(*, concave: bool, wing: bool) -> tuple[Smoothing, ...]:
+    """Return what is tried in turn on a surface with or without concave edges, and on a wing's."""
+    return CONCAVE_ATTEMPTS if concave else WING_ATTEMPTS if wing else ATTEMPTS

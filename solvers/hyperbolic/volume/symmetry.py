@@ -1,10 +1,20 @@
-"""Planes of symmetry of a surface: detection, and nodes of its open edges moved exactly into them."""
+"""Planes of symmetry of a surface: detection, and nodes of its open edges moved exactly into them.
+
+A plane that walls face is none where the march would reach it before the far field::
+
+    |               y = 1: not a plane of symmetry of walls a and b, and neither is x = 1: lines from
+    a               the walls would run into them. In a plane of symmetry the wall turns away from it
+    |               or ends at a right angle, so that its mirror image continues it.
+    +---- b ----
+"""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.planes import FLAT, Plane, edges_in
@@ -12,10 +22,58 @@ from meshonet.geometry.surface.surface import Surface
 
 ROUGH = 1e-3
 """Largest distance of nodes from a given plane of symmetry, relative to the size of the surface."""
+_FACING = 0.1
+"""Part of the area of a surface that may face a plane of symmetry, less what faces away from it."""
+
+
+class Symmetry(NamedTuple):
+    """Planes of symmetry, the open edges `inside` (p, k) that lie in each, and notes on both."""
+
+    planes: tuple[Plane, ...]
+    inside: Indices
+    notes: tuple[str, ...]
+
+
+def symmetry_of(surface: Surface, axis: str | None, far: float) -> Symmetry:
+    """Return the planes of symmetry of a surface that is marched to a distance `far`.
+
+    `axis` is the normal direction of the planes, ``none`` for no plane, None to detect them. Of detected
+    planes those that `closes_in` are left out, with a note.
+
+    Raises InputError: no open edge lies across the axis; a plane across it closes in before the far field.
+    """
+    planes, inside = symmetry_planes(surface, axis)
+    kept, notes = [], []
+    for k, plane in enumerate(planes):
+        distance = closes_in(surface, plane)
+        if distance >= far:
+            kept.append(k)
+            continue
+        facing = f"walls {distance:.4g} away face it, and the far field is {far:.4g} away"
+        if axis is not None:
+            remedy = "give {symmetry} none or a nearer {far_field}"
+            problem = f"the plane {plane} closes in before the far field: {facing}"
+            raise InputError(problem, remedy, parameter="symmetry")
+        notes.append(f"the open edges at {plane} are not in a plane of symmetry: {facing}")
+    planes, inside = tuple(planes[k] for k in kept), inside[kept]
+    found = (planes_note(planes, axis), *notes, free_edges_note(surface, inside))
+    return Symmetry(planes, inside, tuple(note for note in found if note))
+
+
+def closes_in(surface: Surface, plane: Plane) -> float:
+    """Return the mean distance of the walls that face a plane, infinity where as much faces away from it."""
+    a, b, c, d = (surface.nodes[surface.quads[:, k]] for k in range(4))
+    area = 0.5 * np.cross(c - a, d - b)
+    away = (0.25 * (a + b + c + d))[:, plane.axis] - plane.value
+    facing = -np.sign(away) * area[:, plane.axis]
+    if facing.sum() <= _FACING * norms(area).sum():
+        return np.inf
+    towards = np.maximum(facing, 0.0)
+    return float((towards * np.abs(away)).sum() / towards.sum())
 
 
 def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ...], Indices]:
-    """Return the planes of symmetry, and a mask (p, k) of the open edges that lie in each.
+    """Return planes normal to an axis in which open edges lie, and a mask (p, k) of the edges in each.
 
     `axis` is the normal direction of the planes, ``none`` for no plane, None to detect them.
 

@@ -55,7 +55,7 @@ class Architecture:
         return {"sensors": np.array([sensors(boundary, self.sensors) for boundary in boundaries])}
 
     def check(self, w: Weights, inputs: Weights) -> None:
-        """Raise InputError for `inputs` outside the model's scope; without one in a subclass, do nothing."""
+        """Raise InputError for `inputs` outside of the model's scope; the default accepts all inputs."""
 
     def seen(self, xp: Any, points: Any) -> Any:
         """Return the trunk's input (p, any) at `points` (p, 2) in (xi, eta): themselves, or features of them.

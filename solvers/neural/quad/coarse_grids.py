@@ -2,9 +2,9 @@
 
 ::
 
-    edges -> 33 x 33 of them -> transfinite grid -> middle, turn, size out -> towards Winslow's grid
-          -> features -> network -> 33 x 33 grid, its rim that of the edges; part of the way to it if it folds
-          -> splines -> grid at the edges' own counts
+    edges -> 33 nodes on each edge -> transfinite grid -> position, rotation, size removed
+          -> steps towards Winslow's grid -> features -> network -> 33 x 33 grid with the given edges
+          -> (if it is folded: only a part of the correction) -> splines -> grid with all nodes of the edges
 
 Winslow's grid is first refined to 65 x 65 nodes, where a few Picard steps reduce its residual. The last step
 is `meshonet.solvers.algebraic.resample.quad`, as in `meshonet.solvers.pipeline.coarse`.

@@ -173,7 +173,7 @@ class Network:
         return np.asarray(moved.view(np.complex128)[..., 0])
 
     def moves(self, near: Complexes, step: Complexes, head: int) -> Complexes:
-        """Return one head's displacements (batch, m, n) of grids `near` Winslow's, with their last step."""
+        """Return the displacements (batch, m, n) that one head predicts for grids `near`."""
         if self.around:
             return self(features(near, step, np, around=True), head)
         seen = np.empty((*near.shape, FEATURES), self.dtype)

@@ -22,6 +22,7 @@ from meshonet.solvers.stages import reached
 HEIGHT = 4.0  # of a typical strip: brings derivatives across it to the scale of those along it
 MOST_STEPS = 30  # of Picard's iteration for a shape
 CONVERGED = 2e-6  # change of w in a step (radians)
+DIVERGED = 1.0  # change from which on there is none
 ACCEPTED = 1e-4  # a slower one is still kept below this: the rest is in the highest modes
 
 
@@ -74,16 +75,9 @@ def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None
         return None
     a, b = modes(body.wall), modes(body.far)
     base = harmonic(a, b, across().eta)
-    c, last = base, np.inf
-    for _ in range(MOST_STEPS):
-        with np.errstate(all="ignore"):
-            c, (change,) = picard(c, 1)
-        if not change < 1.0:
-            return None
-        last = change
-        if change < CONVERGED:
-            break
-    return (a, b, c - base) if last < ACCEPTED else None
+    with np.errstate(all="ignore"):
+        c, changes = picard(base, MOST_STEPS, CONVERGED, DIVERGED)
+    return (a, b, c - base) if changes[-1] < ACCEPTED else None
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,9 @@ import planar_domains
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from planar_domains import SHAPES, box, circle, polygon
+from planar_domains import box, circle
 from scipy.spatial import cKDTree
+from symmetric_shapes import SYMMETRIC, amiss, symmetric_domain, turned
 
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.quality.measure import count_folded
@@ -14,71 +15,31 @@ from meshonet.solvers.blocking.block_grid import fine_layout
 from meshonet.solvers.blocking.decomposition.decompose import decompose
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import mirrors_of
 
-WING = np.concatenate(
-    [np.stack([x, sign * 0.3 * np.sqrt(x) * (1 - x)], axis=1)
-     for x, sign in ((0.5 + 0.5 * np.cos(np.linspace(0, np.pi, 40)[:-1]), 1),
-                     (0.5 - 0.5 * np.cos(np.linspace(0, np.pi, 40)[:-1]), -1))]
-)  # fmt: skip
-
-
-def holes(*places, radius=0.25, count=80):
-    return [circle(x, y, radius, count) for x, y in places]
-
-
-SYMMETRIC = {
-    # name: polygons, mirrors (angles of the lines in degrees) that grids must have
-    "disc": ([circle(0, 0, 1, 160)], (0, 90)),
-    "ellipse": (SHAPES["ellipse"], (0, 90)),
-    "plate with four holes": ([box(-2, 2, -2, 2), *holes((-1, -1), (1, -1), (1, 1), (-1, 1))], (0, 90)),
-    "tube bank": (
-        [box(0, 5, 0, 2), *holes((1, 0.5), (1, 1.5), (2, 1), (3, 0.5), (3, 1.5))],
-        (0,),
-    ),
-    "cylinder in a channel": ([box(-2, 6, -2, 2), *holes((0, 0), radius=0.5)], (0,)),
-    "square turned in a channel": ([box(-2, 6, -2, 2), circle(0, 0, 0.7, 4)], (0,)),
-    "H": ([polygon(0, 0, 1, 0, 1, 2, 3, 2, 3, 0, 4, 0, 4, 5, 3, 5, 3, 3, 1, 3, 1, 5, 0, 5)], (0, 90)),
-    "T": ([polygon(-0.5, 0, 0.5, 0, 0.5, 3, 2, 3, 2, 4, -2, 4, -2, 3, -0.5, 3)], (90,)),
-    "two wings": ([box(-3, 5, -3, 3), np.add(WING, [0, 0.6]), np.add(WING * [1, -1], [0, -0.6])], (0,)),
-    "wing": ([box(-3, 5, -3, 3), WING], (0,)),
-    "hexagon": (SHAPES["hexagon"], (0, 90)),
-    "triangle": (SHAPES["triangle"], (90,)),
-    "star": (SHAPES["star"], (0,)),
-    "ring": ([circle(0, 0, 1, 60), circle(0, 0, 0.5, 45)], (0,)),
-}
-
-
-def turned(polygons, degrees):
-    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    return [
-        np.stack([c * p[:, 0] - s * p[:, 1] + 3, s * p[:, 0] + c * p[:, 1] - 1], axis=1) for p in polygons
-    ]
-
-
-def amiss(domain, nodes):
-    """Return how far images of nodes in each mirror are from nodes, by the extent."""
-    tree = cKDTree(nodes)
-    return [tree.query(mirror.images(nodes))[0].max() / domain.extent for mirror in mirrors_of(domain)]
-
 
 @pytest.mark.parametrize("name", SYMMETRIC)
 def test_grids_of_symmetric_domains_are_symmetric(name):
-    polygons, angles = SYMMETRIC[name]
-    domain = Domain.of_polygons(polygons)
+    domain, (_, _, angles) = symmetric_domain(name), SYMMETRIC[name]
     found = [np.degrees(np.arctan2(*mirror.along[::-1])) % 180 for mirror in mirrors_of(domain)]
     np.testing.assert_allclose(found, angles, atol=1e-6)
     layout = decompose(domain)
     grids = [layout, fine_layout(layout, cells=1200), fine_layout(layout, cells=9000)]
     for each in grids:
-        assert max(amiss(domain, each.mesh.nodes)) < 1e-9
+        assert amiss(name, each.mesh.nodes) < 1e-9
         assert sum(count_folded(each.mesh.nodes[block]) for block in each.blocks) == 0
 
 
 @pytest.mark.parametrize("degrees", [13.0, 45.0, 100.0])
 def test_a_mirror_may_have_any_direction(degrees):
-    domain = Domain.of_polygons(turned(SYMMETRIC["tube bank"][0], degrees))
+    domain = symmetric_domain("tube bank", degrees)
     (mirror,) = mirrors_of(domain)
     assert np.degrees(np.arctan2(*mirror.along[::-1])) % 180 == pytest.approx(degrees % 180, abs=1e-6)
-    assert amiss(domain, fine_layout(decompose(domain), cells=1500).mesh.nodes)[0] < 1e-9
+    assert amiss("tube bank", fine_layout(decompose(domain), cells=1500).mesh.nodes, degrees) < 1e-9
+
+
+def from_image(domain, nodes):
+    """Return how far images of nodes in the first mirror of a domain are from nodes, by the extent."""
+    mirror = mirrors_of(domain)[0]
+    return cKDTree(nodes).query(mirror.images(nodes))[0].max() / domain.extent
 
 
 @settings(max_examples=12, deadline=None, derandomize=True)
@@ -98,8 +59,8 @@ def test_grids_of_mirrored_polygons_are_symmetric(corners, degrees, hole):
     layout = decompose(domain)
     fine = fine_layout(layout, cells=1500)
     assert sum(count_folded(fine.mesh.nodes[block]) for block in fine.blocks) == 0
-    if amiss(domain, layout.mesh.nodes)[0] < 1e-9:  # a sharp corner on the mirror may leave no such blocks
-        assert amiss(domain, fine.mesh.nodes)[0] < 1e-9
+    if from_image(domain, layout.mesh.nodes) < 1e-9:  # a sharp corner on the mirror may leave no such blocks
+        assert from_image(domain, fine.mesh.nodes) < 1e-9
 
 
 @pytest.mark.parametrize("name", ["step", "annulus", "cylinder in a channel", "blob", "spiky with a hole"])

@@ -17,7 +17,6 @@ from meshonet.solvers.neural.quad import network, picard
     "cached",
     [
         lambda: vars(strip.across()).values(),
-        strip._kernels,
         lambda: [evaluate._interpolation(np.linspace(0.0, 1.0, 5).tobytes())],
         lambda: nufft._transform(256),
         lambda: [network.rim_factor(9, 9, False)],

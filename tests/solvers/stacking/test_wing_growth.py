@@ -89,3 +89,18 @@ def test_spacings_that_are_of_no_use_are_refused(make, problem):
     with pytest.raises(InputError) as refusal:
         make()
     assert problem in str(refusal.value)
+
+
+def test_cells_at_the_tip_of_a_swept_wing_are_as_long_along_their_lines_as_they_may():
+    tip = Section(naca("2412"), 0.4, 2.0, x=2.4, y=0.4)
+    grid, _ = wing_surface(Stack((Section(naca("2412"), 1.0, 0.0), tip)))
+    main, ring = grid.blocks[0].nodes, grid.blocks[1].nodes
+    below, above = main[:, -1] - main[:, -2], ring[:, 1] - ring[:, 0]
+    ratio = np.linalg.norm(below, axis=-1) / np.linalg.norm(above, axis=-1)
+    assert np.maximum(ratio, 1.0 / ratio).max() <= 2.55
+
+
+def test_cells_far_behind_a_swept_wing_are_not_sheared_at_the_plane_of_symmetry():
+    tip = Section(naca("2412"), 0.8, 1.8, x=1.3, y=0.3)
+    made = make_stack(Stack((Section(naca("2412"), 1.0, 0.0), tip)), StackRequest(around=97, span=33))
+    assert made.quality["scaled_jacobian"].min > 0.35

@@ -134,3 +134,10 @@ def test_counts_that_do_not_suffice_are_refused(settings, problem):
     with pytest.raises(InputError) as refusal:
         wing_surface(stack(), WingSurface(**settings))
     assert problem in str(refusal.value)
+
+
+@pytest.mark.parametrize("name", ["3311", "0009", "4418"])
+def test_the_core_of_a_tip_stands_where_cells_at_its_corners_are_best(name):
+    section = Section(naca(name), 1.0, 0.0)
+    grid, _ = wing_surface(Stack((section, Section(naca(name), 0.3, 2.0))))
+    assert min(scaled_jacobians(block.nodes).min() for block in grid.blocks[1:]) > 0.5

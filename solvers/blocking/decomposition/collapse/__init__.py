@@ -1,1 +1,1 @@
-"""Blocks of a quad mesh, and fewer of them."""
+"""Blocks of a quad mesh, and reduction of their number."""

@@ -1,7 +1,7 @@
-"""The blocks that a quad mesh consists of: what its lines through irregular nodes cut it into.
+"""The blocks of a quad mesh, bounded by its grid lines through irregular nodes.
 
-From every irregular node all edges are followed straight on, through regular nodes, to the boundary or
-another irregular node. Between these lines lie lattices, or rings: these get one more line.
+From every irregular node all edges are followed straight through regular nodes, to the boundary or another
+irregular node. The regions between these lines are lattices or rings; a ring is divided by one more line.
 
 Tarini, Puppo, Panozzo, Pietroni, Cignoni, "Simple quad domains for field aligned mesh parametrization", ACM
 Trans. Graph. 30 (2011), section 3.
@@ -25,16 +25,17 @@ from meshonet.solvers.blocking.decomposition.errors import BlockingError
 
 @dataclass(frozen=True, eq=False)
 class BaseComplex:
-    """Blocks of a quad mesh, the edges that bound them, and its chords."""
+    """Blocks of a quad mesh, the edges that bound them, and the chords."""
 
     mesh: QuadMesh
     blocks: tuple[Indices, ...]
     """Lattices (ni, nj) of nodes, right-handed."""
     bounds: NDArray[np.bool_]
-    """(e,) edges that bound blocks."""
+    """(e,) mask of the edges that bound blocks."""
     chord: Indices
-    """(e,) number of the chord of each edge: opposite sides of a block are of one chord, and so are all edges
-    beside them inside the block."""
+    """(e,) number of each edge's chord. Opposite sides of a block belong to the same chord, and so do the
+    edges between them.
+    """
     chords: int
 
     @property
@@ -44,10 +45,10 @@ class BaseComplex:
 
     @cached_property
     def sides(self) -> tuple[Indices, Indices, Indices]:
-        """Sides of the blocks: south, north, west and east of each, one after another.
+        """Sides of the blocks, south, north, west and east of each: three arrays.
 
-        The edge behind each of their nodes (k,), -1 behind the last of a side, where in these each side
-        begins (4 b,), and its chord (4 b,).
+        They are the edge after each node of the sides (k,), -1 after the last node of a side; the start of
+        each side in this array (4 b,); and the chord of each side (4 b,).
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)
@@ -57,14 +58,14 @@ class BaseComplex:
         return edge, first, self.chord[edge[first]]
 
     def moved(self, mesh: QuadMesh) -> BaseComplex:
-        """Return the blocks of the same quads with other nodes."""
+        """Return the same blocks with other positions of the nodes."""
         moved = replace(self, mesh=mesh)
         if "sides" in self.__dict__:
             moved.__dict__["sides"] = self.sides
         return moved
 
     def side_lengths(self, unit: Floats | None = None) -> Floats:
-        """Return the lengths (b, 4) of south, north, west and east of each block, in units (e,) at edges."""
+        """Return the lengths (b, 4) of south, north, west and east of each block, in units (e,) of edges."""
         edge, first, _ = self.sides
         step = self.mesh.nodes[self.mesh.edges[:, 1]] - self.mesh.nodes[self.mesh.edges[:, 0]]
         length = np.hypot(step[:, 0], step[:, 1])
@@ -75,10 +76,9 @@ class BaseComplex:
 
 
 def base_complex(mesh: QuadMesh, lines: NDArray[np.bool_] | None = None) -> BaseComplex:
-    """Return the blocks of a quad mesh.
+    """Return the blocks of a quad mesh, which also end at additional `lines` (e,) of edges.
 
-    Blocks end at edges on more `lines` (e,) too. Raises BlockingError: the mesh is not manifold, or what its
-    lines bound are no lattices.
+    Raises BlockingError: the mesh is not manifold, or a region between lines is not a lattice.
     """
     quads = np.ascontiguousarray(mesh.quads, dtype=np.intp)
     bounds = mesh.on_wall.copy() if lines is None else mesh.on_wall | lines

@@ -1,8 +1,8 @@
-"""Chords of blocks taken out of a quad mesh, as long as its score falls.
+"""Collapses chords of a quad mesh as long as its score decreases.
 
-A chord is a row of blocks from wall to wall, or a ring of them. Contracting all edges across it removes the
-row: the nodes on both sides of it become one. What is left is a quad mesh with fewer blocks and often as many
-irregular nodes or fewer.
+A chord is a row of blocks from wall to wall, or a closed row. Contracting all edges across it removes the
+row: the nodes on both of its sides are merged. The result is a quad mesh with fewer blocks, and usually no
+more irregular nodes.
 
 Borden, Benzley, Shepherd, "Hexahedral sheet extraction", 11th International Meshing Roundtable (2002);
 Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans. Graph. 27 (2008).
@@ -25,25 +25,27 @@ from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 
 FAILURES = 8
-"""Trials without gain, one after another, after which the mesh stays as it is."""
+"""Number of consecutive attempts without improvement after which the collapse ends."""
 
 PER_CHORD = 14
-"""Chords for each one collapsed beside the first. With wanted sizes each is judged alone: blocks around
-several elements came out worse otherwise."""
+"""Number of chords for each chord that is collapsed in addition to the first. With prescribed sizes chords
+are collapsed one by one, because blocks around several elements are worse otherwise.
+"""
 ITERATIONS = (6, 12, 22)
-"""Iterations of the functional before a trial is judged, and further ones before it is judged again."""
+"""Iterations of the optimisation before a trial is judged, and before it is judged again."""
 
 MOST_WORK = 45_000_000
-"""Quads times iterations, from where on the mesh stays as it is: some seconds."""
+"""Number of quads times iterations after which the collapse ends; this takes some seconds."""
 PER_TRIAL, PER_OPTIMUM = 3, 20
-"""What a trial costs before it is optimised, and an optimum beside its iterations, in iterations."""
+"""Cost of a trial before its optimisation, and of an optimisation besides its iterations, in iterations."""
 
 
 def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None = None) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
-    Several of many are collapsed before the next optimum, one if there are `sizes`, which prescribe the
-    lengths of edges. `price` is the mean deviation from 90 degrees that a block less may cost.
+    If there are many chords, several are collapsed before the next optimisation; with `sizes`, the prescribed
+    lengths of edges, only one. `price` is the increase of the mean deviation from 90 degrees that is accepted
+    for one block less.
     """
 
     def wanted(mesh: QuadMesh) -> Floats | None:
@@ -73,9 +75,10 @@ def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None =
 
 
 def _without(current: BaseComplex, kept: Collection[int], count: int) -> tuple[BaseComplex | None, int, int]:
-    """Return the blocks without `count` chords, the narrowest but for those `kept`, one after another.
+    """Return the blocks without `count` chords, the narrowest first; chords in `kept` are not removed.
 
-    Fewer where no more can go, None where none can; the number of the first, and how many were tried.
+    Fewer chords are removed if no more can be, and None is returned if none can. Also returned are the number
+    of the first removed chord, and the number of chords that were tried.
     """
     trial, first, tried = None, -1, 0
     for _ in range(count):
@@ -93,7 +96,7 @@ def _without(current: BaseComplex, kept: Collection[int], count: int) -> tuple[B
 
 
 def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:
-    """Return the mesh without a chord, None where that is not allowed or simplifies nothing."""
+    """Return the mesh without a chord, None if this is not permitted or removes no block."""
     mesh = current.mesh
     trial = contract(mesh, current.chord == chord)
     if trial is None:
@@ -107,12 +110,12 @@ def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:
 
 
 def irregular_inside(mesh: QuadMesh) -> int:
-    """Return how many nodes inside have other than four quads."""
+    """Return the number of interior nodes at which other than four quads meet."""
     return int(np.count_nonzero(mesh.irregular & ~mesh.wall_nodes))
 
 
 def widths(current: BaseComplex) -> Floats:
-    """Return how wide each chord (chords,) is: the mean length of sides of blocks across it."""
+    """Return the width of each chord (chords,): the mean length of the sides of blocks across it."""
     chord = current.sides[2]
     edges = np.bincount(chord, minlength=current.chords)
     return np.bincount(chord, current.side_lengths().ravel(), current.chords) / edges

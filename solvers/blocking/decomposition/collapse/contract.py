@@ -1,6 +1,7 @@
-"""Edges of a quad mesh contracted, where a conforming mesh of the same domain is left.
+"""Contracts edges of a quad mesh if the result is a conforming mesh of the same domain.
 
-Nodes that become one are where the corner among them is, else on the wall in the middle, else at their mean.
+Merged nodes are moved to a corner among them, else to the middle of their interval on the wall, else to their
+mean.
 """
 
 from __future__ import annotations
@@ -16,15 +17,15 @@ from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
 from meshonet.solvers.blocking.decomposition.quads.quad_mesh import conforms
 
 VALENCES = (3, 5)
-"""Fewest and most quads around a node inside."""
+"""Smallest and largest number of quads around an interior node."""
 
 
 def contract(mesh: QuadMesh, rungs: NDArray[np.bool_]) -> QuadMesh | None:
-    """Return the mesh with the nodes of each edge in `rungs` (e,) made one; None where it would be invalid.
+    """Return the mesh with the nodes of each edge in `rungs` (e,) merged; None if it would be invalid.
 
-    That is where two corners would become one, wall nodes that no wall edges in `rungs` join, where more wall
-    nodes than before have a wrong count of quads, or where what is left is no conforming mesh of the same
-    domain with 3 to 5 quads around each node inside.
+    It is invalid if two corners would be merged, or wall nodes without a wall edge in `rungs` between them;
+    if more wall nodes than before have a wrong number of quads; or if the result is no conforming mesh of the
+    same domain with 3 to 5 quads around each interior node.
     """
     label, count = joined_classes(np.ascontiguousarray(mesh.edges[rungs]), len(mesh.nodes))
     kept = ~rungs[mesh.edge_of].any(axis=1)
@@ -75,7 +76,7 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
 
 
 def is_conforming(mesh: QuadMesh) -> bool:
-    """Return whether quads are a mesh of the domain, as many around nodes inside as `VALENCES` allow."""
+    """Return whether quads are a mesh of the domain, with interior valences within `VALENCES`."""
     inside = mesh.valence[~mesh.wall_nodes]
     few, many = VALENCES
     return conforms(mesh) and bool(((inside >= few) & (inside <= many)).all())

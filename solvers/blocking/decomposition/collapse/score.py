@@ -1,12 +1,13 @@
-"""How good a quad mesh is as the start of a layout: its angles after optimisation, and what blocks cost.
+"""Score of a quad mesh as the start of a layout: its angles after optimisation, and a price for blocks.
 
 ::
 
     mean deviation of corner angles from 90 degrees
-    + 0.05 of the 99th percentile of cells' worst + 0.1 of what the worst exceeds 60 degrees by
-    + 0.15 of what the turning of a wall along one edge exceeds 35 degrees by
-    + 4 for each wall node with a wrong count of quads + `price` for each block
-    + `SIZES` times the mean square of the log of cell lengths over the lengths wanted
+    + 0.05 times the 99th percentile of the largest deviation in each cell
+    + 0.1 times the excess of the largest deviation above 60 degrees
+    + 0.15 times the excess above 35 degrees of the turning of a wall along one edge
+    + 4 for each wall node with a wrong number of quads + `price` for each block
+    + `SIZES` times the mean square of the logarithm of cell lengths relative to target lengths
 """
 
 from __future__ import annotations
@@ -21,15 +22,15 @@ from meshonet.solvers.blocking.decomposition.quads.padding import wrong_count
 from meshonet.solvers.blocking.sizes.wall_turning import turning_between
 
 PRICE = 0.12
-"""Degrees of mean deviation that a block costs."""
+"""Price of a block in degrees of mean deviation."""
 
 
 SIZES = 8.0
-"""Degrees of mean deviation that cells everywhere e times too long or short cost."""
+"""Price in degrees of mean deviation if all cells are too long or short by a factor e."""
 
 
 def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = None) -> float:
-    """Return the score of blocks whose edges should be `wanted` (e,) long, or all alike; less is better."""
+    """Return the score of blocks with target edge lengths `wanted` (e,), or equal ones; lower is better."""
     mesh = blocks.mesh
     off = deviations(mesh)
     worst = off.max(axis=1)
@@ -45,10 +46,11 @@ def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = Non
 
 
 def size_spread(blocks: BaseComplex, wanted: Floats | None = None) -> float:
-    """Return the mean square of log(length / mean length) of sides of blocks across each chord.
+    """Return the mean square of log(length / mean length) of the sides of blocks across each chord.
 
-    A chord has as many cells everywhere, so the spread of these lengths is that of its cells. Means are by
-    the area of blocks. With lengths `wanted` (e,) of edges, lengths and areas are in units of these.
+    A chord has the same number of cells everywhere, so the spread of these lengths is that of its cells.
+    Means are weighted by the area of blocks. With target lengths `wanted` (e,) of edges, lengths and areas
+    are in units of these.
     """
     lengths = log(blocks.side_lengths(wanted))
     chord = blocks.sides[2]
@@ -60,7 +62,7 @@ def size_spread(blocks: BaseComplex, wanted: Floats | None = None) -> float:
 
 
 def deviations(mesh: QuadMesh) -> Floats:
-    """Return |angle - 90| (m, 4), in degrees, at each corner of each quad; folded ones exceed 90."""
+    """Return |angle - 90| (m, 4) in degrees at each corner of each quad; above 90 for folded corners."""
     x, y = mesh.nodes.T
     sides = np.roll(mesh.quads, -1, axis=1)
     ux, uy = x[sides] - x[mesh.quads], y[sides] - y[mesh.quads]
@@ -70,7 +72,7 @@ def deviations(mesh: QuadMesh) -> Floats:
 
 
 def largest_turning(mesh: QuadMesh) -> float:
-    """Return the most degrees by which a wall turns along one edge of the mesh."""
+    """Return the largest angle in degrees by which a wall turns along one edge of the mesh."""
     on = mesh.on_wall[mesh.edge_of]
     first, second = mesh.quads[on], np.roll(mesh.quads, -1, axis=1)[on]
     loops, arcs = mesh.places.loop, mesh.places.arc

@@ -1,1 +1,1 @@
-"""A cross field on a surface of triangles, and the seamless map that follows it."""
+"""The cross field on a triangulated surface, and the seamless map aligned with it."""

@@ -1,6 +1,7 @@
-"""Crosses of four directions, smooth inside a domain and aligned with its walls: where blocks' lines run.
+"""Smooth cross fields aligned with the walls of a domain; grid lines of blocks follow their directions.
 
-A cross of angle theta is the complex number u = exp(4 i theta), the same for all four of its directions.
+A cross with the angle theta is represented by the complex number u = exp(4 i theta), which is the same for
+all four of its directions.
 """
 
 from __future__ import annotations
@@ -23,49 +24,51 @@ from meshonet.solvers.blocking.decomposition.surface.laplacian import Laplacian,
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS, TriangleSurface
 
 _STEPS, _AFTER = 6, 3
-"""Steps of diffusion, and more of them after pairs of singular points were taken out.
+"""Number of diffusion steps, and of further ones after pairs of singular points have been removed.
 
-The mean score of 22 domains is 7.60 with 1, 7.17 with 6, 7.02 with 12: most is won by the first few."""
+The mean score of 22 domains is 7.60 with 1 step, 7.17 with 6, 7.02 with 12.
+"""
 _DIFFUSION = 0.003
-"""Time of a step of diffusion, by the domain's area: a tenth of it gives 22 domains 36 blocks more
-than 431, ten times as much 26 more but better angles."""
+"""Time of a diffusion step relative to the domain's area. With a tenth of it, 22 domains have 36 blocks
+more than 431, with ten times as much 26 more but better angles.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class CrossField:
-    """A field of crosses on a surface, and what its lines do around each vertex."""
+    """A cross field on a surface, and the number of cells that it implies at each vertex."""
 
     surface: TriangleSurface
     walls: WallDirections
     crosses: Complexes
     """(n,) exp(4 i theta) at vertices."""
     shears: Complexes
-    """(n,) linear maps z - nu conj(z), |nu| < 1, that make acute corners right ones."""
+    """(n,) linear maps z - nu conj(z), |nu| < 1, that turn acute corners into right angles."""
     angles: Floats
-    """(t,) theta in each triangle, of one of its cross's four directions: that of the frame."""
+    """(t,) theta in each triangle for one of the four directions, which defines the frame."""
     quarters: Indices
-    """(t, 3) quarter-turns by which the frame across each edge lags behind."""
+    """(t, 3) number of quarter turns between the frame and that across each edge."""
     wall_axis: Indices
-    """(w,) quarter-turns from the frame to each wall edge, in the order of `TriangleSurface.walls`."""
+    """(w,) quarter turns from the frame to each wall edge, in the order of `TriangleSurface.walls`."""
     valence: Indices
-    """(n,) cells that meet at inner vertices, 0 at wall vertices."""
+    """(n,) number of cells that meet at interior vertices, 0 at wall vertices."""
     boundary_cells: Indices
-    """(n,) cells that meet at wall vertices, 0 at inner ones."""
+    """(n,) number of cells that meet at wall vertices, 0 at interior ones."""
 
     @property
     def singular(self) -> Indices:
-        """Inner vertices where other than four cells meet, ascending."""
+        """Interior vertices at which other than four cells meet, ascending."""
         return np.flatnonzero((self.valence != 4) & (self.valence > 0))
 
 
 def cross_field(surface: TriangleSurface, fewer: bool = True) -> CrossField:
-    """Return the smooth cross field of a surface whose walls are lines of it.
+    """Return a smooth cross field that is aligned with the walls of a surface.
 
-    A harmonic u, then steps of normalisation and diffusion (Viertel, Osting, SIAM J. Sci. Comput. 41 (2019)
-    A452-A479), which take singularities apart that the harmonic one has in a heap. If `fewer`,
-    pairs of them are then taken out that are not worth it.
+    It starts from a harmonic u, followed by steps of normalisation and diffusion (Viertel, Osting, SIAM J.
+    Sci. Comput. 41 (2019) A452-A479), which separate the clustered singularities of the harmonic field. If
+    `fewer`, pairs of singularities are then removed if this costs little energy.
 
-    Raises SolverError: the sum of the singularities is not what the surface's topology asks for.
+    Raises SolverError: the sum of the singularities contradicts the topology of the surface.
     """
     walls = wall_directions(surface)
     crosses, shears = _smooth(surface, walls, fewer)

@@ -1,4 +1,4 @@
-"""Frames of a cross field that agree wherever the surface is not cut, the cut, and the frames' size."""
+"""Frames of a cross field that agree across all edges except a cut, the cut, and the size of the frames."""
 
 from __future__ import annotations
 
@@ -17,23 +17,28 @@ from meshonet.solvers.blocking.decomposition.surface.laplacian import Laplacian
 from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, PREVIOUS
 
 _LARGEST = 4.0
-"""Of the logarithm of a frame's size, unbounded at singular points: 1 and 8 give the same blocks."""
+"""Largest logarithm of a frame's size, which is unbounded at singular points; 1 and 8 give the same
+blocks.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """A direction in each triangle, of those of its cross."""
+    """A direction in each triangle, selected from those of its cross."""
 
     field: CrossField
     angles: Floats
     """(t,) angle of the direction u."""
     turns: Indices
-    """(t, 3) the frame across an edge is i^-k times this one, k from 0 to 3: coordinates there are i^k times
-    those here."""
+    """(t, 3) number k of quarter turns, 0 to 3: the frame across an edge is i^-k times this one, so that
+    coordinates there are i^k times those here.
+    """
     wall_axis: Indices
-    """(w,) direction d of each wall edge in its frame: it runs along i^d; 0 to 3."""
+    """(w,) direction d, 0 to 3, of each wall edge in its frame: it runs along i^d."""
     cut: NDArray[np.bool_]
-    """(t, 3) edges that open the surface to a disc, singular vertices on its rim; all turns are there."""
+    """(t, 3) edges that open the surface to a disc with the singular vertices on its boundary; all turns
+    are there.
+    """
     wedges: Indices
     """(t, 3) number of each corner's vertex on the opened surface."""
 
@@ -78,10 +83,10 @@ def _wedges(field: CrossField, cut: NDArray[np.bool_]) -> Indices:
 
 
 def frame_sizes(field: CrossField) -> Floats:
-    """Return the length e^H (t,) that makes the crosses nearly the gradients of two functions, median 1.
+    """Return lengths e^H (t,), with median 1, with which the crosses are nearly gradients of two functions.
 
-    Frames e^H (cos theta, sin theta) have no curl where grad H is grad theta turned by a quarter; H is that
-    in the sense of least squares.
+    Frames e^H (cos theta, sin theta) are free of curl if grad H is grad theta rotated by a quarter turn; H
+    satisfies this in the least-squares sense.
     """
     surface = field.surface
     corner = angle(field.crosses)[surface.vertices] / 4.0

@@ -1,4 +1,4 @@
-"""Coordinates whose gradients are nearest to the frames, constant along walls, matched across the cut."""
+"""Coordinates whose gradients are closest to the frames, constant along walls and matched across the cut."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from meshonet.solvers.blocking.decomposition.surface.surface import NEXT
 from meshonet.solvers.sparse import SparsePattern
 
 _SOFT = 1e-8
-"""What stands for zero in the matrix of the conditions: it lets redundant ones pass."""
+"""Small value instead of zero in the matrix of the constraints, which permits redundant ones."""
 _EXACT = 1e-14
 _REFINEMENTS = 6
 _REAL = np.array([1.0, 0.0, -1.0, 0.0])
@@ -21,15 +21,16 @@ _IMAGINARY = np.array([0.0, 1.0, 0.0, -1.0])
 
 
 class Parametrisation:
-    """The system of equations for the coordinates u + i v of the vertices of an opened surface.
+    """Linear system for the coordinates u + i v of the vertices of an opened surface.
 
-    The minimum of the sum over triangles of weight times area times
+    It minimises the sum over triangles of weight times area times
 
         |grad u - s (cos theta, sin theta)|^2 + |grad v - s (-sin theta, cos theta)|^2
 
-    where u or v is the same at both ends of a wall edge, and the differences w_a - w_b along either side of
-    the cut are quarter-turns of each other: the map of Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009)
-    77) with real shifts in place of whole ones. A wall's u or v is one unknown; the cut has multipliers.
+    under two constraints: u or v is equal at both ends of a wall edge, and the differences w_a - w_b along
+    the two sides of the cut are quarter turns of each other. This is the map of Bommes, Zimmer, Kobbelt (ACM
+    Trans. Graph. 28 (2009) 77) with real translations instead of integers. The u or v of a wall is one
+    unknown; the cut has Lagrange multipliers.
 
     Parameters
     ----------
@@ -129,6 +130,6 @@ class Parametrisation:
         return np.asarray(coords[0] + 1j * coords[1])
 
     def jacobians(self, coords: Complexes) -> Floats:
-        """Return the determinants (t,) of the map's derivative, by those that are wanted."""
+        """Return the determinants (t,) of the map's derivative relative to their targets."""
         first, second = coords[:, 1] - coords[:, 0], coords[:, 2] - coords[:, 0]
         return np.asarray(times(np.conj(first), second).imag / (2.0 * self.surface.areas * self._wanted))

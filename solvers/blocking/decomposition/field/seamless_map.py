@@ -17,24 +17,27 @@ from meshonet.solvers.blocking.decomposition.surface.surface import TriangleSurf
 from meshonet.solvers.blocking.decomposition.surface.triangulation import Triangulation, triangulate
 
 _FINER = 0.35
-"""Edges at singularities, by those of the first triangulation: without them vertices of five cells
-fold. With it 22 domains have fewest blocks: 431, but 455 with .7 and 454 with .2."""
+"""Edge lengths at singularities relative to those of the first triangulation; without refinement, vertices
+of five cells fold. With this value 22 domains have 431 blocks, with 0.7 they have 455, with 0.2 454.
+"""
 _STIFFENINGS = 12
 _NEARLY_FOLDED, _SMALL = 1e-3, 0.2
-"""Jacobians, by those wanted, for which the map is solved again, and those where it is made stiffer:
-.05 and .5 in place of .2 change the mean score of 22 domains by less than .01."""
+"""Relative Jacobians below which the map is solved again, and below which triangles are made stiffer.
+
+Values of 0.05 and 0.5 instead of 0.2 change the mean score of 22 domains by less than 0.01.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class SeamlessMap:
-    r"""Coordinates w = u + i v at each corner of each triangle, continuous but for quarter-turns and shifts.
+    r"""Coordinates w = u + i v at each corner of each triangle, continuous up to quarter turns and shifts.
 
-    The coordinates of neighbours f and g agree along their edge up to
+    The coordinates of neighbours f and g agree along their common edge up to
 
         w_g = i^k (w_f - w_f(a)) + w_g(a),   k = turns[f, e], e the edge in f, a one of its ends,
 
-    so lines of constant u or v go on over every edge, u lines as v lines where k is odd. Each edge of a wall
-    lies on such a line. Edge e of a triangle goes from its corner e to corner (e + 1) % 3::
+    so that lines of constant u or v continue over every edge; if k is odd, u lines become v lines. Each edge
+    of a wall is on such a line. Edge e of a triangle goes from its corner e to corner (e + 1) % 3::
 
                2
               / \
@@ -46,24 +49,27 @@ class SeamlessMap:
 
     surface: TriangleSurface
     corner_coords: Complexes
-    """(t, 3) coordinates w. The unit is the domain's unit of length times `sizes`, whose median is 1."""
+    """(t, 3) coordinates w, in the domain's unit of length times `sizes`, whose median is 1."""
     turns: Indices
-    """(t, 3) quarter-turns k across each edge, 0 to 3; 0 at walls."""
+    """(t, 3) quarter turns k across each edge, 0 to 3; 0 at walls."""
     wall_axis: Indices
     """(t, 3) at walls the direction d, 0 to 3, of the edge in the map: w(e + 1) - w(e) is i^d times a
-    positive length; -1 at all other edges."""
+    positive length; -1 at all other edges.
+    """
     boundary_cells: Indices
-    """(b,) cells that the field has meet at each boundary vertex: 2 but for corners, and but for places where
-    a singularity sits on a wall. The angle in the map is 90 degrees times this."""
+    """(b,) number of cells at each boundary vertex: 2 except at corners, and at singularities on a wall.
+    The angle in the map is 90 degrees times this.
+    """
     corner_cells: Indices
-    """(b,) cells that are wanted at vertices which are corners of the domain, 1 to 4; 0 for all others."""
+    """(b,) intended number of cells at vertices that are corners of the domain, 1 to 4; 0 at others."""
     valence: Indices
-    """(n,) cells that meet at each inner vertex: 4 but for singularities; 0 for boundary vertices, see
-    `boundary_cells`."""
+    """(n,) number of cells at each interior vertex: 4 except at singularities; 0 for boundary vertices."""
     sizes: Floats
-    """(t,) wanted length of the gradients of u and v in each triangle, e^H."""
+    """(t,) target length of the gradients of u and v in each triangle, e^H."""
     jacobians: Floats
-    """(t,) determinant of the map's derivative by `sizes` squared: 1 is as wanted, 0 or less is folded."""
+    """(t,) determinant of the map's derivative divided by `sizes` squared: 1 is the target, 0 or less is
+    folded.
+    """
 
     @property
     def triangulation(self) -> Triangulation:
@@ -73,30 +79,30 @@ class SeamlessMap:
     def fan(self, vertex: int) -> Indices:
         """Return the corners around a vertex, counter-clockwise, as 3 times triangle plus corner.
 
-        At a wall's vertex they go from the edge that leaves along the wall to the one that arrives.
+        At a wall vertex they go from the edge that leaves along the wall to the one that arrives.
         """
         start, corners = self.surface.fans
         return corners[start[vertex] : start[vertex + 1]]
 
     @property
     def folded(self) -> int:
-        """Number of triangles that the map turns over: tracing needs 0."""
+        """Number of triangles with negative orientation; it must be 0 for tracing."""
         return int((self.jacobians <= 0.0).sum())
 
     @property
     def singular(self) -> Indices:
-        """Inner vertices where other than four cells meet, ascending."""
+        """Interior vertices at which other than four cells meet, ascending."""
         return np.flatnonzero((self.valence != 4) & (self.valence > 0))
 
 
 def seamless_map(domain: Domain, count: int = 1500, seed: int = 0, fewer: bool = True) -> SeamlessMap:
-    """Return a seamless map of a domain, triangulated by about `count` vertices.
+    """Return a seamless map of a domain that is triangulated with about `count` vertices.
 
-    Where the field has singularities inside, the domain is triangulated anew with smaller triangles there. A
-    map that is nearly folded is solved again with larger weights where it is; `SeamlessMap.folded` says
-    whether that was enough. The field has as few singularities as are worth it if `fewer`.
+    If the field has interior singularities, the domain is triangulated again with smaller triangles there. A
+    map that is nearly folded is solved again with larger weights at these triangles; `SeamlessMap.folded`
+    tells whether this succeeded. With `fewer`, the number of singularities is reduced.
 
-    Raises SolverError: the field or the map have no solution; InputError: the domain cannot be triangulated.
+    Raises SolverError: the field or the map has no solution; InputError: the domain cannot be triangulated.
     """
     surface = _surface(triangulate(domain, count, seed=seed))
     field = cross_field(surface, fewer)
@@ -112,7 +118,7 @@ def _surface(triangulation: Triangulation) -> TriangleSurface:
 
 
 def map_of_field(field: CrossField) -> SeamlessMap:
-    """Return the seamless map whose lines follow a cross field."""
+    """Return the seamless map that follows a cross field."""
     surface = field.surface
     frames, sizes = cut_frames(field), frame_sizes(field)
     system = Parametrisation(frames, sizes)

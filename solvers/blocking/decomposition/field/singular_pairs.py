@@ -1,13 +1,13 @@
-"""Pairs of singular points taken out of a cross field that is about as smooth without them.
+"""Removes pairs of singular points from a cross field that is nearly as smooth without them.
 
-The phase of u = exp(4 i theta) turns once around a point where three cells meet, and once the other way where
-five meet. Two such points are gone when the phase jumps by a whole turn across a line between them; its
-gradient is then made as small as it can be with these jumps, by a linear equation (Crane, Desbrun, Schroeder,
-Comput. Graph. Forum 29 (2010) 1525-1533).
+The phase of u = exp(4 i theta) turns once around a point where three cells meet, and once in the opposite
+direction where five meet. Two such points vanish if the phase jumps by a full turn across a line between
+them. The gradient of the phase is then minimised with these jumps, by a linear system (Crane, Desbrun,
+Schroeder, Comput. Graph. Forum 29 (2010) 1525-1533).
 
 The energy of a field is half the integral of the squared gradient of its phase, outside of the cores of its
-singular points (Bethuel, Brezis, Helein, Ginzburg-Landau Vortices, 1994): a point adds pi log(R / r), R a
-length of the domain and r the radius of its core. The smaller cores are, the fewer points are worth it.
+singular points (Bethuel, Brezis, Helein, Ginzburg-Landau Vortices, 1994). A point adds pi log(R / r), where R
+is a length of the domain and r the radius of its core. With smaller cores, fewer points remain.
 """
 
 from __future__ import annotations
@@ -25,9 +25,11 @@ from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, Triang
 from meshonet.solvers.sparse import Factor
 
 CORE = 1.0
-"""Radius of cores, by the size of triangles there: of 1, a point costs the energy that triangles see."""
+"""Radius of cores relative to the size of the triangles; with 1, a point costs the energy that the
+triangles resolve.
+"""
 MOST_PAIRS = 64
-"""Pairs looked at, the nearest of them."""
+"""Largest number of pairs that are examined, the nearest ones."""
 _TURN = 2.0 * np.pi
 
 
@@ -50,8 +52,8 @@ def without_pairs(
 ) -> Complexes:
     """Return the crosses (n,) without the pairs of singular points that cost more energy than they save.
 
-    `laplacian` is of the vertices inside, `factor` its factors. Crosses of walls stay; it is the same array
-    where no pair goes.
+    `laplacian` is that of the interior vertices, `factor` its factors. Crosses at walls do not change. If no
+    pair is removed, the given array is returned.
     """
     phase = angle(crosses)
     steps = phase[surface.vertices[:, NEXT]] - phase[surface.vertices]

@@ -1,4 +1,4 @@
-"""Directions of the cross field along walls, turned near corners to have a whole number of cells there."""
+"""Directions of the cross field along walls, rotated near corners for an integer number of cells there."""
 
 from __future__ import annotations
 
@@ -19,26 +19,29 @@ Flags: TypeAlias = NDArray[np.bool_]
 
 QUARTER = 0.5 * np.pi
 _REACH = 0.15
-"""How far a corner turns the field, as part of its loop; at most half the way to the next corner.
+"""Length over which a corner rotates the field, relative to its loop, and at most half the way to the next
+corner.
 
-A third and twice as much change the mean score of 22 domains, 7.17, by less than .02."""
+A third of it and twice as much change the mean score of 22 domains, 7.17, by less than 0.02.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class WallDirections:
-    """Angles along walls as the field is to have them."""
+    """Prescribed angles of the field along walls."""
 
     corner_cells: Indices
-    """(b,) cells wanted at boundary vertices that are corners, 0 at all others."""
+    """(b,) number of cells at boundary vertices that are corners, 0 at others."""
     vertices: Floats
     """(n,) angle at each wall vertex, 0 at all others."""
     shears: Complexes
-    """(n,) near acute corners the linear map z - nu conj(z) that turns the walls to have these angles: it
-    takes the place of one that shrinks to nothing in the corner as a power of the distance."""
+    """(n,) near acute corners the linear map z - nu conj(z) that rotates the walls to these angles.
+    Without it, the map would vanish in the corner like a power of the distance.
+    """
     edges: Floats
     """(w,) angle of each wall edge, in the order of `TriangleSurface.walls`."""
     offsets: Floats
-    """(w,) by how much that differs from the edge's own angle."""
+    """(w,) difference from the edge's own angle."""
     inside: Floats
     """(n,) angle between the two walls of a wall vertex."""
 
@@ -46,9 +49,9 @@ class WallDirections:
 def wall_directions(surface: TriangleSurface) -> WallDirections:
     """Return directions along the walls of a surface.
 
-    At a corner of angle alpha where k cells are to meet, either wall is taken to be turned by half of
-    k 90 degrees - alpha, less and less away from it: the cross at the corner is then the same for both, and
-    the valence there is a boundary condition. Elsewhere the direction is the mean of both edges.
+    At a corner with the angle alpha and k cells, either wall is rotated by half of k 90 degrees - alpha, less
+    and less away from the corner. The cross at the corner is then the same for both walls, and the number of
+    cells is a boundary condition. Elsewhere the direction is the mean of both edges.
     """
     triangle, edge = surface.walls
     start = surface.vertices[triangle, edge]

@@ -1,8 +1,8 @@
-"""Whole numbers nearest to wanted ones under sums that must be equal: cells of arcs and of chords.
+"""Integers closest to given numbers under linear constraints: numbers of cells of arcs and of chords.
 
-The integers are those of arcs of a T-mesh rather than of coordinates of the map (Campen, Bommes, Kobbelt,
+The integers belong to the arcs of a T-mesh rather than to coordinates of the map (Campen, Bommes, Kobbelt,
 ACM Trans. Graph. 34 (2015) 192; Lyon, Campen, Bommes, Kobbelt, Comput. Graph. Forum 38 (2019) 21-32). The
-programme is solved by HiGHS (Huangfu, Hall, Math. Program. Comput. 10 (2018) 119-142).
+integer programme is solved by HiGHS (Huangfu, Hall, Math. Program. Comput. 10 (2018) 119-142).
 """
 
 from __future__ import annotations
@@ -27,25 +27,26 @@ OPTIONS: dict[str, bool | int | float | str] = {
     "mip_rel_gap": 0.02,
     "mip_max_nodes": 2000,
 }
-"""Of HiGHS. One thread, a fixed seed and no limit of time: the same numbers always."""
+"""Options of HiGHS: one thread, a fixed seed and no time limit, so that results are reproducible."""
 STEPS = (1.0, 1.05, 1.1, 1.2, 1.4, 1.6, 2.0, 2.0, np.inf)
-"""Factors by which a number goes up or down in each step, by 1 at least."""
+"""Factors by which a number increases or decreases in each step, by at least 1."""
 LOOP = 4
-"""Cells along a closed wall, at least."""
+"""Smallest number of cells along a closed wall."""
 
 Row = tuple[Mapping[int, float], float, float]
-"""Coefficients of some numbers, and the least and greatest that their sum may be."""
+"""Coefficients of a sum of numbers, and its lower and upper bound."""
 
 
 def arc_counts(mesh: TMesh, wanted: Floats) -> Indices:
-    """Return cells (a,) along each arc, at least 1, near the `wanted` (a,), alike on opposite sides of faces.
+    """Return numbers of cells (a,) along arcs, at least 1 and near `wanted` (a,), equal on opposite sides.
 
     Parameters
     ----------
-    mesh : its faces are rectangles of the map, so the lengths of arcs in the map, scaled, satisfy all rows.
-    wanted : cells, any positive numbers.
+    mesh : T-mesh whose faces are rectangles of the map, so that scaled lengths of arcs satisfy all
+        constraints.
+    wanted : positive target numbers.
 
-    Raises BlockingError: no whole numbers found.
+    Raises BlockingError: no solution was found.
     """
     pairs = [pair for face in mesh.faces for pair in ((face[0], face[2]), (face[1], face[3]))]
     arcs = [tuple([half // 2 for half in side] for side in pair) for pair in pairs]
@@ -66,11 +67,12 @@ def _balance(first: Sequence[int], second: Sequence[int]) -> Row:
 
 
 def nearest_whole(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices:
-    """Return whole numbers n (k,) of at least `least` (k,) that keep the rows.
+    """Return integers n (k,) of at least `least` (k,) that satisfy the constraints.
 
-    Of these, the sum of n / wanted + wanted / n is smallest: of squared logarithms, where they are small.
+    They minimise the sum of n / wanted + wanted / n, which for small differences is that of squared
+    logarithms.
 
-    Raises BlockingError: there are none, or none was found.
+    Raises BlockingError: there is no solution, or none was found.
     """
     if not len(wanted):
         return np.zeros(0, dtype=np.intp)

@@ -1,9 +1,9 @@
 """The motorcycle graph of a seamless map: rays from its singular vertices and corners along coordinate lines.
 
-Each ray runs at unit speed until it meets the trace of another, a wall or a node. In a seamless map every ray
-is a straight line, crossings are comparisons of numbers, and as each ray ends at the first crossing the graph
-is finite even where coordinate lines are not (Eppstein, Goodrich, Kim, Tamstorf, Comput. Graph. Forum 27
-(2008) 1477-1486; on seamless maps Myles, Pietroni, Zorin, ACM Trans. Graph. 33 (2014) 135).
+Each ray advances at unit speed until it meets the trace of another ray, a wall or a node. In a seamless map
+every ray is a straight line, and intersections are comparisons of numbers. Because each ray ends at its first
+intersection, the graph is finite even if coordinate lines are not (Eppstein, Goodrich, Kim, Tamstorf, Comput.
+Graph. Forum 27 (2008) 1477-1486; on seamless maps Myles, Pietroni, Zorin, ACM Trans. Graph. 33 (2014) 135).
 """
 
 from __future__ import annotations
@@ -21,33 +21,34 @@ from meshonet.solvers.blocking.decomposition.quads.ports import Ports, ports_of
 from meshonet.solvers.blocking.decomposition.quads.trails import Trails, map_tables, ray_trails, wall_trails
 
 NEAR = 1e-6
-"""A ray meets a node that it misses by less than this part of an edge: lines of right-angled domains do."""
+"""Distance relative to an edge within which a ray meets a node, as in domains with right angles."""
 PROBED = 1500
-"""Triangles through which a ray is followed to see whether it meets a node."""
+"""Number of triangles through which a ray is followed to test whether it meets a node."""
 
 CANCELLED, AT_NODE, AT_RAY, AT_WALL, TOO_LONG = range(5)
 
 
 @dataclass(frozen=True, eq=False)
 class MotorcycleGraph:
-    """Nodes and the trails between them.
+    """Nodes, and the trails between them.
 
-    A node's ways out are numbered counter-clockwise, a right angle each: at a wall from 0, the wall ahead, to
-    `quarters`, the wall behind; inside modulo `quarters`.
+    The directions in which lines leave a node are numbered counter-clockwise, one per right angle. At a wall
+    they go from 0, along the wall, to `quarters`, back along the wall; inside they are modulo `quarters`.
     """
 
     map: SeamlessMap
     vertex: Indices
-    """(n,) vertex of the triangulation at each node, -1 where a ray ended elsewhere."""
+    """(n,) vertex of the triangulation at each node, -1 if a ray ended elsewhere."""
     quarters: Indices
-    """(n,) right angles around each node in the map."""
+    """(n,) number of right angles around each node in the map."""
     wall: Indices
-    """(n,) number of the trail of a wall that the node is on, -1 inside."""
+    """(n,) number of the trail of the node's wall, -1 inside."""
     trails: Trails
     """The rays, then the walls."""
     stations: tuple[tuple[tuple[float, int, int, int], ...], ...]
-    """By trail, in its direction, the nodes on it: length, node, the way by which the trail arrives and the
-    one by which it leaves, -1 where it does not. A trail of a wall is closed."""
+    """For each trail the nodes on it, in its direction: length, node, direction at which the trail
+    arrives, and direction at which it leaves, -1 if it does not. Trails of walls are closed.
+    """
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +63,9 @@ class _Traced:
 
 
 def motorcycle_graph(seamless: SeamlessMap) -> MotorcycleGraph:
-    """Return the motorcycle graph, in which all walls hang together.
+    """Return the motorcycle graph, in which all walls are connected.
 
-    Raises BlockingError: a ray that does not end, a wall that cannot be joined to the others.
+    Raises BlockingError: a ray that does not end; a wall that cannot be connected to the others.
     """
     walls = wall_trails(seamless)
     joined: list[int] = []

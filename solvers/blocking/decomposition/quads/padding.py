@@ -1,8 +1,8 @@
-"""A row of quads along smooth walls where the field put singularities on the wall.
+"""Inserts a row of quads along smooth walls on which the field has singularities.
 
-A loop without corners, a disc for instance, may carry nodes where more or fewer than two quads meet. With a
-ring of quads along the loop they become irregular nodes inside, and every node on the wall regular. So does a
-row of quads along a stretch between two corners where one quad meets.
+A loop without corners, such as a circle, may have nodes at which other than two quads meet. With a ring of
+quads along the loop they become irregular interior nodes, and all nodes on the wall are regular. A row of
+quads along a stretch between two corners with one quad each has the same effect.
 
 Mitchell, Tautges, "Pillowing doublets: refining a mesh to ensure that faces share at most one edge", 4th
 International Meshing Roundtable (1995).
@@ -20,26 +20,26 @@ from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 
 INSET = 0.25
-"""How far old wall nodes move inside, in lengths of the shorter edge beside them."""
+"""Displacement of old wall nodes into the domain, relative to the shorter adjacent edge."""
 
 Span = tuple[int, float, float]
-"""Number of a loop, and the arc lengths of the corners at which a stretch of it begins and ends."""
+"""Number of a loop, and the arc lengths of the corners at which a stretch of it starts and ends."""
 
 
 def wrong_count(mesh: QuadMesh) -> NDArray[np.bool_]:
-    """Return the boundary nodes (n,) where other than the wanted count of quads meet: 2 but at corners."""
+    """Return a mask (n,) of boundary nodes with a wrong number of quads, which is 2 except at corners."""
     cells = mesh.places.cells
     return np.asarray(mesh.wall_nodes & (mesh.valence != np.where(cells > 0, cells, 2)))
 
 
 def loops_to_pad(mesh: QuadMesh) -> list[int]:
-    """Return the numbers of loops without corners on which some node has a wrong count of quads."""
+    """Return the numbers of loops without corners on which some node has a wrong number of quads."""
     wrong = distinct(mesh.places.loop[wrong_count(mesh)])
     return [int(loop) for loop in wrong if loop >= 0 and not mesh.domain.loops[loop].corners]
 
 
 def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
-    """Return those of some stretches within which some node has a wrong count of quads."""
+    """Return the stretches in `spans` within which some node has a wrong number of quads."""
     places, wrong = mesh.places, wrong_count(mesh)
     return [
         (loop, begin, end)
@@ -49,7 +49,7 @@ def spans_to_pad(mesh: QuadMesh, spans: Sequence[Span]) -> list[Span]:
 
 
 def pad(mesh: QuadMesh, loops: list[int]) -> QuadMesh:
-    """Return the mesh with a ring of quads along these loops; old wall nodes lie inside then.
+    """Return the mesh with a ring of quads along these loops; old wall nodes become interior nodes.
 
     >>> from meshonet.geometry.domain.domain import Domain
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -84,9 +84,9 @@ def _inwards(nodes: Floats, before: Indices, along: Indices, ahead: Indices) -> 
 
 
 def pad_span(mesh: QuadMesh, span: Span) -> QuadMesh:
-    """Return the mesh with a row of quads along a stretch, which begins and ends at corners of one quad.
+    """Return the mesh with a row of quads along a stretch between two corners with one quad each.
 
-    Old nodes at these corners go on along the walls beyond. Where both are the same, the row goes all round.
+    Old nodes at these corners move along the adjacent walls. If both corners are the same, the row is closed.
     """
     number, begin, end = span
     places, loop = mesh.places, mesh.domain.loops[number]

@@ -1,4 +1,4 @@
-"""The ways out of the singular vertices and corners of a seamless map."""
+"""The directions in which lines leave the singular vertices and corners of a seamless map."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessM
 
 QUARTER = np.pi / 2
 SLACK = 0.5
-"""Radians by which a ray may lie outside of the triangle that it is counted in."""
+"""Angle in radians by which a ray may lie outside of the triangle to which it is assigned."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,21 +23,24 @@ class Ports:
     vertex: Indices
     """(n,)"""
     quarters: Indices
-    """(n,) right angles around each node: the cells that meet there."""
+    """(n,) number of right angles around each node, which is the number of cells."""
     on_wall: NDArray[np.bool_]
     """(n,)"""
     node: Indices
     """(t, 3) node at each corner of each triangle, or -1."""
     port: Indices
-    """(t, 3, 4) number of the way out of that node through the triangle along each axis, or -1. At walls 1 is
-    the first way inside; inside 0 is the first axis counter-clockwise of the fan's first edge."""
+    """(t, 3, 4) number of the direction in which a line leaves that node through the triangle along each
+    axis, or -1. At walls 1 is the first interior direction; inside 0 is the first axis
+    counter-clockwise of the fan's first edge.
+    """
     starts: Indices
-    """(r, 6) rays: node, port, triangle, corner, axis, and a column left to the caller. Nodes where the wall
-    is straight in the map, though it has a corner, have none."""
+    """(r, 6) rays: node, port, triangle, corner, axis, and a column for the caller. Nodes at which the
+    wall is straight in the map, although it has a corner, have none.
+    """
 
 
 def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
-    """Return the ports of corners and singular vertices, then of `joined` on walls."""
+    """Return the ports of corners and singular vertices, then of `joined` vertices on walls."""
     cells = seamless.boundary_cells
     count = len(seamless.surface.on_wall)
     around = np.zeros(count, dtype=np.intp)

@@ -1,4 +1,4 @@
-"""A conforming quad mesh over the rectangles of a seamless map."""
+"""A conforming quad mesh on the rectangles of a seamless map."""
 
 from __future__ import annotations
 
@@ -20,18 +20,16 @@ from meshonet.solvers.blocking.decomposition.quads.t_mesh import Face, Side, TMe
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 
 SHORTEST = 0.05
-"""An arc counts as at least so many cells long."""
+"""Smallest target number of cells of an arc."""
 
 
 def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None = None) -> QuadMesh:
-    """Return a conforming mesh of about so many quads, whose irregular nodes are those of the map.
+    """Return a conforming mesh of about `cells` quads, whose irregular nodes are those of the map.
 
-    With `sizes` its edges are about as long as these say, whatever `cells`.
+    With `sizes`, these are the target edge lengths, and `cells` is ignored. Nodes on the arcs of the T-mesh
+    are at their positions in the map, other nodes are interpolated; cells may be folded.
 
-    Nodes on the arcs of the T-mesh lie where the map has them, those between are interpolated: cells may be
-    folded.
-
-    Raises BlockingError: the map's lines make no T-mesh of rectangles, or so few cells cannot conform.
+    Raises BlockingError: the lines of the map form no T-mesh of rectangles, or so few cells cannot conform.
     """
     mesh = t_mesh(motorcycle_graph(seamless))
     wanted = _plane_lengths(mesh, sizes)
@@ -153,7 +151,7 @@ def _along(nodes: _Nodes, side: Side) -> list[int]:
 
 
 def conforms(mesh: QuadMesh) -> bool:
-    """Return whether quads are a mesh of the domain: manifold, holes kept, wall nodes on walls."""
+    """Return whether quads are a mesh of the domain: manifold, with all holes, and wall nodes on walls."""
     quads, wall = mesh.quads, mesh.wall_nodes
     euler = len(wall) - len(mesh.edges) + len(quads)
     repeated = any((quads == np.roll(quads, k, axis=1)).any() for k in (1, 2))

@@ -1,7 +1,7 @@
-"""The faces of a motorcycle graph: rectangles in the map, whose sides may be of several arcs.
+"""The faces of a motorcycle graph: rectangles in the map, whose sides may consist of several arcs.
 
-Where the graph has only corners of one and of two right angles, and four of the first kind a face, each face
-is a rectangle of the map, and its opposite sides are equally long: a T-mesh (Myles, Pietroni, Zorin, ACM
+If the graph only has corners of one and of two right angles, and every face has four of the first kind, each
+face is a rectangle of the map with opposite sides of equal length: a T-mesh (Myles, Pietroni, Zorin, ACM
 Trans. Graph. 33 (2014) 135; Campen, Bommes, Kobbelt, ACM Trans. Graph. 34 (2015) 192).
 """
 
@@ -25,16 +25,18 @@ Face = tuple[Side, Side, Side, Side]
 class TMesh:
     """Arcs between the nodes of a motorcycle graph, and the faces between them.
 
-    A half-edge 2 a is arc a in its direction, which is that of its trail; 2 a + 1 is the arc reversed.
+    Half-edge 2 a is arc a in the direction of its trail; half-edge 2 a + 1 is the same arc reversed.
     """
 
     graph: MotorcycleGraph
     nodes: Indices
     """(a, 2) nodes at the start and the end of each arc."""
     trail: Indices
-    """(a,) trail that the arc is a part of."""
+    """(a,) trail of the arc."""
     span: Floats
-    """(a, 2) lengths of that trail at the ends; past the total of a closed trail where it comes round."""
+    """(a, 2) lengths of that trail at both ends of the arc; beyond its total length if a closed trail
+    comes round.
+    """
     faces: tuple[Face, ...]
     """The half-edges of the four sides of each face, counter-clockwise, the face on their left."""
 
@@ -47,7 +49,7 @@ class TMesh:
 def t_mesh(graph: MotorcycleGraph) -> TMesh:
     """Return the faces of a motorcycle graph.
 
-    Raises BlockingError: a face that is no rectangle of the map.
+    Raises BlockingError: a face that is not a rectangle of the map.
     """
     nodes, trail, span, ways = _arcs(graph)
     follow = _successors(graph, ways)

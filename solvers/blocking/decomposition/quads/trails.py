@@ -1,4 +1,4 @@
-"""Lines of a seamless map as pieces in triangles, on which nodes are found again by length."""
+"""Lines of a seamless map as pieces in triangles, with access to points by length."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Tables = tuple[Floats, Indices, Indices, Indices]
 
 
 def map_tables(seamless: SeamlessMap) -> Tables:
-    """Return coordinates (t, 3, 2), neighbours, their edges and turns (t, 3) as the kernels want them."""
+    """Return coordinates (t, 3, 2), neighbours, their edges and turns (t, 3) for the kernels."""
     coords = np.ascontiguousarray(seamless.corner_coords).view(np.float64).reshape(-1, 3, 2)
     whole = (seamless.surface.neighbours, seamless.surface.neighbour_edge, seamless.turns)
     near, edge, turns = (np.ascontiguousarray(table, dtype=np.intp) for table in whole)
@@ -27,24 +27,24 @@ def map_tables(seamless: SeamlessMap) -> Tables:
 
 @dataclass(frozen=True, eq=False)
 class Trails:
-    """Lines of constant u or v, each a run of pieces (p,), one a triangle."""
+    """Lines of constant u or v, each a sequence of pieces (p,), one per triangle."""
 
     first: Indices
     """(k + 1,) first piece of each trail."""
     face: Indices
-    """(p,) triangle that the piece is in."""
+    """(p,) triangle of the piece."""
     edge: Indices
-    """(p,) edge of it that the piece is, at walls; -1 elsewhere."""
+    """(p,) edge of the triangle that contains the piece, at walls; -1 elsewhere."""
     length: Floats
-    """(p + k,) length of the trail in the map at the start of each piece, and at its end."""
+    """(p + k,) length of the trail in the map at the start of each piece, and at the end of the trail."""
     begin: Complexes
-    """(p,) the start in the plane."""
+    """(p,) start in the plane."""
     end: Complexes
-    """(p,) the end in the plane."""
+    """(p,) end in the plane."""
     loop: Indices
     """(k,) number of the loop, for walls; -1 for rays."""
     arc: Floats
-    """(p, 2) arc lengths on the loop at the start of the piece and how much it is long; 0 for rays."""
+    """(p, 2) arc length on the loop at the start of the piece, and length of the piece; 0 for rays."""
     vertex: Indices
     """(p,) vertex at the start of the piece, at walls; -1 elsewhere."""
 
@@ -68,20 +68,20 @@ class Trails:
         return int(np.searchsorted(self.first, piece, side="right")) - 1
 
     def at_vertex(self, vertex: int) -> tuple[int, float]:
-        """Return the trail of walls through a vertex, and its length there."""
+        """Return the wall trail through a vertex, and its length there."""
         piece = self._vertices[vertex]
         trail = self.trail_of(piece)
         return trail, float(self.length[piece + trail])
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
-        """Return the trail of walls over part of an edge, and its length there."""
+        """Return the wall trail at the fraction `part` of an edge, and its length there."""
         piece = self._edges[face, edge]
         trail = self.trail_of(piece)
         start, stop = self.length[piece + trail : piece + trail + 2]
         return trail, float(start + part * (stop - start))
 
     def locate(self, trail: Indices, length: Floats) -> tuple[Indices, Floats]:
-        """Return the piece (q,) of a trail at a length of it, and the part of that piece before it."""
+        """Return the piece (q,) of a trail at a given length, and the fraction of the piece before it."""
         ends = self.length[self.first[1:] + np.arange(len(self.first) - 1)]
         offset = np.append(0.0, np.cumsum(ends))
         owner = np.repeat(np.arange(len(ends)), np.diff(self.first))
@@ -94,7 +94,7 @@ class Trails:
         return piece, np.clip(part, 0.0, 1.0)
 
     def joined(self, others: Trails) -> Trails:
-        """Return these trails and then the others."""
+        """Return these trails followed by the others."""
         names = [each.name for each in fields(self)]
         mine, theirs = ([getattr(trails, name) for name in names] for trails in (self, others))
         theirs[0] = theirs[0][1:] + self.first[-1]
@@ -102,7 +102,7 @@ class Trails:
 
 
 def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int) -> Trails:
-    """Return the trails of rays from the pieces (p, 3) and (p, 5) that `trace_rays` drew."""
+    """Return the trails of rays from the pieces (p, 3) and (p, 5) that `trace_rays` returned."""
     order = np.argsort(pieces[:, 0], kind="stable")
     pieces, lines = pieces[order], lines[order]
     count = np.bincount(pieces[:, 0], minlength=rays)
@@ -127,7 +127,7 @@ def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int)
 
 
 def wall_trails(seamless: SeamlessMap) -> Trails:
-    """Return the closed trails along the walls, the domain on their left, the outer loop's first."""
+    """Return the closed trails along the walls, with the domain on their left, the outer loop first."""
     triangulation = seamless.triangulation
     faces, edges = np.nonzero(seamless.surface.neighbours < 0)
     start = seamless.surface.vertices[faces, edges]

@@ -1,1 +1,1 @@
-"""The triangles of a domain, and equations on them."""
+"""The triangulated surface of a domain, and equations on it."""

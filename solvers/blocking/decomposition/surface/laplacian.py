@@ -1,4 +1,4 @@
-"""The Laplacian on a surface of triangles, linear elements, where values at some vertices are given."""
+"""The Laplacian on a triangulated surface with linear elements, and given values at some vertices."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Laplacian:
         return self.pattern.factor(np.append(self._edges, self._diagonal + mass))
 
     def flow(self, values: Complexes) -> Complexes:
-        """Return what values (n,) at vertices that are not free, 0 at all others, give on the right."""
+        """Return the right-hand side for values (n,) at vertices that are not free; others must be 0."""
         surface, weight = self.surface, self.surface.edge_weights
         corner = values[surface.vertices]
         flow = -weight * corner[:, NEXT] - weight[:, PREVIOUS] * corner[:, PREVIOUS]

@@ -1,4 +1,4 @@
-"""How long the edges of a triangulation should be: short at narrow gaps, curved walls and short sides."""
+"""Target edge lengths of a triangulation: short at narrow gaps, curved walls and short sides."""
 
 from __future__ import annotations
 
@@ -13,39 +13,46 @@ from meshonet.geometry.polygon.corners import Indices, angle_between
 from meshonet.kernels._native import wall_gaps, wall_growth
 
 GROWTH = 0.35
-"""By how much the size may change in a length of 1: 22 domains have 431 blocks with it, 450 with .15 and 455
-with .7."""
+"""Largest change of the size per length: 22 domains have 431 blocks with it, 450 with 0.15 and 455 with
+0.7.
+"""
 PER_GAP = 3.5
-"""Edges across a gap: half as many give 22 domains 459 blocks in place of 431, twice as many 423."""
+"""Edges across a gap: with half as many, 22 domains have 459 blocks instead of 431, with twice as many
+423.
+"""
 PER_RADIUS = 0.45
-"""Edges by the radius of curvature of the wall: half as long ones give 22 domains 446 blocks, twice 428."""
+"""Edge length relative to the radius of curvature: with half of it, 22 domains have 446 blocks, with twice
+428.
+"""
 PER_PIECE = 4.0
-"""Edges between two corners, at the least: 2 and 8 change the mean score of 22 domains by .03 of 7.17."""
+"""Smallest number of edges between two corners: 2 and 8 change the mean score of 22 domains by 0.03 of
+7.17.
+"""
 FLOOR = 1.0 / 25.0
-"""The smallest size, whatever the wall does, by the largest or by `OF_LOOP` of the loop."""
+"""Smallest size at walls, relative to the largest size, or to `OF_LOOP` times the loop."""
 OF_LOOP = 1.0 / 16.0
 MOST = 2.0
-"""Nodes on walls by the nodes asked for, at the most: long narrow gaps are resolved by fewer, then."""
+"""Largest ratio of nodes on walls to requested nodes; long narrow gaps then get fewer."""
 CONE = 0.6
-"""Cosine of the angle to the normal within which a wall counts as being in front."""
+"""Cosine of the angle to the normal within which another wall counts as being opposite."""
 
 
 @dataclass(frozen=True, eq=False)
 class WallSizes:
-    """Sizes at samples of all loops, each sample in the middle of a stretch of its loop."""
+    """Sizes at samples of all loops; each sample is in the middle of an interval of its loop."""
 
     largest: float
-    """Size where nothing asks for a smaller one."""
+    """Largest size."""
     smallest: Floats
-    """(loops,) no wall of the loop asks for a smaller one; `finer` points may."""
+    """(loops,) smallest size due to the walls of a loop; `finer` points may have smaller ones."""
     loop: Indices
     """(n,) number of the loop."""
     piece: Indices
-    """(n,) number of the piece from a corner to the next, counted through all loops."""
+    """(n,) number of the piece between two corners, counted through all loops."""
     arc: Floats
     """(n,) arc length on the loop."""
     length: Floats
-    """(n,) of the stretch around the sample."""
+    """(n,) length of the interval around the sample."""
     size: Floats
     """(n,)"""
 
@@ -69,12 +76,12 @@ class _Samples:
 
 
 def usual_size(area: float, count: int) -> float:
-    """Return the edge of equilateral triangles of which `count` corners fill an area."""
+    """Return the edge length of equilateral triangles with `count` corners that fill an area."""
     return float(np.sqrt(2.0 / np.sqrt(3.0) * area / count))
 
 
 def pieces(loop: Loop) -> tuple[Floats, Floats]:
-    """Return the arc lengths (p,) where pieces, from a corner to the next, start and end."""
+    """Return the arc lengths (p,) at which pieces between two corners start and end."""
     start = loop.corner_arcs if len(loop.corners) else np.zeros(1)
     return start, np.append(start[1:], start[0] + loop.length)
 
@@ -82,10 +89,10 @@ def pieces(loop: Loop) -> tuple[Floats, Floats]:
 def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None = None) -> WallSizes:
     """Return sizes along the walls for about `count` nodes, in the domain's unit.
 
-    ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, not below ``h0 / 25``, or 1/400 of the loop where that
-    is less. h0 is `usual_size`, the gap the distance to the nearest wall in front, within 53 degrees of the
-    normal and not merely the other side of a wide corner. `finer` points (m, 2) have sizes (m,) of their own.
-    Sizes change by at most .35 a length.
+    They are ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, at least ``h0 / 25`` or 1/400 of the loop,
+    whichever is less. h0 is `usual_size`. The gap is the distance to the nearest wall within 53 degrees of
+    the normal; the other wall of a wide corner does not count. `finer` points (m, 2) have sizes (m,) of their
+    own. Sizes change by at most 0.35 per length.
     """
     largest = usual_size(domain.area, count)
     samples = [_sample(loop, largest) for loop in domain.loops]
@@ -158,7 +165,7 @@ def _own_size(samples: _Samples, largest: float) -> Floats:
 def place_nodes(domain: Domain, sizes: WallSizes) -> tuple[Indices, Floats]:
     """Return loop (b,) and arc length (b,) of nodes on the walls, at equal steps of ∫ ds / h in each piece.
 
-    A corner is a node; a piece has at least 2 edges, a smooth loop 8.
+    Corners are nodes. A piece has at least 2 edges, a smooth loop at least 8.
     """
     loops, arcs = [], []
     for number, loop in enumerate(domain.loops):

@@ -1,4 +1,4 @@
-"""Edges that join two walls through the inside are split: a map has no freedom between them."""
+"""Splits interior edges between two walls, which leave a map no freedom."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
 def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:
-    """Return the triangulation with a vertex in the middle of every inner edge from wall to wall.
+    """Return the triangulation with a vertex in the middle of every interior edge between walls.
 
-    Without it a triangle in the bend of a wall, two of its edges on it, has all of its vertices on one line
-    of the map, and in a gap one triangle wide there is no place for a singularity.
+    Otherwise a triangle with two edges on the same wall would have all its vertices on one line of the map,
+    and a gap one triangle wide could not contain a singularity.
     """
     boundary = len(triangulation.arc)
     while True:

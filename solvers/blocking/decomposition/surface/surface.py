@@ -1,4 +1,4 @@
-"""The triangles of a domain as a surface: what is around each vertex, where walls are, gradients.
+"""The triangles of a domain as a surface: neighbourhoods of vertices, walls, gradients.
 
 Corner c = 3 f + i is corner i of triangle f; edge i of a triangle goes from its corner i to the next.
 """
@@ -50,12 +50,12 @@ class TriangleSurface:
 
     @property
     def arrays(self) -> tuple[Indices, Indices, Indices]:
-        """What kernels take."""
+        """Arguments of kernels."""
         return self.vertices, self.neighbours, self.neighbour_edge
 
     @cached_property
     def fans(self) -> tuple[Indices, Indices]:
-        """Where the corners around each vertex start (n + 1,) in the list of all corners (3 t,)."""
+        """All corners (3 t,) ordered by vertex, and the start of each vertex (n + 1,) in this list."""
         start, corners, reached = surface_fans(self.arrays, self.size)
         if reached != len(corners):
             raise SolverError("triangles that meet in a point only")
@@ -90,7 +90,7 @@ class TriangleSurface:
 
     @cached_property
     def on_wall(self) -> NDArray[np.bool_]:
-        """(n,) vertices on walls."""
+        """(n,) mask of vertices on walls."""
         flags = np.zeros(self.size, dtype=bool)
         flags[self.vertices[self.walls]] = True
         return flags
@@ -103,7 +103,7 @@ class TriangleSurface:
 
     @cached_property
     def masses(self) -> Floats:
-        """(n,) a third of the triangles around each vertex."""
+        """(n,) a third of the area of the triangles around each vertex."""
         return self.gather(np.repeat(self.areas[:, None] / 3.0, 3, axis=1))
 
     @cached_property
@@ -113,10 +113,10 @@ class TriangleSurface:
         return self.size - inner - len(self.walls[0]) + len(self.vertices)
 
     def gather(self, corners: Floats) -> Floats:
-        """Return the sums (n,) of numbers of corners (t, 3) around each vertex."""
+        """Return the sums (n,) of values at corners (t, 3) around each vertex."""
         return np.asarray(np.bincount(self.vertices.ravel(), corners.ravel(), self.size))
 
     def edge_size(self, vertices: Indices) -> Floats:
-        """Return the mean length of the edges around each of some vertices."""
+        """Return the mean length of the edges around each of the `vertices`."""
         lengths = self.gather(modulus(self.edges))
         return np.asarray(lengths[vertices] / np.diff(self.fans[0])[vertices])

@@ -1,7 +1,7 @@
-"""One half of a symmetric domain, with the mirror as a wall, and the mesh of both halves.
+"""One half of a symmetric domain, bounded by the mirror line, and the mesh of both halves.
 
-The mirror becomes a line of the mesh. The halves of a loop that lies across it meet it at right angles, or at
-half a corner, where as many cells meet in each half as its angle asks for, and in the whole an even count.
+The mirror line becomes a grid line of the mesh. A loop that crosses it meets it at right angles or at half a
+corner. The number of cells there follows from the angle in each half, and is even in the whole domain.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def spans_between(loop: Loop) -> list[Span]:
 
 
 def left_half(domain: Domain, mirror: Mirror) -> Half:
-    """Return the half of a domain on the left of a mirror; raises BlockingError: it cuts a sharp corner."""
+    """Return the half of a domain on the left of a mirror. Raises BlockingError: it cuts a sharp corner."""
     outer, *others = (
         _stretch(loop, k, mirror) for k, loop in enumerate(domain.loops) if mirror.loops[k] == k
     )
@@ -119,7 +119,7 @@ def _stretch(loop: Loop, number: int, mirror: Mirror) -> _Stretch:
 
 
 def both_halves(mesh: QuadMesh, half: Half) -> QuadMesh:
-    """Return the mesh of the whole domain, made of that of its left half and the mirror image."""
+    """Return the mesh of the whole domain from that of its left half and the mirror image."""
     whole, mirror = half.whole, half.mirror
     loop, arc, on_mirror = _places(mesh, half)
     nodes = mesh.nodes.copy()

@@ -6,24 +6,50 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from meshonet.geometry.arrays import distinct, norms
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 
-Images = list[tuple[Mirror, Indices]]
+Images = Sequence[tuple[Mirror, Indices]]
 """Mirrors, and the node (n,) that each node of a mesh becomes in them."""
+SOME = 100
+"""Quads of which images are looked for; those of others follow from them."""
 
 
-def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> Images:
-    """Return the images of nodes in those mirrors of its domain to which a mesh is nearly symmetric."""
-    images = ((mirror, _image(mesh, mirror)) for mirror in mirrors)
-    return [(mirror, to) for mirror, to in images if to is not None]
+def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images:
+    """Return the images of nodes in those mirrors of its domain, of all by default, that its quads have."""
+    mirrors = mirrors_of(mesh.domain) if mirrors is None else mirrors
+    if (mesh.places.partner >= 0).any():
+        return []
+    images = []
+    for mirror in mirrors:
+        known = mesh.of_quads.get(mirror)
+        to = known if isinstance(known, np.ndarray) else _image(mesh, mirror)
+        if to is not None:
+            mesh.of_quads[mirror] = to
+            images.append((mirror, to))
+    return images
 
 
-def made_symmetric(mesh: QuadMesh, images: Images) -> QuadMesh:
-    """Return the mesh with all nodes and their images at the means of both; corners stay."""
-    for mirror, to in images:
+def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list[Indices]:
+    """Return `images_of` without their mirrors."""
+    return [to for _, to in images_of(mesh, mirrors)]
+
+
+def agree(images: Images) -> bool:
+    """Return whether images in the first two mirrors, at right angles, are the same in either order."""
+    return len(images) < 2 or np.array_equal(images[0][1][images[1][1]], images[1][1][images[0][1]])
+
+
+def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
+    """Return the mesh with all nodes and their images, by default in all mirrors, at the means of both.
+
+    Corners stay. A ring with an odd number of quads around is symmetric to the first mirror only.
+    """
+    images = images_of(mesh) if images is None else images
+    for mirror, to in images if agree(images) else images[:1]:
         places, nodes = mesh.places, 0.5 * (mesh.nodes + mirror.images(mesh.nodes[to]))
         arc, fixed = places.arc.copy(), places.cells > 0
         for number, loop in enumerate(mesh.domain.loops):
@@ -37,12 +63,50 @@ def made_symmetric(mesh: QuadMesh, images: Images) -> QuadMesh:
 
 
 def _image(mesh: QuadMesh, mirror: Mirror) -> Indices | None:
-    """Return the node (n,) nearest to the image of each; None unless quads, walls and corners become such."""
-    places, quads = mesh.places, mesh.quads
-    to = nearest_points(mirror.images(mesh.nodes), np.ascontiguousarray(mesh.nodes))[0]
-    if (np.bincount(to, minlength=len(to)) != 1).any():
+    """Return the node (n,) that each one becomes; None unless quads, walls and corners become such.
+
+    It follows from one quad and its image: of some, those which are nearest to each other, by their size.
+    """
+    x, y = (mesh.nodes[mesh.quads, axis].mean(axis=1) for axis in (0, 1))
+    middles, some = np.stack([x, y], axis=1), slice(None, None, 1 + len(mesh.quads) // SOME)
+    near, squares = nearest_points(mirror.images(middles[some]), middles)
+    corners = mesh.nodes[mesh.quads[some]]
+    one, other = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
+    size = np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
+    best = int(np.argmin(squares / np.maximum(size, 1e-300)))
+    quad, image = best * (1 + len(mesh.quads) // SOME), int(near[best])
+    off = norms(mirror.images(mesh.nodes[mesh.quads[quad, 0]]) - mesh.nodes[mesh.quads[image]])
+    to = _continued(mesh, quad, image, int(off.argmin()))
+    if to is None:
         return None
-    own, images = (each[np.lexsort(each.T)] for each in (np.sort(quads, axis=1), np.sort(to[quads], axis=1)))
+    places = mesh.places
     loops = np.where(places.loop >= 0, mirror.loops[places.loop], -1)
     suits = np.array_equal(places.loop[to], loops) and np.array_equal(places.cells[to], places.cells)
-    return to if suits and np.array_equal(own, images) else None
+    off = norms(mirror.images(mesh.nodes) - mesh.nodes[to]).mean()
+    edges = norms(mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]])
+    return to if suits and off < edges.mean() else None
+
+
+def _continued(mesh: QuadMesh, quad: int, image: int, corner: int) -> Indices | None:
+    """Return the node (n,) that each one becomes if the first corner of a quad becomes a corner of its image.
+
+    Quads turn round: their corner i becomes number `first` - i of the image. None where quads do not fit.
+    """
+    images, first = np.full(len(mesh.quads), -1, dtype=np.intp), np.zeros(len(mesh.quads), dtype=np.intp)
+    images[quad], first[quad] = image, corner
+    front, sides = np.array([quad]), np.arange(4)
+    while len(front):
+        across = mesh.twin[front]
+        beyond = mesh.twin[images[front][:, None], (first[front][:, None] - sides - 1) % 4]
+        if ((across < 0) != (beyond < 0)).any():
+            return None
+        across, beyond = across[across >= 0], beyond[across >= 0]
+        new = images[across // 4] < 0
+        across, beyond = across[new], beyond[new]
+        images[across // 4], first[across // 4] = beyond // 4, (across + beyond + 1) % 4
+        front = distinct(across // 4)
+    to = np.zeros(len(mesh.nodes), dtype=np.intp)
+    turned = mesh.quads[images[:, None], (first[:, None] - sides) % 4]
+    to[mesh.quads] = turned
+    fits = np.array_equal(to[mesh.quads], turned) and (images >= 0).all()
+    return to if fits and np.array_equal(to[to], np.arange(len(to))) else None

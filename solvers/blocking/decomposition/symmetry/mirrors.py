@@ -1,11 +1,13 @@
 """The lines about which a domain is its own mirror image.
 
-A mirror turns the boundary round: it takes a loop to a loop, and the place at arc length s there to that at
-c - s, one constant c a loop. So where a place on a wall goes is known exactly, whatever the curve is.
+A mirror reverses the direction of the boundary. The image of a loop is a loop, and the image of its point at
+arc length s is the point at c - s, where c is a constant of the loop. The image of a point on a wall is thus
+known exactly for any curve.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -17,10 +19,11 @@ from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import Indices
 
 SAME = 1e-7
-"""Distance of a boundary from its mirror image, by the extent, up to which they are one: drawings that are
-meant to be symmetric are so to 1e-12, others not to 1e-4."""
+"""Largest distance of a symmetric boundary from its mirror image, relative to the extent. Drawings that are
+meant to be symmetric deviate by up to 1e-12, others by more than 1e-4."""
 MOST = 64
 """Directions looked at closely: a circle has as many as points, of which the first will do."""
+_ROOT = math.sqrt(2.0)
 _STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of two places an interval
 
 
@@ -28,7 +31,7 @@ _STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of
 class Mirror:
     """A line through `centre` (2,) along the unit vector `along` (2,), and what it does to loops.
 
-    The image of loop k is the loop `loops[k]`, and that of its arc length s is `sums[k]` - s there.
+    The image of loop k is the loop `loops[k]`; the image of its point at arc length s is at `sums[k]` - s.
     """
 
     centre: Floats
@@ -49,14 +52,19 @@ class Mirror:
 def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
     """Return two mirrors of a domain at right angles if there are such, else one, or none.
 
-    Those along x and y are taken before others.
+    Those along x and y are taken before others. After the two come the two halfway between if there are such.
+    A domain with periodic sides counts as having none.
     """
+    if domain.periodic:
+        return ()
     middles, centre = _centroids(domain)
     for along in _directions(domain, middles, centre):
         across = np.array([-along[1], along[0]])
-        both = (mirror_about(domain, centre, along), mirror_about(domain, centre, across))
-        if any(both):
-            return tuple(mirror for mirror in both if mirror)
+        found = [mirror_about(domain, centre, along), mirror_about(domain, centre, across)]
+        if all(found):
+            found += [mirror_about(domain, centre, (along + each) / _ROOT) for each in (across, -across)]
+        if any(found):
+            return tuple(mirror for mirror in found if mirror)
     return ()
 
 

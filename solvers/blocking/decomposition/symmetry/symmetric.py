@@ -1,7 +1,8 @@
-"""Symmetric blocks of symmetric domains, where they are about as good as those that were found.
+"""Symmetric blocks of symmetric domains, if they are about as good as those of the decomposition.
 
 Three ways: nodes at the means of themselves and their images, where the quads are symmetric; where only the
 blocks are, the same with equal counts of cells; and the blocks of a half, or of a quarter, and their images.
+Where lengths of edges are prescribed, a fourth one is the blocks for edges that are all alike.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import distinct
 from meshonet.geometry.domain.domain import Domain
@@ -23,7 +25,7 @@ from meshonet.solvers.blocking.decomposition.collapse.contract import is_conform
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.padding import Span, wrong_count
 from meshonet.solvers.blocking.decomposition.symmetry.halves import both_halves, left_half, spans_between
-from meshonet.solvers.blocking.decomposition.symmetry.images import Images, images_of, made_symmetric
+from meshonet.solvers.blocking.decomposition.symmetry.images import Images, agree, images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirror_about, mirrors_of
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import refine
@@ -39,32 +41,42 @@ Optimised = Callable[[QuadMesh], QuadMesh]
 
 
 def symmetric_blocks(
-    blocks: BaseComplex, find: FindPart, optimised: Optimised, score: Callable[[BaseComplex], float]
-) -> BaseComplex:
+    blocks: BaseComplex, find: FindPart, optimised: Optimised, score: Callable[[BaseComplex], float],
+    unsized: Callable[[], QuadMesh] | None = None,
+) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of some blocks; these where there are none about as good.
 
-    With two mirrors at right angles they are symmetric to both if that can be, else to the first that can be.
-    Those of a part have to be better, and no more, than the blocks as found if these are symmetric already.
+    With two mirrors at right angles they are symmetric to both if that can be, else to the first that can be,
+    and to the two mirrors between if the same blocks can be. Those of a part have to be better, and no more,
+    than the blocks as found if these are symmetric already. Where lengths of edges are prescribed, `unsized`
+    makes the mesh of blocks for edges that are all alike, which are taken if no others are symmetric.
     """
-    mesh, mirrors = blocks.mesh, mirrors_of(blocks.mesh.domain)
+    mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
+    mirrors = every[:2]
     irregular = wrong_count(mesh).any() or (mesh.irregular & ~mesh.wall_nodes).any()
     for group in [mirrors, mirrors[:1], mirrors[1:]][: (0, 1, 3)[len(mirrors)]]:
         ways: list[Callable[[], QuadMesh]]
         ways = [
             lambda: mesh,
             partial(_of_part, mesh.domain, group, find),
-            partial(_recounted, blocks, group, optimised),
+            partial(_recounted, blocks, group, optimised, unsized is None),
+            *([unsized] if unsized else []),
         ]
         best, least = None, score(blocks) + WORTH
         for number, way in enumerate(ways):
-            if best is not None and (number == 2 or not irregular):
+            if best is not None and (number >= 2 or not irregular):
                 break
             trial = _trial(way, group, optimised)
             fewer = trial is not None and (best is None or len(trial.blocks) <= len(best.blocks))
             if trial is not None and fewer and less(score(trial), least):
                 best, least = trial, score(trial)
-        if best is not None:
-            return best
+        if best is None:
+            continue
+        if group == mirrors and len(images_of(best.mesh)) < len(every):
+            trial = _trial(partial(_recounted, best, every, optimised, unsized is None), every, optimised)
+            if trial is not None and less(score(trial), score(blocks) + WORTH):
+                best = trial
+        return best
     return blocks
 
 
@@ -76,27 +88,32 @@ def _trial(
         mesh, images = _symmetric(optimised(_symmetric(way(), mirrors)[0]), mirrors)
         if not is_conforming(mesh) or smallest_jacobian(mesh.nodes, mesh.quads) <= 0.0:
             return None
-        return _cut_on_mirrors(base_complex(mesh), images)
+        return cut_on_mirrors(mesh, images)
     except (SolverError, InputError):
         return None
 
 
 def _symmetric(mesh: QuadMesh, mirrors: Sequence[Mirror]) -> tuple[QuadMesh, Images]:
-    """Return the mesh with its nodes symmetric, and their images; raises BlockingError: its quads are not."""
+    """Return the mesh with its nodes symmetric, and their images; raises BlockingError: its quads are not.
+
+    Of a domain with four mirrors they are symmetric to the others too, if the quads are.
+    """
     images = images_of(mesh, mirrors)
-    if len(images) < len(mirrors):
+    if len(images) < len(mirrors) or not agree(images):
         raise BlockingError("quads that are not symmetric")
+    if len(mirrors) == 2:
+        images = [*images, *images_of(mesh, mirrors_of(mesh.domain)[2:])]
     return made_symmetric(mesh, images), images
 
 
-def _cut_on_mirrors(blocks: BaseComplex, images: Images) -> BaseComplex:
-    """Return the blocks cut along mirrors that go through corners of the domain where two cells meet.
+def cut_on_mirrors(mesh: QuadMesh, images: Images, more: NDArray[np.bool_] | None = None) -> BaseComplex:
+    """Return the blocks of a mesh, cut along mirrors that go through corners of the domain with two cells.
 
-    One cuts a ring too, which is cut open anywhere. So images of sides of blocks are sides of blocks. Raises
-    BlockingError: it has no line on a mirror.
+    They end at edges on `more` (e,) lines too. A mirror cuts a ring too, which is else cut open anywhere. So
+    images of sides of blocks are sides of blocks. Raises BlockingError: a ring has no line on a mirror.
     """
-    mesh = blocks.mesh
-    ring = any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
+    blocks = base_complex(mesh, more)
+    ring = bool(images) and any(len(distinct(block[[0, 0, -1], [0, -1, 0]])) < 3 for block in blocks.blocks)
     lines = np.zeros(len(mesh.edges), dtype=bool)
     for _, to in images:
         own = to == np.arange(len(to))
@@ -109,15 +126,23 @@ def _cut_on_mirrors(blocks: BaseComplex, images: Images) -> BaseComplex:
         lines |= line & cut[label[mesh.edges[:, 0]]]
     if ring and not lines.any():
         raise BlockingError("a ring without a line on a mirror")
-    return base_complex(mesh, lines) if lines.any() else blocks
+    return base_complex(mesh, lines if more is None else lines | more) if lines.any() else blocks
 
 
-def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimised) -> QuadMesh:
-    """Return the mesh of the same blocks with counts of cells that images have in common."""
-    chords = Chords.of(blocks.layout)
-    even = refine(blocks.layout, np.full(chords.count, max(EVEN, int(chords.least.max()))), chords)
-    chords = Chords.of(replace(even, mesh=_symmetric(optimised(even.mesh), mirrors)[0]))
-    return refine(chords.layout, chords.counts_for_cells(len(blocks.mesh.quads)), chords).mesh
+def _recounted(blocks: BaseComplex, mirrors: Sequence[Mirror], optimised: Optimised, alike: bool) -> QuadMesh:
+    """Return the mesh of the same blocks with counts of cells that images have in common.
+
+    They are for edges that are all `alike`, or near those that the blocks have.
+    """
+    before = Chords.of(blocks.layout)
+    even = refine(blocks.layout, np.full(before.count, max(EVEN, int(before.least.max()))), before)
+    mesh, images = _symmetric(optimised(even.mesh), mirrors)
+    chords = Chords.of(replace(even, mesh=mesh), [to for _, to in images])
+    counts = chords.counts_for_cells(len(blocks.mesh.quads))
+    if not alike:
+        wanted = np.bincount(chords.chord, before.counts[before.chord]) / np.bincount(chords.chord)
+        counts = chords.rounded(wanted, chords.least)
+    return refine(chords.layout, counts, chords).mesh
 
 
 def _of_part(domain: Domain, mirrors: Sequence[Mirror], find: FindPart) -> QuadMesh:

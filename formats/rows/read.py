@@ -1,0 +1,162 @@
+"""Blade rows in TOML: what ``meshonet stack`` reads where ``kind = "row"``.
+
+::
+
+    kind = "row"
+    blades = 36
+    profiles = "profile.curve"   # one file with a block of points a profile, or ["hub.csv", "tip.csv"]
+    hub = "hub.curve"            # x, y, z or x, r from inlet to outlet
+    shroud = "shroud.curve"
+    tip_gap = 0.0356             # a length, or "1 %" of the span; likewise hub_gap
+    axis = "x"                   # of rotation
+    coordinates = "xyz"          # of profiles; or "xrt": x, r, theta in radians
+    unit = "cm"                  # of all lengths: the grid is in metres then
+
+In place of profiles, sections of airfoils on cylinders::
+
+    [[sections]]                 # from hub to shroud
+    airfoil = "naca:65-010"      # or a file, looked for beside this one
+    chord = 5.0
+    radius = 20.0
+    stagger = 40                 # degrees from the axis, towards growing theta
+    about = 0.25                 # chords behind the leading edge, the point that lies at x and theta
+    x = 0.0
+    theta = 0.0                  # degrees
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from meshonet.formats.rows.points import point_blocks
+from meshonet.formats.section_shape import section_shape
+from meshonet.formats.source import Source, open_source
+from meshonet.formats.toml_table import Table
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import cos, sin
+from meshonet.geometry.errors import InputError, in_place
+from meshonet.geometry.rows.cylinder import on_cylinder
+from meshonet.geometry.rows.row import Row
+from meshonet.geometry.sections.section import QUARTER, Section
+
+KEYS = (
+    "kind", "name", "blades", "profiles", "sections", "hub", "shroud", "tip_gap", "hub_gap", "axis",
+    "coordinates", "unit",
+)  # fmt: skip
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+"""Units of files, in metres."""
+_AXES = {"x": (0, 1, 2), "y": (1, 2, 0), "z": (2, 0, 1)}
+"""Columns that are the axis and the two directions behind it, in turn."""
+_PERCENT = re.compile(r"\s*([0-9.eE+-]+)\s*%\s*")
+
+
+def read_row(data: Table, source: Source) -> Row:
+    """Return the row that a table of TOML describes, in a `source` beside which its files are.
+
+    Raises InputError: a key that is not known, a value that does not fit, with its place; files that cannot
+    be read; what `Row` raises.
+    """
+    data.only(*KEYS)
+    folder = source.path.parent if source.path else Path()
+    scale = UNITS[data.word("unit", tuple(UNITS), "m")]
+    columns = _AXES[data.word("axis", tuple(_AXES), "x")]
+    polar = data.word("coordinates", ("xyz", "xrt"), "xyz") == "xrt"
+    hub, shroud = (_wall(data, key, folder, columns) * scale for key in ("hub", "shroud"))
+    if ("profiles" in data.data) == ("sections" in data.data):
+        problem = "stands beside sections" if "profiles" in data.data else "is missing"
+        raise data.error("profiles", problem, "give profiles or [[sections]]")
+    notes: tuple[str, ...] = ()
+    if "profiles" in data.data:
+        files = _files(data, folder)
+        profiles = [points for file in files for points in point_blocks(file, (3,))]
+        profiles = [scaled * scale for scaled in map(_placed(columns, polar), profiles)] if not polar else [
+            _placed(columns, polar)(points * [scale, scale, 1.0]) for points in profiles
+        ]  # fmt: skip
+    else:
+        made = [_section(row, folder) for row in data.rows("sections", least=2)]
+        profiles = [points * scale for points, _ in made]
+        notes = tuple(dict.fromkeys(note for _, own in made for note in own))
+    blades = data.number("blades")
+    if blades != round(blades):
+        raise data.error("blades", f"{blades:g} is no whole number", "count them")
+    span = _span(hub, shroud)
+    return Row(
+        tuple(profiles), hub, shroud, int(blades), _gap(data, "tip_gap", span, scale),
+        _gap(data, "hub_gap", span, scale), data.text("name", source.stem or "row"), notes,
+    )  # fmt: skip
+
+
+def _files(data: Table, folder: Path) -> list[Source]:
+    names = data.data["profiles"]
+    if isinstance(names, list) and names and all(isinstance(name, str) and name for name in names):
+        return [open_source(str(folder / name)) for name in names]
+    return [open_source(str(folder / data.text("profiles")))]
+
+
+def _placed(columns: tuple[int, int, int], polar: bool) -> Callable[[Floats], Floats]:
+    """Return what takes points (n, 3) of a file to x, y, z with the axis along x."""
+
+    def turned(points: Floats) -> Floats:
+        if polar:
+            x, r, theta = points.T
+            return np.stack([x, r * sin(theta), r * cos(theta)], axis=1)
+        return np.ascontiguousarray(points[:, columns])
+
+    return turned
+
+
+def _wall(data: Table, key: str, folder: Path, columns: tuple[int, int, int]) -> Floats:
+    """Return x, r (n, 2) of hub or shroud."""
+    source = open_source(str(folder / data.text(key)))
+    blocks = point_blocks(source, (3, 2))
+    if len(blocks) > 1 and any(len(block) > 1 for block in blocks[1:]):
+        raise InputError(f"holds {len(blocks)} blocks of points", "give one curve", source=source.name)
+    points = blocks[0]
+    if points.shape[1] == 2:
+        return points
+    x, y, z = points[:, columns].T
+    return np.stack([x, np.hypot(y, z)], axis=1)
+
+
+def _span(hub: Floats, shroud: Floats) -> float:
+    """Return the median distance, about, of shroud and hub."""
+    share = np.linspace(0.0, 1.0, 101)
+    low, high = (
+        np.stack([np.interp(share, np.linspace(0.0, 1.0, len(each)), each[:, k]) for k in (0, 1)])
+        for each in (hub, shroud)
+    )
+    return float(np.sort(np.hypot(*(high - low)))[50])
+
+
+def _gap(data: Table, key: str, span: float, scale: float) -> float:
+    """Return a gap, a length or a part of the span."""
+    value = data.data.get(key, 0.0)
+    if isinstance(value, str):
+        match = _PERCENT.fullmatch(value)
+        try:
+            part = float(match[1]) if match else math.nan
+        except ValueError:
+            part = math.nan
+        if not 0.0 <= part < 50.0:
+            raise data.error(key, f"{value!r} is no part of the span", 'give a length, or "1 %"')
+        return 0.01 * part * span
+    gap = data.number(key, 0.0)
+    if gap < 0.0:
+        raise data.error(key, f"{gap:g} is negative", "use 0 or more")
+    return gap * scale
+
+
+def _section(row: Table, folder: Path) -> tuple[Floats, tuple[str, ...]]:
+    """Return the profile (n, 3) of an airfoil on a cylinder, and notes."""
+    row.only("airfoil", "outline", "chord", "radius", "stagger", "about", "x", "theta")
+    section = Section(section_shape(row, folder), row.positive("chord"), row.positive("radius"))
+    with in_place(row.place):
+        return on_cylinder(
+            section, row.pair("about", QUARTER), math.radians(row.number("stagger")), row.number("x", 0.0),
+            math.radians(row.number("theta", 0.0)),
+        )  # fmt: skip

@@ -1,0 +1,35 @@
+"""The airfoil or closed curve that a table of TOML names for a section."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from meshonet.formats.registry import is_designation, read_shapes
+from meshonet.formats.source import printable
+from meshonet.formats.toml_table import Table
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.outline import Outline
+
+
+def section_shape(row: Table, folder: Path) -> Airfoil | Outline:
+    """Return the shape of the file or designation that a section names, files looked for in a `folder`.
+
+    Raises InputError: none or two are named, or a file that holds no airfoil or closed curve.
+    """
+    keys = [key for key in ("airfoil", "outline") if key in row.data]
+    remedy = "name one file, or a designation such as naca:2412"
+    if len(keys) != 1:
+        problem = "stands beside outline" if keys else "is missing"
+        raise row.error("airfoil", problem, remedy)
+    text = row.text(keys[0])
+    if not is_designation(text) and (folder / text).exists() and not (folder / text).is_file():
+        raise row.error(keys[0], f"{printable(text)} is no regular file", remedy)
+    try:
+        shapes = list(read_shapes(text if is_designation(text) else str(folder / text)))
+    except InputError as error:
+        where = ": ".join(filter(None, (error.source, error.place, error.problem)))
+        raise row.error(keys[0], where, error.remedy) from None
+    if len(shapes) != 1 or not isinstance(shapes[0], Airfoil | Outline):
+        raise row.error(keys[0], f"{printable(text)} is not one airfoil or closed curve", remedy)
+    return shapes[0]

@@ -1,0 +1,81 @@
+"""Nodes of a mesh along the periodic sides of its domain, in pairs: one, and the same moved by the period.
+
+Corners of the domain stay where they are. All other nodes of periodic sides move freely and together, so that
+grid lines cross from one side to the other as they do inside; blocks need not end at the same nodes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.periodic import Periodic, rounded
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+
+Sides = tuple[Periodic, Indices, Indices]
+"""A pair of stretches, and the nodes of both, corners included, in the order of the first."""
+
+
+def sides_of(mesh: QuadMesh) -> list[Sides]:
+    """Return the nodes along both stretches of each pair; they are as many only where counts were matched."""
+    after = following(mesh)
+    return [
+        (each, _chain(mesh, after, each.first), _chain(mesh, after, each.second)[::-1])
+        for each in mesh.domain.periodic
+    ]
+
+
+def following(mesh: QuadMesh) -> Indices:
+    """Return the next node (n,) along the boundary, the domain on the left; -1 inside."""
+    cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
+    after = np.full(len(mesh.nodes), -1, dtype=np.intp)
+    after[mesh.quads[cell, side]] = mesh.quads[cell, (side + 1) % 4]
+    return after
+
+
+def with_tied_sides(mesh: QuadMesh) -> QuadMesh:
+    """Return the mesh with partners across its periodic sides, both at the mean of where they were."""
+    if not mesh.domain.periodic:
+        return mesh
+    places, nodes = mesh.places, mesh.nodes.copy()
+    loop, partner = places.loop.copy(), places.partner.copy()
+    for each, first, second in sides_of(mesh):
+        own, image = first[1:-1], second[1:-1]
+        nodes[own] = 0.5 * (nodes[own] + nodes[image] - np.array(each.shift))
+        nodes[image] = nodes[own] + np.array(each.shift)
+        partner[image], loop[own], loop[image] = own, -1, -1
+    return mesh.with_places(nodes, replace(places, loop=loop, partner=partner))
+
+
+def matched_nodes(mesh: QuadMesh) -> Floats:
+    """Return the nodes (n, 2), those of the second side of each pair bitwise those of the first, moved.
+
+    Corners in two pairs of sides suit both of them.
+    """
+    nodes, sides = mesh.nodes.copy(), sides_of(mesh)
+    for _, first, _ in sides:
+        nodes[first] = rounded(nodes[first], mesh.domain)
+    for _ in range(2 * len(sides)):  # a corner may follow one that follows another
+        for each, first, second in sides:
+            nodes[second] = nodes[first] + np.array(each.shift)
+    return nodes
+
+
+def _chain(mesh: QuadMesh, after: Indices, stretch: tuple[float, float]) -> Indices:
+    """Return the nodes along a stretch of the outer loop, both corners included."""
+    begin, end = (_at(mesh, arc) for arc in stretch)
+    chain = [begin]
+    while chain[-1] != end or len(chain) == 1:
+        chain.append(int(after[chain[-1]]))
+    return np.array(chain, dtype=np.intp)
+
+
+def _at(mesh: QuadMesh, arc: float) -> int:
+    """Return the node at a corner of the outer loop."""
+    corners = np.flatnonzero((mesh.places.loop == 0) & (mesh.places.cells > 0))
+    length = mesh.domain.loops[0].length
+    apart = np.abs(np.mod(mesh.places.arc[corners] - arc + 0.5 * length, length) - 0.5 * length)
+    return int(corners[int(np.argmin(apart))])

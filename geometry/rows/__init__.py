@@ -1,0 +1,1 @@
+"""Rows of blades in an annular channel: profiles, hub and casing."""

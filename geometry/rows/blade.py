@@ -1,0 +1,116 @@
+"""The surface of a blade: curves through its profiles at equal parts of their lengths, along the span."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, middle
+from meshonet.geometry.curves.cubic import CubicTable
+from meshonet.geometry.elementary import cos
+from meshonet.geometry.errors import InputError, in_place
+from meshonet.geometry.rows.channel import Channel
+from meshonet.geometry.rows.profile import BladeProfile
+
+MOST_EXTENDED = 0.2
+"""Part of the span by which a blade is made longer, at the most, to reach hub and casing."""
+_NEWTON = 8
+_TOLERANCE = 1e-14
+_HALF_TURN = np.pi
+
+
+class BladeSurface:
+    """Maps (u, h) to (s, theta): u around the blade (`BladeProfile`), h as of the channel.
+
+    Between profiles lines of equal u are cubic splines; beyond the first and the last they go on straight.
+
+    Parameters
+    ----------
+    profiles : two or more, (n, 3) x, y, z, in order from hub to casing.
+    channel : that the blade stands in.
+
+    Raises InputError: profiles that are not in this order, that do not reach far enough, or as
+    `BladeProfile`; with the number of the profile, from 1.
+    """
+
+    def __init__(self, profiles: Sequence[Floats], channel: Channel) -> None:
+        self.channel = channel
+        self.profiles: list[BladeProfile] = []
+        for number, points in enumerate(profiles, start=1):
+            with in_place(f"profile {number}"):
+                self.profiles.append(BladeProfile(points, channel))
+        self.knots = np.array([profile.height for profile in self.profiles])
+        self._check()
+        self._turns = self._unwrapped()
+
+    def _check(self) -> None:
+        heights = self.knots
+        wrong = np.flatnonzero(np.diff(heights) <= 0.0)
+        if len(wrong):
+            k = int(wrong[0])
+            problem = (
+                f"is at {100 * heights[k + 1]:.3g} % of the span, behind one at {100 * heights[k]:.3g} %"
+            )
+            raise InputError(problem, "give profiles from hub to casing", place=f"profile {k + 2}")
+        foot, tip = self.channel.foot, self.channel.tip
+        low, high = self.profiles[0].range[1], self.profiles[-1].range[0]
+        if low - foot > MOST_EXTENDED:
+            problem = f"begins at {100 * low:.3g} % of the span"
+            raise InputError(problem, "give a profile nearer to the hub", place="profile 1")
+        if tip - high > MOST_EXTENDED:
+            problem = f"ends at {100 * high:.3g} % of the span"
+            place = f"profile {len(self.profiles)}"
+            raise InputError(problem, "give a profile nearer to the casing", place=place)
+
+    def _unwrapped(self) -> Floats:
+        """Return multiples of 2 pi (p,) that are added to theta, so that profiles follow each other."""
+        mean = np.array([profile.curve.points[:, 1].mean() for profile in self.profiles])
+        return np.asarray(np.unwrap(mean) - mean)
+
+    def lines(self, u: Floats) -> CubicTable:
+        """Return the lines (s, theta, h) at places u (m,) through the profiles, by their mean heights."""
+        values = np.stack([profile.at(u) for profile in self.profiles])
+        values[..., 1] += self._turns[:, None]
+        return CubicTable(values, self.knots)
+
+    def at(self, u: Floats, h: Floats) -> Floats:
+        """Return s, theta (p, m, 2) at places u (m,), or (p, m), and heights h (p, m)."""
+        if u.ndim == 2:
+            return self.at(u.ravel(), h.reshape(1, -1)).reshape(*h.shape, 2)
+        lines = self.lines(u)
+        low, high = self.knots[0], self.knots[-1]
+        place = np.broadcast_to(h, (len(h), len(u))).copy()
+        for _ in range(_NEWTON):
+            value, slope = _extended(lines, place, low, high)
+            step = (value[..., 2] - h) / slope[..., 2]
+            place -= step
+            if np.abs(step).max() < _TOLERANCE:
+                break
+        return np.asarray(_extended(lines, place, low, high)[0][..., :2])
+
+    def section(self, h: float, u: Floats) -> Floats:
+        """Return s, theta (m, 2) of the section at a height, at places u (m,)."""
+        return self.at(u, np.full((1, len(u)), h))[0]
+
+    @property
+    def corners(self) -> Floats:
+        """Places u (c,) of the corners that all profiles have, such as those of a blunt edge."""
+        found = [profile.corner_places() for profile in self.profiles]
+        if len({len(each) for each in found}) != 1 or not len(found[0]):
+            return np.empty(0)
+        return np.array([middle(column) for column in np.array(found).T])
+
+
+def _extended(lines: CubicTable, place: Floats, low: float, high: float) -> tuple[Floats, Floats]:
+    """Return values and slopes (p, m, 3) of lines at places (p, m), straight beyond `low` and `high`."""
+    inside = np.clip(place, low, high)
+    slope = lines.each_slope(inside)
+    return lines.each(inside) + (place - inside)[..., None] * slope, slope
+
+
+def clustered(count: int) -> Floats:
+    """Return `count` places u (count,) around a blade, close to each other at both edges; `count` is even."""
+    half = count // 2
+    side = 0.25 * (1.0 - cos(_HALF_TURN * np.arange(half) / half))
+    return np.concatenate([side, 0.5 + side])

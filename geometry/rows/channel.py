@@ -1,0 +1,211 @@
+"""The annular channel of a blade row: hub, casing and the surfaces of revolution between them.
+
+::
+
+    r ^   casing  h = 1  ---------------------------
+      |   tip            - - - - - - - - - - - - - -     s = 0 at the inlet, 1 at the outlet,
+      |                                                  by the arc length of hub and casing
+      |   hub     h = 0  ---------------------------
+      +--------------------------------------------> x   (the axis)
+
+Points of equal s on hub and casing are joined by straight lines. Along these the height h is 0 at the hub,
+`tip` at the tip of the blade and 1 at the casing, so that a gap of constant width lies between two surfaces
+of constant h; likewise `foot` above a gap at the hub.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, middle, norms
+from meshonet.geometry.curves.cubic import CubicTable
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.errors import InputError
+
+_PIECES = 512
+"""Pieces of the tables of hub and casing."""
+_AT_ONCE = 1 << 15
+"""Points that are looked up together, so that tables stay in the cache."""
+_NEWTON = 12
+_FOOT_STEPS = 6
+_SAME = 1e-13  # of the distance to a wall, relative to the gap
+
+
+@dataclass(frozen=True, eq=False)
+class MeridionalMap:
+    """m' of a surface of revolution, with dm' = dm / r: (m', theta) is conformal to the surface.
+
+    Wu, NACA TN 2604 (1952).
+    """
+
+    forward: CubicTable
+    """m' at s."""
+    back: CubicTable
+    """s at m'."""
+
+    @property
+    def length(self) -> float:
+        """M' of the outlet; that of the inlet is 0."""
+        return float(self.forward.values[-1])
+
+
+class Channel:
+    """Maps (s, h) to (x, r).
+
+    Parameters
+    ----------
+    hub, casing : points (n, 2) of x and r, from inlet to outlet.
+    hub_gap, tip_gap : distances of the blade from hub and casing, in the unit of the points.
+
+    Raises InputError: points that are no curve, a curve that touches the axis or the other one, gaps that
+    leave no span.
+    """
+
+    def __init__(self, hub: Floats, casing: Floats, hub_gap: float = 0.0, tip_gap: float = 0.0) -> None:
+        s = np.linspace(0.0, 1.0, _PIECES + 1)
+        low, high = (_by_arc(points, s) for points in (hub, casing))
+        for name, points in (("hub", low), ("casing", high)):
+            if not points[:, 1].min() > 0.0:
+                raise InputError(f"the {name} reaches the axis, r = {points[:, 1].min():.6g}", "give r > 0")
+        self.hub, self.across = CubicTable(low, s), CubicTable(high - low, s)
+        widths = norms(high - low)
+        along = np.diff(low, axis=0)[[*range(_PIECES), -1]]
+        left = along[:, 0] * (high - low)[:, 1] - along[:, 1] * (high - low)[:, 0]
+        if not (left > 0.0).all():
+            k = int(np.argmin(left))
+            problem = f"hub and casing cross or lie the wrong way round near x = {low[k, 0]:.6g}"
+            raise InputError(problem, "give both from inlet to outlet, the hub inside the casing")
+        self._cubics = CubicTable(np.concatenate([low, high - low], axis=1), s).unit_cubics()
+        self.span = middle(widths)
+        self.length = middle(np.array([norms(np.diff(line, axis=0)).sum() for line in (low, high)]))
+        if not hub_gap + tip_gap < 0.5 * widths.min():
+            problem = f"gaps of {hub_gap + tip_gap:g} in a channel {widths.min():g} wide"
+            raise InputError(problem, "use less than half of the span")
+        self.foot, self.tip = hub_gap / self.span, 1.0 - tip_gap / self.span
+        self._levels, parts = [0.0], [np.zeros(_PIECES + 1)]
+        if hub_gap > 0.0:
+            self._levels.append(self.foot)
+            parts.append(self._offset(s, hub_gap, from_casing=False))
+        if tip_gap > 0.0:
+            self._levels.append(self.tip)
+            parts.append(1.0 - self._offset(s, tip_gap, from_casing=True))
+        self._levels.append(1.0)
+        parts.append(np.ones(_PIECES + 1))
+        self._parts = [CubicTable(part, s) for part in parts]
+
+    def fraction(self, s: Floats, h: Floats) -> Floats:
+        """Return the part of the way from hub to casing at height h; arrays of one shape."""
+        out = np.empty(s.shape)
+        zone = np.clip(np.searchsorted(self._levels, h, side="right") - 1, 0, len(self._levels) - 2)
+        for k in range(len(self._levels) - 1):
+            own = zone == k
+            if own.any():
+                below, above = self._levels[k : k + 2]
+                share = (h[own] - below) / (above - below)
+                low, high = (self._part(j, s[own]) for j in (k, k + 1))
+                out[own] = np.where(share == 1.0, high, low + share * (high - low))
+        return out
+
+    def _part(self, k: int, s: Floats) -> Floats:
+        if k in (0, len(self._levels) - 1):
+            return np.full(s.shape, float(k > 0))
+        return self._parts[k](s)
+
+    def at(self, s: Floats, h: Floats) -> Floats:
+        """Return x, r (..., 2) at s and h, arrays of one shape."""
+        flat, height = s.ravel(), h.ravel()
+        out = np.empty((len(flat), 2))
+        for start in range(0, len(flat), _AT_ONCE):
+            part = slice(start, start + _AT_ONCE)
+            low, way = self._walls(flat[part])
+            out[part] = low + self.fraction(flat[part], height[part])[:, None] * way
+        return out.reshape(*s.shape, 2)
+
+    def _walls(self, s: Floats) -> tuple[Floats, Floats]:
+        """Return points of the hub and the ways to the casing, both (n, 2)."""
+        place = s * _PIECES
+        piece = np.clip(place.astype(np.intp), 0, _PIECES - 1)
+        t = (place - piece)[:, None]
+        a, b, c, d = self._cubics[:, piece]
+        both = a + t * (b + t * (c + t * d))
+        return both[:, :2], both[:, 2:]
+
+    def places(self, points: Floats) -> tuple[Floats, Floats]:
+        """Return s and h (...) of points x, r (..., 2); outside of the channel h is below 0 or above 1.
+
+        s outside of 0 to 1 is that of points before the inlet or behind the outlet.
+        """
+        p = points.reshape(-1, 2)
+        s = self._nearest_line(p)
+        part = np.zeros(len(p))
+        for _ in range(_NEWTON):
+            across = self.across(s)
+            off = self.hub(s) + part[:, None] * across - p
+            along = self.hub.slope(s) + part[:, None] * self.across.slope(s)
+            area = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
+            s = s - (off[:, 0] * across[:, 1] - off[:, 1] * across[:, 0]) / area
+            part = part - (along[:, 0] * off[:, 1] - along[:, 1] * off[:, 0]) / area
+        h = self._heights(s, part)
+        return s.reshape(points.shape[:-1]), h.reshape(points.shape[:-1])
+
+    def _nearest_line(self, p: Floats) -> Floats:
+        """Return s (n,) of the lines from hub to casing that points (n, 2) are nearest to."""
+        knots = self.hub.knots[:: _PIECES // 128]
+        low, way = self.hub(knots), self.across(knots)
+        off = p[:, None] - low
+        side = (off[..., 0] * way[:, 1] - off[..., 1] * way[:, 0]) / norms(way)
+        return np.asarray(knots[np.abs(side).argmin(axis=1)])
+
+    def _heights(self, s: Floats, part: Floats) -> Floats:
+        """Return h (n,) at parts (n,) of the way from hub to casing; it goes on evenly outside."""
+        inside = np.clip(s, 0.0, 1.0)
+        steps = np.stack([self._part(k, inside) for k in range(len(self._levels))])
+        zone = np.clip((part >= steps).sum(axis=0) - 1, 0, len(steps) - 2)
+        column = np.arange(len(s))
+        low, high = steps[zone, column], steps[zone + 1, column]
+        levels = np.array(self._levels)
+        return np.asarray(levels[zone] + (part - low) / (high - low) * (levels[zone + 1] - levels[zone]))
+
+    def meridional(self, h: float) -> MeridionalMap:
+        """Return m' along the surface of height h."""
+        s = self.hub.knots
+        points = self.at(s, np.full(s.shape, h))
+        speed = norms(CubicTable(points, s).slope(s)) / points[:, 1]
+        m = CubicTable(speed, s).integrals()
+        return MeridionalMap(CubicTable(m, s), CubicTable(s, m))
+
+    def _offset(self, s: Floats, gap: float, *, from_casing: bool) -> Floats:
+        """Return the parts (n,) of the way, from the wall, at which points are a gap away from it."""
+        low, way = self.hub.values, self.across.values
+        wall = CubicTable(low + way, s) if from_casing else self.hub
+        start, way = wall.values, (-way if from_casing else way)
+        part = gap / norms(way)
+        for _ in range(_NEWTON):
+            away = _distance(start + part[:, None] * way, wall, s)
+            if np.abs(away / gap - 1.0).max() < _SAME:
+                break
+            part = part * (gap / away)
+        return np.asarray(part)
+
+    @cached_property
+    def levels(self) -> tuple[float, ...]:
+        """Heights that divide the channel: hub, where there are gaps foot and tip, casing."""
+        return tuple(self._levels)
+
+
+def _distance(points: Floats, wall: CubicTable, s: Floats) -> Floats:
+    """Return the distances (n,) of points (n, 2) from a wall, to which they are near at s (n,)."""
+    at = s
+    for _ in range(_FOOT_STEPS):
+        slope = wall.slope(at)
+        at = at + ((points - wall(at)) * slope).sum(axis=1) / (slope**2).sum(axis=1)
+    return norms(points - wall(at))
+
+
+def _by_arc(points: Floats, s: Floats) -> Floats:
+    """Return points (n, 2) at parts s (n,) of the length of a curve."""
+    curve = Curve(np.ascontiguousarray(points))
+    return curve.at(s * curve.length)

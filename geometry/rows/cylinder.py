@@ -1,0 +1,38 @@
+"""Airfoils on cylinders: profiles of blades that are given in the plane."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import cos, sin
+from meshonet.geometry.rows.edges import round_edged
+from meshonet.geometry.sections.section import Section
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+
+
+def on_cylinder(
+    section: Section, about: tuple[float, float], stagger: float, x: float, theta: float
+) -> tuple[Floats, tuple[str, ...]]:
+    """Return the points (n, 3) of a section on the cylinder whose radius is the section's z, and notes.
+
+    Trailing edges are made round (`meshonet.geometry.rows.edges`).
+
+    Parameters
+    ----------
+    section : its chord and outline.
+    about : the point, in chords from the leading edge, that lies at `x` and `theta`.
+    stagger : angle of the chord from the axis, towards growing theta, in radians.
+    x, theta : where that point is, theta = atan2(y, z) in radians.
+    """
+    origin, length = section.frame
+    shape, notes = section.shape, tuple[str, ...]()
+    if isinstance(shape, Airfoil):
+        shape, notes = round_edged(shape)
+    a, b = ((shape.curve.points - origin) / length - np.array(about)).T * section.chord
+    c, s = math.cos(stagger), math.sin(stagger)
+    angle = theta + (a * s + b * c) / section.z
+    points = np.stack([x + a * c - b * s, section.z * sin(angle), section.z * cos(angle)], axis=1)
+    return points, notes

@@ -1,0 +1,86 @@
+"""A row of blades: what a grid of its passage is made from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.rows.blade import BladeSurface
+from meshonet.geometry.rows.channel import Channel
+
+FEWEST, MOST = 2, 1000
+"""Blades of a row."""
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """Equal blades around an axis, the x axis, between hub and casing.
+
+    Parameters
+    ----------
+    profiles : sequence of array
+        Two or more closed curves (n, 3) of x, y, z around one blade, from hub to casing.
+    hub, shroud : array
+        (n, 2) x and r along the channel, from inlet to outlet, which are where these begin and end.
+    blades : int
+        How many there are.
+    tip_gap, hub_gap : float, optional
+        Distances of the blade from casing and hub.
+    name : str, optional
+        Of the row.
+    notes : tuple of str, optional
+        What was changed of the profiles.
+
+    Raises
+    ------
+    InputError
+        Curves that form no channel; profiles out of order or out of the channel; gaps wider than the span.
+    """
+
+    profiles: Sequence[Floats]
+    hub: Floats
+    shroud: Floats
+    blades: int
+    tip_gap: float = 0.0
+    hub_gap: float = 0.0
+    name: str = "row"
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not FEWEST <= self.blades <= MOST:
+            raise InputError(f"{self.blades} blades", f"use {FEWEST} to {MOST}", place="blades")
+        if len(self.profiles) < 2:
+            raise InputError(f"{len(self.profiles)} profiles", "give two or more", place="profiles")
+        for place, gap in (("tip_gap", self.tip_gap), ("hub_gap", self.hub_gap)):
+            if not gap >= 0.0:
+                raise InputError(f"{gap:g} is negative", "use 0 or more", place=place)
+        _ = self.surface
+
+    @cached_property
+    def channel(self) -> Channel:
+        """The channel between hub and casing."""
+        return Channel(self.hub, self.shroud, self.hub_gap, self.tip_gap)
+
+    @cached_property
+    def surface(self) -> BladeSurface:
+        """The surface of the blade."""
+        return BladeSurface(self.profiles, self.channel)
+
+    @property
+    def pitch(self) -> float:
+        """Angle in radians from a blade to the next."""
+        return 2.0 * np.pi / self.blades
+
+    @cached_property
+    def chord(self) -> float:
+        """Length of the longest profile, from the leading to the trailing edge."""
+        lengths = []
+        for points in self.profiles:
+            p = np.asarray(points)
+            lengths.append(float(np.sqrt(((p[:, None] - p[None]) ** 2).sum(axis=-1).max())))
+        return max(lengths)

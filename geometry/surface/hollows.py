@@ -1,0 +1,77 @@
+"""Concave edges of a surface: where they are, how sharp, and how far nodes are from them along it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.elementary import arctan2
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.surface.half_edges import ends_of
+from meshonet.geometry.surface.surface import Surface
+
+CONCAVE_DEG = 30.0
+"""Turn of the normal at an edge from which a surface is concave there: walls at 150 degrees."""
+_LEAST = 0.01
+"""Length of all concave edges over the size of the surface up to which they are dents, not junctions."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hollows:
+    """Concave edges of a surface.
+
+    Parameters
+    ----------
+    edges : (k, 2) the nodes of each.
+    angles : (k,) of the space between their faces, in degrees, at most 180 - `CONCAVE_DEG`.
+    distance : (n,) of each node from the next concave edge, along edges, and the width of the cells there on
+        top of it, so that it is nowhere 0; infinite where no edge is concave.
+    """
+
+    edges: Indices
+    angles: Floats
+    distance: Floats
+
+    def sharpest(self) -> tuple[float, int] | None:
+        """Return the least angle and a node of its edge, None where no edge is concave."""
+        if not len(self.edges):
+            return None
+        k = int(self.angles.argmin())
+        return float(self.angles[k]), int(self.edges[k, 0])
+
+
+def hollows_of(surface: Surface) -> Hollows:
+    """Return the concave edges of a surface, none where all together are shorter than 1 % of its size."""
+    quads, twin = surface.quads, surface.twin
+    x = surface.nodes[quads]
+    normal = np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+    first, last = ends_of(quads)
+    edges = np.flatnonzero(twin > np.arange(len(twin)))
+    own, other = normal[edges // 4], normal[twin[edges] // 4]
+    along = surface.nodes[last[edges]] - surface.nodes[first[edges]]
+    across = np.cross(own, other)
+    turn = np.degrees(arctan2(norms(across), (own * other).sum(axis=1)))
+    hollow = ((across * along).sum(axis=1) < 0.0) & (turn > CONCAVE_DEG)
+    hollow &= norms(along[hollow]).sum() > _LEAST * surface.size
+    which = edges[hollow]
+    ends = np.stack([first[which], last[which]], axis=1)
+    return Hollows(ends, 180.0 - turn[hollow], _distance(surface, ends))
+
+
+def _distance(surface: Surface, edges: Indices) -> Floats:
+    distance = np.full(len(surface.nodes), np.inf)
+    if not len(edges):
+        return distance
+    ring = surface.ring
+    length = np.where(ring >= 0, norms(surface.nodes[ring] - surface.nodes[:, None]), np.inf)
+    inside = np.zeros(len(distance), dtype=bool)
+    inside[edges.ravel()] = True
+    off = np.where(inside[ring], np.inf, length).min(axis=1)
+    distance[inside] = off[inside]
+    while True:
+        nearer = np.minimum(distance, (distance[ring] + length).min(axis=1))
+        if np.array_equal(nearer, distance):
+            return distance
+        distance = nearer

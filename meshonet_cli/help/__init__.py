@@ -1,1 +1,0 @@
-"""Pages that are made of the help texts."""

@@ -1,0 +1,31 @@
+"""Rows of blades: the grid of a passage, measured."""
+
+from __future__ import annotations
+
+from meshonet.geometry.rows.row import Row
+from meshonet.geometry.threads import limited_to
+from meshonet.solvers.pipeline.result import Result, judged
+from meshonet.solvers.rows.request import RowRequest
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.stages import stage
+
+_REMEDY = "use more {cells}, or a larger {first_cell}"  # where cells fold
+
+
+def make_row(row: Row, request: RowRequest | None = None) -> Result:
+    """Return the grid of a row's passage, measured.
+
+    Raises InputError: parameters and row do not go together; NoValidGridError: cells are folded, and that was
+    not allowed.
+    """
+    request = request or RowRequest()
+    seconds: dict[str, float] = {}
+    with limited_to(request.threads):
+        with stage("load", seconds):
+            from meshonet.solvers.rows.row_grid import row_grid
+        with stage("grid", seconds):
+            grid, notes = row_grid(row, request)
+        notes = (*row.notes, *notes)
+        note = request.height_note(f"on a chord of {row.chord:.6g}", row.chord)
+        solution = Solution(grid, "row", notes=(*notes, note) if note else notes)
+        return judged(solution, seconds, request, remedy=_REMEDY)

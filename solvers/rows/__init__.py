@@ -1,0 +1,1 @@
+"""Grids of blade rows: sections in (m', theta), stacked along the span."""

@@ -1,0 +1,57 @@
+"""Layers of a section in space: respaced so that the first cell has its height there, not in (m', theta)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.elementary import exp, log
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.layers.attach import sampled
+
+_NEWTON = 12
+
+
+def layer_columns(layout: Layout) -> Indices:
+    """Return the nodes (k, rows + 1) of the columns of layers, from the wall, clockwise around the blade."""
+    blocks = [layout.blocks[number] for number in layout.layers]
+    ordered, left = [blocks[0]], blocks[1:]
+    while left:
+        k = next(k for k, each in enumerate(left) if each[0, 0] == ordered[-1][-1, 0])
+        ordered.append(left.pop(k))
+    return np.concatenate([block[:-1] for block in ordered])
+
+
+def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
+    """Return values (k, m, 2) along columns whose positions are `space` (k, m, 3), moved along them.
+
+    First cells become `first` high, the outer ends stay, and the change dies out on the way to them.
+    """
+    steps = norms(np.diff(space, axis=1))
+    return resampled(values, steps, with_first(steps, np.full(len(steps), first)))
+
+
+def resampled(values: Floats, steps: Floats, new: Floats) -> Floats:
+    """Return values (k, m, 2) along lines of `steps` (k, m - 1) at other steps of the same sums."""
+    arcs = _arcs(steps)
+    return sampled(values, arcs, np.minimum(_arcs(new), arcs[:, -1:]))
+
+
+def _arcs(steps: Floats) -> Floats:
+    return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
+
+
+def with_first(steps: Floats, first: Floats) -> Floats:
+    """Return steps (k, m) of the same sums, the first `first` (k,), by a factor that changes gradually."""
+    t = np.linspace(0.0, 1.0, steps.shape[1])
+    begin = steps * exp(log(first[:, None] / steps[:, :1]) * (1.0 - t) ** 2)
+    total = steps.sum(axis=1)
+    bend = np.zeros(len(steps))
+    for _ in range(_NEWTON):
+        sizes = begin * exp(bend[:, None] * (t * (1.0 - t)))
+        slope = (sizes * (t * (1.0 - t))).sum(axis=1)
+        bend -= (sizes.sum(axis=1) - total) / slope
+    sizes[:, 1:] *= ((total - first) / sizes[:, 1:].sum(axis=1))[:, None]
+    sizes[:, 0] = first
+    return np.asarray(sizes)

@@ -1,0 +1,92 @@
+"""How a row becomes a grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.first_cell import FirstCell
+from meshonet.geometry.spacing.growth import check_growth
+
+DEFAULT_FIRST_CELL, DEFAULT_GROWTH, DEFAULT_CELLS = 1e-3, 1.2, 500_000
+FEWEST_CELLS, MOST_CELLS = 20_000, 200_000_000
+_LEAST_HEIGHT, _MOST_HEIGHT = 1e-8, 0.05  # chords
+
+
+@dataclass(frozen=True)
+class RowRequest(FirstCell):
+    """How a row becomes a grid; validates itself. Lengths are in longest chords.
+
+    Parameters
+    ----------
+    first_cell : float, optional
+        Height of the first cells at blade, hub, casing and tip; None is 1e-3.
+    y_plus, reynolds, chord_fraction : float, optional
+        The same height by its y+, converted for a flat plate; the Reynolds number is that of the longest
+        chord.
+    growth : float, optional
+        Largest ratio of neighbouring cells away from walls; None is 1.2.
+    cells : int, optional
+        About how many cells there are.
+    threads : int, optional
+        Threads that work; None: all there are.
+    percentiles : bool, optional
+        Whether the quality includes percentiles.
+    allow_invalid : bool, optional
+        Whether a folded grid is a result.
+
+    Raises
+    ------
+    InputError
+        A value out of its range; parameters that need or exclude each other.
+    """
+
+    growth: float | None = None
+    cells: int = DEFAULT_CELLS
+    threads: int | None = None
+    percentiles: bool = False
+    allow_invalid: bool = False
+
+    def __post_init__(self) -> None:
+        self.check_first_cell()
+        if not _LEAST_HEIGHT <= self.height() <= _MOST_HEIGHT:
+            remedy = f"use {_LEAST_HEIGHT:g} to {_MOST_HEIGHT:g}"
+            raise InputError(f"{self.height():g} chords", remedy, parameter="first_cell")
+        check_growth(self.growth)
+        if not FEWEST_CELLS <= self.cells <= MOST_CELLS:
+            remedy = f"use {FEWEST_CELLS} to {MOST_CELLS}"
+            raise InputError(f"{self.cells} cells", remedy, parameter="cells")
+        if self.threads is not None and self.threads < 1:
+            raise InputError(f"{self.threads} threads", "use 1 or more", parameter="threads")
+
+    @property
+    def ratio(self) -> float:
+        """Largest ratio of neighbouring cells."""
+        return DEFAULT_GROWTH if self.growth is None else self.growth
+
+    def height(self, unit: float = 1.0) -> float:
+        """Return the height of the first cell in chords, that of a y+ where a chord is `unit`."""
+        height = super().height(unit)
+        return DEFAULT_FIRST_CELL if height is None else height
+
+
+def row_request(**parameters: Any) -> RowRequest:
+    """Return the request with the parameters, fields of `RowRequest`; ``wall_spacing`` is ``first_cell``.
+
+    Raises InputError: as `RowRequest`, or a parameter that it does not have.
+    """
+    if "wall_spacing" in parameters:
+        parameters["first_cell"] = parameters.pop("wall_spacing")
+    known = [each.name for each in fields(RowRequest)]
+    for name in parameters:
+        if name not in known:
+            raise InputError(f"a row has no {{{name}}}", f"leave {{{name}}} out")
+    return RowRequest(**parameters)
+
+
+def check_row_options(*, tip: str | None, surface: bool) -> None:
+    """Raise InputError for options of other stacks that are given: a `tip`, `surface`."""
+    for name, given in (("tip", tip is not None), ("surface", surface)):
+        if given:
+            raise InputError(f"a row has no {{{name}}}", f"leave {{{name}}} out")

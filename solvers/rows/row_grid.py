@@ -1,0 +1,148 @@
+"""The grid of a blade row: blocks around the blade in each zone of the span, and inside its outline in gaps.
+
+Patches are named blade, tip (or foot, at a gap at the hub), hub, shroud, inlet, outlet, periodic1 and
+periodic2; the last two are connected by a rotation about the x axis.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.extrude import thick
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.layout.lattice import lattice_quads
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
+from meshonet.geometry.layout.to_grid import to_grid
+from meshonet.geometry.rows.row import Row
+from meshonet.solvers.rows.gap_blocks import GapBlocks, gap_blocks
+from meshonet.solvers.rows.key_tables import key_tables
+from meshonet.solvers.rows.request import RowRequest
+from meshonet.solvers.rows.stacked import StackedRow
+from meshonet.solvers.rows.zones import Zone, section_cells, zones_of
+
+_MANY_MORE = 1.3
+
+
+def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
+    """Return the grid of a passage, and notes.
+
+    Raises InputError: a row that leaves no room for layers, inlet or outlet; NoValidGridError: folds.
+    """
+    first, growth = request.height() * row.chord, request.ratio
+    zones = zones_of(row, first, growth, request.cells)
+    keys = key_tables(row, first, growth, section_cells(zones, request.cells))
+    stacked = StackedRow(row, keys.planes, keys.tables, zones, first, growth)
+    made = stacked.nodes()
+    space = made.space()
+    second, partner = stacked.twins
+    turn = turned_by(row.pitch)
+    space[:, second] = turn(space[:, partner])
+    gaps: list[GapBlocks | None] = []
+    for zone, levels in zip(zones, stacked.bounds, strict=True):
+        inside = None
+        if zone.gap:
+            around = stacked.columns[:, 0]
+            inside = gap_blocks(row, made, space, around, stacked.leading, zone, levels, first, growth)
+        gaps.append(inside)
+    grid = _joined(row, stacked, zones, gaps, space, turn)
+    return grid, (*_notes(zones, first), *_more_cells(grid, request.cells))
+
+
+def turned_by(angle: float) -> Motion:
+    """Return the rotation about the x axis by which theta = atan2(y, z) grows."""
+    c, s = math.cos(angle), math.sin(angle)
+    return Motion(turn=((1.0, 0.0, 0.0), (0.0, c, s), (0.0, -s, c)))
+
+
+def _joined(
+    row: Row, stacked: StackedRow, zones: Sequence[Zone], gaps: Sequence[GapBlocks | None], space: Floats,
+    turn: Motion,
+) -> Grid:  # fmt: skip
+    """Return all blocks as one grid."""
+    blocks: list[Block] = []
+    patches: list[Patch] = []
+    connections: list[Connection] = []
+    starts: list[int] = []
+    whole = len(stacked.layout.blocks)
+    for zone, inside, (low, high) in zip(zones, gaps, stacked.bounds, strict=True):
+        layout, nodes, start = stacked.layout, space[low : high + 1], len(blocks)
+        if inside is not None:
+            layout = _with_inside(layout, inside)
+            nodes = np.concatenate([nodes, inside.space[:, len(inside.outline) :]], axis=1)
+        plane = to_grid(layout)
+        starts.append(start)
+        blocks += [Block(np.moveaxis(nodes[:, ids], 0, 2), finite=True) for ids in layout.blocks]
+        patches += [replace(patch, block=patch.block + start) for patch in plane.patches]
+        patches += _end_patches(zone, layout, start, whole)
+        for each in plane.connections:
+            own = replace(each, block=each.block + start, donor=each.donor + start, transform=None)
+            moved = turn if each.transform else None
+            connections.append(replace(thick(own, high - low + 1), transform=moved))
+    for below, above in pairwise(starts):
+        for number, ids in enumerate(stacked.layout.blocks):
+            face = tuple((0, n - 1) for n in ids.shape)
+            ends = (below + number, "top", face), (above + number, "bottom", face)
+            connections.append(Connection(*ends[0], *ends[1], (1, 2)))  # type: ignore[arg-type]
+    return Grid(tuple(blocks), tuple(patches), tuple(connections), row.name)
+
+
+def _end_patches(zone: Zone, layout: Layout, start: int, whole: int) -> list[Patch]:
+    """Return the patches at both ends of a zone; its blocks from number `whole` on are in a gap."""
+    patches = []
+    sides: tuple[Side, Side] = ("bottom", "top")
+    for number, ids in enumerate(layout.blocks):
+        for side in sides:
+            name = _end_name(zone, side, number >= whole)
+            if name:
+                i, j = (n - 1 for n in ids.shape)
+                patches.append(Patch(name, side, 0, i, (0, j), start + number, "wall"))
+    return patches
+
+
+def _end_name(zone: Zone, side: Side, inside: bool) -> str:
+    """Return the name of the patch at the bottom or the top of a block, empty where another block follows."""
+    if side == "bottom" and zone.low == 0.0:
+        return "hub"
+    if side == "top" and zone.high == 1.0:
+        return "shroud"
+    return ("tip" if side == "bottom" else "foot") if inside else ""
+
+
+def _with_inside(layout: Layout, inside: GapBlocks) -> Layout:
+    """Return the layout of a section with the blocks inside the outline of the blade."""
+    mesh, own, k = layout.mesh, inside.fill.layout, len(inside.outline)
+    count = len(mesh.nodes)
+    number = np.concatenate([inside.outline, count + np.arange(len(own.mesh.nodes) - k)])
+    blocks = (*layout.blocks, *(number[block][::-1] for block in own.blocks))
+    nodes = np.concatenate([mesh.nodes, own.mesh.nodes[k:]])
+    more = Places.inside(len(nodes) - count)
+    pairs = zip(vars(mesh.places).values(), vars(more).values(), strict=True)
+    places = Places(*(np.concatenate(pair) for pair in pairs))
+    places.loop[inside.outline] = -1
+    return Layout(QuadMesh(mesh.domain, nodes, lattice_quads(blocks), places), blocks)
+
+
+def _more_cells(grid: Grid, wanted: int) -> tuple[str, ...]:
+    """Return a note if blocks and layers need many more cells than were asked for."""
+    cells = sum(math.prod(n - 1 for n in block.counts) for block in grid.blocks)
+    if cells <= _MANY_MORE * wanted:
+        return ()
+    return (f"{cells} cells instead of {wanted}: its blocks and layers need about as many",)
+
+
+def _notes(zones: Sequence[Zone], first: float) -> tuple[str, ...]:
+    narrow = [zone for zone in zones if zone.gap and zone.ends[0] < first]
+    return tuple(
+        f"first cells at the walls of a gap are {zone.ends[0]:.4g} high instead of {first:.4g}: "
+        f"{zone.cells} of these fill it" for zone in narrow
+    )  # fmt: skip

@@ -1,0 +1,65 @@
+"""Zones of the span: a gap at the hub, the blade, a gap at the tip."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from meshonet.geometry.rows.row import Row
+from meshonet.solvers.rows.span_spacing import Ends, spaced_cells
+
+PARTS, PARTS_CELLS = 42.0, 800_000
+"""Cells along the span away from walls, if all of it were divided like that, of a row of so many cells."""
+_FEWEST = 1500  # cells of a section
+GAP_ROWS = 17
+"""Fewest cells across a gap."""
+
+
+@dataclass(frozen=True)
+class Zone:
+    """A part of the span.
+
+    Parameters
+    ----------
+    low, high : heights at which it begins and ends.
+    ends : heights of its first and its last cells, in the unit of the row.
+    cells : across it.
+    gap : whether there is no blade in it.
+    """
+
+    low: float
+    high: float
+    ends: Ends
+    cells: int
+    gap: bool
+
+
+def section_cells(zones: Sequence[Zone], cells: int) -> int:
+    """Return how many cells a section has where the row has about `cells` in all."""
+    return max(_FEWEST, cells // sum(zone.cells for zone in zones))
+
+
+def zones_of(row: Row, first: float, growth: float, cells: int) -> list[Zone]:
+    """Return the zones of a row of about so many `cells`, from hub to casing.
+
+    Cells in gaps start with `first`, or less where the gap is too narrow for `GAP_ROWS` of that.
+    """
+    channel = row.channel
+    parts = PARTS * math.cbrt(cells / PARTS_CELLS)
+    narrow = {gap: min(first, gap / GAP_ROWS) for gap in (row.hub_gap, row.tip_gap) if gap > 0.0}
+    ends = narrow.get(row.hub_gap, first), narrow.get(row.tip_gap, first)
+    width = channel.span * (channel.tip - channel.foot)
+    zones = []
+    if row.hub_gap > 0.0:
+        zones.append(_gap(0.0, channel.foot, row.hub_gap, ends[0], growth))
+    cells = spaced_cells(width, ends, growth, width / parts, 8)
+    zones.append(Zone(channel.foot, channel.tip, ends, cells, False))
+    if row.tip_gap > 0.0:
+        zones.append(_gap(channel.tip, 1.0, row.tip_gap, ends[1], growth))
+    return zones
+
+
+def _gap(low: float, high: float, width: float, first: float, growth: float) -> Zone:
+    cells = spaced_cells(width, (first, first), growth, width / 4.0, GAP_ROWS)
+    return Zone(low, high, (first, first), cells, True)

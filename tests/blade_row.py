@@ -1,0 +1,47 @@
+"""A row of blades that exists nowhere: circular arcs of a thickness, in a channel that narrows."""
+
+from pathlib import Path
+
+import numpy as np
+
+from meshonet.geometry.rows.row import Row
+
+BLADES = 23
+HUB = np.stack([np.linspace(-1.0, 2.0, 31), 2.0 + 0.05 * np.linspace(0.0, 1.0, 31)], axis=1)
+SHROUD = np.stack([np.linspace(-1.0, 2.0, 31), 3.0 - 0.1 * np.linspace(0.0, 1.0, 31)], axis=1)
+
+
+def profile(radius: float, stagger: float, count: int = 80) -> np.ndarray:
+    """Points (2 count, 3) around an ellipse 1 long and 0.08 thick, bent, on a cylinder about the x axis."""
+    t = np.linspace(0.0, 2.0 * np.pi, 2 * count, endpoint=False)
+    a, b = 0.5 * np.cos(t), 0.04 * np.sin(t)
+    b = b + 0.06 * (1.0 - 4.0 * a * a)
+    c, s = np.cos(np.radians(stagger)), np.sin(np.radians(stagger))
+    angle = (a * s + b * c) / radius
+    return np.stack([0.5 + a * c - b * s, radius * np.sin(angle), radius * np.cos(angle)], axis=1)
+
+
+def profiles() -> tuple[np.ndarray, ...]:
+    """Profiles from below the hub to above the shroud, more and more staggered."""
+    return tuple(profile(radius, 20.0 * (radius - 1.0)) for radius in (1.95, 2.3, 2.7, 3.02))
+
+
+def blade_row(tip_gap: float = 0.0, hub_gap: float = 0.0) -> Row:
+    return Row(profiles(), HUB, SHROUD, BLADES, tip_gap, hub_gap, "made up")
+
+
+def write_row(folder: Path, more: str = "", *, hub: np.ndarray = HUB) -> Path:
+    """Write the row as a TOML file with its files beside it; return its path."""
+    np.savetxt(folder / "hub.csv", hub, delimiter=",", header="x,r")
+    zero = np.zeros(len(SHROUD))
+    np.savetxt(folder / "shroud.curve", np.stack([SHROUD[:, 0], zero, SHROUD[:, 1]], axis=1))
+    text = ""
+    for number, points in enumerate(profiles(), start=1):
+        text += f"# Profile {number}\n" + "".join("{:.17g} {:.17g} {:.17g}\n".format(*p) for p in points)
+    (folder / "profile.curve").write_text(text)
+    path = folder / "row.toml"
+    lines = ['kind = "row"', f"blades = {BLADES}", 'hub = "hub.csv"', 'shroud = "shroud.curve"']
+    if "profiles" not in more and "[[sections]]" not in more:
+        lines.append('profiles = "profile.curve"')
+    path.write_text("\n".join([*lines, more]))
+    return path

@@ -1,0 +1,61 @@
+"""``meshonet stack`` of rows of blades: files with names, and options that rows do not have."""
+
+from pathlib import Path
+
+import blade_row
+import pytest
+from command_line import Meshonet
+
+from meshonet.formats.registry import read_grids
+
+SMALL = ("--cells", "20000", "--first-cell", "0.002", "-q")
+
+
+@pytest.fixture
+def row(tmp_path: Path) -> Path:
+    return blade_row.write_row(tmp_path, "tip_gap = 0.05")
+
+
+@pytest.mark.parametrize("ending", ["cgns", "vtm", "xyz"])
+def test_a_row_becomes_a_file_with_its_names_and_periodic_sides(
+    meshonet: Meshonet, row: Path, ending: str
+) -> None:
+    done = meshonet("stack", str(row), *SMALL, "-o", f"row.{ending}")
+    assert done.code == 0, done.err
+    (grid,) = read_grids(f"row.{ending}")
+    named = {patch.name for patch in grid.patches}
+    assert {"blade", "tip", "hub", "shroud", "inlet", "outlet"} <= named
+    assert grid.quality().folded == 0
+    if ending == "cgns":
+        assert any(each.transform and each.transform.turn for each in grid.connections)
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        (("--around", "65"), "a row has no --around"),
+        (("--tip", "flat"), "a row has no --tip"),
+        (("--surface",), "a row has no --surface"),
+        (("--layers", "20"), "a row has no --layers"),
+    ],
+)
+def test_options_of_wings_are_refused(meshonet: Meshonet, row: Path, option, words: str) -> None:
+    done = meshonet("stack", str(row), *option, "-o", "row.cgns")
+    assert done.code == 2
+    assert words in done.err
+    assert not Path("row.cgns").exists()
+
+
+def test_a_wing_has_no_cells(meshonet: Meshonet, tmp_path: Path) -> None:
+    section = '[[sections]]\nairfoil = "naca:0012"\nchord = 1\nz = {}\n'
+    (tmp_path / "wing.toml").write_text(section.format(0) + section.format(2))
+    done = meshonet("stack", str(tmp_path / "wing.toml"), "--cells", "50000", "-o", "wing.cgns")
+    assert done.code == 2
+    assert "a stack has no --cells" in done.err
+
+
+def test_a_hub_that_ends_within_the_blade_is_named(meshonet: Meshonet, tmp_path: Path) -> None:
+    row = blade_row.write_row(tmp_path, hub=blade_row.HUB[:14])
+    done = meshonet("stack", str(row), *SMALL, "-o", "row.cgns")
+    assert done.code == 2
+    assert "profile 1: hub and casing end before the blade's point" in done.err

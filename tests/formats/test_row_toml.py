@@ -1,0 +1,110 @@
+"""Rows of blades in TOML: what is read, and which place is named where something is not right."""
+
+from pathlib import Path
+
+import blade_row
+import numpy as np
+import pytest
+
+from meshonet.formats.stack import stack_of
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.rows.row import Row
+
+SECTIONS = "".join(
+    f'\n[[sections]]\nairfoil = "naca:0012"\nchord = 1.0\nradius = {radius}\nstagger = 30\nx = 0.3\n'
+    for radius in (1.95, 2.5, 3.02)
+)
+
+
+def read(folder: Path, more: str = "") -> Row:
+    row = stack_of(str(blade_row.write_row(folder, more)))
+    assert isinstance(row, Row)
+    return row
+
+
+def test_a_curve_file_has_a_profile_a_block_and_walls_may_be_csv(tmp_path: Path) -> None:
+    row = read(tmp_path)
+    assert (row.blades, row.name, row.tip_gap, row.hub_gap) == (blade_row.BLADES, "row", 0.0, 0.0)
+    assert len(row.profiles) == 4
+    assert all(map(np.array_equal, row.profiles, blade_row.profiles()))
+    assert row.hub == pytest.approx(blade_row.HUB, abs=1e-15)
+    assert row.shroud == pytest.approx(blade_row.SHROUD, abs=1e-15)
+
+
+def test_profiles_may_be_files_each_and_marks_of_edges_are_left_out(tmp_path: Path) -> None:
+    names = []
+    for number, points in enumerate(blade_row.profiles()):
+        lines = ["x,y,z", *("{:.17g},{:.17g},{:.17g}".format(*p) for p in points)]
+        if number == 0:
+            lines[3] += " le1"
+        (tmp_path / f"p{number}.csv").write_text("\n".join(lines))
+        names.append(f"p{number}.csv")
+    row = read(tmp_path, f"profiles = {names}".replace("'", '"'))
+    assert all(map(np.array_equal, row.profiles, blade_row.profiles()))
+
+
+def test_the_axis_may_be_z_and_lengths_in_millimetres(tmp_path: Path) -> None:
+    path = blade_row.write_row(tmp_path, 'axis = "z"\nunit = "mm"\ntip_gap = 5')
+    for name in ("profile.curve", "shroud.curve"):
+        lines = (tmp_path / name).read_text().splitlines()
+        moved = [line if line.startswith("#") else turned(line) for line in lines]
+        (tmp_path / name).write_text("\n".join(moved))
+    (tmp_path / "hub.csv").write_text("\n".join(f"{1000 * x},{1000 * r}" for x, r in blade_row.HUB))
+    row = stack_of(str(path))
+    assert isinstance(row, Row)
+    for own, given in zip(row.profiles, blade_row.profiles(), strict=True):
+        assert own == pytest.approx(given, abs=1e-12)
+    assert row.tip_gap == pytest.approx(0.005)
+
+
+def turned(line: str) -> str:
+    x, y, z = (1000.0 * float(word) for word in line.split())
+    return f"{y!r} {z!r} {x!r}"
+
+
+def test_gaps_may_be_parts_of_the_span(tmp_path: Path) -> None:
+    row = read(tmp_path, 'tip_gap = "2 %"\nhub_gap = 0.01')
+    assert row.tip_gap == pytest.approx(0.02 * 0.925, rel=1e-3)
+    assert row.hub_gap == 0.01
+
+
+def test_airfoils_on_cylinders_have_chord_and_stagger_and_round_edges(tmp_path: Path) -> None:
+    row = read(tmp_path, SECTIONS)
+    points = np.asarray(row.profiles[1])
+    assert np.hypot(points[:, 1], points[:, 2]) == pytest.approx(2.5, abs=1e-12)
+    x, arc = points[:, 0], 2.5 * np.arctan2(points[:, 1], points[:, 2])
+    ends = x.argmin(), x.argmax()
+    slope = (arc[ends[1]] - arc[ends[0]]) / (x[ends[1]] - x[ends[0]])
+    assert np.degrees(np.arctan(slope)) == pytest.approx(30.0, abs=1.0)
+    assert np.hypot(np.ptp(x), np.ptp(arc)) == pytest.approx(1.0, abs=0.03)
+    assert any("its trailing edge" in note for note in row.notes)
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ("pitch = 2", "pitch: is not known"),
+        ('tip_gap = "two"', "tip_gap: 'two' is no part of the span"),
+        ("tip_gap = -1", "tip_gap: -1 is negative"),
+        ("tip_gap = 0.8", "gaps of 0.8 in a channel"),
+        ('axis = "w"', "axis: 'w' is not known; use x, y, z"),
+        ('unit = "mile"', "unit: 'mile' is not known"),
+        ('profiles = "none.csv"', "none.csv: no such file"),
+        ('profiles = "hub.csv"', "hub.csv: line 2: .* is not 3 numbers"),
+        (SECTIONS.split("[[sections]]")[0] + "[[sections]]\nradius = 2.0", "sections"),
+        (SECTIONS.replace("radius = 2.5", "radius = 1.9"), "profile 2: .* give profiles from hub"),
+    ],
+)  # fmt: skip
+def test_what_does_not_fit_is_named_with_its_place(tmp_path: Path, more: str, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        read(tmp_path, more)
+
+
+def test_blades_have_to_be_counted(tmp_path: Path) -> None:
+    path = blade_row.write_row(tmp_path)
+    for count, words in (("2.5", "blades: 2.5 is no whole number"), ("1", "blades: 1 blades; use 2 to 1000")):
+        text = path.read_text()
+        path.write_text(text.replace(f"blades = {blade_row.BLADES}", f"blades = {count}"))
+        with pytest.raises(InputError, match=words):
+            stack_of(str(path))
+        path.write_text(text)

@@ -1,0 +1,73 @@
+"""Blades through profiles: edges, directions, order."""
+
+import blade_row
+import numpy as np
+import pytest
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.rows.blade import clustered
+from meshonet.geometry.rows.row import Row
+
+
+def section(profiles) -> np.ndarray:
+    row = Row(profiles, blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
+    return row.surface.section(0.4, clustered(60))
+
+
+def test_direction_start_and_a_repeated_point_of_a_profile_do_not_matter() -> None:
+    given = list(blade_row.profiles())
+    changed = [
+        np.roll(given[0], 17, axis=0),
+        given[1][::-1],
+        np.concatenate([given[2], given[2][:1]]),
+        given[3],
+    ]
+    assert section(changed) == pytest.approx(section(given), abs=1e-6)
+
+
+def test_a_section_starts_at_the_leading_edge_on_the_side_of_larger_theta() -> None:
+    s, theta = section(blade_row.profiles()).T
+    assert s.argmin() in (59, 0, 1)
+    assert s.argmax() in (29, 30, 31)
+    assert theta[1:30].mean() > theta[31:].mean()
+
+
+def test_a_profile_is_met_at_its_height() -> None:
+    row = blade_row.blade_row()
+    points = blade_row.profiles()[1]
+    r = np.hypot(points[:, 1], points[:, 2])
+    s, h = row.channel.places(np.stack([points[:, 0], r], axis=1))
+    u = np.linspace(0.0, 1.0, 4001)
+    lines = row.surface.lines(u)(row.surface.knots[1:2])[0]
+    theta = np.arctan2(points[:, 1], points[:, 2])
+    away = np.hypot(lines[:, 0] - s[:, None], lines[:, 1] - theta[:, None])
+    assert away.min(axis=1).max() < 5e-4  # half the distance of the samples
+    assert lines[:, 2].min() == pytest.approx(h.min(), abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("profiles", "words"),
+    [
+        (
+            blade_row.profiles()[::-1],
+            "profile 2: is at .* % of the span, .*; give profiles from hub to casing",
+        ),
+        (blade_row.profiles()[2:], "profile 1: begins at 7.* % of the span"),
+        (
+            blade_row.profiles()[:2],
+            "profile 2: ends at .* % of the span; give a profile nearer to the casing",
+        ),
+        ([p[:5] for p in blade_row.profiles()], "profile 1: 5 points; give 12 or more"),
+        (
+            [p + np.array([2.0, 0.0, 0.0]) for p in blade_row.profiles()],
+            "profile 1: hub and casing end before the blade",
+        ),
+        (
+            [p - np.array([1.2, 0.0, 0.0]) for p in blade_row.profiles()],
+            "profile 1: hub and casing begin behind the blade",
+        ),
+    ],
+)
+def test_profiles_that_make_no_blade_are_refused_by_number(profiles, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        Row(profiles, blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)

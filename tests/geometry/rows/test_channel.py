@@ -1,0 +1,58 @@
+"""Channels between hub and casing: heights, gaps, and the conformal coordinate along surfaces."""
+
+import blade_row
+import numpy as np
+import pytest
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.rows.channel import Channel
+
+LINE = np.linspace(0.0, 1.0, 21)
+
+
+def cone(low: float, high: float) -> np.ndarray:
+    return np.stack([2.0 * LINE, low + (high - low) * LINE], axis=1)
+
+
+def test_places_are_the_inverse_of_positions_also_beyond_hub_and_casing() -> None:
+    channel = Channel(blade_row.HUB, blade_row.SHROUD, 0.01, 0.03)
+    rng = np.random.default_rng(1)
+    s, h = rng.uniform(0.02, 0.98, 200), rng.uniform(0.0, 1.0, 200)
+    found = channel.places(channel.at(s, h))
+    assert found[0] == pytest.approx(s, abs=1e-12)
+    assert found[1] == pytest.approx(h, abs=1e-12)
+    assert channel.places(np.array([[0.0, 1.9]]))[1] < 0.0
+    assert channel.places(np.array([[0.0, 3.1]]))[1] > 1.0
+
+
+def test_gaps_are_as_wide_everywhere_measured_at_right_angles_to_the_wall() -> None:
+    channel = Channel(cone(1.0, 1.3), cone(2.0, 1.6), 0.02, 0.05)
+    s = np.linspace(0.1, 0.9, 50)
+    slopes = (("foot", channel.foot, cone(1.0, 1.3), 0.02), ("tip", channel.tip, cone(2.0, 1.6), 0.05))
+    for _, height, wall, gap in slopes:
+        (x, r), (dx, dr) = channel.at(s, np.full(50, height)).T, wall[-1] - wall[0]
+        away = np.abs((x - wall[0, 0]) * dr - (r - wall[0, 1]) * dx) / np.hypot(dx, dr)
+        assert away == pytest.approx(gap, rel=1e-12)
+
+
+def test_the_coordinate_of_a_cone_is_the_logarithm_of_its_radius() -> None:
+    channel = Channel(cone(1.0, 2.0), cone(1.5, 3.0))
+    to = channel.meridional(0.0)
+    s = np.linspace(0.0, 1.0, 11)
+    slant = np.hypot(2.0, 1.0)  # dm = slant dr
+    assert to.forward(s) == pytest.approx(slant * np.log(1.0 + s), abs=1e-9)
+    assert to.back(to.forward(s)) == pytest.approx(s, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("hub", "casing", "gap", "words"),
+    [
+        (cone(1.0, 1.0), cone(2.0, 2.0), 0.6, "gaps of 0.6 in a channel 1 wide; use less than half"),
+        (cone(2.0, 2.0), cone(1.0, 1.0), 0.0, "wrong way round"),
+        (cone(1.0, 1.0)[::-1], cone(2.0, 2.0)[::-1], 0.0, "wrong way round"),
+        (cone(0.1, -0.1), cone(2.0, 2.0), 0.0, "the hub reaches the axis"),
+    ],
+)
+def test_what_is_no_channel_is_refused(hub: np.ndarray, casing: np.ndarray, gap: float, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        Channel(hub, casing, 0.0, gap)

@@ -1,0 +1,134 @@
+"""Grids of rows: valid, first cells exact in space, periodic, the blade where its profiles are."""
+
+import math
+from functools import cache
+
+import blade_row
+import numpy as np
+import pytest
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.pipeline.rows import make_row
+from meshonet.solvers.rows.request import RowRequest, row_request
+
+FIRST = 1e-3
+GAPS = {"none": (0.0, 0.0), "tip": (0.02, 0.0), "hub": (0.0, 0.02)}
+
+
+@cache
+def made(gap: str = "none", threads: int = 1) -> Grid:
+    request = RowRequest(first_cell=FIRST, cells=40_000, threads=threads)
+    return make_row(blade_row.blade_row(*GAPS[gap]), request).grid
+
+
+def off_walls(grid: Grid, name: str) -> np.ndarray:
+    """Lengths of all edges that leave a wall for the inside."""
+    heights = []
+    for patch in grid.patches:
+        if patch.name == name:
+            axis, end = patch.place
+            rows = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
+            rows = rows if end == 0 else rows[::-1]
+            away = np.linalg.norm(rows[1] - rows[0], axis=-1)
+            across = patch.across or (0, away.shape[1] - 1)
+            heights.append(away[patch.start : patch.stop + 1, across[0] : across[1] + 1].ravel())
+    return np.concatenate(heights)
+
+
+@pytest.mark.parametrize("gap", GAPS)
+def test_cells_are_valid_with_good_angles(gap: str) -> None:
+    quality = made(gap).quality()
+    assert quality.folded == 0
+    assert quality.metrics["max_angle"].max < 150.0
+
+
+@pytest.mark.parametrize(
+    ("gap", "ends"), [("none", set()), ("tip", {"tip"}), ("hub", {"foot"})], ids=["none", "tip", "hub"]
+)
+def test_patches_have_their_names_and_nothing_is_without(gap: str, ends: set[str]) -> None:
+    grid = made(gap)
+    names = {"blade", "hub", "shroud", "inlet", "outlet"} | ends
+    assert {patch.name for patch in grid.outer_patches()} == names
+    assert {patch.name for patch in grid.patches} == names | {"periodic1", "periodic2"}
+
+
+@pytest.mark.parametrize("gap", GAPS)
+def test_first_cells_have_their_height_in_space_at_every_wall(gap: str) -> None:
+    grid = made(gap)
+    wanted = FIRST * blade_row.blade_row().chord
+    for name in {patch.name for patch in grid.outer_patches()} - {"inlet", "outlet"}:
+        assert off_walls(grid, name) == pytest.approx(wanted, rel=1e-9), name
+
+
+def test_the_second_periodic_side_is_the_first_turned_by_the_pitch() -> None:
+    grid = made("tip")
+    periodic = [each for each in grid.connections if each.transform]
+    assert periodic
+    angle = 2.0 * math.pi / blade_row.BLADES
+    for each in periodic:
+        own, donor = (face.reshape(-1, 3) for face in each.reversed().reversed().nodes(grid.face))
+        first = grid.face(each.block, each.side).reshape(-1, 3)
+        turned = np.arctan2(donor[:, 1], donor[:, 2]) - np.arctan2(first[:, 1], first[:, 2])
+        radius = np.hypot(donor[:, 1], donor[:, 2])
+        if len(first) == len(donor) and np.allclose(np.abs(turned), angle):
+            assert np.abs(turned) == pytest.approx(angle, abs=1e-13)
+        assert np.abs(own - donor).max() <= 1e-14 * radius.max()
+
+
+def test_hub_casing_inlet_and_outlet_are_where_their_curves_are() -> None:
+    grid = made("tip")
+    for name, curve in (("hub", blade_row.HUB), ("shroud", blade_row.SHROUD)):
+        x, y, z = np.concatenate([grid.at(p).reshape(-1, 3) for p in grid.patches if p.name == name]).T
+        slope = (curve[-1, 1] - curve[0, 1]) / (curve[-1, 0] - curve[0, 0])
+        assert np.hypot(y, z) == pytest.approx(curve[0, 1] + slope * (x - curve[0, 0]), abs=1e-12)
+    for name, x in (("inlet", -1.0), ("outlet", 2.0)):
+        nodes = np.concatenate([grid.at(p).reshape(-1, 3) for p in grid.patches if p.name == name])
+        assert nodes[:, 0] == pytest.approx(x, abs=1e-12)
+
+
+@pytest.mark.parametrize("gap", ["none", "tip"])
+def test_the_blade_is_the_bent_ellipse_of_its_profiles(gap: str) -> None:
+    grid = made(gap)
+    x, y, z = np.concatenate([grid.at(p).reshape(-1, 3) for p in grid.patches if p.name == "blade"]).T
+    r = np.hypot(y, z)
+    stagger = np.radians(20.0 * (r - 1.0))
+    along, across = x - 0.5, r * np.arctan2(y, z)
+    a = along * np.cos(stagger) + across * np.sin(stagger)
+    b = across * np.cos(stagger) - along * np.sin(stagger) - 0.06 * (1.0 - 4.0 * a * a)
+    assert np.hypot(a / 0.5, b / 0.04) == pytest.approx(1.0, abs=0.02)  # of half the thickness
+
+
+def test_the_gap_has_rows_enough_and_narrow_ones_lower_first_cells_and_say_so() -> None:
+    result = make_row(
+        blade_row.blade_row(0.005), RowRequest(first_cell=FIRST, cells=20_000, threads=1, allow_invalid=True)
+    )
+    assert off_walls(result.grid, "tip") == pytest.approx(0.005 / 17, rel=1e-9)
+    assert any("first cells at the walls of a gap are" in note for note in result.notes)
+    tip = next(p for p in result.grid.patches if p.name == "tip")
+    assert result.grid.blocks[tip.block].counts[2] >= 18
+
+
+def test_more_cells_than_asked_for_are_said() -> None:
+    result = make_row(blade_row.blade_row(), RowRequest(first_cell=FIRST, cells=20_000, threads=1))
+    assert any("instead of 20000" in note for note in result.notes)
+
+
+def test_bits_do_not_depend_on_the_number_of_threads() -> None:
+    one, two = made("none", 1), made("none", 2)
+    assert all(np.array_equal(a.nodes, b.nodes) for a, b in zip(one.blocks, two.blocks, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ({"around": 65}, "a row has no around"),
+        ({"cells": 5}, "cells: 5 cells; use 20000"),
+        ({"first_cell": 0.2}, "first_cell: 0.2 chords"),
+        ({"threads": 0}, "threads: 0 threads"),
+        ({"growth": 0.5}, "growth"),
+    ],
+)
+def test_parameters_out_of_range_are_refused(parameters, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        row_request(**parameters)
