@@ -1,4 +1,4 @@
-"""Grids as layers of a network: batches of boundaries in torch in, nodes out, with gradients.
+"""Grids as layers of a network: boundaries in torch in, nodes out, with gradients, for batches.
 
     import torch
     from meshonet import layer
@@ -6,13 +6,13 @@
     nodes = layer.winslow(south, north, west, east)   # (batch, ni, nj, 2)
     nodes.square().mean().backward()                  # gradients of the boundary nodes
 
-Sides are tensors (..., n, 2), south and north along xi, west and east along eta, with shared corners; any number
-of leading dimensions is a batch. Tensors stay on their device; the arithmetic is in double precision, the nodes
-are of the dtype of the sides. `torch.func.vmap` and `torch.func.grad` apply to every function. It needs torch,
-the extra ``train``.
+Sides of `transfinite` and `winslow` are tensors (..., n, 2), south and north along xi, west and east
+along eta, with common corners; leading dimensions are batches. Results are on the device of the sides and
+of their dtype; the arithmetic is in double precision. `torch.func.vmap` and `torch.func.grad` apply to both
+functions. They need torch (extra ``train``).
 """
 
 from meshonet.solvers.differentiable import AirfoilGrids, BodyGrids, QuadGrids
-from meshonet.solvers.differentiable.grids import transfinite, variational, winslow
+from meshonet.solvers.differentiable.grids import transfinite, winslow
 
-__all__ = ["AirfoilGrids", "BodyGrids", "QuadGrids", "transfinite", "variational", "winslow"]
+__all__ = ["AirfoilGrids", "BodyGrids", "QuadGrids", "transfinite", "winslow"]

@@ -8,9 +8,7 @@ from torch import Tensor
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.differentiable.members import MemberError
 from meshonet.solvers.differentiable.transfinite import Sides, arc_lengths, interpolated
-from meshonet.solvers.differentiable.variational import minimised
 from meshonet.solvers.differentiable.winslow import solved
-from meshonet.solvers.energy.functional import Weights
 
 MOST = 2**17  # coordinates solved at once on a CPU, so that a Krylov space fits in its cache
 
@@ -45,34 +43,10 @@ def winslow(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
     InputError
         As `transfinite`.
     SolverError
-        The equations of a member of the batch did not converge, or it has a coordinate that is not finite; the
-        message has its index.
-    """
-    return _batched(solved, south, north, west, east)
-
-
-def variational(
-    south: Tensor, north: Tensor, west: Tensor, east: Tensor, weights: Weights | None = None
-) -> Tensor:
-    """Return the nodes (..., ni, nj, 2) by splines from the minimum of the variational functional.
-
-    It is minimised on a copy with at most 17 x 17 nodes. Gradients are those of the minimum, by one linear
-    system for each backward pass.
-
-    Parameters
-    ----------
-    south, north, west, east : as in `transfinite`.
-    weights : of the functional; None stands for those of `meshonet.solve_pde`.
-
-    Raises
-    ------
-    InputError
-        As `winslow`.
-    SolverError
-        No grid without folded cells was reached for a member of the batch, or it has a coordinate that is not
+        The equations of a member of the batch did not converge, or it has a coordinate that is not
         finite; the message has its index.
     """
-    return _batched(lambda sides: minimised(sides, weights or Weights()), south, north, west, east)
+    return _batched(solved, south, north, west, east)
 
 
 def _batched(make: Callable[[Sides], Tensor], *given: Tensor) -> Tensor:

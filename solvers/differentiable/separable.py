@@ -1,8 +1,8 @@
 """A direct solver for operators near Winslow's, by which its linear systems are preconditioned.
 
-α u_ξξ + γ u_ηη, divided by α, has the coefficient γ/α, which a product p(ξ) q(η) replaces. u_ξξ / p + q u_ηη is
-separable: eigenvectors in both directions diagonalise it. Strong stretching along one direction or both,
-as towards a wall, is represented exactly.
+The operator is α u_ξξ + γ u_ηη. Divided by α it has one coefficient, γ/α, which a product p(ξ) q(η) replaces.
+The operator u_ξξ / p + q u_ηη is separable: eigenvectors in both directions diagonalise it. It represents
+cells that are stretched along one direction or both, as towards a wall.
 
 Lynch, Rice and Thomas, Numer. Math. 6 (1964) 185-199.
 """

@@ -1,8 +1,9 @@
-"""Winslow's equations in torch: converged grids of batches, and their gradients by implicit differentiation.
+"""Winslow's equations in torch: converged grids of batches, with gradients by implicit differentiation.
 
-Newton's method, from coarse copies to the grid itself, with GMRES for its linear systems. With R(x, b) = 0 for
-inner nodes x and boundary nodes b, a functional whose derivative with respect to x is g has the derivative
--R_bᵀ λ with respect to b, where R_xᵀ λ = g: one more linear system, whatever the number of iterations was.
+Newton's method solves them, from coarse copies to the grid itself; GMRES solves its linear systems. With
+R(x, b) = 0 for inner nodes x and boundary nodes b, a functional whose derivative with respect to x is g has
+the derivative -R_bᵀ λ with respect to b, where R_xᵀ λ = g. That is one linear system, whatever the number of
+iterations was.
 """
 
 from typing import Any
@@ -39,13 +40,21 @@ def solved(sides: Sides) -> Tensor:
 
 def residual(nodes: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return the left side of Winslow's equations, α and γ at the inner nodes of (batch, 2, ni, nj)."""
+    return left_side(_derivatives(nodes), _dot)
+
+
+def _derivatives(nodes: Tensor) -> tuple[Tensor, ...]:
+    """Return x_ξ, x_η, x_ξξ, x_ξη and x_ηη at inner nodes, by central differences."""
     middle = nodes[:, :, 1:-1, 1:-1]
     west, east = nodes[:, :, :-2, 1:-1], nodes[:, :, 2:, 1:-1]
     south, north = nodes[:, :, 1:-1, :-2], nodes[:, :, 1:-1, 2:]
     mixed = nodes[:, :, 2:, 2:] - nodes[:, :, 2:, :-2] - nodes[:, :, :-2, 2:] + nodes[:, :, :-2, :-2]
     first = 0.5 * (east - west), 0.5 * (north - south)
-    second = east - 2.0 * middle + west, 0.25 * mixed, north - 2.0 * middle + south
-    return left_side((*first, *second), lambda a, b: (a * b).sum(1, keepdim=True))
+    return (*first, east - 2.0 * middle + west, 0.25 * mixed, north - 2.0 * middle + south)
+
+
+def _dot(a: Tensor, b: Tensor) -> Tensor:
+    return (a * b).sum(1, keepdim=True)
 
 
 class Converged(torch.autograd.Function):
@@ -58,7 +67,7 @@ class Converged(torch.autograd.Function):
         return nested(nodes)
 
     @staticmethod
-    def setup_context(ctx: Any, inputs: tuple[Tensor], output: Tensor) -> None:
+    def setup_context(ctx: Any, inputs: tuple[Tensor], output: Tensor) -> None:  # noqa: ARG004 - torch's signature
         """Keep the solution."""
         ctx.save_for_backward(output)
 
@@ -110,29 +119,25 @@ class Adjoint(torch.autograd.Function):
         return as_one_batch(Adjoint.apply, info.batch_size, in_dims, *tensors)
 
 
-def nested(nodes: Tensor, *, strict: bool = True) -> Tensor:
-    """Return the solution with the boundary nodes of `nodes` (batch, 2, ni, nj), by nested iteration.
-
-    Where it does not converge: raise MemberError if `strict`, else return the last iterate.
-    """
+def nested(nodes: Tensor) -> Tensor:
+    """Return the solution with the boundary nodes of `nodes` (batch, 2, ni, nj), by nested iteration."""
     sides = nodes[..., 0], nodes[..., -1], nodes[:, :, 0], nodes[:, :, -1]
     laws = arc_lengths(sides)
     sizes = [(nodes.shape[2], nodes.shape[3])]
     while max(sizes[-1]) > COARSEST:
         sizes.append(tuple((n + 1) // 2 if n > COARSEST else n for n in sizes[-1]))  # type: ignore[arg-type]
-    x = before = None
+    x = before = nodes
     for ni, nj in reversed(sizes):
         counts = ni, ni, nj, nj
         few = tuple(between(side, n) for side, n in zip(sides, counts, strict=True))
         start = interpolated(few, tuple(between(law, n) for law, n in zip(laws, counts, strict=True)))
-        if x is None:
+        if (ni, nj) == sizes[-1]:
             x = _fixed_point(start)
         else:
             change = torch.nn.functional.interpolate(x - before, (ni, nj), mode="bicubic", align_corners=True)
             x = start + bordered(inner(change))
         last = (ni, nj) == sizes[0]
-        x, before = newton(x, TOL if last and strict else ROUGH, strict=last and strict), start
-    assert x is not None
+        x, before = newton(x, TOL if last else ROUGH, strict=last), start
     return x
 
 
@@ -165,12 +170,13 @@ class _Linearised:
     """Winslow's equations near `nodes` (batch, 2, ni, nj), preconditioned; `first` is their residual."""
 
     def __init__(self, nodes: Tensor) -> None:
-        left, alpha, gamma = residual(nodes)
-        self._nodes, self._inverse = nodes, Separable(alpha, gamma)
+        self._nodes, self._here = nodes, _derivatives(nodes)
+        left, self._alpha, self._gamma = left_side(self._here, _dot)
+        self._inverse = Separable(self._alpha, self._gamma)
         self.first = self._inverse.solve(left)
 
     def stepped(self) -> Tensor:
-        """Return the nodes after a step of Newton's method, shortened where it does not lower the residual."""
+        """Return the nodes after a step of Newton's method, shorter where it does not lower the residual."""
         nodes, first = self._nodes, self.first
         step = gmres(self._times, first.flatten(1), FORCING, PRODUCTS[0]).view_as(first)
         size, now = torch.ones_like(first[:, :1, :1, :1]), first.flatten(1).norm(dim=1)
@@ -184,8 +190,12 @@ class _Linearised:
         return torch.where(worse[:, None, None, None], nodes - bordered(0.5 * first), trial)
 
     def _times(self, flat: Tensor) -> Tensor:
-        move = bordered(flat.view_as(self.first))
-        change = torch.func.jvp(lambda x: residual(x)[0], (self._nodes,), (move,))[1]
+        """Return the preconditioned derivative of the left side along moves (batch, n) of the inner nodes."""
+        xi, eta, bend, twist, rise = self._here
+        d_xi, d_eta, *second = _derivatives(bordered(flat.view_as(self.first)))
+        change = self._alpha * second[0] - 2.0 * _dot(xi, eta) * second[1] + self._gamma * second[2]
+        change = change + 2.0 * (_dot(eta, d_eta) * bend + _dot(xi, d_xi) * rise)
+        change = change - 2.0 * (_dot(d_xi, eta) + _dot(xi, d_eta)) * twist
         return self._inverse.solve(change).flatten(1)
 
 
@@ -197,6 +207,7 @@ def _fixed_point(nodes: Tensor) -> Tensor:
 
 
 def inner(nodes: Tensor) -> Tensor:
+    """Return the inner nodes (batch, 2, ni-2, nj-2)."""
     return nodes[:, :, 1:-1, 1:-1]
 
 

@@ -14,8 +14,8 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.four_sided import boundary
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.fit.networks import QuadUNet
 from meshonet.solvers.neural.fit.loop import Progress
+from meshonet.solvers.neural.fit.networks import QuadUNet
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.quad import PARTS, QuadUNetSizes
 from meshonet.solvers.neural.fit.quad_grids import Quads, quads

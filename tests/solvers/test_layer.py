@@ -1,0 +1,109 @@
+"""Grids as layers: batches in torch equal the compiled solvers, and their gradients are true."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from random_quads import random_quad
+
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.elliptic.solve import solve
+
+torch = pytest.importorskip("torch")
+from meshonet import layer  # noqa: E402 - it imports torch
+
+FUNCTIONS = (layer.transfinite, layer.winslow)
+NAMES = ("south", "north", "west", "east")
+
+
+def domains(ni: int, nj: int, count: int) -> list[Boundary]:
+    drawn = [random_quad(seed, ni, nj) for seed in range(count)]
+    return [boundary for boundary in drawn if boundary is not None]
+
+
+def sides_of(boundaries: list[Boundary]) -> list[Any]:
+    return [torch.tensor(np.stack([getattr(b, name) for b in boundaries])) for name in NAMES]
+
+
+def test_transfinite_nodes_are_those_of_the_compiled_interpolation() -> None:
+    some = domains(30, 21, 12)
+    for nodes, boundary in zip(layer.transfinite(*sides_of(some)).numpy(), some, strict=True):
+        np.testing.assert_allclose(nodes, tfi(boundary).nodes, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize(("ni", "nj"), [(33, 33), (50, 19), (12, 40)])
+def test_winslow_nodes_are_those_of_the_compiled_multigrid(ni: int, nj: int) -> None:
+    some = domains(ni, nj, 24)
+    for nodes, boundary in zip(layer.winslow(*sides_of(some)).numpy(), some, strict=True):
+        exact = solve(boundary, tol=1e-12, max_cycles=60).grid.nodes
+        np.testing.assert_allclose(nodes, exact, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_gradients_are_those_of_finite_differences(function: Any) -> None:
+    given = [side.requires_grad_() for side in sides_of(domains(9, 8, 5)[:2])]
+    assert torch.autograd.gradcheck(function, given, fast_mode=True)
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_members_through_vmap_are_those_alone(function: Any) -> None:
+    given = sides_of(domains(9, 8, 8))
+
+    def loss(*sides: Any) -> Any:
+        return (function(*sides) ** 3).sum()
+
+    together = torch.func.vmap(function)(*given)
+    slopes = torch.func.vmap(torch.func.grad(loss))(*given)
+    for k in range(len(together)):
+        alone = [side[k].clone().requires_grad_() for side in given]
+        torch.testing.assert_close(together[k], function(*alone).detach(), rtol=0, atol=1e-11)
+        loss(*alone).backward()
+        torch.testing.assert_close(slopes[k], alone[0].grad, rtol=0, atol=1e-8)
+
+
+def test_sides_keep_their_nodes_and_dtype() -> None:
+    given = [side.float() for side in sides_of(domains(17, 9, 3))]
+    nodes = layer.winslow(*given)
+    assert nodes.dtype == torch.float32
+    for side, edge in zip(given, (nodes[:, :, 0], nodes[:, :, -1], nodes[:, 0], nodes[:, -1]), strict=True):
+        assert torch.equal(side, edge)
+
+
+def test_one_side_serves_a_whole_batch() -> None:
+    south, north, west, east = sides_of(domains(9, 8, 5)[:1])
+    souths = south + torch.zeros(2, 3, 1, 1)
+    assert layer.winslow(souths, north[0], west[0], east[0]).shape == (2, 3, 9, 8, 2)
+
+
+def test_a_member_that_is_not_finite_is_named() -> None:
+    given = sides_of(domains(9, 8, 5))
+    given[0][2, 4, 1] = torch.nan
+    with pytest.raises(SolverError, match=r"member 2 of the batch: a coordinate is not finite"):
+        layer.winslow(*given)
+
+
+def test_a_member_without_a_solution_is_named() -> None:
+    given = sides_of(domains(9, 8, 5))
+    for side in given:
+        side[1] = 0.0
+    with pytest.raises(SolverError, match=r"member 1 of the batch"):
+        layer.winslow(*given)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda s: s[0].__getitem__((slice(None), slice(None, -1))), "opposite sides need equal counts"),
+        (lambda s: s[0].float(), "of one type on one device"),
+        (lambda s: s[0][..., :1], "n at least 3"),
+        (lambda s: s[0][:2], "different batches"),
+    ],
+)
+def test_sides_that_bound_no_batch_are_refused(change: Any, said: str) -> None:
+    given = sides_of(domains(9, 8, 6))
+    with pytest.raises(InputError, match=said):
+        layer.winslow(change(given), *given[1:])
