@@ -3,7 +3,7 @@
 import torch
 from torch import Tensor
 
-Sides = tuple[Tensor, Tensor, Tensor, Tensor]
+Sides = tuple[Tensor, ...]
 """South, north (batch, 2, ni), west and east (batch, 2, nj)."""
 
 

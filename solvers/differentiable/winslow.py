@@ -35,7 +35,7 @@ def solved(sides: Sides) -> Tensor:
 
     Raises MemberError, with the index of the first member of the batch that did not converge.
     """
-    return Converged.apply(interpolated(sides, arc_lengths(sides)))  # type: ignore[no-any-return]
+    return Converged.apply(interpolated(sides, arc_lengths(sides)))  # type: ignore[no-untyped-call]
 
 
 def residual(nodes: Tensor) -> tuple[Tensor, Tensor, Tensor]:
@@ -74,7 +74,7 @@ class Converged(torch.autograd.Function):
     @staticmethod
     def backward(ctx: Any, gradient: Tensor) -> Tensor:
         """Return the derivative with respect to the boundary nodes, zero at inner nodes."""
-        return Adjoint.apply(*ctx.saved_tensors, gradient)  # type: ignore[no-any-return]
+        return Adjoint.apply(*ctx.saved_tensors, gradient)  # type: ignore[no-untyped-call]
 
     @staticmethod
     def vmap(info: Any, in_dims: tuple[int | None], nodes: Tensor) -> tuple[Tensor, int]:

@@ -175,7 +175,7 @@ def _one_epoch(
             with torch.autocast(team.device.type, torch.bfloat16, enabled=plan.amp):
                 parts = run(rows.to(team.device), done) * weight
             optimiser.zero_grad()
-            parts.sum().backward()  # type: ignore[no-untyped-call]
+            parts.sum().backward()
         except (RuntimeError, MemoryError) as error:
             raise _explained(error, plan) from error
         parts = team.mean(parts.detach())
