@@ -188,7 +188,7 @@ class QuadDescent:
     def __init__(
         self, nodes: Floats, cells: tuple[Indices, Floats, Floats],
         lines: tuple[Indices, Indices, int, Floats], eased: tuple[Indices, Floats], inner: Indices,
-        tied: tuple[Indices, tuple[float, float]], unknown: Indices, wall: Indices,
+        tied: tuple[Indices, Floats], unknown: Indices, wall: Indices,
         wall_nodes: tuple[Indices, Indices, Floats], wall_edges: tuple[Indices, Floats],
         loops: tuple[tuple[object, ...], ...], bent: float, allowed: float,
     ) -> None: ...  # fmt: skip

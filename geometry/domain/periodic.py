@@ -1,4 +1,4 @@
-"""Sides of a domain that are periodic: translated copies of each other, checked and matched by their names."""
+"""Periodic sides of a domain: translated copies of each other, checked and matched by their names."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def rounded(values: Floats, domain: Domain) -> Floats:
     if (np.count_nonzero(shifts, axis=0) < 2).all():
         return values
     most = float(np.abs(domain.loops[0].curve.points).max())
-    unit = 2.0 ** (math.ceil(math.log2(most)) - _BITS)
+    unit = math.ldexp(1.0, math.ceil(math.log2(most)) - _BITS)
     return np.asarray(np.round(values / unit) * unit)
 
 

@@ -39,8 +39,8 @@ def polygon_shape(
 ) -> DomainShape:  # fmt: skip
     """Return the domain inside the first of the `rings` and outside of the others.
 
-    `periodic` are pairs of names of periodic sides. Raises InputError: as `ring_loop`; with several rings, its
-    place says which; as `with_periodic_sides`.
+    `periodic` are pairs of names of periodic sides. Raises InputError: as `ring_loop`; with several rings,
+    its place says which; as `with_periodic_sides`.
     """
     loops = []
     for number, ring in enumerate(rings):

@@ -13,9 +13,9 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.decomposition.errors import most_folded
+from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric, node_images
 from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quad_problem import ALLOWED, smallest_jacobian
 from meshonet.solvers.energy.quads import QuadOptimum, optimise

@@ -75,7 +75,7 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
         symmetry="z", growth=request.growth,
     )  # fmt: skip
     with stage("grid", seconds):
-        solution = march_surface(surface, settings)
+        solution = march_surface(surface, settings, wing=True)
     note = request.height_note(f"on a chord of {chord:.6g}", chord)
     facts = wall_facts(solution.grid, settings.limit if request.layers is None else request.growth)
     notes = (*notes, *[note] * bool(note), *solution.notes, *facts)

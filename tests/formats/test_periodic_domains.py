@@ -27,16 +27,20 @@ CASE = {
     "constant/turbulenceProperties": ("dictionary", "simulationType laminar;"),
     "constant/fvOptions": ("dictionary", "force { type meanVelocityForce; active yes; selectionMode all; "
                            "fields (U); Ubar (1 0 0); relaxation 0.2; }"),
-    "system/fvSchemes": ("dictionary", "ddtSchemes { default steadyState; } gradSchemes { default Gauss linear; } "
+    "system/fvSchemes": ("dictionary", "ddtSchemes { default steadyState; } "
+    "gradSchemes { default Gauss linear; } "
                          "divSchemes { default none; div(phi,U) bounded Gauss linearUpwind grad(U); "
                          "div((nuEff*dev2(T(grad(U))))) Gauss linear; } "
                          "laplacianSchemes { default Gauss linear corrected; } "
                          "interpolationSchemes { default linear; } snGradSchemes { default corrected; }"),
-    "system/fvSolution": ("dictionary", "solvers { p { solver GAMG; smoother GaussSeidel; tolerance 1e-9; relTol 0.05; } "
+    "system/fvSolution": ("dictionary", "solvers { p { solver GAMG; smoother GaussSeidel; "
+    "tolerance 1e-9; relTol 0.05; } "
                           "U { solver smoothSolver; smoother GaussSeidel; tolerance 1e-10; relTol 0.1; } } "
-                          "SIMPLE { consistent yes; pRefCell 0; pRefValue 0; residualControl { p 1e-5; U 1e-6; } } "
+                          "SIMPLE { consistent yes; pRefCell 0; pRefValue 0; "
+    "residualControl { p 1e-5; U 1e-6; } } "
                           "relaxationFactors { equations { U 0.9; } }"),
-    "system/controlDict": ("dictionary", "application simpleFoam; startFrom startTime; startTime 0; stopAt endTime; "
+    "system/controlDict": ("dictionary", "application simpleFoam; startFrom startTime; "
+    "startTime 0; stopAt endTime; "
                            "endTime 600; deltaT 1; writeControl timeStep; writeInterval 600;"),
 }  # fmt: skip
 

@@ -28,6 +28,7 @@ from meshonet.solvers.blocking.decomposition.collapse.collapse import simplify
 from meshonet.solvers.blocking.decomposition.collapse.score import PRICE, score
 from meshonet.solvers.blocking.decomposition.errors import BlockingError, most_folded
 from meshonet.solvers.blocking.decomposition.field.seamless_map import seamless_map
+from meshonet.solvers.blocking.decomposition.periodic_counts import check_sides
 from meshonet.solvers.blocking.decomposition.quads.padding import (
     Span,
     loops_to_pad,
@@ -37,7 +38,6 @@ from meshonet.solvers.blocking.decomposition.quads.padding import (
 )
 from meshonet.solvers.blocking.decomposition.quads.quad_mesh import quad_mesh
 from meshonet.solvers.blocking.decomposition.symmetry.symmetric import symmetric_blocks
-from meshonet.solvers.blocking.sizes.periodic_counts import check_sides
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.stages import reached

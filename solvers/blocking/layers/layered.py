@@ -27,6 +27,7 @@ from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
+from meshonet.solvers.blocking.decomposition.periodic_counts import alike_along_sides
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric, node_images
 from meshonet.solvers.blocking.layers.attach import attach
 from meshonet.solvers.blocking.layers.even_line import evened_loops
@@ -41,7 +42,6 @@ from meshonet.solvers.blocking.layers.wall_layers import ROWS, Counts, WallLayer
 from meshonet.solvers.blocking.layers.wall_rows import WallRows, with_wall_rows
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.even_metric import metric_places
-from meshonet.solvers.blocking.sizes.periodic_counts import alike_along_sides
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quads import optimise
 

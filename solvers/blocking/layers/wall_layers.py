@@ -16,6 +16,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
+from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
 from meshonet.solvers.blocking.layers.even_line import Measures
@@ -27,7 +28,6 @@ from meshonet.solvers.blocking.layers.row_sizes import RowSizes
 from meshonet.solvers.blocking.layers.stretches import Stretch
 from meshonet.solvers.blocking.layers.wall_rows import WallRows
 from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.blocking.sizes.wanted_counts import WantedCounts
 

@@ -61,12 +61,13 @@ class _Volume(NamedTuple):
 
 
 @timed
-def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
+def march_surface(surface: Surface, settings: VolumeMarch, *, wing: bool = False) -> Solution:
     """Return the volume between a surface and a far field, with one block per patch.
 
     i and j of a block are those of its patch, k goes from the wall (``bottom``) to the far field (``top``).
     Sides in planes of symmetry are patches ``symmetry``, free ones ``free``; all others are connected. First
-    cells have the given height along every line.
+    cells have the given height along every line. On the surface of a `wing` other smoothing is tried while
+    cells are poor, not only while they are folded.
 
     Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` has what differs.
 
@@ -77,7 +78,7 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
     planes, inside, found = symmetry_of(surface, settings.symmetry, settings.distance(surface.size))
     nodes = in_planes(surface, planes, inside)
     hollows = hollows_of(surface)
-    volume, tries = _best(surface, planes, inside, nodes, hollows, steps, settings.limit)
+    volume, tries = _best(surface, planes, inside, nodes, hollows, steps, settings.limit, wing=wing)
     if volume.made < len(steps) or volume.folded:
         raise _refusal(volume, len(steps), tries, surface, hollows)
     grid = volume_grid(surface, volume.blocks, np.any(inside, axis=0))
@@ -94,16 +95,18 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
 
 def _best(
     surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, hollows: Hollows,
-    steps: Floats, growth: float,
+    steps: Floats, growth: float, *, wing: bool,
 ) -> tuple[_Volume, int]:  # fmt: skip
-    """Return the first volume with cells no worse than `_POOR`, or else the best, and how many were made.
+    """Return the first volume that is good enough, or else the best, and how many were made.
+
+    Without folded cells it is, and on a `wing` if no cell is worse than `_POOR`.
 
     Each is marched again by smaller steps where its cells grow by more than `growth`.
     """
     best: _Volume | None = None
     most = (0, -math.inf, 0.0)
     tries = 0
-    for smoothing in attempts_for(concave=len(hollows.edges) > 0):
+    for smoothing in attempts_for(concave=len(hollows.edges) > 0, wing=wing):
         tries += 1
         graph = march_graph(surface, planes, inside, hollows.distance, smoothing.splay, smoothing.boost)
 
@@ -116,7 +119,7 @@ def _best(
         volume, worth = _volume(surface, lines), 0.0
         if volume.made == len(steps) and not volume.folded:
             volume = _with_growth(surface, lines, marched, steps, growth) or volume
-            worth = _least_jacobian(volume.blocks)
+            worth = _least_jacobian(volume.blocks) if wing else _POOR
         found = min(volume.made, len(steps)), -volume.folded, worth
         if best is None or found > most:
             best, most = volume, found

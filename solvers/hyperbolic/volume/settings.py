@@ -87,13 +87,13 @@ class VolumeMarch:
 class Smoothing(NamedTuple):
     """Parameters of ``kernels/surfaces/march.h`` in its order, without the size of the surface.
 
-    `outer` keeps levels around a sphere spheres; 16 makes better cells behind swept wings, but not that.
+    With `outer` up to 6 the levels around a sphere stay spheres; 16 makes better cells behind swept wings.
     """
 
     explicit: float = 0.3
     implicit: float = 1.2
     theta: float = 0.5
-    outer: float = 6.0
+    outer: float = 1.0
     sharp: float = -0.5
     longest: float = 3.0
     weight: float = 0.25
@@ -117,14 +117,18 @@ class Smoothing(NamedTuple):
 
 ATTEMPTS = (
     Smoothing(),
-    Smoothing(explicit=1.0, outer=2.0, implicit=2.0, theta=1.0),
-    Smoothing(explicit=1.0, outer=2.0, implicit=2.0, theta=1.0, sweeps=60),
-    Smoothing(explicit=1.0, outer=2.0, implicit=2.0, theta=0.0, longest=0.5, sweeps=60),
-    Smoothing(explicit=2.0, outer=1.0, implicit=4.0, theta=0.0, longest=0.5, sweeps=60),
+    Smoothing(explicit=1.0, implicit=2.0, theta=1.0),
+    Smoothing(explicit=1.0, implicit=2.0, theta=1.0, sweeps=60),
+    Smoothing(explicit=1.0, implicit=2.0, theta=0.0, longest=0.5, sweeps=60),
+    Smoothing(explicit=2.0, implicit=4.0, theta=0.0, longest=0.5, sweeps=60),
 )
 """Tried in turn while cells are folded, on surfaces without concave edges."""
+WING_ATTEMPTS = tuple(
+    one._replace(outer=outer) for one, outer in zip(ATTEMPTS, (6.0, 2.0, 2.0, 2.0, 1.0), strict=True)
+)
+"""The same for wings: levels are smoothed more far away, where lines behind a swept wing run together."""
 
-_RELAXED = Smoothing(explicit=1.0, outer=1.0, implicit=2.0, theta=0.0, longest=1.0, blend=0.1, relaxing=3.0)
+_RELAXED = Smoothing(explicit=1.0, implicit=2.0, theta=0.0, longest=1.0, blend=0.1, relaxing=3.0)
 CONCAVE_ATTEMPTS = (
     _RELAXED,
     _RELAXED._replace(near=4.0),
@@ -135,6 +139,6 @@ CONCAVE_ATTEMPTS = (
 """The same for surfaces with concave edges: fronts are relaxed (``kernels/surfaces/relax.c``)."""
 
 
-def attempts_for(*, concave: bool) -> tuple[Smoothing, ...]:
-    """Return what is tried in turn on a surface with or without concave edges."""
-    return CONCAVE_ATTEMPTS if concave else ATTEMPTS
+def attempts_for(*, concave: bool, wing: bool) -> tuple[Smoothing, ...]:
+    """Return what is tried in turn on a surface with or without concave edges, and on a wing's."""
+    return CONCAVE_ATTEMPTS if concave else WING_ATTEMPTS if wing else ATTEMPTS

@@ -111,7 +111,9 @@ def test_sides_that_are_no_pair_are_refused(pairs, message):
 def test_the_distance_between_sides_is_said_and_a_millionth_of_the_extent_allowed():
     box = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0 + 1e-3], [0.0, 1.0]])
     domain = Domain.of_polygons([box], names=[["bottom", "right", "top", "left"]])
-    with pytest.raises(InputError, match="differ by 0.001, 0.0005 of the extent; make one a translated copy"):
+    with pytest.raises(
+        InputError, match=r"differ by 0\.001, 0\.0005 of the extent; make one a translated copy"
+    ):
         with_periodic_sides(domain, BOTH[:1])
     box[2, 1] = 1.0 + 1e-6
     (pair,) = with_periodic_sides(

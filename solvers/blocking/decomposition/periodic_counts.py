@@ -37,7 +37,7 @@ def counts_along_sides(
 
 
 def check_sides(layout: Layout) -> None:
-    """Raise BlockingError if no counts of cells are alike on periodic sides, or blocks run past their ends."""
+    """Raise BlockingError if no counts are equal on periodic sides, or blocks extend past their ends."""
     mesh = layout.mesh
     if not mesh.domain.periodic:
         return
