@@ -62,7 +62,8 @@ def gains(title: str, boundaries: Sequence[Boundary], ways: Mapping[str, Way]) -
             f"| {name} | {percent(folds == 0)} | {percent(low)} | {largest.mean():.1f} / {mean.mean():.2f} "
             f"| {100 * of_mean:.0f} / {100 * each:.0f} | {100 * of_max:.0f} | {1e3 * np.median(spent):.1f} |"
         )
-    lines.append(f"\nWinslow's own grid is valid in {int(valid.sum())}; the gains are over these.")
+    count = int(valid.sum())
+    lines.append(f"\nWinslow's own grid is valid in {count} cases. The gains count only these cases.")
     return "\n".join(lines)
 
 

@@ -71,9 +71,10 @@ class Outline:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the four edges of the domain, or the O boundary around the body.
 
-        Spacing is by arc length on each edge (or around the body): ``uniform`` and ``auto`` in equal steps,
-        ``cosine``, ``tanh`` with end steps of a quarter of the mean, ``curvature``. Around a smooth body
-        ``auto`` is ``conformal`` (`meshonet.geometry.conformal.spacing`). Corners of the curve are nodes.
+        The spacing applies to the arc length of each edge, or of the whole body. ``uniform`` and ``auto``
+        give equal steps; with ``tanh`` the steps at the ends are a quarter of the mean step. Other values
+        are ``cosine`` and ``curvature``. Around a smooth body ``auto`` means ``conformal``
+        (`meshonet.geometry.conformal.spacing`). Corners of the curve are nodes.
 
         Raises InputError: a topology or spacing that does not apply; corner indices out of range.
         """

@@ -5,8 +5,8 @@
     grid --rows along xi--> west, east --lines along eta--> south, north --first cells made exact--> grid
 
 The curves of the lines that leave a wall do not change; their nodes are redistributed
-(``kernels/layers/layers.c``). A valid grid with even rows thus becomes one with thin rows. Along xi all rows
-are moved by one map of their index, which keeps kinks of the walls on nodes.
+(``kernels/layers/layers.c``). A valid grid with even rows thus becomes one with thin rows. Along xi
+the same redistribution applies to all rows; every kink of a wall remains at a node.
 """
 
 from dataclasses import replace

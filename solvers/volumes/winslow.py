@@ -48,7 +48,10 @@ def winslow(faces: SixFaces, *, tol: float | None = None, max_cycles: int | None
 def _solved(
     multigrid: VolumeMultigrid, tol: float | None, most: int
 ) -> tuple[Floats, int, float | None, bool]:
-    """Return the nodes, cycles on all of them, the residual if `tol` is given, and whether all is done."""
+    """Return the nodes, the number of cycles on the finest level, the residual, and whether it converged.
+
+    The residual is None if `tol` is not given.
+    """
     x, apart, change = multigrid.nested()
     cycles = 1
     if tol is not None:

@@ -103,15 +103,16 @@ class _Way:
 
 
 def _around(arcs: Floats, shift: int, length: float) -> Floats:
-    """Return ascending arc lengths from number `shift` on, one time around."""
+    """Return the arc lengths of one turn, in ascending order, from index `shift` on."""
     turned = np.roll(arcs, -shift)
     return turned + np.where(turned < turned[0], length, 0.0)
 
 
 def _corner_shift(old: Loop, new: Loop) -> int:
-    """Return the number of the new corner that belongs to the first of the old ones.
+    """Return the index of the new corner that corresponds to the first corner of the old loop.
 
-    Named stretches belong together first of all, then corners of equal angles at equal places in their boxes.
+    Corners of stretches with the same name correspond first of all. Otherwise two corners correspond if their
+    angles and their places in the bounding boxes agree best.
     """
     ours, theirs = (_in_box(loop.curve.points[list(loop.corners)], loop) for loop in (old, new))
     our_names, their_names = (np.array(loop.names) for loop in (old, new))
@@ -126,7 +127,7 @@ def _corner_shift(old: Loop, new: Loop) -> int:
 
 
 def _begin(old: Loop, new: Loop) -> float:
-    """Return the arc length on the new loop of the place that belongs to the first point of the old one."""
+    """Return the arc length on the new loop that corresponds to the first point of the old loop."""
     steps = np.linspace(0.0, 1.0, OFFSETS, endpoint=False)
     ours, theirs = (_in_box(loop.at(steps * loop.length), loop) for loop in (old, new))
     costs = [float(((np.roll(theirs, -k, axis=0) - ours) ** 2).sum()) for k in range(OFFSETS)]
@@ -134,7 +135,7 @@ def _begin(old: Loop, new: Loop) -> float:
 
 
 def _in_box(points: Floats, loop: Loop) -> Floats:
-    """Return points (n, 2) relative to the middle of the box of a loop, in its larger half side."""
+    """Return points (n, 2) relative to the centre of the box of a loop, scaled by half its longer side."""
     every = loop.curve.points
     low, high = every.min(axis=0), every.max(axis=0)
     return np.asarray((points - 0.5 * (low + high)) / (0.5 * float((high - low).max())))

@@ -143,9 +143,10 @@ def _opened(mesh: QuadMesh, base: Indices, loop: int) -> Floats:
 
 
 def _lines(columns: Floats, beyond: Floats, opened: Floats, settings: LayerSettings) -> Floats:
-    """Return the nodes (k, n, 2) of layers along columns (k, n, 2); `beyond` (k,) are the cells there.
+    """Return the nodes (k, n, 2) of layers along columns (k, n, 2).
 
-    Where columns are `opened` (k,) by 1, cells grow at one ratio to those beyond, whatever the first.
+    `beyond` (k,) gives the cell sizes beyond the layers. Where `opened` (k,) is 1, the cells grow by one
+    ratio up to these sizes, and the first-cell height is not prescribed.
     """
     rows, first = columns.shape[1] - 1, settings.first
 

@@ -52,10 +52,10 @@ def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indi
 
 
 def wall_bend(loop: Loop, arcs: Floats, window: int) -> Floats:
-    """Return the curvature (n,) of a loop at ascending arc lengths (n,), averaged over `window` each way.
+    """Return the absolute curvature (n,) of a loop at ascending arc lengths (n,), in radians per unit length.
 
-    It is an absolute value in radians per unit of the loop; its corners, which are among `arcs`, are not
-    included.
+    Each value is an average over `window` arc lengths on either side. The turning at corners of the loop does
+    not count; the corners must be among `arcs`.
     """
     along = loop.tangent(arcs)
     direction = arctan2(along[:, 1], along[:, 0])

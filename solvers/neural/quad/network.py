@@ -93,7 +93,10 @@ class UNet(Generic[Field]):
     """The sequence of the network's layers; subclasses compute or record `layer`, `silu` and `finer`."""
 
     def layer(self, name: str, x: Field, stride: int = 1, add: Field | None = None, room: str = "") -> Field:
-        """Return the convolution `name` of `x`, plus `add`; results with one `room` may share memory."""
+        """Return the convolution of `x` with the weights of layer `name`, plus `add`.
+
+        Results of calls with the same `room` may share memory.
+        """
         raise NotImplementedError
 
     def silu(self, x: Field, pad: int = 1) -> Field:

@@ -26,9 +26,13 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 
     `wall`, `far`: (batch, 2 MODES + 1) modes of F on the two walls.
 
-    Channels (batch, CHANNELS, COLUMNS) are the harmonic base and its slope along theta at `DEPTHS`, at unit
-    size; scalars (batch, SCALARS) log size, strip height and shear, about one; size (batch,) the root mean
-    square of the walls' deviation from straight.
+    The input consists of three arrays:
+
+    - channels (batch, CHANNELS, COLUMNS): the harmonic base and its slope along theta at the depths `DEPTHS`,
+      both divided by the size;
+    - scalars (batch, SCALARS): the logarithm of the size, the height and the shear of the strip, shifted so
+      that their magnitudes are about one;
+    - size (batch,): the root mean square deviation of the walls from straight lines.
     """
     mean = (far - wall)[:, 0]
     a, b = (xp.concatenate([xp.zeros_like(side[:, :1]), side[:, 1:]], 1) for side in (wall, far))
