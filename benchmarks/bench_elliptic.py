@@ -192,7 +192,10 @@ def leans(nodes: Floats, edges: Boundary) -> float:
 def walls(ni: int, nj: int) -> Iterator[str]:
     """Yield the table of channels with first cells of 1e-5 at both walls."""
     yield f"\n## Channels, first cells of 1e-5 at both walls, {ni} x {nj}\n"
-    yield "*angle to normal*: the largest angle of first cells' grid lines to the wall's normal, degrees.\n"
+    yield (
+        "*angle to normal*: largest angle between the wall normal and the grid lines of the first cells, "
+        "in degrees.\n"
+    )
     yield "| channel | method | folded | first cell error | angle to normal | ms |"
     yield "| --- " * 6 + "|"
     heights = Heights(south=1e-5, north=1e-5)

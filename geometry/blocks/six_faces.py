@@ -134,9 +134,10 @@ class SixFaces:
         )
 
     def at(self, knots: list[Floats], places: list[Floats]) -> SixFaces:
-        """Return the faces at other parameters: nodes are at `knots` per direction and wanted at `places`.
+        """Return the faces interpolated at other parameters.
 
-        Both lists increase from 0 to 1. Corners are kept, and nodes of an edge stay on that edge.
+        `knots` are the parameters of the present nodes in each direction, `places` those of the new nodes.
+        Both increase from 0 to 1. Corners are kept, and nodes of an edge stay on that edge.
         """
         made: dict[Side, Floats] = {}
         for side in FACES:

@@ -62,7 +62,7 @@ class StripOperator(Operator):
         return answer * smoothing()[:, None]
 
     def solve(self, boundaries: Sequence[Boundary], polish: Polish = "auto", **_: Any) -> list[Solution]:
-        """Return a grid inside each O boundary, with bitwise its nodes."""
+        """Return a grid inside each O boundary; its boundary nodes are bitwise those of the boundary."""
         self.check(boundaries)
         if not self.network:
             return conformal.solve(boundaries, polish)

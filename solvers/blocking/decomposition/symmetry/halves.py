@@ -92,7 +92,7 @@ def left_half(domain: Domain, mirror: Mirror) -> Half:
 
 
 def _stretch(loop: Loop, number: int, mirror: Mirror) -> _Stretch:
-    """Return the half of a loop across the mirror that lies to its left."""
+    """Return the left half of a loop that crosses the mirror line."""
     half, near = 0.5 * loop.length, _NEAR * loop.length
     begin = 0.5 * mirror.sums[number]
     if mirror.ahead_and_left(loop.at(begin + 0.5 * half))[1] < 0.0:
