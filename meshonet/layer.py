@@ -12,7 +12,7 @@ of their dtype; the arithmetic is in double precision. `torch.func.vmap` and `to
 functions. They need torch (extra ``train``).
 """
 
-from meshonet.solvers.differentiable import AirfoilGrids, BodyGrids, QuadGrids
-from meshonet.solvers.differentiable.grids import transfinite, winslow
+from meshonet.solvers.neural.differentiable import AirfoilGrids, BodyGrids, QuadGrids
+from meshonet.solvers.neural.differentiable.grids import transfinite, winslow
 
 __all__ = ["AirfoilGrids", "BodyGrids", "QuadGrids", "transfinite", "winslow"]

@@ -16,7 +16,7 @@ ELSEWHERE = (
     "formats/figure",  # pictures
     "solvers/neural/fit",  # torch and training
     "solvers/neural/models",
-    "solvers/differentiable",
+    "solvers/neural/differentiable",
     "solvers/neural/strip/dataset.py",
 )
 """Where other arithmetic is used, which no mesh comes from."""

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from periodic_domains import write_bank
 from printed import differences
 from spatial_shapes import box, cubed_sphere, half_sphere
 
@@ -130,6 +131,7 @@ def all_inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     tmp_path = tmp_path_factory.mktemp("pages")
     section = (ROOT / "examples" / "naca2412.dat").read_text()
     (tmp_path / "airfoil.dat").write_text(section)
+    write_bank(tmp_path / "bank.geojson", None)
     (tmp_path / "airfoils").mkdir()
     for name in ("a", "b"):
         (tmp_path / "airfoils" / f"{name}.dat").write_text(section)

@@ -78,7 +78,7 @@ def _grids(device: Device, operator: Operator, polish: Polish) -> Callable[[Sequ
     """Return the function from boundaries with equal node counts to nodes (batch, ni, nj, 2)."""
     import torch
 
-    from meshonet.solvers.differentiable import AirfoilGrids, BodyGrids, QuadGrids
+    from meshonet.solvers.neural.differentiable import AirfoilGrids, BodyGrids, QuadGrids
 
     grids: Any
     quad = operator.topology == "quad"

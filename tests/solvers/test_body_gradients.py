@@ -16,7 +16,7 @@ from meshonet.geometry.shapes.far_field import straight
 from meshonet.solvers.neural.registry import load
 
 torch = pytest.importorskip("torch")
-from meshonet.solvers.differentiable import BodyGrids  # noqa: E402 - it imports torch
+from meshonet.solvers.neural.differentiable import BodyGrids  # noqa: E402 - it imports torch
 
 torch.set_num_threads(1)  # tests run side by side
 

@@ -35,7 +35,7 @@ def matrices(m: int, count: int) -> tuple[Floats, Floats]:
 
 def shares_of(coarse: Floats) -> list[Floats]:
     torch = pytest.importorskip("torch")
-    from meshonet.solvers.differentiable.resample import inwards
+    from meshonet.solvers.neural.differentiable.resample import inwards
 
     return [share.numpy() for share in inwards(torch.from_numpy(np.ascontiguousarray(coarse)))]
 

@@ -9,7 +9,7 @@ from random_quads import random_quad
 
 from meshonet.geometry.arrays import Complexes
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.differentiable import QuadGrids
+from meshonet.solvers.neural.differentiable import QuadGrids
 from meshonet.solvers.neural.quad.coarse_grids import share
 from meshonet.solvers.neural.registry import load
 

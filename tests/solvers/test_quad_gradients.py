@@ -13,7 +13,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.neural.registry import load
 
 torch = pytest.importorskip("torch")
-from meshonet.solvers.differentiable import QuadGrids  # noqa: E402 - it imports torch
+from meshonet.solvers.neural.differentiable import QuadGrids  # noqa: E402 - it imports torch
 
 SIDES = ("south", "north", "west", "east")
 

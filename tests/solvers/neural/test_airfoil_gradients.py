@@ -15,7 +15,7 @@ from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.sampling import Sampling
 
 torch = pytest.importorskip("torch")
-from meshonet.solvers.differentiable import AirfoilGrids  # noqa: E402 - it imports torch
+from meshonet.solvers.neural.differentiable import AirfoilGrids  # noqa: E402 - it imports torch
 
 
 def airfoil(designation: str, ni: int, nj: int, **settings: Any) -> Boundary:

@@ -7,7 +7,7 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from meshonet.geometry.errors import InputError  # noqa: E402
-from meshonet.solvers.differentiable import AirfoilGrids, QuadGrids  # noqa: E402
+from meshonet.solvers.neural.differentiable import AirfoilGrids, QuadGrids  # noqa: E402
 
 
 def sides(*counts: int, dtype: torch.dtype = torch.float64) -> list[torch.Tensor]:

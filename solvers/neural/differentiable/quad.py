@@ -3,18 +3,18 @@
 from typing import ClassVar
 
 import torch
-from torch import Tensor
-
-from meshonet.geometry.arrays import Topology
-from meshonet.solvers.differentiable.resample import between, folded, refined
-from meshonet.solvers.differentiable.sides import (
+from meshonet.solvers.neural.differentiable.resample import between, folded, refined
+from meshonet.solvers.neural.differentiable.sides import (
     NetworkGrids,
     as_complex,
     as_numpy,
     as_planes,
     check_sides,
 )
-from meshonet.solvers.differentiable.transfinite import arc_lengths, interpolated
+from meshonet.solvers.neural.differentiable.transfinite import arc_lengths, interpolated
+from torch import Tensor
+
+from meshonet.geometry.arrays import Topology
 from meshonet.solvers.neural.quad.coarse_grids import answered, in_frame, nearer, share
 from meshonet.solvers.neural.quad.encoding import LATENT, WINSLOW
 from meshonet.solvers.neural.quad.picard import nodes_after
