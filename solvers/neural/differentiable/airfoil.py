@@ -5,8 +5,6 @@ The formulas are those of `meshonet.solvers.conformal.solve`; folded cells are n
 
 import numpy as np
 import torch
-from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
-from meshonet.solvers.neural.differentiable.sides import as_numpy, check_sides
 from torch import Tensor
 
 from meshonet.geometry.errors import InputError
@@ -15,6 +13,8 @@ from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
 from meshonet.solvers.conformal.evaluate import StripGrid
 from meshonet.solvers.conformal.strip import MODES, across, smoothing, wavenumbers
 from meshonet.solvers.elliptic.winslow import left_side
+from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
+from meshonet.solvers.neural.differentiable.sides import as_numpy, check_sides
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import load
 from meshonet.solvers.neural.strip.encoding import decode, encode

@@ -4,8 +4,6 @@ from typing import ClassVar
 
 import numpy as np
 import torch
-from meshonet.solvers.neural.differentiable.resample import between
-from meshonet.solvers.neural.differentiable.sides import NetworkGrids, as_complex, as_numpy, check_sides
 from torch import Tensor
 
 from meshonet.geometry.arrays import Topology, array_like
@@ -13,6 +11,8 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.resample import corner_damping
 from meshonet.solvers.algebraic.resample.o_grid import SQUARINGS, along_lines
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
+from meshonet.solvers.neural.differentiable.resample import between
+from meshonet.solvers.neural.differentiable.sides import NetworkGrids, as_complex, as_numpy, check_sides
 from meshonet.solvers.neural.quad.encoding import LATENT
 from meshonet.solvers.neural.quad.inside import inside, slope
 from meshonet.solvers.neural.quad.o_grids import NOT_ROUND, moved

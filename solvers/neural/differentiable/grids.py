@@ -3,12 +3,12 @@
 from collections.abc import Callable
 
 import torch
-from meshonet.solvers.neural.differentiable.members import MemberError
-from meshonet.solvers.neural.differentiable.transfinite import Sides, arc_lengths, interpolated
-from meshonet.solvers.neural.differentiable.winslow import solved
 from torch import Tensor
 
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.differentiable.members import MemberError
+from meshonet.solvers.neural.differentiable.transfinite import Sides, arc_lengths, interpolated
+from meshonet.solvers.neural.differentiable.winslow import solved
 
 MOST = 2**17  # coordinates solved at once on a CPU, so that a Krylov space fits in its cache
 

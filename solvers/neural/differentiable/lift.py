@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
-from meshonet.solvers.neural.differentiable.sides import as_numpy
 from torch import Tensor
 
 from meshonet.geometry.conformal.lift import SECOND_PRONG, Corner, Lift, follow, lift_body, removable
 from meshonet.geometry.polygon.mirror import farthest, handedness
+from meshonet.solvers.neural.differentiable.sides import as_numpy
 from meshonet.solvers.neural.quad.unrolled import middles
 
 

@@ -3,6 +3,9 @@
 from typing import ClassVar
 
 import torch
+from torch import Tensor
+
+from meshonet.geometry.arrays import Topology
 from meshonet.solvers.neural.differentiable.resample import between, folded, refined
 from meshonet.solvers.neural.differentiable.sides import (
     NetworkGrids,
@@ -12,9 +15,6 @@ from meshonet.solvers.neural.differentiable.sides import (
     check_sides,
 )
 from meshonet.solvers.neural.differentiable.transfinite import arc_lengths, interpolated
-from torch import Tensor
-
-from meshonet.geometry.arrays import Topology
 from meshonet.solvers.neural.quad.coarse_grids import answered, in_frame, nearer, share
 from meshonet.solvers.neural.quad.encoding import LATENT, WINSLOW
 from meshonet.solvers.neural.quad.picard import nodes_after

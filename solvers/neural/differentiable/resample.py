@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 import torch
-from meshonet.solvers.neural.differentiable.transfinite import with_rim
 from torch import Tensor
 
 from meshonet.geometry.arrays import Floats, array_like
 from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.resample.quad import REACH, mended
 from meshonet.solvers.algebraic.resample.spline import bending
+from meshonet.solvers.neural.differentiable.transfinite import with_rim
 
 
 def refined(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:

@@ -9,14 +9,14 @@ iterations was.
 from typing import Any
 
 import torch
+from torch import Tensor
+
+from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.neural.differentiable.gmres import gmres
 from meshonet.solvers.neural.differentiable.members import MemberError, as_one_batch, check_finite
 from meshonet.solvers.neural.differentiable.resample import between
 from meshonet.solvers.neural.differentiable.separable import Separable
 from meshonet.solvers.neural.differentiable.transfinite import Sides, arc_lengths, interpolated
-from torch import Tensor
-
-from meshonet.solvers.elliptic.winslow import left_side
 
 TOL = 1e-12  # preconditioned residual at which a grid is converged, relative to its extent
 ROUGH = 1e-3  # the same on coarse copies
