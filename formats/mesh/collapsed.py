@@ -49,8 +49,7 @@ def with_collapsed(grid: Grid, numbers: list[Indices]) -> list[Indices]:
         pairs.append(np.stack([first[same], second[same]], axis=-1))
     joined = np.concatenate(pairs)
     label = joined_labels(1 + max(int(number.max()) for number in numbers), [(joined[:, 0], joined[:, 1])])
-    rank = np.cumsum(label == np.arange(len(label))) - 1
-    return [rank[label[number]] for number in numbers]
+    return [label[number] for number in numbers]
 
 
 def refuse_collapsed(grid: Grid, what: str) -> None:

@@ -27,7 +27,7 @@ from meshonet.geometry.blocks.connection import Connection, Motion, check_connec
 from meshonet.geometry.blocks.find_connections import find_connections, order
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch, kind_of
-from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
+from meshonet.geometry.blocks.shared_nodes import joined_labels, with_equal_nodes
 from meshonet.geometry.blocks.transform import turned_patch
 from meshonet.geometry.errors import in_place
 
@@ -164,13 +164,10 @@ def _stated(
 
 def _groups(blocks: Sequence[Block], connections: Sequence[Connection]) -> list[list[int]]:
     """Return the indices of the blocks of each grid: connected blocks, and all surface patches together."""
-    label = list(range(len(blocks)))
     surface = [k for k, block in enumerate(blocks) if block.nodes.shape[2:] == (3,)]
     joined = [(each.block, each.donor) for each in connections] + [(surface[0], k) for k in surface]
-    for pair in joined:
-        a, b = (label[k] for k in pair)
-        label = [min(a, b) if each in (a, b) else each for each in label]
-    return [[k for k in range(len(blocks)) if label[k] == first] for first in sorted(set(label))]
+    label = joined_labels(len(blocks), [(np.array(a), np.array(b)) for a, b in joined])
+    return [np.flatnonzero(label == number).tolist() for number in range(int(label.max()) + 1)]
 
 
 def _joined(

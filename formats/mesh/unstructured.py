@@ -74,13 +74,5 @@ def node_numbers(grid: Grid) -> list[Indices]:
 
     Numbers start at 0 and have no gaps, in the order of the blocks, i fastest.
     """
-    labels = shared_nodes([block.counts for block in grid.blocks], grid.connections)
-    flat = np.concatenate([label.ravel(order="F") for label in labels])
-    places = np.arange(len(flat))
-    first = np.empty(len(flat), dtype=np.int64)
-    first[flat[::-1]] = places[::-1]  # of those that are one, the first is written last
-    begins = flat[first[flat] == places]
-    rank = np.empty(len(flat), dtype=np.int64)
-    rank[begins] = np.arange(len(begins))
-    parts = np.split(rank[flat], np.cumsum([label.size for label in labels])[:-1])
-    return [part.reshape(label.shape, order="F") for part, label in zip(parts, labels, strict=True)]
+    counts = [block.counts for block in grid.blocks]
+    return list(shared_nodes(counts, grid.connections, order="F"))

@@ -10,6 +10,7 @@
 """
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -17,43 +18,37 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import joined_classes
 
 _PASSES = 9
 """Periodic sides that end on other ones need one more pass each."""
 
 
 def shared_nodes(
-    counts: Sequence[tuple[int, ...]], connections: Sequence[Connection], *, periodic: bool = False
-) -> tuple[Indices, ...]:
+    counts: Sequence[tuple[int, ...]], connections: Sequence[Connection], *, periodic: bool = False,
+    order: Literal["C", "F"] = "C",
+) -> tuple[Indices, ...]:  # fmt: skip
     """Return global numbers, from 0, of the nodes of blocks with `counts` nodes along their directions.
 
     Nodes that connections join, directly or through others, have one number. Numbers ascend in the order in
-    which nodes first appear, block after block, the last index fastest. The two sides of a periodic
-    connection have separate numbers unless `periodic`.
+    which nodes first appear, block after block, the last index fastest, or the first one in `order` F. The
+    two sides of a periodic connection have separate numbers unless `periodic`.
     """
-    ends, numbers = numbered(counts)
+    ends, numbers = numbered(counts, order)
     joined = [each.pairs(numbers) for each in connections if periodic or each.transform is None]
-    changed = True
-    while changed:  # one pass more for each further block that meets at a node
-        changed = False
-        for own, donor in joined:
-            least = np.minimum(own, donor)
-            changed = changed or bool((own != donor).any())
-            own[...], donor[...] = least, least
     if not joined:
         return tuple(numbers)
-    kept = np.zeros(int(ends[-1]), dtype=bool)
-    for number in numbers:
-        kept[number.ravel()] = True
-    rank = np.cumsum(kept) - 1
-    return tuple(rank[number] for number in numbers)
+    label = joined_labels(int(ends[-1]), joined)
+    return tuple(label[number] for number in numbers)
 
 
-def numbered(counts: Sequence[tuple[int, ...]]) -> tuple[Indices, list[Indices]]:
+def numbered(
+    counts: Sequence[tuple[int, ...]], order: Literal["C", "F"] = "C"
+) -> tuple[Indices, list[Indices]]:
     """Return the offsets of the blocks in a list of all their nodes, and each block's node numbers in it."""
     ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
-    numbers = [np.arange(a, b).reshape(n) for a, b, n in zip(ends, ends[1:], counts, strict=False)]
-    return ends, numbers
+    parts = zip(ends, ends[1:], counts, strict=False)
+    return ends, [np.arange(a, b).reshape(n, order=order) for a, b, n in parts]
 
 
 def node_table(
@@ -80,17 +75,12 @@ def places_among(
 
 
 def joined_labels(count: int, pairs: Sequence[tuple[Indices, Indices]]) -> Indices:
-    """Return for each of `count` nodes the lowest that it is joined to, directly or through others."""
-    label = np.arange(count)
-    changed = True
-    while changed:  # one pass more for each further block that meets at a node
-        before = label.copy()
-        for own, donor in pairs:
-            least = np.minimum(label[own], label[donor])
-            np.minimum.at(label, own, least)
-            np.minimum.at(label, donor, least)
-        label = label[label]
-        changed = not np.array_equal(label, before)
+    """Return a label for each of `count` nodes, from 0 in the order in which they first appear.
+
+    Nodes that arrays of pairs join, directly or through others, have the same label.
+    """
+    rows = [np.stack([own.ravel(), donor.ravel()], axis=1) for own, donor in pairs]
+    label, _ = joined_classes(np.concatenate([np.empty((0, 2), np.intp), *rows]), count)
     return label
 
 
@@ -128,13 +118,14 @@ def _equal(
     """Return `nodes` (n, d), each equal to the first that it is joined to, directly or through others."""
     fixed = [pair for pair, each in zip(pairs, connections, strict=True) if each.transform is None]
     label = joined_labels(len(nodes), fixed)
-    nodes = nodes[label]
+    first = np.unique(label, return_index=True)[1][label]
+    nodes = nodes[first]
     for _ in range(_PASSES):
         old = nodes.copy()
         for (own, donor), each in zip(pairs, connections, strict=True):
             if each.transform is not None:
-                nodes[label[donor]] = each.transform(nodes[own])
-                nodes = nodes[label]
+                nodes[first[donor]] = each.transform(nodes[own])
+                nodes = nodes[first]
         if np.array_equal(nodes, old):
             break
     return nodes

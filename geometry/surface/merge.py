@@ -47,9 +47,8 @@ def merged(patches: Sequence[Floats], tolerance: float = TOLERANCE) -> tuple[Flo
     ]
     on_edge = np.flatnonzero(np.concatenate([edge.ravel() for edge in edges]))
     pairs = on_edge[near_pairs(points[on_edge], tolerance * extent_of(points))]
-    first = joined_labels(len(points), [(pairs[:, 0], pairs[:, 1])])
-    kept = first == np.arange(len(points))
-    numbers = (np.cumsum(kept) - 1)[first]
+    numbers = joined_labels(len(points), [(pairs[:, 0], pairs[:, 1])])
+    kept = np.unique(numbers, return_index=True)[1]
     ends = np.cumsum([0, *(patch.shape[0] * patch.shape[1] for patch in patches)])
     lattices = tuple(
         numbers[start:end].reshape(patch.shape[:2])

@@ -173,8 +173,8 @@ def _with_poles(nodes: Floats, numbers: tuple[Indices, ...]) -> tuple[Floats, tu
         return nodes, numbers
     first, second = (np.concatenate(ends) for ends in zip(*pairs, strict=True))
     label = joined_labels(len(nodes), [(first, second)])
-    kept, rank = np.unique(label, return_inverse=True)
-    return nodes[kept], tuple(rank.reshape(-1)[number] for number in numbers)
+    kept = np.unique(label, return_index=True)[1]
+    return nodes[kept], tuple(label[number] for number in numbers)
 
 
 def _poles(face: Indices, nodes: Floats, near: float) -> list[tuple[Indices, Indices]]:

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.blocks.shared_nodes import joined_labels
 from meshonet.geometry.elementary import angle, arctan2, log, modulus, times
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -255,16 +256,12 @@ def _parts(free: Bools, groups: Sequence[Indices]) -> Indices:
 
     Free nodes of a row of one of `groups` (k, m) are in the same part.
     """
-    label = np.where(free, np.arange(len(free)), len(free))
-    while True:
-        before = label.copy()
-        for group in groups:
-            inside = free[group]
-            least = np.broadcast_to(label[group].min(axis=1)[:, None], group.shape)
-            np.minimum.at(label, group[inside], least[inside])
-        label[free] = label[label[free]]
-        if np.array_equal(label, before):
-            break
+    pairs = []
+    for group in groups:
+        inside = free[group]
+        first = np.take_along_axis(group, inside.argmax(axis=1)[:, None], axis=1)
+        pairs.append((np.broadcast_to(first, group.shape)[inside], group[inside]))
+    label = joined_labels(len(free), pairs)
     part = np.full(len(free), -1, dtype=np.intp)
     part[free] = np.unique(label[free], return_inverse=True)[1]
     return part
