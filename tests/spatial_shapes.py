@@ -26,6 +26,20 @@ def half_sphere(n: int = 9) -> Grid:
     return Grid(tuple(Block(patch) for patch in cut))
 
 
+def ball(
+    around: int, along: int, angle: float = 2.0, begin: float = 0.0, ends: tuple[float, float] = (0, 1)
+) -> Floats:
+    """Nodes (around + 1, along + 1, 3) of a part of the unit sphere, x the axis; angles over pi."""
+    turn = np.pi * np.linspace(begin, begin + angle, around + 1)[:, None]
+    away = np.pi * np.linspace(*ends, along + 1)[None]
+    y, z = np.sin(away) * np.cos(turn), np.sin(away) * np.sin(turn)
+    nodes = np.stack([-np.cos(away) + 0.0 * turn, y, z], axis=-1)
+    nodes[np.abs(nodes) < 1e-12] = 0.0
+    if angle == 2.0:
+        nodes[-1] = nodes[0]
+    return nodes
+
+
 def box(ni: int = 9, nj: int = 8, nk: int = 7, bump: float = 0.2) -> Floats:
     """Nodes (ni, nj, nk, 3) of a box 2 x 1 x 1 whose bottom has a bump, interpolated linearly in between."""
     x, y, z = np.meshgrid(np.linspace(0, 2, ni), np.linspace(0, 1, nj), np.linspace(0, 1, nk), indexing="ij")

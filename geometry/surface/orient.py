@@ -11,6 +11,9 @@ from meshonet.geometry.polygon.corners import Indices
 NEARLY_CLOSED = 0.3
 """Vector area over area up to which a surface with holes still counts as one that encloses something."""
 
+SMALL_HOLES = 0.02
+"""The same where planes normal to several axes could close it."""
+
 
 def turned_alike(
     patch: Indices, half_edges: tuple[Indices, Indices], twin: Indices, count: int
@@ -53,17 +56,27 @@ def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | No
     """Return 1 if consistently oriented `quads` (m, 4) face outwards, -1 if they face inwards.
 
     Open edges in planes normal to an axis of `flat` are closed by these planes. None if the surface does not
-    enclose a volume: more than `NEARLY_CLOSED` of its area faces one way, or only planes normal to two axes
-    would close it, as they do both the inside and the outside of a box corner.
+    enclose a volume: more than `NEARLY_CLOSED` of its area faces one way. Planes normal to two axes would
+    close both the inside and the outside of a box corner; there, those of one axis must leave holes of less
+    than `SMALL_HOLES` of the area, as half a fuselage does that is open at its end.
     """
-    if len(flat) > 1:
-        return None
     a, b, c, d = (nodes[quads[:, k]] for k in range(4))
     area = 0.5 * np.cross(c - a, d - b)
-    area[:, list(flat)] = 0.0  # planes close what faces along their axis
+    arms = 0.25 * (a + b + c + d) - nodes[quads.ravel()].mean(axis=0)
+    most = NEARLY_CLOSED if len(flat) < 2 else SMALL_HOLES
+    signs = {_sign(area, arms, axis, most) for axis in flat or (None,)} - {None}
+    return signs.pop() if len(signs) == 1 else None
+
+
+def _sign(area: Floats, arms: Floats, flat: int | None, most: float) -> int | None:
+    """Return the sign of the volume within faces of vector `area` (m, 3) at `arms` from its centre.
+
+    None if more than `most` of the area, without what faces along the axis `flat`, faces one way.
+    """
+    if flat is not None:
+        area = area.copy()
+        area[:, flat] = 0.0  # planes close what faces along their axis
     total = area.sum(axis=0)
-    if np.sqrt((total**2).sum()) > NEARLY_CLOSED * np.sqrt((area**2).sum(axis=1)).sum():
+    if np.sqrt((total**2).sum()) > most * np.sqrt((area**2).sum(axis=1)).sum():
         return None
-    centre = nodes[quads.ravel()].mean(axis=0)
-    volume = float((area * (0.25 * (a + b + c + d) - centre)).sum())
-    return -1 if volume < 0.0 else 1
+    return -1 if float((area * arms).sum()) < 0.0 else 1

@@ -11,6 +11,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -30,6 +31,7 @@ from meshonet.geometry.surface.half_edges import ends_of, open_sides, paired, ri
 from meshonet.geometry.surface.merge import merged
 from meshonet.geometry.surface.orient import outward_sign, turned_alike
 from meshonet.geometry.surface.planes import Plane, planes_of
+from meshonet.geometry.surface.poles import without_poles
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +83,10 @@ class Surface:
         return place_of(self.nodes, self.lattices, node)
 
 
-def surface_of(grid: Grid) -> Surface:
+def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -> Surface:
     """Return the surface that the patches (ni, nj, 3) of a grid form together.
+
+    A pole, a side that is a single point, becomes a core patch with a note, unless `poles` says otherwise.
 
     Patches that face the other way are reversed along i, with a note. A closed surface, or one that planes
     normal to one axis close, faces outwards; any other faces the way that most of its area does.
@@ -93,7 +97,8 @@ def surface_of(grid: Grid) -> Surface:
     if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"
         raise InputError(problem, "give patches of a surface in space")
-    nodes, lattices = merged([block.nodes for block in grid.blocks])
+    patches, owners, cores = without_poles([block.nodes for block in grid.blocks], replace=poles == "replace")
+    nodes, lattices = merged(patches)
     quads = lattice_quads(lattices)
     check_quads(nodes, lattices, quads)
     twin, crowded = paired(quads, len(nodes))
@@ -105,8 +110,8 @@ def surface_of(grid: Grid) -> Surface:
     check_sides(nodes, lattices, quads, twin, valence)
     zones = grid.provenance.get("zones") or ()
     named = len(zones) == len(grid.blocks) and all(isinstance(name, str) and name for name in zones)
-    names = tuple(zones) if named else ("wall",) * len(grid.blocks)
-    return Surface(nodes, lattices, names, twin, ring, valence, planes, notes)
+    names = tuple(zones[owner] if named else "wall" for owner in owners)
+    return Surface(nodes, lattices, names, twin, ring, valence, planes, (*cores, *notes))
 
 
 def _turned(

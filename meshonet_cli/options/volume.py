@@ -53,6 +53,11 @@ class VolumeOptions:
         "all open edges are free. [default: open edges that lie in a plane normal to an axis are in a plane "
         "of symmetry, others are free]",
     )] = None
+    poles: Annotated[Literal["replace", "refuse"], _option(
+        "--poles", metavar="replace|refuse",
+        help="Sides of surface patches that are a single point, as at the nose of a fuselage: replace makes "
+        "a core patch there and a few rows around it, refuse makes them an error.",
+    )] = "replace"
     energy: Annotated[Literal["angles", "shape"] | None, _option(
         "--energy", metavar="angles|shape",
         help="Functional that is minimised inside six faces. angles favours right angles and lengths that "

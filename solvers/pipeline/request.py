@@ -117,6 +117,7 @@ class Volume(Request):
     coarse: int | Literal["auto"] | None = "auto"
     layers: int | None = None
     symmetry: Literal["x", "y", "z", "none"] | None = None
+    poles: Literal["replace", "refuse"] = "replace"
     energy: Literal["angles", "shape"] | None = None
 
     @property
@@ -196,6 +197,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         Number of nodes along each grid line of a volume marched from a surface, including the wall node.
     symmetry : {'x', 'y', 'z', 'none'}, optional
         Axis normal to the plane of symmetry with the open edges of a surface.
+    poles : {'replace', 'refuse'}, optional
+        What becomes of sides of surface patches that are a single point: core patches, or an error.
     energy : {'angles', 'shape'}, optional
         Functional that is minimised inside six faces; None: angles.
     threads : int, optional

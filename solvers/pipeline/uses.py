@@ -57,7 +57,7 @@ USES: dict[str, frozenset[str]] = {
     CHANNEL: _OF_ONE,  # with those of methods that are no networks
     MANY: _OF_MANY,
     SMOOTHED: _OF_MANY | _row("slide max_cycles"),
-    OFF_SURFACE: _row(_FIRST, "far_field layers symmetry"),
+    OFF_SURFACE: _row(_FIRST, "far_field layers symmetry poles"),
     INSIDE: _row("res coarse blending tol max_cycles energy"),
     "variational in space": _row("res coarse max_cycles energy"),
     "winslow in space": _row("res tol max_cycles"),
@@ -69,7 +69,7 @@ USES: dict[str, frozenset[str]] = {
 
 FOR_MANY = tuple(sorted(USES[MANY] - USES[ONE]))
 """Options any of which asks for many blocks."""
-OF_SURFACE = _row("layers symmetry")
+OF_SURFACE = _row("layers symmetry poles")
 """Options that only marching from a surface has a use for."""
 IN_SPACE = OF_SURFACE | _row("energy")
 """Options that no grid in the plane has a use for."""

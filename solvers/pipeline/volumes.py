@@ -70,7 +70,7 @@ def _march(shape: SpatialShape, request: Volume) -> Solution:
         first_cell=height, layers=request.layers, far_field=request.sampling.far_field,
         symmetry=request.symmetry, growth=request.growth,
     )  # fmt: skip
-    solution = march_surface(surface_of(shape.grid), settings)
+    solution = march_surface(surface_of(shape.grid, poles=request.poles), settings)
     return _noted(solution, request.height_note("on a length of 1"))
 
 

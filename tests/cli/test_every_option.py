@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 from blade_row import write_row
 from command_line import Meshonet, dataset, duct, wave
-from spatial_shapes import cubed_sphere, half_sphere
+from spatial_shapes import ball, cubed_sphere, half_sphere
 
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
@@ -146,6 +146,7 @@ MARCHED = {
     "--layers": (BALL, "OPTION 9", "nodes"),
     "--energy": (f"bent.vts --res 5 {MADE}", "OPTION shape", "nodes"),
     "--symmetry": (f"cap.xyz --first-cell .01 --layers 9 --far-field 3 {MADE}", "OPTION none", "nodes"),
+    "--poles": (f"nose.xyz --first-cell .01 --layers 9 --far-field 3 {MADE}", "OPTION refuse", "code"),
 }
 TRAINING = "arches.h5 --epochs 4 --points 60 --batch 4 -o new.safetensors"
 PICTURE = printing(f"{GRID} -o made.png", "missing.h5 -o made.png") | files(GRID, made="png", kind="png")
@@ -402,6 +403,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     Grid.from_nodes(cube + 0.03 * cube[..., ::-1] ** 2).write(folder / "bent.vts")
     cubed_sphere().write(folder / "ball.xyz")
     half_sphere().write(folder / "cap.xyz")
+    Grid.from_nodes(ball(12, 10)).write(folder / "nose.xyz")
     shape = np.loadtxt(Path(__file__).parents[2] / "examples" / "naca2412.dat", skiprows=1) * 40
     (folder / "large.dat").write_text("large\n" + "\n".join(f"{x} {y}" for x, y in shape))
     for name in THERE:

@@ -125,7 +125,9 @@ def test_a_pole_is_refused_with_its_side() -> None:
     angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 13), np.linspace(0, 1, 5), indexing="ij")
     cone = np.stack([(1 - height) * np.cos(angle), (1 - height) * np.sin(angle), height], axis=-1)
     cone[-1] = cone[0]
-    text = refused([cone])
+    with pytest.raises(InputError) as error:
+        surface_of(grid_of([cone]), poles="refuse")
+    text = str(error.value)
     assert "north side of patch 0 is a single point" in text
 
 

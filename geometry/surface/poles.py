@@ -1,0 +1,150 @@
+"""Poles of a surface, sides of patches that are a single point, replaced by core patches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, extent_of, norms
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.surface.merge import TOLERANCE
+from meshonet.geometry.surface.pole_core import core_of
+
+_TURNS = {"west": 1, "north": 2, "east": -1, "south": 0}
+"""Quarter turns of a patch's indices (`numpy.rot90`) that bring a side to the south, j = 0."""
+_LEAST = {1: 2, 2: 4, 4: 8}
+"""Least number of cells around a pole, by the angle of its patches in right angles."""
+
+
+@dataclass(frozen=True)
+class _FanPatch:
+    """A patch of a fan, turned (and mirrored) so that its pole is at j = 0 and i runs as in the fan.
+
+    `both` tells that there is a pole at its other end too.
+    """
+
+    patch: int
+    turns: int
+    mirrored: bool
+    both: bool
+
+    def turned(self, patches: Sequence[Floats]) -> Floats:
+        nodes = np.rot90(patches[self.patch], self.turns, (0, 1))
+        return nodes[::-1] if self.mirrored else nodes
+
+    def back(self, nodes: Floats) -> Floats:
+        return np.ascontiguousarray(np.rot90(nodes[::-1] if self.mirrored else nodes, -self.turns, (0, 1)))
+
+
+def without_poles(
+    patches: Sequence[Floats], *, replace: bool = True
+) -> tuple[list[Floats], list[int], tuple[str, ...]]:
+    """Return patches (ni, nj, 3) without poles, the patch that each one replaces or is, and notes.
+
+    Patches keep their numbers and gain rows in place of their first columns; cores are appended. Where
+    several patches meet in a pole they get one core together. Without `replace` all stay as they are.
+
+    Raises InputError: too few cells around a pole, or an odd number of them.
+    """
+    out, owners, notes = list(patches), list(range(len(patches))), []
+    while replace and (fan := _next_fan(out)):
+        core, note = _replaced(out, fan)
+        out.append(core)
+        owners.append(owners[fan[0].patch])
+        notes.append(note)
+    return out, owners, tuple(notes)
+
+
+def _replaced(patches: list[Floats], fan: list[_FanPatch]) -> tuple[Floats, str]:
+    """Return the core in place of the pole of a fan, and a note, and change its `patches`."""
+    turned = [member.turned(patches) for member in fan]
+    columns = min(nodes.shape[1] for nodes in turned)
+    common = [nodes[:, :columns] for nodes in turned]
+    joined = np.concatenate([common[0], *(nodes[1:] for nodes in common[1:])])
+    slack = TOLERANCE * extent_of(joined.reshape(-1, 3))
+    closed = bool((np.abs(joined[0] - joined[-1]) <= slack).all())
+    quarters = 4 if closed else _right_angles(joined)
+    cells, place = (
+        len(joined) - 1,
+        ", ".join(f"{name}={x:.6g}" for name, x in zip("xyz", joined[0, 0], strict=True)),
+    )
+    whose = "patch " + ", ".join(str(member.patch) for member in fan)
+    if cells < _LEAST[quarters] or (closed and cells % 2):
+        problem = f"{cells} cells run around the pole of {whose}, a side that is a single point"
+        least = f"{_LEAST[quarters]} or more" + (", an even number," if closed else "")
+        raise InputError(problem, f"give {least} or a patch of its own (a core) there", place=place)
+    limit = min(
+        (nodes.shape[1] - 1) // (2 if member.both else 1) for nodes, member in zip(turned, fan, strict=True)
+    )
+    core = core_of(joined, quarters, limit)
+    start = 0
+    for nodes, member in zip(turned, fan, strict=True):
+        stop = start + len(nodes)
+        patches[member.patch] = member.back(
+            np.concatenate([core.rows[:-1, start:stop].swapaxes(0, 1), nodes[:, core.at :]], axis=1)
+        )
+        start = stop - 1
+    a, b = (count - 1 for count in core.nodes.shape[:2])
+    return (
+        core.nodes,
+        f"the pole of {whose} at {place} became a core of {a} x {b} cells, patch {len(patches)}",
+    )
+
+
+def _right_angles(fan: Floats) -> int:
+    """Return the angle between the first and last curves of an open fan, in right angles: 1 or 2.
+
+    Lines around the pole leave the planes of these curves at right angles, and turn as much as the planes.
+    """
+    around = np.diff(fan[:, 1], axis=0)[[0, -1]]
+    around /= norms(around)[:, None]
+    return 2 if float((around[0] * around[1]).sum()) < -0.5 else 1
+
+
+def _next_fan(patches: Sequence[Floats]) -> list[_FanPatch] | None:
+    """Return the patches around one pole, in order and turned the same way, None if there is no pole."""
+    slack = TOLERANCE * max(extent_of(patch.reshape(-1, 3)) for patch in patches)
+    fans = [member for number, patch in enumerate(patches) for member in _fans(number, patch, slack)]
+    if not fans:
+        return None
+    nodes = [member.turned(patches) for member in fans]
+    used, chain = {0}, [fans[0]]
+    first, last = nodes[0][0], nodes[0][-1]
+    while not _same(first, last, slack):
+        # forwards from the last curve of the chain, else backwards from its first
+        found = None
+        for k in (k for k in range(len(fans)) if k not in used):
+            for mirrored in (False, True):
+                own = nodes[k][::-1] if mirrored else nodes[k]
+                if found is None and _same(own[0], last, slack):
+                    found, last = (k, mirrored, len(chain)), own[-1]
+                elif found is None and _same(own[-1], first, slack):
+                    found, first = (k, mirrored, 0), own[0]
+        if found is None:
+            break
+        k, mirrored, at = found
+        used.add(k)
+        chain.insert(at, _FanPatch(fans[k].patch, fans[k].turns, mirrored, fans[k].both))
+    return chain
+
+
+def _fans(number: int, patch: Floats, slack: float) -> list[_FanPatch]:
+    """Return a patch once for each of its poles."""
+    points = {
+        name: bool((np.ptp(np.rot90(patch, turns, (0, 1))[:, 0], axis=0) <= slack).all())
+        for name, turns in _TURNS.items()
+    }
+    pairs = {"west": "east", "east": "west", "south": "north", "north": "south"}
+    return [
+        _FanPatch(number, _TURNS[name], mirrored=False, both=points[pairs[name]])
+        for name, is_pole in points.items()
+        if is_pole
+    ]
+
+
+def _same(one: Floats, other: Floats, slack: float) -> bool:
+    """Return whether two curves out of a pole are the same as far as both go."""
+    count = min(len(one), len(other))
+    return bool((np.abs(one[:count] - other[:count]) <= slack).all())
