@@ -8,6 +8,7 @@ from pathlib import Path
 from meshonet.formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
 from meshonet.formats.source import LARGEST, open_source
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.copies import copied
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.revolve import AxisLine, Revolution, revolution, revolved
@@ -29,6 +30,7 @@ class Conversion:
     coarsen : keep every `coarsen`-th node.
     revolve : angle in degrees by which planar grids are revolved about `axis`; None leaves them planar.
     axis : line in the plane; None is the x axis.
+    copies : number of copies of a periodic grid beside each other.
     """
 
     extrude: float | None = None
@@ -38,6 +40,7 @@ class Conversion:
     coarsen: int = 1
     revolve: float | None = None
     axis: AxisLine | None = None
+    copies: int = 1
 
     def turn(self) -> Revolution | None:
         """Return how grids are turned about an axis, None if they are not."""
@@ -59,12 +62,12 @@ class Conversion:
         return tuple(self.extrude * k / (planes - 1) for k in range(planes))
 
     def __call__(self, grid: Grid | Boundary) -> Grid | Boundary:
-        """Return a grid coarsened, swapped and normalised; a boundary, which `read` normalises, unchanged."""
+        """Return a grid with the changes that keep its dimension; a boundary unchanged: `read` changes it."""
         if isinstance(grid, Boundary):
             return grid
         grid = coarser_grid(grid, self.coarsen) if self.coarsen > 1 else grid
         grid = turned(grid) if self.swap else grid
-        return normalised(grid) if self.normalise else grid
+        return copied(normalised(grid) if self.normalise else grid, self.copies)
 
     def read(self, source: str, fmt: str | None, *, boundaries: bool) -> Iterator[Grid | Boundary]:
         """Yield the boundaries of `source`, or else its grids."""
@@ -75,7 +78,7 @@ class Conversion:
 
     def of_boundaries(self, source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
         """Return whether boundaries are written: grids are not changed, and one of the formats has none."""
-        if self.heights() or self.turn() or self.swap or self.coarsen > 1:
+        if self.heights() or self.turn() or self.swap or self.coarsen > 1 or self.copies > 1:
             return False
         try:
             written = format_for_output(output, to_format, "boundaries")

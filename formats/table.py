@@ -105,7 +105,8 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file, or the one named",
-        "openfoam.write:write_grids", choices=(("ascii", "binary"),), names_patches=True, fills_folder=True,
+        "openfoam.write:write_grids", choices=(("ascii", "binary"), ("cyclic", "cyclicami")),
+        names_patches=True, fills_folder=True,
         blocks="merged", space=_VOLUMES,
     ),
     _format(

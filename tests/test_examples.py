@@ -11,11 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from blade_row import BLADES, write_row
 from spatial_shapes import box
 
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.revolve import Revolution, revolved
 from meshonet_cli.commands import COMMANDS
 
 ROOT = Path(__file__).parents[1]
@@ -65,6 +67,9 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (made / "wing.toml").write_text(section.format(1, 0) + section.format(0.5, 2) + "sweep = 20\n")
     bend = "[[pieces]]\nline = 2\n[[pieces]]\narc = 90\nradius = 2\ntowards = [0, 1, 0]\n"
     (made / "bend.toml").write_text(bend)
+    write_row(made).rename(made / "rotor.toml")
+    square = np.stack(np.meshgrid([0.0, 1.0], [1.0, 1.5, 2.0], indexing="ij"), axis=-1)
+    revolved(Grid((Block(square),)), Revolution(360.0 / BLADES)).write(made / "rotor.cgns")
     (made / "path.csv").write_text("0,0,0\n9,0,0\n18,5,1\n")
     (made / "duct.csv").write_text("0,0\n1,0.2\n2,0\n2,1\n0,1\n")
     assert shell("meshonet layout plate.geojson -o plate.json", made).returncode == 0

@@ -56,9 +56,14 @@ def with_empty_planes(grid: Grid, parts: Mapping[str, NamedFaces]) -> dict[str, 
 
 
 def patches_of(
-    grid: Grid, parts: Mapping[str, NamedFaces], pairs: Sequence[PeriodicPair], points: Floats
-) -> list[CasePatch]:
-    """Return name, type and additional entries of the patch of each part; periodic sides are ``cyclic``."""
+    grid: Grid, parts: Mapping[str, NamedFaces], pairs: Sequence[PeriodicPair], points: Floats,
+    periodic: str = "cyclic",
+) -> list[CasePatch]:  # fmt: skip
+    """Return name, type and additional entries of the patch of each part; `periodic` sides have this type.
+
+    Nodes of periodic sides correspond, so that ``cyclic`` suffices, which copies values from face to face.
+    ``cyclicAMI`` interpolates between any two sides.
+    """
     kind = kinds(grid, grid.outer_patches())
     word = words((name for name in parts if name != PLANES), taken=[EMPTY], letter=True)
     patches = {PLANES: CasePatch(EMPTY, "empty", 0)}
@@ -71,7 +76,7 @@ def patches_of(
         ends = (pair.name, pair.partner, pair.motion), (pair.partner, pair.name, pair.motion.inverse())
         for name, partner, motion in ends:
             more = f"neighbourPatch  {word[partner]};", *_transform(motion)
-            patches[name] = CasePatch(word[name], "cyclic", 0, more)
+            patches[name] = CasePatch(word[name], periodic, 0, more)
     return [patches[name]._replace(size=len(part.cells)) for name, part in parts.items()]
 
 

@@ -55,7 +55,8 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
         faces, parts = without_collapsed(faces, parts)
     if not len(faces.owner):
         raise InputError("no cell of the grid has a volume", "give a grid whose nodes are apart")
-    patches = patches_of(grid, parts, pairs, points)
+    periodic = "cyclicAMI" if "cyclicami" in options else "cyclic"
+    patches = patches_of(grid, parts, pairs, points, periodic)
     binary = "binary" in options or (len(points) > _SMALL and "ascii" not in options)
     for name in ("constant", "system"):
         (path.parent / name).mkdir(exist_ok=True)

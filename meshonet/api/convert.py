@@ -21,6 +21,7 @@ def convert(
     coarsen: int = 1,
     revolve: float | None = None,
     axis: Sequence[float] | None = None,
+    copies: int = 1,
     from_format: str | None = None,
     to_format: str | None = None,
 ) -> None:
@@ -49,6 +50,9 @@ def convert(
         periodic sides, 360 a full revolution.
     axis : sequence of float, optional
         Axis of the revolution in the plane: point and direction (x, y, dx, dy); None is the x axis.
+    copies : int, optional
+        Number of copies of a periodic grid beside each other, each joined to the next: passages of a blade
+        row, up to the whole annulus.
     from_format, to_format : str, optional
         Formats of input and output; needed if extensions and content do not determine them.
 
@@ -56,7 +60,8 @@ def convert(
     ------
     InputError
         A format that cannot be read or written, or cannot store three-dimensional grids; a height that is not
-        positive; an axis that intersects the grid; numbers of cells that are not multiples of `coarsen`.
+        positive; an axis that intersects the grid; numbers of cells that are not multiples of `coarsen`;
+        `copies` of a grid that is not periodic.
 
     Examples
     --------
@@ -67,7 +72,7 @@ def convert(
     ((41, 17, 2), (21, 9, 2))
     """
     conversion = Conversion(
-        extrude, planes, swap, normalise, coarsen, revolve, None if axis is None else AxisLine(*axis)
+        extrude, planes, swap, normalise, coarsen, revolve, None if axis is None else AxisLine(*axis), copies
     )
     boundaries = conversion.of_boundaries(str(source), str(output), from_format, to_format)
     kind: Kind = "boundaries" if boundaries else "grids"

@@ -15,6 +15,7 @@ EXAMPLES = (
     "meshonet tfi duct.csv --res 41x21 -o - | meshonet convert - coarse.vts --coarsen 2",
     "meshonet convert grid.vts case/case.foam --extrude 0.1",
     "meshonet convert grid.vts wedge/case.foam --revolve 5 --axis 0,-40,1,0",
+    "meshonet convert rotor.cgns annulus.cgns --copies 23",
     "meshonet convert grid.vts grid.p3d --plot3d fortran,big,single",
     "meshonet convert --list-formats",
 )
@@ -71,6 +72,11 @@ def convert(
         help="Keep every K-th node along xi and eta. K must divide the number of cells in both directions "
         "and the indices of nodes at corners of walls.",
     )] = None,
+    copies: Annotated[int | None, _option(
+        "--copies", metavar="K", min=1,
+        help="Copy a periodic grid K times, each copy joined to the next: passages of a blade row, up to the "
+        "whole annulus. [default: 1]",
+    )] = None,
     revolve: o.Revolve = None,
     axis: o.Axis = None,
     list_formats: Annotated[bool, _output(
@@ -89,6 +95,8 @@ def convert(
         remedy = f"name it: meshonet convert {words[0] or 'IN'} OUT"
         raise InputError("there is no file to write", remedy, source="convert")
     batch = run.batch(run.inputs(sources), replace(files, output=target))
-    conversion = Conversion(extrude, planes, swap, normalise, coarsen or 1, revolve, o.axis_of(axis))
+    conversion = Conversion(
+        extrude, planes, swap, normalise, coarsen or 1, revolve, o.axis_of(axis), copies or 1,
+    )
     return convert_files(batch, conversion, plot3d)
 # fmt: on

@@ -11,6 +11,7 @@ from meshonet_cli.batch.settings import Files
 EXAMPLES = (
     "meshonet stack wing.toml -o wing.h5",
     "meshonet stack wing.toml --y-plus 1 --reynolds 6e6 --around 161 --span 65 -o fine.cgns",
+    "meshonet stack rotor.toml --cells 100000 --copies 2 -o passages.cgns",
     "meshonet stack wing.toml --tip open --surface -o surface.h5",
 )
 _sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
@@ -52,6 +53,11 @@ def stack(
     )] = None,
     cells: Annotated[int | None, _sampling(
         "--cells", metavar="N", help="Approximate number of cells of a blade row. [default: 500000]",
+    )] = None,
+    copies: Annotated[int | None, _sampling(
+        "--copies", metavar="K", min=1,
+        help="Number of passages of a blade row beside each other, up to the number of blades, which is the "
+        "whole annulus. [default: 1]",
     )] = None,
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R",
@@ -97,8 +103,8 @@ def stack(
     from meshonet_cli.tasks.volumes import write_stacks
 
     chosen = {
-        "around": around, "span": span, "base": base, "cells": cells, "far_field": far_field,
-        "first_cell": first_cell,
+        "around": around, "span": span, "base": base, "cells": cells, "copies": copies,
+        "far_field": far_field, "first_cell": first_cell,
         "y_plus": y_plus, "reynolds": reynolds, "layers": layers, "growth": growth, "threads": threads,
         "revolve": revolve, "axis": o.axis_of(axis),
     }

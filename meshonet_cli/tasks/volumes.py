@@ -46,7 +46,8 @@ def write_stacks(
 ) -> int:
     """Write the volumes or surfaces of the stacks and return the exit code."""
     chosen = _shared(parameters, batch) | {"percentiles": criteria.percentiles}
-    request = stack_request(**{name: value for name, value in chosen.items() if name != "cells"})
+    of_rows = () if surface else ("cells", "copies")
+    request = stack_request(**{name: value for name, value in chosen.items() if name not in of_rows})
     if surface and criteria:
         raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")
     volumes = each(_stacked, parameters=chosen, criteria=criteria)

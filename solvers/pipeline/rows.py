@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from meshonet.geometry.blocks.copies import copied
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.result import Result, judged
@@ -19,12 +21,16 @@ def make_row(row: Row, request: RowRequest | None = None) -> Result:
     not allowed.
     """
     request = request or RowRequest()
+    if not 1 <= request.copies <= row.blades:
+        problem = f"{request.copies} copies of {row.blades} passages"
+        raise InputError(problem, f"use 1 to {row.blades}", parameter="copies")
     seconds: dict[str, float] = {}
     with limited_to(request.threads):
         with stage("load", seconds):
             from meshonet.solvers.rows.row_grid import row_grid
         with stage("grid", seconds):
             grid, notes = row_grid(row, request)
+            grid = copied(grid, request.copies)
         notes = (*row.notes, *notes)
         note = request.height_note(f"on a chord of {row.chord:.6g}", row.chord)
         solution = Solution(grid, "row", notes=(*notes, note) if note else notes)

@@ -28,7 +28,9 @@ class RowRequest(FirstCell):
     growth : float, optional
         Largest ratio of neighbouring cells away from walls; None is 1.2.
     cells : int, optional
-        About how many cells there are.
+        About how many cells there are in a passage.
+    copies : int, optional
+        How many passages beside each other are made; as many as blades are the whole annulus.
     threads : int, optional
         Threads that work; None: all there are.
     percentiles : bool, optional
@@ -44,6 +46,7 @@ class RowRequest(FirstCell):
 
     growth: float | None = None
     cells: int = DEFAULT_CELLS
+    copies: int = 1
     threads: int | None = None
     percentiles: bool = False
     allow_invalid: bool = False

@@ -28,6 +28,7 @@ from spatial_shapes import ball, cubed_sphere, half_sphere
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.revolve import Revolution, revolved
 from meshonet_cli.app import application
 
 TORCH = importlib.util.find_spec("torch") is not None
@@ -218,6 +219,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--swap": (f"grid.h5 {MADE}", "OPTION", "nodes"),
         "--normalise": (f"grid.h5 {MADE}", "OPTION", "nodes"),
         "--coarsen": (f"grid.h5 {MADE}", "OPTION 2", "nodes"),
+        "--copies": (f"passage.h5 {MADE}", "OPTION 3", "nodes"),
         "--list-formats": ("", "OPTION", "prints"),
     },
     "plot": PICTURE | chosen("@grids.txt -o made-{stem}.png -q", "*oo*") | {
@@ -254,6 +256,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
             "OPTION 60000",
             "nodes",
         ),
+        "--copies": (f"row.toml --cells 20000 --first-cell .01 --growth 1.5 {MADE}", "OPTION 2", "nodes"),
         "--far-field": (f"{WING} {MADE}", "OPTION 7", "nodes"),
         "--tip": (f"{WING} --surface {MADE}", "OPTION flat", "nodes"),
         "--surface": (f"{WING} {MADE}", "OPTION", "nodes"),
@@ -401,6 +404,8 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     cube = np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1)
     Grid.from_nodes(cube).write(folder / "cube.vts")
     Grid.from_nodes(cube + 0.03 * cube[..., ::-1] ** 2).write(folder / "bent.vts")
+    sector = Grid.from_nodes(cube[:, :, 0, :2] + [0.0, 1.0])
+    revolved(sector, Revolution(20.0)).write(folder / "passage.h5")
     cubed_sphere().write(folder / "ball.xyz")
     half_sphere().write(folder / "cap.xyz")
     Grid.from_nodes(ball(12, 10)).write(folder / "nose.xyz")

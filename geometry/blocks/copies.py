@@ -1,0 +1,139 @@
+"""Copies of a periodic grid beside each other: several passages of a blade row, or all of them.
+
+::
+
+    +------+------+------+      The second periodic side of a copy has the nodes of the first side of the
+    |  0   |  1   |  2   |      next one. Copies that fill a whole turn are joined to a ring; otherwise the
+    +------+------+------+      outer sides are periodic, by the motion of all copies together.
+    first           second
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.screw import Screw, screw_of
+from meshonet.geometry.blocks.shared_nodes import node_table
+from meshonet.geometry.elementary import product
+from meshonet.geometry.errors import InputError
+
+MOST_COPIES = 10_000
+_SAME = 1e-9
+"""Relative difference that is rounding: of two motions, and of a whole turn from a number of periods."""
+
+
+def copied(grid: Grid, copies: int) -> Grid:
+    """Return copies of a periodic grid, each joined to the next; all have patches of the same names.
+
+    Parameters
+    ----------
+    grid : Grid
+        A grid with one period, a rotation or a translation.
+    copies : int
+        How many; at most as many as fill a whole turn.
+
+    Raises
+    ------
+    InputError
+        A grid that is not periodic, or in several ways; a number out of its range.
+    """
+    if copies == 1:
+        return grid
+    periodic = _periodic(grid)
+    screw, turn = _period(periodic[0].transform or Motion())
+    most = int(turn) or MOST_COPIES
+    if not 1 <= copies <= most:
+        problem = f"{copies} copies of {math.degrees(abs(screw.angle)):.6g} degrees" if turn else f"{copies}"
+        raise InputError(problem, f"use 1 to {most}", parameter="copies")
+    dimension, step = grid.blocks[0].nodes.shape[-1], len(grid.blocks)
+    motions = [_repeated(screw, k, dimension) for k in range(copies + 1)]
+    if copies == turn:
+        motions[-1] = Motion()
+    nodes, numbers = node_table(grid.blocks, grid.connections)
+    pairs = [replace(each, transform=None).pairs(numbers) for each in periodic]
+    first, second = (np.concatenate([pair[end].ravel() for pair in pairs]) for end in (0, 1))
+    blocks: list[Block] = []
+    for k in range(copies):
+        table = motions[k](nodes).copy()
+        table[second] = motions[k + 1](nodes[first])
+        blocks += [Block(table[number], finite=True) for number in numbers]
+    patches = [replace(each, block=each.block + k * step) for k in range(copies) for each in grid.patches]
+    connections = (*_within(grid, copies), *_between(periodic, step, copies, motions[-1]))
+    facts = {name: fact for name, fact in grid.provenance.items() if name != "zones"} | {"copies": copies}
+    return replace(
+        grid, blocks=tuple(blocks), patches=tuple(patches), connections=connections, provenance=facts
+    )
+
+
+def _periodic(grid: Grid) -> list[Connection]:
+    """Return the periodic connections, all with the motion of the first one."""
+    periodic: list[Connection] = []
+    for each in grid.connections:
+        if each.transform is None:
+            continue
+        period = (periodic or [each])[0].transform or Motion()
+        ways = each, each.reversed()
+        way = next((way for way in ways if period.alike(way.transform or Motion(), _SAME)), None)
+        if way is None:
+            remedy = "copy a grid with one period"
+            raise InputError("the grid is periodic in several ways", remedy, parameter="copies")
+        periodic.append(replace(way, transform=period))
+    if not periodic:
+        remedy = "copy one with periodic sides, such as a passage between blades"
+        raise InputError("the grid is not periodic", remedy, parameter="copies")
+    return periodic
+
+
+def _period(motion: Motion) -> tuple[Screw, float]:
+    """Return a motion as a screw, and how many of it are a whole turn, 0 for a translation.
+
+    An angle that is a whole turn over a whole number, to rounding, becomes this.
+    """
+    screw = screw_of(motion)
+    if not screw.angle:
+        return screw, 0.0
+    turn = 2.0 * math.pi / abs(screw.angle)
+    if abs(turn - round(turn)) > _SAME * turn:
+        return screw, turn
+    return screw._replace(angle=math.copysign(2.0 * math.pi / round(turn), screw.angle)), float(round(turn))
+
+
+def _repeated(screw: Screw, times: int, dimension: int) -> Motion:
+    """Return the motion of a screw repeated so many times (Rodrigues' formula)."""
+    shift = times * screw.shift
+    if not screw.angle or not times:
+        return Motion(tuple(shift[:dimension].tolist()) if times else ())
+    angle = times * screw.angle
+    a, c, s = screw.axis, math.cos(angle), math.sin(angle)
+    cross = np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+    along = np.outer(a, a)
+    turn = along + c * (np.eye(3) - along) + s * cross
+    shift = shift + screw.centre - product(turn, screw.centre)
+    rows = tuple(map(tuple, turn[:dimension, :dimension].tolist()))
+    return Motion(tuple(shift[:dimension].tolist()) if shift.any() else (), rows)
+
+
+def _within(grid: Grid, copies: int) -> Iterator[Connection]:
+    """Yield the connections inside of each copy."""
+    step = len(grid.blocks)
+    for k in range(copies):
+        for each in grid.connections:
+            if each.transform is None:
+                yield replace(each, block=each.block + k * step, donor=each.donor + k * step)
+
+
+def _between(periodic: Sequence[Connection], step: int, copies: int, whole: Motion) -> Iterator[Connection]:
+    """Yield the connections of each copy to the one before, and of the first to the last."""
+    for each in periodic:
+        for k in range(1, copies):
+            block, donor = each.block + k * step, each.donor + (k - 1) * step
+            yield replace(each, block=block, donor=donor, transform=None)
+        last = each.donor + (copies - 1) * step
+        yield replace(each, donor=last, transform=whole if whole.shift or whole.turn else None)
