@@ -6,13 +6,13 @@
     nodes = layer.winslow(south, north, west, east)   # (batch, ni, nj, 2)
     nodes.square().mean().backward()                  # gradients of the boundary nodes
 
-Sides of `transfinite` and `winslow` are tensors (..., n, 2), south and north along xi, west and east
-along eta, with common corners; leading dimensions are batches. Results are on the device of the sides and
-of their dtype; the arithmetic is in double precision. `torch.func.vmap` and `torch.func.grad` apply to both
-functions. They need torch (extra ``train``).
+Sides of `transfinite`, `winslow` and `variational` are tensors (..., n, 2), south and north along xi, west
+and east along eta, with common corners; leading dimensions are batches. Results are on the device of the
+sides and of their dtype; the arithmetic is in double precision. `torch.func.vmap` and `torch.func.grad` apply
+to these functions. They need torch (extra ``train``).
 """
 
 from meshonet.solvers.neural.differentiable import AirfoilGrids, BodyGrids, QuadGrids
-from meshonet.solvers.neural.differentiable.grids import transfinite, winslow
+from meshonet.solvers.neural.differentiable.grids import transfinite, variational, winslow
 
-__all__ = ["AirfoilGrids", "BodyGrids", "QuadGrids", "transfinite", "winslow"]
+__all__ = ["AirfoilGrids", "BodyGrids", "QuadGrids", "transfinite", "variational", "winslow"]

@@ -42,7 +42,8 @@ class OptimumDerivative:
     grid : a grid near the minimum of the variational functional, or near the solution of Winslow's equations,
         with these boundary nodes; Newton's method then converges to it.
     method : ``variational`` or ``winslow``.
-    weights : weights of the functional; None stands for those of `solve_pde`.
+    weights : weights of the functional; None stands for those with which `grid` was solved, as its provenance
+        says, or else for the default ones of `solve_pde`.
 
     Raises InputError: an O grid, several blocks, a volume, an unknown method; SolverError: the grid is far
     from the solution.
@@ -155,7 +156,9 @@ class OptimumDerivative:
 def _weights(grid: Grid) -> Weights:
     from meshonet.solvers.energy.variational import WEIGHTS
 
-    return WEIGHTS[grid.topology]
+    default = WEIGHTS[grid.topology]
+    facts = grid.provenance if grid.provenance.get("method") == "variational" else {}
+    return Weights(facts.get("shape", default.shape), facts.get("smoothness", default.smoothness))
 
 
 def _inner_numbers(nodes: Floats) -> Indices:

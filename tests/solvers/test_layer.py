@@ -11,12 +11,17 @@ from random_quads import random_quad
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.derivatives.optimum import OptimumDerivative
 from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.energy.functional import Weights, value
+from meshonet.solvers.energy.variational import solve as least
 
 torch = pytest.importorskip("torch")
 from meshonet import layer  # noqa: E402 - it imports torch
+from meshonet.solvers.neural.differentiable.block_cholesky import BlockCholesky  # noqa: E402
+from meshonet.solvers.neural.differentiable.functional import Functional, aspect_of  # noqa: E402
 
-FUNCTIONS = (layer.transfinite, layer.winslow)
+FUNCTIONS = (layer.transfinite, layer.winslow, layer.variational)
 NAMES = ("south", "north", "west", "east")
 
 
@@ -41,6 +46,30 @@ def test_winslow_nodes_are_those_of_the_compiled_multigrid(ni: int, nj: int) -> 
     for nodes, boundary in zip(layer.winslow(*sides_of(some)).numpy(), some, strict=True):
         exact = solve(boundary, tol=1e-12, max_cycles=60).grid.nodes
         np.testing.assert_allclose(nodes, exact, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize(("ni", "nj"), [(17, 17), (12, 23), (24, 21)])
+def test_variational_nodes_are_those_of_the_converged_compiled_minimisation(ni: int, nj: int) -> None:
+    some = domains(ni, nj, 8)
+    for nodes, boundary in zip(layer.variational(*sides_of(some)).numpy(), some, strict=True):
+        grid = least(boundary, tol=1e-8, max_cycles=1000).grid
+        np.testing.assert_allclose(nodes, grid.nodes, rtol=0, atol=3e-3)
+        weights = Weights(smoothness=grid.provenance["smoothness"])
+        assert value(nodes, weights) <= value(grid.nodes, weights) + 1e-14
+        exact = OptimumDerivative(grid.with_nodes(nodes)).grid.nodes  # Newton's method on the compiled slope
+        np.testing.assert_allclose(nodes, exact, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("counts", [(9, 7), (8, 10)])
+def test_variational_systems_are_those_of_twofold_differentiation(counts: tuple[int, int]) -> None:
+    nodes = layer.variational(*sides_of(domains(*counts, 4))).movedim(-1, 1).requires_grad_()
+    functional, ratios = Functional(0.97, 3e-3 * torch.ones(len(nodes)).double()), aspect_of(nodes.detach())
+    (slope,) = torch.autograd.grad(functional.value(nodes, ratios).sum(), nodes, create_graph=True)
+    move = torch.randn(len(nodes), 2, counts[0] - 2, counts[1] - 2, dtype=nodes.dtype)
+    (change,) = torch.autograd.grad(slope, nodes, torch.nn.functional.pad(move, (1, 1, 1, 1)))
+    factor = BlockCholesky(functional.hessian(nodes.detach(), ratios), torch.zeros_like(ratios))
+    assert factor.positive.all()
+    torch.testing.assert_close(factor.solve(change[..., 1:-1, 1:-1]), move)
 
 
 @pytest.mark.parametrize("function", FUNCTIONS)
@@ -79,19 +108,21 @@ def test_one_side_serves_a_whole_batch() -> None:
     assert layer.winslow(souths, north[0], west[0], east[0]).shape == (2, 3, 9, 8, 2)
 
 
-def test_a_member_that_is_not_finite_is_named() -> None:
+@pytest.mark.parametrize("function", FUNCTIONS[1:])
+def test_a_member_that_is_not_finite_is_named(function: Any) -> None:
     given = sides_of(domains(9, 8, 5))
     given[0][2, 4, 1] = torch.nan
     with pytest.raises(SolverError, match=r"member 2 of the batch: a coordinate is not finite"):
-        layer.winslow(*given)
+        function(*given)
 
 
-def test_a_member_without_a_solution_is_named() -> None:
+@pytest.mark.parametrize("function", FUNCTIONS[1:])
+def test_a_member_without_a_solution_is_named(function: Any) -> None:
     given = sides_of(domains(9, 8, 5))
     for side in given:
         side[1] = 0.0
     with pytest.raises(SolverError, match=r"member 1 of the batch"):
-        layer.winslow(*given)
+        function(*given)
 
 
 @pytest.mark.parametrize(

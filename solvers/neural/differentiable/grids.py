@@ -6,11 +6,10 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.differentiable.members import MemberError
+from meshonet.solvers.neural.differentiable.implicit import Converged, Equations
 from meshonet.solvers.neural.differentiable.transfinite import Sides, arc_lengths, interpolated
-from meshonet.solvers.neural.differentiable.winslow import solved
-
-MOST = 2**17  # coordinates solved at once on a CPU, so that a Krylov space fits in its cache
+from meshonet.solvers.neural.differentiable.variational import Optimum
+from meshonet.solvers.neural.differentiable.winslow import Winslow
 
 
 def transfinite(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
@@ -46,24 +45,46 @@ def winslow(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
         The equations of a member of the batch did not converge, or it has a coordinate that is not
         finite; the message has its index.
     """
-    return _batched(solved, south, north, west, east)
+    return _solved(Winslow(), south, north, west, east)
+
+
+def variational(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
+    """Return the nodes (..., ni, nj, 2) at the optimum of the variational functional, to rounding.
+
+    The compiled solver computes the starts on the CPU. Gradients are those of the optimum, by one linear
+    system for each backward pass; the weights that the solver chose are constant in them.
+
+    Parameters
+    ----------
+    south, north, west, east : as in `transfinite`.
+
+    Raises
+    ------
+    InputError
+        As `transfinite`.
+    SolverError
+        No grid without folded cells was found for a member of the batch, or it has a coordinate that is
+        not finite; the message has its index.
+    """
+    return _solved(Optimum(), south, north, west, east)
+
+
+def _solved(equations: Equations, *given: Tensor) -> Tensor:
+    def make(sides: Sides) -> Tensor:
+        start = interpolated(sides, arc_lengths(sides))
+        nodes: Tensor = Converged.apply(equations, start)[0]  # type: ignore[no-untyped-call]
+        return nodes
+
+    return _batched(make, *given)
 
 
 def _batched(make: Callable[[Sides], Tensor], *given: Tensor) -> Tensor:
-    """Return the nodes that `make` returns for sides (batch, 2, n), some members at a time on a CPU."""
+    """Return the nodes (..., ni, nj, 2); `make` takes sides (batch, 2, n) and returns (batch, 2, ni, nj)."""
     _check(*given)
     lead = torch.broadcast_shapes(*(side.shape[:-2] for side in given))
     wide = [side.expand(*lead, *side.shape[-2:]).reshape(-1, *side.shape[-2:]) for side in given]
     south, north, west, east = (side.double().movedim(-1, 1) for side in wide)
-    count = len(south) if south.is_cuda else max(1, MOST // (2 * south.shape[-1] * west.shape[-1]))
-    parts = []
-    for first in range(0, len(south), count):
-        some = slice(first, first + count)
-        try:
-            parts.append(make((south[some], north[some], west[some], east[some])))
-        except MemberError as error:
-            raise error.later(first) from None
-    nodes = torch.cat(parts).movedim(1, -1).to(given[0].dtype)
+    nodes = make((south, north, west, east)).movedim(1, -1).to(given[0].dtype)
     return nodes.reshape(*lead, *nodes.shape[1:])
 
 

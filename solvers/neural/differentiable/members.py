@@ -36,10 +36,19 @@ def check_finite(nodes: Tensor) -> None:
         raise MemberError(int(bad[0]), "a coordinate is not finite", "leave it out")
 
 
-def as_one_batch(function: Callable[..., Tensor], count: int, in_dims: Any, *tensors: Tensor) -> Any:
-    """Return the values of `function` for `count` batches, flattened to one batch, and their dimension."""
-    moved = [
-        tensor.expand(count, *tensor.shape) if dim is None else tensor.movedim(dim, 0)
-        for tensor, dim in zip(tensors, in_dims, strict=True)
-    ]
-    return function(*(tensor.flatten(0, 1) for tensor in moved)).unflatten(0, (count, -1)), 0
+def as_one_batch(function: Callable[..., Any], count: int, in_dims: Any, *inputs: Any) -> tuple[Any, Any]:
+    """Return the values of `function` for `count` batches, flattened to one batch, and their dimension.
+
+    `inputs` that are no tensors are the same for all.
+    """
+    flat = []
+    for value, dim in zip(inputs, in_dims, strict=True):
+        if isinstance(value, Tensor):
+            moved = value.expand(count, *value.shape) if dim is None else value.movedim(dim, 0)
+            flat.append(moved.flatten(0, 1))
+        else:
+            flat.append(value)
+    values = function(*flat)
+    if isinstance(values, Tensor):
+        return values.unflatten(0, (count, -1)), 0
+    return tuple(value.unflatten(0, (count, -1)) for value in values), (0,) * len(values)

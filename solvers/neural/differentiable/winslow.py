@@ -1,22 +1,18 @@
-"""Winslow's equations in torch: converged grids of batches, with gradients by implicit differentiation.
+"""Winslow's equations in torch: converged grids of batches, and their gradients.
 
-Newton's method solves them, from coarse copies to the grid itself; GMRES solves its linear systems. With
-R(x, b) = 0 for inner nodes x and boundary nodes b, a functional whose derivative with respect to x is g has
-the derivative -R_bᵀ λ with respect to b, where R_xᵀ λ = g. That is one linear system, whatever the number of
-iterations was.
+Newton's method solves them, from coarse copies to the grid itself; GMRES solves its linear systems.
 """
-
-from typing import Any
 
 import torch
 from torch import Tensor
 
 from meshonet.solvers.elliptic.winslow import left_side
 from meshonet.solvers.neural.differentiable.gmres import gmres
-from meshonet.solvers.neural.differentiable.members import MemberError, as_one_batch, check_finite
+from meshonet.solvers.neural.differentiable.implicit import bordered, inner
+from meshonet.solvers.neural.differentiable.members import MemberError, check_finite
 from meshonet.solvers.neural.differentiable.resample import between
 from meshonet.solvers.neural.differentiable.separable import Separable
-from meshonet.solvers.neural.differentiable.transfinite import Sides, arc_lengths, interpolated
+from meshonet.solvers.neural.differentiable.transfinite import arc_lengths, interpolated
 
 TOL = 1e-12  # preconditioned residual at which a grid is converged, relative to its extent
 ROUGH = 1e-3  # the same on coarse copies
@@ -27,15 +23,37 @@ STEPS = 25  # of Newton's method at the most
 HALVINGS = 6  # of a step that does not lower the residual; then a step of the fixed-point iteration is taken
 FORCING = 1e-2  # residual of the linear systems, relative
 ADJOINT = 1e-12  # the same of the system for gradients
+MOST = 2**17  # coordinates solved at once on a CPU
 PRODUCTS = 40, 400  # with the matrix at the most: for a step, for gradients
 
 
-def solved(sides: Sides) -> Tensor:
-    """Return the nodes (batch, 2, ni, nj), float64, that solve Winslow's equations inside `sides`.
+class Winslow:
+    """Winslow's equations, as `implicit.Equations`; no number of a member enters."""
 
-    Raises MemberError, with the index of the first member of the batch that did not converge.
-    """
-    return Converged.apply(interpolated(sides, arc_lengths(sides)))  # type: ignore[no-untyped-call]
+    def most(self, nodes: Tensor) -> int:
+        """Return how many members are solved at once: on a CPU a Krylov space is to fit in its cache."""
+        return len(nodes) if nodes.is_cuda else MOST // nodes[0].numel()
+
+    def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
+        """Return the solutions, and zeros."""
+        check_finite(nodes)
+        return nested(nodes), nodes.new_zeros(len(nodes))
+
+    def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:  # noqa: ARG002 - one interface
+        """Return the derivative of a functional with respect to the boundary nodes of a solution."""
+        with torch.enable_grad():
+            x = nodes.detach().requires_grad_()
+            left, alpha, gamma = residual(x)
+        inverse = Separable(alpha.detach(), gamma.detach())
+
+        def pulled(rows: Tensor) -> Tensor:
+            return torch.autograd.grad(left, x, rows, retain_graph=True)[0]
+
+        def times(flat: Tensor) -> Tensor:
+            return inner(pulled(inverse.solve_transposed(flat.view_as(left)))).flatten(1)
+
+        solution = gmres(times, inner(gradient).flatten(1), ADJOINT, PRODUCTS[1])
+        return gradient - pulled(inverse.solve_transposed(solution.view_as(left)))
 
 
 def residual(nodes: Tensor) -> tuple[Tensor, Tensor, Tensor]:
@@ -55,68 +73,6 @@ def _derivatives(nodes: Tensor) -> tuple[Tensor, ...]:
 
 def _dot(a: Tensor, b: Tensor) -> Tensor:
     return (a * b).sum(1, keepdim=True)
-
-
-class Converged(torch.autograd.Function):
-    """From nodes (batch, 2, ni, nj), of which only those of the boundary count, to converged ones."""
-
-    @staticmethod
-    def forward(nodes: Tensor) -> Tensor:
-        """Return the solution of Winslow's equations with the boundary nodes of `nodes`."""
-        check_finite(nodes)
-        return nested(nodes)
-
-    @staticmethod
-    def setup_context(ctx: Any, inputs: tuple[Tensor], output: Tensor) -> None:  # noqa: ARG004 - torch's signature
-        """Keep the solution."""
-        ctx.save_for_backward(output)
-
-    @staticmethod
-    def backward(ctx: Any, gradient: Tensor) -> Tensor:
-        """Return the derivative with respect to the boundary nodes, zero at inner nodes."""
-        return Adjoint.apply(*ctx.saved_tensors, gradient)  # type: ignore[no-untyped-call]
-
-    @staticmethod
-    def vmap(info: Any, in_dims: tuple[int | None], nodes: Tensor) -> tuple[Tensor, int]:
-        """Solve all members of both batches as one batch."""
-        return as_one_batch(Converged.apply, info.batch_size, in_dims, nodes)
-
-
-class Adjoint(torch.autograd.Function):
-    """The derivative with respect to boundary nodes, from that with respect to all nodes of a solution."""
-
-    @staticmethod
-    def forward(nodes: Tensor, gradient: Tensor) -> Tensor:
-        """Return the derivative (batch, 2, ni, nj), zero at inner nodes."""
-        with torch.enable_grad():
-            x = nodes.detach().requires_grad_()
-            left, alpha, gamma = residual(x)
-        inverse = Separable(alpha.detach(), gamma.detach())
-
-        def pulled(rows: Tensor) -> Tensor:
-            return torch.autograd.grad(left, x, rows, retain_graph=True)[0]
-
-        def times(flat: Tensor) -> Tensor:
-            return inner(pulled(inverse.solve_transposed(flat.view_as(left)))).flatten(1)
-
-        solution = gmres(times, inner(gradient).flatten(1), ADJOINT, PRODUCTS[1])
-        result = gradient - pulled(inverse.solve_transposed(solution.view_as(left)))
-        inner(result).zero_()
-        return result
-
-    @staticmethod
-    def setup_context(ctx: Any, inputs: tuple[Tensor, Tensor], output: Tensor) -> None:
-        """Keep nothing: second derivatives are not available."""
-
-    @staticmethod
-    def backward(ctx: Any, *gradients: Tensor) -> None:
-        """Raise NotImplementedError: there are no second derivatives."""
-        raise NotImplementedError("Winslow's grids have no second derivatives")
-
-    @staticmethod
-    def vmap(info: Any, in_dims: tuple[int | None, ...], *tensors: Tensor) -> tuple[Tensor, int]:
-        """Solve all members of both batches as one batch."""
-        return as_one_batch(Adjoint.apply, info.batch_size, in_dims, *tensors)
 
 
 def nested(nodes: Tensor) -> Tensor:
@@ -204,13 +160,3 @@ def _fixed_point(nodes: Tensor) -> Tensor:
         left, alpha, gamma = residual(nodes)
         nodes = nodes - bordered(DAMPING * Separable(alpha, gamma).solve(left))
     return nodes
-
-
-def inner(nodes: Tensor) -> Tensor:
-    """Return the inner nodes (batch, 2, ni-2, nj-2)."""
-    return nodes[:, :, 1:-1, 1:-1]
-
-
-def bordered(inner: Tensor) -> Tensor:
-    """Return `inner` (batch, 2, mi, mj) with a border of zeros."""
-    return torch.nn.functional.pad(inner, (1, 1, 1, 1))

@@ -1,0 +1,113 @@
+"""Grids that solve equations, as functions of their boundary nodes: gradients by implicit differentiation.
+
+With R(x, b) = 0 for inner nodes x and boundary nodes b, a functional whose derivative with respect to x is g
+has the derivative -R_bᵀ λ with respect to b, where R_xᵀ λ = g. That is one linear system, whatever the number
+of iterations was.
+"""
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import torch
+from torch import Tensor
+
+from meshonet.solvers.neural.differentiable.members import MemberError, as_one_batch
+
+
+class Equations(Protocol):
+    """Equations for the inner nodes of four-sided grids."""
+
+    def most(self, nodes: Tensor) -> int:
+        """Return how many members of the batch `nodes` (batch, 2, ni, nj) are best solved at once."""
+        ...
+
+    def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
+        """Return the solutions (batch, 2, ni, nj), and one number (batch,) that the equations depend on.
+
+        Only the boundary nodes of `nodes` count. Raises MemberError: there is no solution.
+        """
+        ...
+
+    def adjoint(self, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
+        """Return the derivative of a functional with respect to the boundary nodes of `nodes`, a solution.
+
+        `gradient` is its derivative with respect to all nodes, taken as independent. The result, of the shape
+        of `nodes`, is ignored at inner nodes.
+        """
+        ...
+
+
+class Converged(torch.autograd.Function):
+    """From equations and nodes (batch, 2, ni, nj), of which those of the boundary count, to the solution."""
+
+    @staticmethod
+    def forward(equations: Equations, nodes: Tensor) -> tuple[Tensor, Tensor]:
+        """Return the solution, and the number of each member."""
+        solution, number = _in_parts(equations.solve, equations.most(nodes), nodes)
+        return solution, number
+
+    @staticmethod
+    def setup_context(ctx: Any, inputs: tuple[Equations, Tensor], output: tuple[Tensor, Tensor]) -> None:
+        """Keep the solution."""
+        ctx.equations = inputs[0]
+        ctx.mark_non_differentiable(output[1])
+        ctx.save_for_backward(*output)
+
+    @staticmethod
+    def backward(ctx: Any, gradient: Tensor, _: Tensor) -> tuple[None, Tensor]:
+        """Return the derivative with respect to the boundary nodes, zero at inner nodes."""
+        return None, Adjoint.apply(ctx.equations, *ctx.saved_tensors, gradient)  # type: ignore[no-untyped-call]
+
+    @staticmethod
+    def vmap(info: Any, in_dims: Any, *inputs: Any) -> Any:
+        """Solve all members of both batches as one batch."""
+        return as_one_batch(Converged.apply, info.batch_size, in_dims, *inputs)
+
+
+class Adjoint(torch.autograd.Function):
+    """The derivative with respect to boundary nodes, from that with respect to all nodes of a solution."""
+
+    @staticmethod
+    def forward(equations: Equations, nodes: Tensor, number: Tensor, gradient: Tensor) -> Tensor:
+        """Return the derivative (batch, 2, ni, nj), zero at inner nodes."""
+        (result,) = _in_parts(
+            lambda *part: (equations.adjoint(*part),), equations.most(nodes), nodes, number, gradient
+        )
+        inner(result).zero_()
+        return result
+
+    @staticmethod
+    def setup_context(ctx: Any, inputs: tuple[Any, ...], output: Tensor) -> None:
+        """Keep nothing: second derivatives are not available."""
+
+    @staticmethod
+    def backward(ctx: Any, *gradients: Tensor) -> None:
+        """Raise NotImplementedError: there are no second derivatives."""
+        raise NotImplementedError("these grids have no second derivatives")
+
+    @staticmethod
+    def vmap(info: Any, in_dims: Any, *inputs: Any) -> Any:
+        """Solve all members of both batches as one batch."""
+        return as_one_batch(Adjoint.apply, info.batch_size, in_dims, *inputs)
+
+
+def _in_parts(function: Callable[..., tuple[Tensor, ...]], most: int, *tensors: Tensor) -> tuple[Tensor, ...]:
+    """Return the values of `function` for a batch, of which it is given at most `most` members at once."""
+    parts = []
+    for first in range(0, len(tensors[0]), max(most, 1)):
+        some = slice(first, first + max(most, 1))
+        try:
+            parts.append(function(*(tensor[some] for tensor in tensors)))
+        except MemberError as error:
+            raise error.later(first) from None
+    return tuple(torch.cat(values) for values in zip(*parts, strict=True))
+
+
+def inner(nodes: Tensor) -> Tensor:
+    """Return the inner nodes (batch, 2, ni-2, nj-2)."""
+    return nodes[:, :, 1:-1, 1:-1]
+
+
+def bordered(inner: Tensor) -> Tensor:
+    """Return `inner` (batch, 2, mi, mj) with a border of zeros."""
+    return torch.nn.functional.pad(inner, (1, 1, 1, 1))
