@@ -191,7 +191,7 @@ paper: $(VENV)/.developing
 	$(PAPER) OUT=$(abspath paper) PAGES=$(abspath docs/benchmarks/paper)
 	$(BIN)/python docs/reduce_pictures.py --width 560 docs/benchmarks/paper/*.*.png
 
-QUICK := COUNT=12 RES=41 EPOCHS=60 EPOCHS_COMPARED=20 EPOCHS_PHYSICS=60 EPOCHS_MODES=60 SEEDS='0 1' SIZES='100 200' SPLITS_semicircle=random
+QUICK := COUNT=12 RES=41 EPOCHS=60 EPOCHS_COMPARED=20 EPOCHS_SHELF=5 EPOCHS_PHYSICS=60 EPOCHS_MODES=60 SEEDS='0 1' SIZES='100 200' SPLITS_semicircle=random
 paper-quick: $(VENV)/.developing
 	$(PAPER) OUT=$(abspath build/paper) PAGES=$(abspath build/paper/pages) $(QUICK)
 

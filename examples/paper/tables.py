@@ -28,7 +28,9 @@ WAYS = (
     ("meshonet-hard.valid", "MeshONet-hard, repaired (`infer`)"),
 )
 DELIVERED = ("meshonet.valid", "meshonet-hard.valid")
-RACERS = ("meshonet", "meshonet-hard", "deeponet", "pod-deeponet", "fno1d", "fno2d", "mionet")
+RACERS = (
+    "meshonet", "meshonet-hard", "deeponet", "pod-deeponet", "fno1d", "fno2d", "wno", "kno", "lno", "mionet",
+)  # fmt: skip
 BASELINES = ("deeponet", "pod-deeponet", "fno1d", "fno2d")
 PHYSICS = (
     ("mgnet", "Winslow's equations and the boundary (`mgnet`)"),
@@ -50,7 +52,7 @@ def main() -> None:
     results = pages / "results"
     parts = [words.HEAD, options.note, words.STANDS, lowest(results), words.CLAIMS, claims(results)]
     parts += [words.QUALITY, *quality(results), words.RACE, race(results, pages)]
-    parts += [words.PHYSICS, physics(results)]
+    parts += [words.SHELF, shelf(results), words.PHYSICS, physics(results)]
     parts += [words.TIME.format(machine=options.machine), times(results), words.MAPS, maps(pages)]
     parts += [words.SETTINGS, budgets(results)]
     text = "\n\n".join(part.strip() for part in parts if part)
@@ -184,6 +186,47 @@ def race(results: Path, pages: Path) -> str:
     order = sorted(losses, key=losses.__getitem__)
     ranked = f"From the least loss to the largest: {', '.join(order)}."
     return f"{ranked}\n\n![loss](loss.png)\n\n{table(head, rows)}"
+
+
+def shelf(results: Path) -> str:
+    """Return the errors of every model on every case, and how MeshONet's compare, in words."""
+    found: dict[tuple[str, str], dict[str, list[float]]] = {}
+    for family, split in ((f, s) for f in FAMILIES for s in SPLITS):
+        own = {}
+        for model in RACERS:
+            told = [one(path) for path in sorted(results.glob(f"{family}.{split}.{model}.shelf*.json"))]
+            if told:
+                own[model] = [run["figures"]["test"]["median"] for run in told]
+        if own:
+            found[family, split] = own
+    models = [model for model in RACERS if any(model in own for own in found.values())]
+    if not models:
+        return ""
+    rows = []
+    for (family, split), own in found.items():
+        least = min(mean(errors) for errors in own.values())
+        cells = []
+        for model in models:
+            errors = own.get(model, [])
+            text = f"{mean(errors):.1e} ± {pstdev(errors):.0e}" if len(errors) > 1 else "-"
+            cells.append(f"**{text}**" if errors and mean(errors) == least else text)
+        rows.append([family, split, *cells])
+    counts = [
+        _compared(model, [own for own in found.values() if model in own and "meshonet" in own])
+        for model in models
+    ]
+    sentences = "\n".join(f"- {text}" for text in counts if text)
+    return f"{words.AGAINST}\n\n{sentences}\n\n{table(['case', 'split', *models], rows)}"
+
+
+def _compared(model: str, cases: Sequence[dict[str, list[float]]]) -> str:
+    """Return in how many cases MeshONet's error is below that of `model`; nothing for itself."""
+    if model == "meshonet" or not cases:
+        return ""
+    ratios = [mean(own[model]) / mean(own["meshonet"]) for own in cases]
+    below = sum(ratio > 1.0 for ratio in ratios)
+    times = f"{min(ratios):.2g} to {max(ratios):.2g} times"
+    return f"`{model}`: in {below} of {len(cases)}; its error is {times} MeshONet's."
 
 
 def physics(results: Path) -> str:

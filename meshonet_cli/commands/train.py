@@ -27,8 +27,9 @@ class TrainOptions:
         "--model", metavar="NAME",
         help="Architecture: strip (operator for airfoils), quad (operator for four-sided domains), meshonet "
         "(the network of the MeshONet paper), meshonet-hard (the same with an exact boundary), one of the "
-        "baselines deeponet, pod-deeponet, fno1d, fno2d and mionet, or one of the physics-informed networks "
-        "mgnet and meshnet. [default: meshonet for datasets of grids, strip for datasets of boundaries]",
+        "baselines deeponet, pod-deeponet, fno1d, fno2d, wno, kno, lno and mionet, or one of the "
+        "physics-informed networks mgnet and meshnet. [default: meshonet for datasets of "
+        "grids, strip for datasets of boundaries]",
     )] = None
     split: Annotated[str | None, _option(
         "--split", metavar="HOW|FILE",

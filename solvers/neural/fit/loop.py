@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import torch
@@ -30,7 +30,7 @@ class Task(nn.Module):
     """
 
     count: int
-    parts: ClassVar[tuple[str, ...]] = ("loss",)
+    parts: tuple[str, ...] = ("loss",)
 
     @abstractmethod
     def forward(self, rows: Tensor, step: int) -> Tensor:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import torch
@@ -43,8 +43,6 @@ class OperatorTask(ModelTask):
     step, inside and on the boundary; None takes all; `seed`: of the initial weights and of the points.
     """
 
-    parts: ClassVar[tuple[str, ...]] = ("interior", "boundary")
-
     def __init__(
         self, model: Architecture, training: Samples, held_out: Samples | None,
         points: tuple[int, int] | None, seed: int, device: torch.device,
@@ -62,9 +60,12 @@ class OperatorTask(ModelTask):
             goal = tensor(_by_place(differences(model, held_out))).to(device)
             self.held_out = tensors(model.encode(held_out.boundaries()), device), goal
         self.to(device)
+        with torch.no_grad():
+            more = model.penalty(torch, self._weights(), self.inputs) is not None
+        self.parts = ("interior", "boundary", *(("penalty",) if more else ()))
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
-        """Return the interior and the boundary part of the loss over the shapes `rows`."""
+        """Return the interior and the boundary part of the loss over the shapes `rows`, then any penalty."""
         index, inner = self._drawn(step)
         place = torch.from_numpy(index).to(self.places.device)
         goal = self.targets.index_select(0, place).view(len(place), self.count, 2)
@@ -73,7 +74,9 @@ class OperatorTask(ModelTask):
             inputs = {name: value[rows] for name, value in inputs.items()}
             goal = goal.index_select(1, rows)
         answer = self._answer(inputs, self.places[place], place)
-        return self._weighted(answer.float().transpose(0, 1), goal, inner)
+        parts = self._weighted(answer.float().transpose(0, 1), goal, inner)
+        penalty = self.model.penalty(torch, self._weights(), inputs)
+        return parts if penalty is None else torch.cat([parts, penalty.float()[None]])
 
     def validate(self) -> dict[str, float]:
         """Return the loss over the held-out shapes and the median of their relative L2 error."""
@@ -88,8 +91,10 @@ class OperatorTask(ModelTask):
             return {"loss": float(loss), "mean_square": 2.0 * float(mse_loss(answer, goal))}
 
     def _answer(self, inputs: Mapping[str, Tensor], points: Tensor, place: Tensor) -> Tensor:
-        weights: dict[str, Any] = {**dict(self.named_parameters()), **self.fixed}
-        return self.model.answer(torch, weights, inputs, points, place)
+        return self.model.answer(torch, self._weights(), inputs, points, place)
+
+    def _weights(self) -> dict[str, Any]:
+        return {**dict(self.named_parameters()), **self.fixed}
 
     def _drawn(self, step: int) -> tuple[np.ndarray[Any, np.dtype[np.intp]], int]:
         """Return indices of nodes, those inside first, and how many are inside."""

@@ -1,7 +1,7 @@
 """Training of physics-informed networks, all geometries of a dataset at once."""
 
 from collections.abc import Sequence
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import torch
@@ -22,7 +22,7 @@ class PhysicsTask(ModelTask):
     """
 
     model: MGNet
-    parts: ClassVar[tuple[str, ...]] = ("winslow", "boundary", "data")
+    parts: tuple[str, ...] = ("winslow", "boundary", "data")
 
     def __init__(
         self, model: MGNet, samples: Samples, points: tuple[int, int] | None, seed: int, device: torch.device

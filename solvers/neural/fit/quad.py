@@ -4,7 +4,7 @@ import copy
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import torch
@@ -59,7 +59,7 @@ class QuadTask(Task):
     network, by name.
     """
 
-    parts: ClassVar[tuple[str, ...]] = tuple(PARTS)
+    parts: tuple[str, ...] = tuple(PARTS)
 
     def __init__(
         self,

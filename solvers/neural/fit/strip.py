@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import torch
@@ -45,7 +45,7 @@ class StripTask(Task):
     `training`, `held_out`: strips; `sizes`: of the network; `device`: to compute on.
     """
 
-    parts: ClassVar[tuple[str, ...]] = ("difference",)
+    parts: tuple[str, ...] = ("difference",)
 
     def __init__(self, training: Strips, held_out: Strips, sizes: StripSizes, device: torch.device) -> None:
         super().__init__()

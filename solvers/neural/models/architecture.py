@@ -57,6 +57,10 @@ class Architecture:
     def check(self, w: Weights, inputs: Weights) -> None:
         """Raise InputError for `inputs` outside of the model's scope; the default accepts all inputs."""
 
+    def penalty(self, xp: Any, w: Weights, inputs: Weights) -> Any:
+        """Return a further part of the loss, a scalar; None, the default, for no such part."""
+        return None
+
     def seen(self, xp: Any, points: Any) -> Any:
         """Return the trunk's input (p, any) at `points` (p, 2) in (xi, eta): themselves, or features of them.
 

@@ -2,8 +2,7 @@
 
 ::
 
-    FNO1D  in    at every xi: x and y of south and north, of west and east at a few eta (the same for all), xi
-           out   x and y at every eta, for every xi: eta becomes channels
+    FNO1D  along xi, as `meshonet.solvers.neural.models.along_xi`
     FNO2D  in    at (xi, eta): x and y of south and north at xi and of west and east at eta; xi; eta
            out   x and y there
 
@@ -23,18 +22,59 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats, array_like, read_only
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.models.along_xi import AlongXi
 from meshonet.solvers.neural.models.architecture import Architecture, Frame
 from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
 
-SIDE = 5  # nodes of west and of east that FNO1D sees
+
+@dataclass(frozen=True)
+class FNO1D(AlongXi):
+    """One-dimensional Fourier neural operator along xi."""
+
+    modes: int = 16  # that are mixed
+    layers: int = 4  # Fourier layers
+    padding: int = 9  # nodes of zeros before the transform
+
+    def layer_shapes(self, frame: Frame) -> Shapes:
+        return _layer_shapes(self.layers, (self.modes,), self.width)
+
+    def hidden(self, xp: Any, w: Weights, h: Any) -> Any:
+        for k in range(self.layers):
+            mixed = mix_modes(xp, w[f"mix{k}/spectral"], h, self.modes, self.padding)
+            h = gelu(xp, mixed + dense(xp, w, f"local{k}", h))
+        return h
+
+
+def mix_modes(xp: Any, weight: Any, h: Any, modes: int, padding: int) -> Any:
+    """Return h (batch, n, width) with the channels of each of its lowest modes times a complex matrix.
+
+    `weight`: (modes, width, width, 2), or (width, width, 2) for the same matrix in all modes.
+    """
+    n = h.shape[1]
+    spectrum = xp.fft.rfft(h, n + padding, 1)
+    m = min(modes, spectrum.shape[1])
+    matrix = weight[..., 0] + 1j * weight[..., 1]
+    if matrix.ndim == 2:
+        mixed = spectrum[:, :m] @ matrix
+    else:
+        mixed = xp.einsum("bmc,mcd->bmd", spectrum[:, :m], matrix[:m])
+    return xp.fft.irfft(mixed, n + padding, 1)[:, :n]
+
+
+def _layer_shapes(layers: int, mixing: tuple[int, ...], width: int) -> Shapes:
+    shapes: Shapes = {}
+    for k in range(layers):
+        shapes |= dense_shapes(f"local{k}", (width, width))
+        shapes[f"mix{k}/spectral"] = (*mixing, width, width, 2)
+    return shapes
 
 
 @dataclass(frozen=True)
-class Fourier(Architecture):
-    """Settings and layers that both Fourier neural operators share."""
+class FNO2D(Architecture):
+    """Two-dimensional Fourier neural operator; its inputs at (xi, eta) are boundary nodes at xi and eta."""
 
-    width: int = 48  # channels of the hidden state
-    modes: int = 16  # that are mixed, in each direction (of eta positive and negative ones)
+    width: int = 12  # channels of the hidden state
+    modes: int = 8  # that are mixed, in each direction (of eta positive and negative ones)
     layers: int = 4  # Fourier layers
     padding: int = 9  # nodes of zeros before the transform, in each direction
 
@@ -42,69 +82,14 @@ class Fourier(Architecture):
     def native(self) -> bool:
         return True
 
-    def _shapes(self, seen: int, mixing: tuple[int, ...], project: tuple[int, ...]) -> Shapes:
-        shapes = {**dense_shapes("lift", (seen, self.width))}
-        for k in range(self.layers):
-            shapes |= dense_shapes(f"local{k}", (self.width, self.width))
-            shapes[f"mix{k}/spectral"] = (*mixing, self.width, self.width, 2)
-        return {**shapes, **dense_shapes("project", (self.width, *project))}
-
-    def _layered(self, xp: Any, w: Weights, h: Any) -> Any:
-        for k in range(self.layers):
-            local = dense(xp, w, f"local{k}", h)
-            h = gelu(xp, self._mixed(xp, w[f"mix{k}/spectral"], h) + local)
-        return h
-
-    def _mixed(self, xp: Any, weight: Any, h: Any) -> Any:
-        """Return h with the channels of each of its lowest modes multiplied by a complex matrix."""
-        raise NotImplementedError
-
-
-@dataclass(frozen=True)
-class FNO1D(Fourier):
-    """One-dimensional Fourier neural operator along xi; eta is in the output channels."""
-
-    def shapes(self, frame: Frame) -> Shapes:
-        return self._shapes(4 + 4 * SIDE + 1, (self.modes,), (128, 2 * frame.nj))
-
-    def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
-        """Return the input channels at every xi (batch, ni, channels)."""
-        rows = []
-        for boundary in boundaries:
-            chosen = np.linspace(0, boundary.nj - 1, SIDE).round().astype(int)
-            sides = np.concatenate([boundary.west[chosen], boundary.east[chosen]]).reshape(-1)
-            xi = np.linspace(0.0, 1.0, boundary.ni)[:, None]
-            rows.append(np.hstack([boundary.south, boundary.north, np.tile(sides, (boundary.ni, 1)), xi]))
-        return {"edges": np.array(rows)}
-
-    def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        h = self._layered(xp, w, dense(xp, w, "lift", inputs["edges"]))
-        out = dense(xp, w, "project", h)
-        return out.reshape(len(out), -1, 2)[:, index]
-
-    def _mixed(self, xp: Any, weight: Any, h: Any) -> Any:
-        n = h.shape[1]
-        spectrum = xp.fft.rfft(h, n + self.padding, 1)
-        m = min(self.modes, spectrum.shape[1])
-        matrix = weight[:m, ..., 0] + 1j * weight[:m, ..., 1]
-        mixed = xp.einsum("bmc,mcd->bmd", spectrum[:, :m], matrix)
-        return xp.fft.irfft(mixed, n + self.padding, 1)[:, :n]
-
-
-@dataclass(frozen=True)
-class FNO2D(Fourier):
-    """Two-dimensional Fourier neural operator; its inputs at (xi, eta) are boundary nodes at xi and eta."""
-
-    width: int = 12
-    modes: int = 8
-
     def shapes(self, frame: Frame) -> Shapes:
         """Return the shapes of trained parameters. Raises InputError: more modes than the grids have."""
         most = (min(frame.ni, frame.nj) + self.padding) // 2
         if not 1 <= self.modes <= most:
             problem = f"modes={self.modes} of grids of {frame.ni} x {frame.nj} nodes"
             raise InputError(problem, f"use 1 to {most}", parameter="set")
-        return self._shapes(10, (2 * self.modes, self.modes), (64, 2))
+        layers = _layer_shapes(self.layers, (2 * self.modes, self.modes), self.width)
+        return dense_shapes("lift", (10, self.width)) | layers | dense_shapes("project", (self.width, 64, 2))
 
     def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
         """Return the edges: south and north (batch, ni, 4), west and east (batch, nj, 4)."""
@@ -119,10 +104,14 @@ class FNO2D(Fourier):
         # the first layer is linear, so it is applied to the edges before they are broadcast to the square
         xi, eta = (array_like(np.linspace(0.0, 1.0, n)[:, None], along, xp) for n in (ni, nj))
         rows, columns = along @ weight[:4] + xi * weight[8], across @ weight[4:8] + eta * weight[9]
-        h = self._layered(xp, w, rows[:, :, None] + columns[:, None] + bias)
+        h = rows[:, :, None] + columns[:, None] + bias
+        for k in range(self.layers):
+            local = dense(xp, w, f"local{k}", h)
+            h = gelu(xp, self._mixed(xp, w[f"mix{k}/spectral"], h) + local)
         return dense(xp, w, "project", h.reshape(batch, ni * nj, self.width)[:, index])
 
     def _mixed(self, xp: Any, weight: Any, h: Any) -> Any:
+        """Return h with the channels of each of its lowest modes multiplied by a complex matrix."""
         batch, ni, nj, width = h.shape
         m = self.modes
         along, across, back = (array_like(table, h, xp) for table in _waves(ni, nj, m, self.padding))

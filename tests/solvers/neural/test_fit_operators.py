@@ -28,7 +28,13 @@ from meshonet.solvers.neural.samples import Samples
 SMALL = Plan(epochs=8, batch=2, rate=3e-3, points=(20, 10), device="cpu")
 SIZES = {"sensors": 12, "hidden": [8], "features": 6}
 FOURIER = {"width": 8, "modes": 3, "layers": 2, "padding": 2}
-SMALLER: dict[str, dict[str, object]] = {"fno1d": FOURIER, "fno2d": FOURIER}
+SMALLER: dict[str, dict[str, object]] = {
+    "fno1d": FOURIER,
+    "fno2d": FOURIER,
+    "wno": {"width": 8, "levels": 2, "layers": 2, "padding": 2},
+    "kno": {"width": 16, "modes": 3, "padding": 2},
+    "lno": {"width": 8, "poles": 2},
+}
 ALONE = Team(torch.device("cpu"))
 
 

@@ -125,13 +125,14 @@ def test_modes_that_do_not_fit_are_found_when_the_file_is_read(tmp_path: Path, s
         load(path)
 
 
-@pytest.mark.parametrize("kind", ["fno1d", "fno2d", "pod-deeponet"])
+@pytest.mark.parametrize("kind", ["fno1d", "fno2d", "wno", "kno", "lno", "pod-deeponet"])
 @pytest.mark.parametrize("topology", FAMILIES)
 def test_native_models_answer_finer_boundaries_on_the_nodes_they_know(kind: str, topology: str) -> None:
     fine = FAMILIES[topology]
     nodes = fine.nodes[:, ::2, ::2]
     coarse = Samples(nodes, fine.topology, fine.names, fine.splits, fine.parameters)
-    settings = {} if kind == "pod-deeponet" else {"modes": 2, "padding": 2}
+    settings = {"modes": 2, "padding": 2} if kind.startswith("fno") else {}
+    settings |= {"levels": 2} if kind == "wno" else {}
     trained = random(kind, coarse, **settings)
     for one, other in zip(coarse.boundaries(), fine.boundaries(), strict=True):
         found, finer = trained.difference(one), trained.difference(other)
