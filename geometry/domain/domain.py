@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -28,6 +28,9 @@ class Domain:
         Sentences for users on what a reader skipped in the file.
     periodic : tuple of Periodic, optional
         Pairs of stretches of the outer loop that are periodic.
+    marks : tuple of mapping, optional
+        Prescribed values by the name of a stretch, such as first-cell heights. A mirror of the domain takes
+        no stretch to one with another value.
 
     Raises
     ------
@@ -39,6 +42,7 @@ class Domain:
     name: str = ""
     notes: tuple[str, ...] = ()
     periodic: tuple[Periodic, ...] = ()
+    marks: tuple[Mapping[str, float], ...] = ()
 
     def __post_init__(self) -> None:
         if not self.loops:

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from meshonet.geometry.errors import InputError
+
+AtWalls: TypeAlias = float | Mapping[str, float]
+"""One value for all walls, or a value for each wall with layers, by name."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -14,23 +19,34 @@ class FirstCell:
 
     Parameters
     ----------
-    first_cell : float, optional
-        First-cell height, in the unit of the request.
-    y_plus, reynolds : float, optional
-        First-cell height as y+, converted by flat-plate friction; the Reynolds number is for a length of 1.
+    first_cell : float or mapping, optional
+        First-cell height, in the unit of the request; multi-block grids accept one for each wall by name.
+    y_plus : float or mapping, optional
+        The same as y+, converted by flat-plate friction.
+    reynolds : float, optional
+        Reynolds number for `y_plus`.
     chord_fraction : float, optional
-        Position along this length at which y+ is converted, 0 to 1.
+        Position along the reference length at which y+ is converted, 0 to 1.
+    length : float, optional
+        Reference length of the Reynolds number, in the unit of `first_cell`; None depends on the grid.
     """
 
-    first_cell: float | None = None
-    y_plus: float | None = None
+    first_cell: AtWalls | None = None
+    y_plus: AtWalls | None = None
     reynolds: float | None = None
     chord_fraction: float = 0.5
+    length: float | None = None
 
     @property
     def at_walls(self) -> bool:
         """Whether a first-cell height is given."""
         return self.first_cell is not None or self.y_plus is not None
+
+    @property
+    def by_wall(self) -> tuple[str, ...]:
+        """Names of the walls that have a height of their own; none if one height is given for all."""
+        given = self.first_cell if self.y_plus is None else self.y_plus
+        return tuple(given) if isinstance(given, Mapping) else ()
 
     def check_first_cell(self) -> None:
         """Raise InputError for a height out of range, or for fields that need or exclude each other."""
@@ -40,25 +56,74 @@ class FirstCell:
         if (self.y_plus is None) != (self.reynolds is None):
             needed, known = ("reynolds", "y_plus") if self.reynolds is None else ("y_plus", "reynolds")
             raise InputError(f"{{{known}}} without {{{needed}}}", f"give {{{needed}}} as well")
-        if self.y_plus is None and self.chord_fraction != 0.5:
-            raise InputError("{chord_fraction} without {y_plus}", "give {y_plus} and {reynolds} as well")
-        if self.first_cell is not None:
-            check_height(self.first_cell, "first_cell")
-        self.height()  # raises for values out of range
+        for name, given in (
+            ("chord_fraction", self.chord_fraction != 0.5),
+            ("length", self.length is not None),
+        ):
+            if self.y_plus is None and given:
+                raise InputError(f"{{{name}}} without {{y_plus}}", "give {y_plus} and {reynolds} as well")
+        if self.length is not None and not 0 < self.length < math.inf:
+            problem = f"a reference length of {self.length:g}"
+            raise InputError(problem, "give a positive length", parameter="length")
+        for name in ("first_cell", "y_plus"):
+            given = getattr(self, name)
+            if isinstance(given, Mapping) and not (given and all(given)):
+                remedy = "give e.g. tubes=1e-3,floor=5e-3, or one value"
+                raise InputError("a wall without a name", remedy, parameter=name)
+        for height in _values(self.first_cell):
+            check_height(height, "first_cell")
+        self.heights()  # raises for values out of range
+
+    def heights(self, unit: float = 1.0) -> AtWalls | None:
+        """Return the first-cell height, or one for each wall by name.
+
+        `unit` is the reference length of the Reynolds number unless the request has one.
+        """
+        given = self.first_cell if self.y_plus is None else self.y_plus
+        if isinstance(given, Mapping):
+            return {name: self._height(value, unit) for name, value in given.items()}
+        return None if given is None else self._height(given, unit)
 
     def height(self, unit: float = 1.0) -> float | None:
-        """Return the first-cell height; `unit` is the reference length of the Reynolds number."""
+        """Return the first-cell height, as `heights`.
+
+        Raises InputError: heights for single walls, which this kind of grid does not have.
+        """
+        height = self.heights(unit)
+        if isinstance(height, Mapping):
+            name = "first_cell" if self.y_plus is None else "y_plus"
+            problem = f"a value for the wall {self.by_wall[0]!r}, where all walls have the same"
+            raise InputError(problem, "give one value, without a name", parameter=name)
+        return height
+
+    def _height(self, given: float, unit: float) -> float:
         if self.y_plus is None or self.reynolds is None:
-            return self.first_cell
+            return given
         from meshonet.geometry.spacing.y_plus import first_cell
 
-        return first_cell(self.y_plus, self.reynolds, self.chord_fraction) * unit
+        return first_cell(given, self.reynolds, self.chord_fraction) * (self.length or unit)
 
-    def height_note(self, where: str, unit: float = 1.0, in_unit: str = "") -> str:
-        """Return how a height follows from y+, as text; `where` names the reference length."""
+    def height_note(self, where: str, unit: float = 1.0, in_unit: str = "", scale: float = 1.0) -> str:
+        """Return how a height follows from y+, as text; empty without one.
+
+        `where` names the reference length, `scale` is the length of a unit of the request, and `in_unit` the
+        unit of the result.
+        """
         from meshonet.geometry.spacing.y_plus import height_note
 
-        return height_note(self.y_plus, self.reynolds, where, f"{self.height(unit) or 0.0:.6g}{in_unit}")
+        if self.y_plus is None:
+            return ""
+        if self.length is not None:
+            where = f"on a length of {self.length * scale:.6g}{in_unit}"
+        heights = ", ".join(f"{height * scale:.6g}{in_unit}" for height in _values(self.heights(unit)))
+        y_plus = ", ".join(f"{value:g}" for value in _values(self.y_plus))
+        return height_note(y_plus, self.reynolds, where, heights)
+
+
+def _values(given: AtWalls | None) -> tuple[float, ...]:
+    if given is None:
+        return ()
+    return tuple(given.values()) if isinstance(given, Mapping) else (given,)
 
 
 def check_height(height: float, parameter: str) -> None:

@@ -36,11 +36,9 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
     return y_plus / (reynolds * math.sqrt(0.5 * friction))
 
 
-def height_note(y_plus: float | None, reynolds: float | None, where: str, height: str) -> str:
-    """Return a sentence on how the `height` of a first cell was computed from y+; empty without y+."""
-    if y_plus is None:
-        return ""
-    return f"y+ {y_plus:g} at Re {reynolds:g} {where} is {height}: {FORMULA} ({SOURCE})"
+def height_note(y_plus: str, reynolds: float | None, where: str, height: str) -> str:
+    """Return a sentence on how the `height` of a first cell was computed from y+."""
+    return f"y+ {y_plus} at Re {reynolds:g} {where} is {height}: {FORMULA} ({SOURCE})"
 
 
 def first_cell_note(

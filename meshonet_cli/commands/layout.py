@@ -45,7 +45,8 @@ def layout(
         "--far-field", metavar="R",
         help="Distance of the far field; the unit is the chord of all bodies together. [default: 15]",
     )] = None,
-    first_cell: o.FirstCell = None, y_plus: o.YPlus = None, reynolds: o.Reynolds = None,
+    first_cell: o.FirstCell = None, y_plus: o.YPlusAtWalls = None, reynolds: o.Reynolds = None,
+    length: o.Length = None,
 ) -> int:
     """Split domains into blocks and write the block layout.
 
@@ -54,7 +55,10 @@ def layout(
     """
     from meshonet_cli.tasks.layouts import write_layouts
 
-    first = {"first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds}
+    first = {
+        "first_cell": o.at_walls(first_cell, "first_cell"), "y_plus": o.at_walls(y_plus, "y_plus"),
+        "reynolds": reynolds, "length": length,
+    }
     return write_layouts(
         run.batch(run.inputs(domain), files), blocks.parameters() | first, far_field,
         assemble=blocks.assemble,

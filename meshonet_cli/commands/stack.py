@@ -86,8 +86,10 @@ def stack(
     )] = None,
     y_plus: o.YPlus = None,
     reynolds: Annotated[float | None, _layer(
-        "--reynolds", metavar="RE", help="Reynolds number for --y-plus, based on the longest chord.",
+        "--reynolds", metavar="RE",
+        help="Reynolds number for --y-plus, based on the longest chord or on --length.",
     )] = None,
+    length: o.Length = None,
     growth: Annotated[float | None, _layer(
         "--growth", metavar="G",
         help="Ratio of neighbouring cells along a grid line away from the wall. It determines the number of "
@@ -104,8 +106,8 @@ def stack(
 
     chosen = {
         "around": around, "span": span, "base": base, "cells": cells, "copies": copies,
-        "far_field": far_field, "first_cell": first_cell,
-        "y_plus": y_plus, "reynolds": reynolds, "layers": layers, "growth": growth, "threads": threads,
+        "far_field": far_field, "first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds,
+        "length": length, "layers": layers, "growth": growth, "threads": threads,
         "revolve": revolve, "axis": o.axis_of(axis),
     }
     parameters = {name: value for name, value in chosen.items() if value is not None}

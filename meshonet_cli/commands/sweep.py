@@ -79,16 +79,18 @@ def sweep(
         "--layout", metavar="LAYOUT.json", help="Use the blocks of this layout for the section.",
     )] = None,
     walls: o.Walls = None,
-    first_cell: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
-        "--first-cell", "--wall-spacing", metavar="H",
-        help="Height of the first cell at walls, in the unit of the section.",
+    first_cell: Annotated[str | None, o.option_of(o.BOUNDARY_LAYER)(
+        "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
+        help="Height of the first cell at walls, in the unit of the section, or heights of named walls of a "
+        "section of many blocks.",
     )] = None,
-    y_plus: o.YPlus = None,
+    y_plus: o.YPlusAtWalls = None,
     reynolds: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
         "--reynolds", metavar="RE",
         help="Reynolds number for --y-plus, based on the extent of the section (the diameter of a "
-        "pipe).",
+        "pipe) or on --length.",
     )] = None,
+    length: o.Length = None,
     growth: Annotated[float | None, o.option_of(o.BOUNDARY_LAYER)(
         "--growth", metavar="G",
         help="Largest ratio of neighbouring cells along a grid line away from walls. [default: 1.2]",
@@ -109,7 +111,8 @@ def sweep(
         raise InputError("there is no path", remedy, source="sweep")
     section = {
         "res": res, "cells": cells, "cell_size": cell_size, "walls": walls or (), "layout": layout,
-        "first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds, "growth": growth,
+        "first_cell": o.at_walls(first_cell, "first_cell"), "y_plus": o.at_walls(y_plus, "y_plus"),
+        "reynolds": reynolds, "length": length, "growth": growth,
         "allow_invalid": allow_invalid, "threads": threads,
     }
     direction = o.numbers(up, (3,), "a direction", "use X,Y,Z, e.g. 0,0,1", "up")

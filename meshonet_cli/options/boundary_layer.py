@@ -1,9 +1,9 @@
 """Options for the first-cell height at walls and the growth of cells."""
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
-from meshonet_cli.options.groups import BOUNDARY_LAYER, option_of
+from meshonet_cli.options.groups import BOUNDARY_LAYER, by_name, number, option_of
 
 _option = option_of(BOUNDARY_LAYER)
 
@@ -20,22 +20,44 @@ Slide = Annotated[bool | None, _option(
     "angles. Applies to four-sided domains. [default: --slide if first cells are given there and this "
     "command places the nodes of the boundary, else --no-slide]",
 )]
-FirstCell = Annotated[float | None, _option(
-    "--first-cell", "--wall-spacing", metavar="H",
+FirstCell = Annotated[str | None, _option(
+    "--first-cell", "--wall-spacing", metavar="H|WALL=H,...",
     help="Height of the first cell at every wall node. Around a body the unit is the chord, elsewhere that "
-    "of the input. The walls of a four-sided domain are south and north; those of a grid of many blocks are "
-    "its holes, or --walls. Around a body solve-pde and infer then march the grid from the wall.",
+    "of the input. The walls of a four-sided domain are south and north; those of a multi-block grid are "
+    "its holes, or --walls. WALL=H,WALL=H gives each named wall of a multi-block grid its own height, "
+    "instead of --walls. Around a body solve-pde and infer then march the grid from the wall.",
 )]
 YPlus = Annotated[float | None, _option(
     "--y-plus", metavar="Y",
     help="Height of the first cell as y+, instead of --first-cell. The conversion assumes a turbulent flat "
     "plate and needs --reynolds.",
 )]
+YPlusAtWalls = Annotated[str | None, _option(
+    "--y-plus", metavar="Y|WALL=Y,...",
+    help="Height of the first cell as y+, instead of --first-cell, also for single walls of a multi-block "
+    "grid. The conversion assumes a turbulent flat plate and needs --reynolds.",
+)]
+Length = Annotated[float | None, _option(
+    "--length", metavar="L",
+    help="Reference length of --reynolds, in the unit of --first-cell. [default: as described there]",
+)]
 Reynolds = Annotated[float | None, _option(
     "--reynolds", metavar="RE",
     help="Reynolds number for --y-plus. Its reference length is the chord of a body, the extent of the "
-    "south side of a four-sided domain, or the extent of all holes of a grid of many blocks.",
+    "south side of a four-sided domain, or the extent of all holes of a multi-block grid.",
 )]
+
+
+def at_walls(text: str | None, parameter: str) -> Any:
+    """Return one value, or values by the name of a wall; None for None. Raises InputError: other text.
+
+    >>> at_walls("1e-3", "first_cell"), at_walls("tubes=1e-3,floor=5e-3", "first_cell")
+    (0.001, {'tubes': 0.001, 'floor': 0.005})
+    """
+    if text is None:
+        return None
+    remedy = "use a number, or WALL=NUMBER, e.g. tubes=1e-3,floor=5e-3"
+    return by_name(text, float, remedy, parameter) if "=" in text else number(text, remedy, parameter)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,11 +65,12 @@ class LayerOptions:
     """First cells at walls."""
 
     first_cell: FirstCell = None
-    y_plus: YPlus = None
+    y_plus: YPlusAtWalls = None
     reynolds: Reynolds = None
+    length: Length = None
     chord_fraction: Annotated[float, _option(
         "--chord-fraction", metavar="X", show_default=True,
-        help="Position along the chord, from 0 to 1, at which --y-plus is converted to a height.",
+        help="Position along the reference length, from 0 to 1, at which --y-plus is converted to a height.",
     )] = 0.5
     growth: Annotated[float | None, _option(
         "--growth", metavar="G",

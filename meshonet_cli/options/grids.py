@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from meshonet_cli.options.boundary_layer import LayerOptions
+from meshonet_cli.options.boundary_layer import LayerOptions, at_walls
 from meshonet_cli.options.checks import CheckOptions, GateOptions
 from meshonet_cli.options.groups import values_of
 from meshonet_cli.options.io import FileOptions, RunOptions, Threads
@@ -30,6 +30,8 @@ class GridOptions(RunOptions, SamplingOptions, LayerOptions, CheckOptions, GateO
         from meshonet.solvers.pipeline.request import GridRequest
 
         more |= values_of(LayerOptions, self) | values_of(CheckOptions, self)
+        for name in ("first_cell", "y_plus"):
+            more[name] = at_walls(more[name], name)
         for block in blocks:
             more |= vars(block)
         given = {name: value for name, value in settings.items() if value is not None}

@@ -86,6 +86,37 @@ def numbers(text: str | None, counts: tuple[int, ...], what: str, remedy: str, p
     return values
 
 
+def number(text: str, remedy: str, parameter: str) -> float:
+    """Return the number in an option. Raises InputError: other text."""
+    try:
+        return float(text)
+    except ValueError:
+        raise bad_value(text, "a number", remedy, parameter) from None
+
+
+def by_name(text: str, kind: Callable[[str], Any], remedy: str, parameter: str) -> dict[str, Any]:
+    """Return the values by name in an option NAME=VALUE,NAME=VALUE; `kind` reads a value.
+
+    Raises InputError: other text; a name that is repeated.
+
+    >>> by_name("inlet=40,outlet=20", int, "use NAME=N", "count")
+    {'inlet': 40, 'outlet': 20}
+    """
+    values: dict[str, Any] = {}
+    for part in text.split(","):
+        name, _, value = (word.strip() for word in part.rpartition("="))
+        try:
+            read = kind(value)
+        except ValueError:
+            name = ""
+        if not name:
+            raise bad_value(part.strip(), "a name with a value", remedy, parameter)
+        if name in values:
+            raise bad_value(text, "one value for each name", f"give {name} once", parameter)
+        values[name] = read
+    return values
+
+
 def only_with(needed: str, present: bool, **others: object) -> None:
     """Raise InputError if one of the `others` is given without the option `needed`."""
     from meshonet.geometry.errors import InputError

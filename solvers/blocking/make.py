@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.check import check_domain
@@ -16,12 +19,16 @@ from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.reach import MOST_CELLS
 from meshonet.geometry.shapes.domain_shape import DomainShape
+from meshonet.geometry.spacing.first_cell import AtWalls
 from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
 from meshonet.solvers.blocking.decomposition.decompose import Timings, decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
 from meshonet.solvers.blocking.request import CELLS, LAYERED_CELLS, BlockRequest
 from meshonet.solvers.blocking.wall_note import wall_note
 from meshonet.solvers.solution import Solution
+
+if TYPE_CHECKING:
+    from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 
 METHOD = "blocks"
 GROWTH = 1.2
@@ -40,24 +47,30 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     domain = _checked(shape.domain, request)
     layout = _given(shape, domain, request)
     cells, size = _wanted(domain, request)
-    height = request.height(shape.unit)
+    height = request.heights(shape.unit)
     if request.pitch is not None:
-        fine = _passage(domain, request, height, timings)
+        fine = _passage(domain, request, request.height(shape.unit), timings)
     elif height is None:
         layout = layout or decompose(domain, timings=timings)
         fine = fine_layout(layout, cells=cells, cell_size=size, halved=request.refine, timings=timings)
     else:
         fine = _with_layers(domain, request, height, layout, timings)
     grid = to_grid(around_body(fine)).with_provenance(method=METHOD, cells=fine.cells)
-    at_walls = "" if height is None else wall_note(grid, domain, request.walls, height)
     said = (
         request.height_note(f"on a length of {shape.unit:.6g}", shape.unit),
-        at_walls,
+        *_at_walls(grid, domain, request.walls, height),
         _cut_off(fine),
         *_folded_coarser(grid, request.refine),
     )
     notes = (*domain.notes, *(note for note in said if note))
     return Solution(grid, METHOD, seconds=_stages(timings, perf_counter() - begun), notes=notes)
+
+
+def _at_walls(grid: Grid, domain: Domain, walls: tuple[str, ...], height: AtWalls | None) -> list[str]:
+    """Return notes on the first cells at walls, one for each height that is prescribed."""
+    if isinstance(height, Mapping):
+        return [wall_note(grid, domain, (name,), each) for name, each in height.items()]
+    return [] if height is None else [wall_note(grid, domain, walls, height)]
 
 
 def _cut_off(fine: Layout) -> str:
@@ -79,7 +92,7 @@ def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
     if request.pitch is not None:
         raise InputError("the blocks of a cascade are always the same", "make the grid", parameter="pitch")
     layout = _given(shape, domain, request)
-    height = request.height(shape.unit)
+    height = request.heights(shape.unit)
     if height is not None:
         return _outside_layers(domain, request, height, layout)
     layout = layout or decompose(domain)
@@ -109,16 +122,15 @@ def _given(shape: DomainShape, domain: Domain, request: BlockRequest) -> Layout 
 
 
 def _with_layers(
-    domain: Domain, request: BlockRequest, height: float, layout: Layout | None, timings: Timings
+    domain: Domain, request: BlockRequest, height: AtWalls, layout: Layout | None, timings: Timings
 ) -> Layout:
     """Return a fine layout with layers at the named walls, or around all holes."""
-    from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
     from meshonet.solvers.blocking.layers.layered import layered
     from meshonet.solvers.blocking.layers.stretches import layered_walls
 
-    numbers, stretches = layered_walls(domain, request.walls)
+    numbers, stretches = layered_walls(domain, request.layered)
     size = _wanted(domain, request)[1]
-    settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1, request.multiple)
+    settings = _settings(request, height)
     cells = 0 if size else (request.cells or LAYERED_CELLS) * request.multiple**2
     size = (size or 0.0) / request.multiple
     return layered(
@@ -127,9 +139,18 @@ def _with_layers(
     )  # fmt: skip
 
 
-def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout: Layout | None) -> Layout:
-    """Return the blocks of the domain outside of layers."""
+def _settings(request: BlockRequest, height: AtWalls) -> LayerSettings:
+    """Return the layers of a request whose first cells have a height, or one for each wall."""
     from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
+
+    heights = height if isinstance(height, Mapping) else {}
+    first = min(heights.values()) if isinstance(height, Mapping) else height
+    constant = request.constant_layers or 1
+    return LayerSettings(first, request.growth or GROWTH, constant, request.multiple, heights)
+
+
+def _outside_layers(domain: Domain, request: BlockRequest, height: AtWalls, layout: Layout | None) -> Layout:
+    """Return the blocks of the domain outside of layers."""
     from meshonet.solvers.blocking.layers.outside import found_outside, taken_outside
     from meshonet.solvers.blocking.layers.stretches import layered_walls
     from meshonet.solvers.blocking.layers.wall_layers import WallLayers
@@ -138,8 +159,8 @@ def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout
         if getattr(request, name):
             problem = f"{{{name}}} for a layout with layers"
             raise InputError(problem, f"drop {{{name}}}: the grid has cells, which follow from the layers")
-    loops, stretches = layered_walls(domain, request.walls)
-    walls = WallLayers.of(domain, loops, LayerSettings(height), stretches)
+    loops, stretches = layered_walls(domain, request.layered)
+    walls = WallLayers.of(domain, loops, _settings(request, height), stretches)
     if layout is None:
         return found_outside(walls.rest, walls.fronts)
     return taken_outside(layout, walls.rest, walls.fronts)
@@ -149,14 +170,13 @@ def _passage(domain: Domain, request: BlockRequest, height: float | None, timing
     """Return the passage of a cascade, whose blade is the only hole of a domain."""
     from meshonet.solvers.blocking.cascade.cascade import Cascade
     from meshonet.solvers.blocking.cascade.cascade_layout import cascade_layout
-    from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 
     if request.layout is not None:
         problem = "{layout} beside {pitch}"
         raise InputError(problem, "drop {layout}: the blocks of a cascade are always the same")
     settings, size = None, request.cell_size
     if height is not None:
-        settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1)
+        settings = _settings(request, height)
         if size is not None or request.res is not None:
             raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
     inlet, outlet = (1.0 if each is None else each for each in (request.inlet, request.outlet))
@@ -171,9 +191,13 @@ def _passage(domain: Domain, request: BlockRequest, height: float | None, timing
 def _checked(domain: Domain, request: BlockRequest) -> Domain:
     check_domain(domain)
     known = list(dict.fromkeys(name for loop in domain.loops for name in loop.names))
-    for name in request.walls:
+    option = "walls" if request.walls else "first_cell" if request.y_plus is None else "y_plus"
+    for name in request.layered:
         if name not in known:
-            raise InputError(f"there is no wall {name!r}", "use " + ", ".join(known), parameter="walls")
+            raise InputError(f"there is no wall {name!r}", "use " + ", ".join(known), parameter=option)
+    heights = request.heights()
+    if isinstance(heights, Mapping):
+        domain = replace(domain, marks=(heights,))
     return with_periodic_sides(domain, request.periodic)
 
 

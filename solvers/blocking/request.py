@@ -32,9 +32,9 @@ class BlockRequest(FirstCell):
         `LAYERED_CELLS`.
     cell_size : target edge length away from walls, in the domain's unit.
     res : number of cells along the longest extent of the domain.
-    first_cell : first-cell height at walls, in the domain's unit.
-    y_plus, reynolds, chord_fraction : first-cell height as y+, converted for a flat plate; the Reynolds
-        number is based on the extent of the bodies.
+    first_cell : first-cell height at walls, in the domain's unit, or heights by name of walls with layers.
+    y_plus, reynolds, chord_fraction : the same as y+, converted for a flat plate.
+    length : reference length of the Reynolds number; None is the extent of the bodies.
     growth : largest ratio of neighbouring cells away from the wall.
     constant_layers : number of first layers of equal height.
     walls : names of the stretches with layers; none stands for all holes.
@@ -85,6 +85,9 @@ class BlockRequest(FirstCell):
         if self.walls and not self.at_walls:
             problem = "{walls} without a first cell"
             raise InputError(problem, "give {first_cell} or {y_plus} as well")
+        if self.walls and self.by_wall:
+            problem = "{walls} beside a first cell for each wall"
+            raise InputError(problem, "drop {walls}: the walls with a first cell have layers")
         if self.pitch is not None and not 0 < math.hypot(*self.pitch) < LARGEST_PITCH:
             remedy = f"give DX,DY from one blade to the next, below {LARGEST_PITCH:g}"
             length = math.hypot(*self.pitch)
@@ -93,6 +96,11 @@ class BlockRequest(FirstCell):
             if getattr(self, name) is not None and self.pitch is None:
                 remedy = f"give {{pitch}} as well, or drop {{{name}}}"
                 raise InputError(f"{{{name}}} without {{pitch}}", remedy)
+
+    @property
+    def layered(self) -> tuple[str, ...]:
+        """Names of the walls with layers; none stands for all holes."""
+        return self.by_wall or self.walls
 
     @property
     def multiple(self) -> int:

@@ -84,9 +84,11 @@ def _first_cells(request: OneBlock) -> FirstCells:
     from meshonet.solvers.pipeline.layered import FirstCells
 
     note = request.height_note(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
+    in_chords = request.y_plus is not None and request.length is None
     free_rows = request.growth is not None and request.sampling.nj is None
     layers = request.constant_layers or 1, request.growth, free_rows
-    return FirstCells(request.height(), request.sides, *layers, in_chords=bool(note), note=note)
+    height = None if request.by_wall else request.height()  # single walls have theirs in many blocks only
+    return FirstCells(height, request.sides, *layers, in_chords=in_chords, note=note)
 
 
 def _angle(request: OneBlock) -> dict[str, float]:

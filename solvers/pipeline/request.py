@@ -106,7 +106,8 @@ class ManyBlocks(Request):
     @property
     def asks_for_blocks(self) -> tuple[str, ...]:
         """Names of the given options that only apply to multi-block grids."""
-        return tuple(filter(FOR_MANY.__contains__, self.chosen))
+        single = ("first_cell" if self.y_plus is None else "y_plus",) if self.by_wall else ()
+        return (*filter(FOR_MANY.__contains__, self.chosen), *single)
 
 
 @dataclass(frozen=True)
@@ -139,11 +140,17 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         with a first cell; or ``auto``: marching in the same cases, Winslow's equations in others.
     settings : dict, optional
         Keywords of the method.
-    first_cell : float, optional
+    first_cell : float or mapping, optional
         Height of the first cell at every wall node, in chords around a body. In a four-sided domain the walls
-        are south and north, and the unit is that of the domain.
-    y_plus, reynolds : float, optional
-        First-cell height as y+, converted for a flat plate; the Reynolds number is based on the chord.
+        are south and north, and the unit is that of the domain. In a domain of many blocks also the heights
+        of the walls that get layers, by name.
+    y_plus : float or mapping, optional
+        First-cell height, or heights, as y+, converted for a flat plate.
+    reynolds : float, optional
+        Reynolds number for `y_plus`.
+    length : float, optional
+        Reference length of the Reynolds number, in the unit of `first_cell`. None: the chord of a body, the
+        extent of the south of a four-sided domain, that of all holes of a domain of many blocks.
     chord_fraction : float, optional
         Position along the chord, 0 to 1, at which y+ is converted to a height.
     growth : float, optional

@@ -19,6 +19,7 @@ from meshonet.geometry.shapes.circle import Circle
 from meshonet.geometry.shapes.domain_shape import DomainShape, four_sided
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.spacing.first_cell import FirstCell
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.uses import GIVEN_SECTION, refuse
@@ -41,7 +42,9 @@ def section_grid(
 
     Raises InputError: parameters that do not suit the shape; as `make_grid`.
     """
-    five_blocks = isinstance(shape, Circle) and not (request.cell_size or request.layout or request.walls)
+    five_blocks = isinstance(shape, Circle) and not (
+        request.cell_size or request.layout or request.walls or request.by_wall
+    )
     if around is not None and not five_blocks:
         problem = "cells around are counted in circles of five blocks"
         raise InputError(problem, "give {cells} or {res} instead", parameter="around")
@@ -58,8 +61,8 @@ def section_grid(
     inside = _inside(shape)
     if isinstance(inside, DomainShape) and inside.many:
         request = _walled(inside, request)
-    elif request.first_cell is not None and not request.asks_for_blocks:
-        h = request.first_cell
+    elif request.at_walls and not request.asks_for_blocks:
+        h = request.height()
         request = replace(
             request, first_cell=None, slide=False, spacing_south=h, spacing_north=h, spacing_west=h,
             spacing_east=h,
@@ -89,15 +92,15 @@ def _with_height(shape: Shape, request: GridRequest) -> tuple[GridRequest, str]:
         return request, ""
     unit = extent(shape)
     note = request.height_note(f"on a length of {unit:.6g}", unit)
-    height = request.height(unit)
-    return replace(request, y_plus=None, reynolds=None, chord_fraction=0.5, first_cell=height), note
+    plain = FirstCell(first_cell=request.heights(unit))
+    return replace(request, **vars(plain)), note
 
 
 def _disc(shape: Circle, request: GridRequest, around: int | None) -> Disc:
     if request.sampling.ni is not None:
         problem = "a circle is made of five blocks"
         raise InputError(problem, "give {around} or {cells} instead", parameter="res")
-    return Disc(shape.radius, request.cells, request.first_cell, request.growth, around)
+    return Disc(shape.radius, request.cells, request.height(), request.growth, around)
 
 
 def _inside(shape: Shape) -> Shape:
@@ -123,6 +126,6 @@ def _loop(curve: Curve) -> Loop:
 def _walled(shape: DomainShape, request: GridRequest) -> GridRequest:
     """Return the request with layers along all loops that can have them, unless it names walls."""
     loops = shape.domain.loops
-    if request.first_cell is None or request.walls or (loops[0].corner_cells < 2).any():
+    if not request.at_walls or request.walls or request.by_wall or (loops[0].corner_cells < 2).any():
         return request
     return replace(request, walls=tuple(dict.fromkeys(name for loop in loops for name in loop.names)))

@@ -54,7 +54,7 @@ def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
         if request.turn is not None:
             blocks = bent([block.nodes for block in grid.blocks], request.turn)
             grid = replace(grid, blocks=tuple(map(Block, blocks)))
-    note = request.height_note(f"on a chord of {stack.chord:.6g}", stack.chord)
+    note = request.height_note(f"on a chord of {stack.chord:.6g}", scale=stack.chord)
     return Solution(grid, "loft", notes=(*notes, note) if note else notes)
 
 
@@ -76,7 +76,7 @@ def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Sol
     )  # fmt: skip
     with stage("grid", seconds):
         solution = march_surface(surface, settings, wing=True)
-    note = request.height_note(f"on a chord of {chord:.6g}", chord)
+    note = request.height_note(f"on a chord of {chord:.6g}", scale=chord)
     facts = wall_facts(solution.grid, settings.limit if request.layers is None else request.growth)
     notes = (*notes, *[note] * bool(note), *solution.notes, *facts)
     return replace(solution, grid=replace(solution.grid, name=stack.name), notes=notes)

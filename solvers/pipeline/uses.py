@@ -32,7 +32,7 @@ SETTINGS = {"polish": "auto", "answer": "valid", "blending": "arclength"}
 _SHAPE = "topology spacing le_spacing te_spacing far_field corners normalise te wake wake_nodes "
 _SHAPE += "base_nodes smooth refined"
 _SIDES = "spacing_south spacing_north spacing_west spacing_east"
-_FIRST = "first_cell y_plus reynolds chord_fraction growth"
+_FIRST = "first_cell y_plus reynolds chord_fraction length growth"
 
 MARCHED = "a grid marched from the wall"
 AROUND_BASE = "a C grid that keeps a base"

@@ -69,7 +69,7 @@ class RowRequest(FirstCell):
         return DEFAULT_GROWTH if self.growth is None else self.growth
 
     def height(self, unit: float = 1.0) -> float:
-        """Return the height of the first cell in chords, that of a y+ where a chord is `unit`."""
+        """Return the first-cell height in chords; `unit` is the reference length of a y+, in chords."""
         height = super().height(unit)
         return DEFAULT_FIRST_CELL if height is None else height
 

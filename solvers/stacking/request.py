@@ -97,7 +97,7 @@ class StackRequest(FirstCell):
         return WingSurface(self.around, self.span, self.base)
 
     def height(self, unit: float = 1.0) -> float:
-        """Return the first-cell height in chords; a y+ is converted with `unit` as the chord."""
+        """Return the first-cell height in chords; `unit` is the reference length of a y+, in chords."""
         height = super().height(unit)
         return DEFAULT_FIRST_CELL if height is None else height
 

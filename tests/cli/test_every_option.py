@@ -78,7 +78,11 @@ def engines(base: str) -> dict[str, Effect]:
 def flat_plate(base: str, differs: str = "nodes") -> dict[str, Effect]:
     """First cells by their y+."""
     base = f"{base} --y-plus 90 --reynolds 1e5"
-    return {"--y-plus": (base, "OPTION 80", differs), "--reynolds": (base, "OPTION 2e5", differs)}
+    return {
+        "--y-plus": (base, "OPTION 80", differs),
+        "--reynolds": (base, "OPTION 2e5", differs),
+        "--length": (base, "OPTION .5", differs),
+    }
 
 
 def judged(base: str, folded: str) -> dict[str, Effect]:

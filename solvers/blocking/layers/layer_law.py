@@ -15,14 +15,14 @@ STEEPER = 0.2
 
 
 def layer_arcs(
-    length: Floats, first: float, last: Floats, cells: int, constant: int = 1, growth: float = 1.0
+    length: Floats, first: float | Floats, last: Floats, cells: int, constant: int = 1, growth: float = 1.0
 ) -> Floats:
-    """Return distances (k, cells + 1) from 0 to `length` (k,) of cells that start with `first` at the wall.
+    """Return distances (k, cells + 1) from 0 to `length` (k,) of cells that start at the wall.
 
-    The first `constant` cells are equal. The logarithm of the others is a quadratic function of their index.
-    It ends at about `last` (k,), or at the value for a constant ratio if that is infinite. Neighbouring cells
-    grow by at most `growth`, or by a fifth more, in logarithms, than with a constant ratio. They do not
-    shrink.
+    The first `constant` cells have the height `first`, a number or (k,). The logarithm of the others is a
+    quadratic function of their index. It ends at about `last` (k,), or at the value for a constant ratio if
+    that is infinite. Neighbouring cells grow by at most `growth`, or by a fifth more, in logarithms, than
+    with a constant ratio. They do not shrink.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
     rest = length - (constant - 1) * first
@@ -38,15 +38,16 @@ def layer_arcs(
     changed = bound != bend
     if changed.any():
         slope = np.where(changed, _solved(lambda s: _total(s, bound, k), rest / first, -_MOST, _MOST), slope)
-    steps = first * _growths(slope, bound, k)
+    first = np.broadcast_to(np.asarray(first, dtype=np.float64), length.shape)
+    steps = first[:, None] * _growths(slope, bound, k)
     steps[:, 1:] *= ((rest - first) / steps[:, 1:].sum(axis=1))[:, None]  # the last digits
-    steps = np.concatenate([np.full((len(length), constant - 1), first), steps], axis=1)
+    steps = np.concatenate([np.repeat(first[:, None], constant - 1, axis=1), steps], axis=1)
     arcs = np.concatenate([np.zeros((len(length), 1)), np.cumsum(steps, axis=1)], axis=1)
     arcs[:, -1] = length
     return np.asarray(arcs)
 
 
-def _plain(rest: Floats, first: float, rows: int) -> Floats:
+def _plain(rest: Floats, first: float | Floats, rows: int) -> Floats:
     """Return the logarithm (k,) of the last cell over the first of a constant ratio."""
     k = np.arange(rows) / max(rows - 1, 1)
     return _solved(lambda slope: _total(slope, np.zeros_like(slope), k), rest / first, 0.0, _MOST)

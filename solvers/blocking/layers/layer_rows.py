@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, running_sums
 from meshonet.geometry.elementary import exp, log
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.spacing.growth import cells_for_growth
@@ -27,16 +29,36 @@ class LayerSettings:
 
     Parameters
     ----------
-    first : first-cell height in the domain's unit.
+    first : first-cell height in the domain's unit; without `heights` that of all walls.
     growth : largest mean ratio of neighbouring cells along a column.
     constant : number of cells with the height of the first one.
     multiple : divisor of the number of layers, so that coarser grids are nested.
+    heights : first-cell heights of walls by name.
     """
 
     first: float
     growth: float = 1.2
     constant: int = 1
     multiple: int = 1
+    heights: Mapping[str, float] = field(default_factory=dict)
+
+    def at(self, names: Collection[str]) -> LayerSettings:
+        """Return the layers of a wall that consists of stretches with some `names`.
+
+        Raises InputError: stretches of one wall with different heights.
+        """
+        if not self.heights:
+            return self
+        first = {self.heights[name]: name for name in reversed(list(names))}
+        if len(first) > 1:
+            one, other = list(first.values())[:2]
+            raise InputError(
+                f"first cells of {self.heights[other]:g} at {other!r} and {self.heights[one]:g} at {one!r}, "
+                "which are parts of one wall with layers",
+                "give both the same: heights change at corners of about 90 degrees only",
+                parameter="first_cell",
+            )
+        return replace(self, first=next(iter(first)), heights={})
 
     def rows(self, thickness: float) -> int:
         """Return the number of layers that fill a thickness."""
@@ -56,10 +78,12 @@ def ring_metric(ring: Ring, settings: LayerSettings) -> SizeMetric:
     return SizeMetric(points, _normals(tangent), across, along, np.inf)
 
 
-def last_layers(thickness: Floats, rows: int, settings: LayerSettings) -> Floats:
+def last_layers(
+    thickness: Floats, rows: int, settings: LayerSettings, first: float | Floats | None = None
+) -> Floats:
     """Return the heights (n,) of the first cells beyond `rows` layers with the total `thickness` (n,)."""
     none = np.full_like(thickness, np.inf)
-    arcs = layer_arcs(thickness, settings.first, none, rows, settings.constant)
+    arcs = layer_arcs(thickness, settings.first if first is None else first, none, rows, settings.constant)
     return np.asarray(JOIN * (arcs[:, -1] - arcs[:, -2]))
 
 

@@ -113,10 +113,10 @@ def _optimum(
                 coarse = _optimised(coarse, walls, rows, counts, STRIDING)
             coarse = _tied(walls.symmetric(multiplied(coarse, counts.stride)))
         coarse = _optimised(coarse, walls, rows, counts, ITERATIONS)
-    settings, known = walls.settings, before.layers if before else (1.0,) * len(rows.loops)
+    known = before.layers if before else (1.0,) * len(rows.loops)
     layers = [
-        layers_of(coarse, rows, number, counts.times, settings)
-        / walls.sizes[loop].rows(counts.scale, settings)
+        layers_of(coarse, rows, number, counts.times, walls.of_rows[number])
+        / walls.sizes[loop].rows(counts.scale, walls.of_rows[number])
         for number, loop in enumerate(rows.loops)
     ]
     damped = tuple(math.sqrt(new * old) for new, old in zip(layers, known, strict=True))
@@ -125,7 +125,7 @@ def _optimum(
 
 def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, timings: Timings) -> Layout:
     """Return the fine layout outside the rings, its rows with all their layers."""
-    settings, times = walls.settings, counts.times
+    times = counts.times
     with timings.stage("optimum"):
         on = np.isin(coarse.mesh.places.loop, list(walls.measures))
         for limit in (EVEN * np.array(LIMITS)).tolist():
@@ -138,7 +138,7 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
     with timings.stage("refine"):
         chords = Chords.of(coarse, node_images(coarse.mesh, walls.mirrors))
         row, cells = rows.of_chords(chords), times * chords.counts
-        layers = [layers_of(coarse, rows, number, times, settings) for number in range(len(rows.loops))]
+        layers = [layers_of(coarse, rows, number, times, own) for number, own in enumerate(walls.of_rows)]
         cut = max((n for n, loop in zip(layers, rows.loops, strict=True) if loop == 0), default=0)
         for number, loop in enumerate(rows.loops):  # walls that periodic sides cut have the same at both
             cells[row == number] = cut if loop == 0 and walls.domain.periodic else layers[number]
@@ -149,7 +149,7 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
         fine = walls.symmetric(unfolded(fine, np.isin(fine.mesh.places.loop, list(walls.measures))))
         moved = walls.symmetric(evened_loops(fine, walls.measures, EVEN))
         fine = moved if smallest_corner(moved.mesh) > 0.0 else fine
-        return _tied(walls.symmetric(with_layers(fine, rows, settings)))
+        return _tied(walls.symmetric(with_layers(fine, rows, walls.of_rows)))
 
 
 def _tied(layout: Layout) -> Layout:
@@ -194,7 +194,9 @@ def _joined(walls: WallLayers, rows: WallRows, layout: Layout) -> Layout:
     """Return the layout with the rings, and the rows to a distant outer loop, attached, its cells evened."""
     settings, mesh = walls.settings, layout.mesh
     attached = [
-        ring_rows(mesh, number, ring, walls.ring_rows(ring), settings, heights_inside(layout, number))
+        ring_rows(
+            mesh, number, ring, walls.ring_rows(number), walls.of_ring(number), heights_inside(layout, number)
+        )
         for number, ring in walls.rings.items()
     ]
     if walls.near is not None:

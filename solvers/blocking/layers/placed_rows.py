@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -62,10 +63,11 @@ def layers_of(layout: Layout, rows: WallRows, row: int, finer: int, settings: La
     return -(-max(count, 2 + extra) // settings.multiple) * settings.multiple
 
 
-def with_layers(layout: Layout, rows: WallRows, settings: LayerSettings) -> Layout:
+def with_layers(layout: Layout, rows: WallRows, settings: Sequence[LayerSettings]) -> Layout:
     """Return a fine layout with the nodes of its rows moved along the lines across them.
 
-    First cells are exact; the others grow to the size of those beyond the front.
+    `settings` are those of each row. First cells are exact; the others grow to the size of those beyond
+    the front.
     """
     mesh = layout.mesh
     moved = np.zeros(len(mesh.nodes), dtype=bool)
@@ -75,18 +77,19 @@ def with_layers(layout: Layout, rows: WallRows, settings: LayerSettings) -> Layo
         nodes = mesh.nodes.copy()
         for table in tables:
             opened = _opened(mesh, table[:, 0], rows.loops[row])
-            lines = _lines(mesh.nodes[table], beyond[table[:, -1]], opened, settings)
+            lines = _lines(mesh.nodes[table], beyond[table[:, -1]], opened, settings[row])
             nodes[table[:, 1:-1]] = lines[:, 1:-1]
             moved[table[:, 1:-1]] = True
         mesh = mesh.with_nodes(nodes)
     mesh = on_loops(mesh, moved & mesh.wall_nodes)
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()
-    for corner in _corners(layout, rows):
+    for corner, across in _corners(layout, rows):
         loop = mesh.domain.loops[mesh.places.loop[corner[0, 0]]]
-        for wall, beside in ((corner[:, 0], corner[:, -1]), (corner[0], corner[-1])):
-            arcs[wall] = _wall_arcs(loop, arcs[wall], nodes[beside], settings)
+        south, west = (settings[row] for row in across)
+        for wall, beside, own in ((corner[:, 0], corner[:, -1], west), (corner[0], corner[-1], south)):
+            arcs[wall] = _wall_arcs(loop, arcs[wall], nodes[beside], own)
             nodes[wall] = loop.at(arcs[wall])
-        nodes[corner] = _between(nodes[corner], settings.first)
+        nodes[corner] = _between(nodes[corner], south.first, west.first)
     return replace(layout, mesh=mesh.with_nodes(nodes, arcs))
 
 
@@ -97,13 +100,16 @@ def held_nodes(layout: Layout, rows: WallRows, settings: LayerSettings) -> Bools
         for table in rows.columns(layout, row):
             on = layout.mesh.places.loop[table[:, 0]] == rows.loops[row]
             held[table[on, : settings.constant + 1]] = True
-    for corner in _corners(layout, rows):
+    for corner, _ in _corners(layout, rows):
         held[corner] = True
     return held
 
 
-def _corners(layout: Layout, rows: WallRows) -> list[Indices]:
-    """Return the nodes of the blocks where two rows cross, seen from the corner of the wall."""
+def _corners(layout: Layout, rows: WallRows) -> list[tuple[Indices, list[int]]]:
+    """Return the nodes of the blocks where two rows cross, seen from the corner of the wall, and the rows.
+
+    The first row is along the south of the block, the second along the west.
+    """
     corners = []
     for block, across in zip(layout.blocks, rows.across.tolist(), strict=True):
         if min(across) >= 0:
@@ -113,7 +119,7 @@ def _corners(layout: Layout, rows: WallRows) -> list[Indices]:
                 for line in (block[:, 0], block[-1], block[:, -1], block[0])
             ]
             k = next(k for k in range(4) if on[k] and walls[k] and walls[k - 1])
-            corners.append((block, block[::-1], block[::-1, ::-1], block[:, ::-1])[k])
+            corners.append(((block, block[::-1], block[::-1, ::-1], block[:, ::-1])[k], across))
     return corners
 
 
@@ -211,14 +217,17 @@ def _wall_arcs(loop: Loop, arcs: Floats, beside: Floats, settings: LayerSettings
     return np.concatenate([np.mod(arcs[0] + np.copysign(away[:-1], way), loop.length), arcs[-1:]])
 
 
-def _between(nodes: Floats, first: float) -> Floats:
-    """Return the nodes (n, m, 2) of a block from its sides, of which west and south are walls."""
+def _between(nodes: Floats, south: float, west: float) -> Floats:
+    """Return the nodes (n, m, 2) of a block from its sides, of which south and west are walls.
+
+    First cells are `south` and `west` high.
+    """
     sides = nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1]
     filled = np.empty((2, *nodes.shape[:2]))
     interpolate(filled[0], filled[1], sides, parameters(sides, "arclength"))
     block = filled.transpose(1, 2, 0)
     block[:, 0], block[:, -1], block[0], block[-1] = sides
-    for wall in (block[1:-1], block.transpose(1, 0, 2)[1:-1]):
+    for wall, first in ((block[1:-1], south), (block.transpose(1, 0, 2)[1:-1], west)):
         exact(wall, first)
     block[1, 1] = block[1, 0] + block[0, 1] - block[0, 0]
     return np.asarray(block)

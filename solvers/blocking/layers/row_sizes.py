@@ -50,6 +50,7 @@ class RowSizes:
     length : (n,) lengths of cells there, for a scale of 1.
     gap : (n,) distances to the next wall in front.
     on : (n,) mask of points with layers.
+    first : (n,) first-cell heights.
     """
 
     loop: Loop
@@ -57,9 +58,12 @@ class RowSizes:
     length: Floats
     gap: Floats
     on: np.ndarray
+    first: Floats
 
     @classmethod
-    def of(cls, domain: Domain, number: int, stretches: Sequence[Stretch]) -> RowSizes:
+    def of(
+        cls, domain: Domain, number: int, stretches: Sequence[Stretch], settings: LayerSettings
+    ) -> RowSizes:
         """Return the sizes along stretches of a loop of a domain; without any, along the whole loop."""
         loop = domain.loops[number]
         arcs = distinct(np.append(np.linspace(0.0, loop.length, _SAMPLES, endpoint=False), loop.corner_arcs))
@@ -67,14 +71,18 @@ class RowSizes:
         length = np.minimum(loop.length / COLUMNS, TURN / np.maximum(wall_bend(loop, arcs, _WINDOW), 1e-300))
         length = graded(np.minimum(length, gap / CELLS_IN_GAP), arcs, loop.length, ALONG)
         on = np.full(len(arcs), not stretches)
-        for begin, end in (each.span(loop) for each in stretches):
-            on |= np.mod(arcs - begin, loop.length) <= end - begin
-        return cls(loop, arcs, length, gap, on)
+        first = np.full(len(arcs), settings.first if stretches else settings.at(loop.names).first)
+        for each in stretches:
+            begin, end = each.span(loop)
+            here = np.mod(arcs - begin, loop.length) <= end - begin
+            first[here] = settings.at(each.names(loop)).first
+            on |= here
+        return cls(loop, arcs, length, gap, on, first)
 
     def thickness(self, scale: float, settings: LayerSettings) -> Floats:
         """Return the thickness (n,) of layers: cells grow until they are square, or the gap is filled."""
         last = scale * self.length * settings.growth
-        full = np.maximum((last - settings.first) / (settings.growth - 1.0), THINNEST * settings.first)
+        full = np.maximum((last - self.first) / (settings.growth - 1.0), THINNEST * self.first)
         full = np.minimum(full, GAP_PART * self.gap)
         full = np.minimum(full, UNEVEN * full[self.on].min())
         return graded(full, self.arcs, self.loop.length, SLOPE)
@@ -89,20 +97,22 @@ class RowSizes:
         return edge + SPREAD * away
 
     def rows(self, scale: float, settings: LayerSettings) -> int:
-        """Return the approximate number of layers."""
-        return settings.rows(float(self.thickness(scale, settings)[self.on].max()))
+        """Return the approximate number of layers of a wall with some `settings`."""
+        on = self.on & (self.first == settings.first)
+        return settings.rows(float(self.thickness(scale, settings)[on if on.any() else self.on].max()))
 
-    def check_room(self, settings: LayerSettings) -> None:
+    def check_room(self) -> None:
         """Raise InputError, with the place, if a gap is too narrow for layers."""
-        room = np.where(self.on, GAP_PART * self.gap, np.inf)
-        check_room(room, settings.first, lambda k: place(self.loop, self.arcs[k]))
+        for first in distinct(self.first):
+            room = np.where(self.on & (self.first == first), GAP_PART * self.gap, np.inf)
+            check_room(room, float(first), lambda k: place(self.loop, self.arcs[k]))
 
     def metric(self, scale: float, settings: LayerSettings) -> SizeMetric:
         """Return the sizes of cells beyond the layers."""
-        on, along = self.on, np.maximum(scale * self.length, settings.first)
+        on, along = self.on, np.maximum(scale * self.length, self.first)
         thick, tangent = self.thickness(scale, settings), self.loop.tangent(self.arcs)
         normals = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
-        across = np.minimum(last_layers(thick, self.rows(scale, settings), settings), along)
+        across = np.minimum(last_layers(thick, self.rows(scale, settings), settings, self.first), along)
         points = self.loop.at(self.arcs) + thick[:, None] * normals
         return SizeMetric(points[on], normals[on], across[on], along[on], np.inf)
 

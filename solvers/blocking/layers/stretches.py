@@ -32,6 +32,12 @@ class Stretch:
         begin, end = (float(loop.corner_arcs[k]) for k in (self.first, self.last))
         return begin, end if end > begin else end + loop.length
 
+    def names(self, loop: Loop) -> tuple[str, ...]:
+        """Return the names of its parts between corners."""
+        count = len(loop.corners)
+        parts = range(self.first, self.first + ((self.last - self.first - 1) % count) + 1)
+        return tuple(loop.names[k % len(loop.names)] for k in parts)
+
 
 def layered_walls(domain: Domain, names: Collection[str] = ()) -> tuple[list[int], tuple[Stretch, ...]]:
     """Return the numbers of loops with layers all around, and stretches of other loops, by names of walls.

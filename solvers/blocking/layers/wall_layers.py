@@ -80,10 +80,10 @@ class WallLayers:
             rest[0] = near.circle
         for k, ring in rings.items():
             rest[k] = ring.front
-        left = Domain(tuple(rest), domain.name, periodic=domain.periodic)
-        sizes = {k: RowSizes.of(left, k, [s for s in stretches if s.loop == k]) for k in numbers}
+        left = replace(domain, loops=tuple(rest), notes=())
+        sizes = {k: RowSizes.of(left, k, [s for s in stretches if s.loop == k], settings) for k in numbers}
         for each in sizes.values():
-            each.check_room(settings)
+            each.check_room()
         return cls(domain, rings, near, left, settings, tuple(stretches), tuple(sheets), sizes)
 
     @property
@@ -95,6 +95,17 @@ class WallLayers:
     def mirrors(self) -> tuple[Mirror, ...]:
         """Mirrors of what the layers leave; none unless the domain has some."""
         return mirrors_of(self.rest) if mirrors_of(self.domain) else ()
+
+    def of_ring(self, number: int) -> LayerSettings:
+        """Return the layers of the ring around a loop."""
+        return self.settings.at(self.domain.loops[number].names)
+
+    @cached_property
+    def of_rows(self) -> tuple[LayerSettings, ...]:
+        """Layers of the rows along sheets and stretches."""
+        loops = self.domain.loops
+        names = [loops[k].names for k in self.sheets] + [s.names(loops[s.loop]) for s in self.stretches]
+        return tuple(map(self.settings.at, names))
 
     def symmetric(self, layout: Layout) -> Layout:
         """Return the layout outside the layers with its nodes symmetric, if its quads are."""
@@ -115,7 +126,7 @@ class WallLayers:
 
     @cached_property
     def _ring_metric(self) -> SizeMetric | None:
-        parts = [ring_metric(ring, self.settings) for ring in self.rings.values()]
+        parts = [ring_metric(ring, self.of_ring(k)) for k, ring in self.rings.items()]
         return SizeMetric.joined(parts) if parts else None
 
     def metric(
@@ -149,9 +160,9 @@ class WallLayers:
             measures[0] = Measures(ends, ends[None])
         return measures
 
-    def ring_rows(self, ring: Ring) -> int:
-        """Return the number of layers of a ring."""
-        return self.settings.rows(float(ring.thickness.max()))
+    def ring_rows(self, number: int) -> int:
+        """Return the number of layers of the ring around a loop."""
+        return self.of_ring(number).rows(float(self.rings[number].thickness.max()))
 
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
         """Return the number of cells in rings and in rows to the far field, for counts (chords,)."""
@@ -159,7 +170,7 @@ class WallLayers:
         places = chords.layout.mesh.places
         for edge in np.flatnonzero(chords.wall):
             along[int(places.loop[chords.edges[edge][0]])] += int(counts[chords.chord[edge]])
-        total = sum(int(along[number]) * self.ring_rows(ring) for number, ring in self.rings.items())
+        total = sum(int(along[number]) * self.ring_rows(number) for number in self.rings)
         if self.near is not None:
             first = 2.0 * np.pi * self.near.radius / max(int(along[0]), 1)
             total += int(along[0]) * self.near.cells(first, multiple=self.settings.multiple)
@@ -175,7 +186,8 @@ def rings_around(domain: Domain, loops: Sequence[int], settings: LayerSettings) 
     for k in loops:
         mirror = next((each for each in mirrors if int(each.loops[k]) in rings), None)
         if mirror is None:
-            rings[k] = march_ring(domain, k, settings.first, *_sizes(domain, k), mirrors)
+            first = settings.at(domain.loops[k].names).first
+            rings[k] = march_ring(domain, k, first, *_sizes(domain, k), mirrors)
         else:
             rings[k] = mirrored(rings[int(mirror.loops[k])], domain.loops[k], mirror, float(mirror.sums[k]))
     return rings
@@ -231,7 +243,7 @@ def wanted_counts(
         metric = walls.metric(scale, 0.0 if cells else size, wakes)
         counts = wanted.counts(metric, multiple)
         for number, loop in enumerate(rows.loops):
-            layers = walls.sizes[loop].rows(scale, walls.settings)
+            layers = walls.sizes[loop].rows(scale, walls.of_rows[number])
             counts[row == number] = round(layers * before.layers[number]) if before else layers
         total = chords.cells(counts) + walls.attached_cells(chords, counts)
         low, high = (math.log(scale), high) if total > cells else (low, math.log(scale))

@@ -80,7 +80,22 @@ def mirror_about(domain: Domain, centre: Floats, along: Floats) -> Mirror | None
         if total is None:
             return None
         sums.append(total)
-    return Mirror(centre, along, loops, np.array(sums))
+    mirror = Mirror(centre, along, loops, np.array(sums))
+    return mirror if _keeps_marks(domain, mirror) else None
+
+
+def _keeps_marks(domain: Domain, mirror: Mirror) -> bool:
+    """Return whether no stretch of a domain has another prescribed value than its image."""
+    if not domain.marks:
+        return True
+    for loop, number, total in zip(domain.loops, mirror.loops.tolist(), mirror.sums.tolist(), strict=True):
+        ends = np.append(loop.corner_arcs, loop.length + loop.corner_arcs[:1])
+        middles = 0.5 * (ends[1:] + ends[:-1]) if loop.corners else np.zeros(1)
+        for arc in middles.tolist():
+            names = loop.name_at(arc), domain.loops[number].name_at(total - arc)
+            if any(len({values[name] for name in names if name in values}) > 1 for values in domain.marks):
+                return False
+    return True
 
 
 def _images(points: Floats, centre: Floats, along: Floats) -> Floats:
