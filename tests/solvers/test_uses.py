@@ -27,6 +27,7 @@ from meshonet.solvers.pipeline.uses import (
     chosen,
     refuse,
 )
+from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.sweeping.sweep import Sweep
 from meshonet_cli.app import application
@@ -36,7 +37,9 @@ ROOT = Path(__file__).parents[2]
 ONLY_CHECKED = ("check_request.py", "uses.py")
 """Files that say what may be asked for: to be named there is not to have an effect."""
 OF_REQUESTS = {
-    each.name for kind in (Sampling, GridRequest, StackRequest, DeformRequest, Sweep) for each in fields(kind)
+    each.name
+    for kind in (Sampling, GridRequest, StackRequest, RowRequest, DeformRequest, Sweep)
+    for each in fields(kind)
 }
 OF_RUNS = {each.name for kind in (Files, Engine) for each in fields(kind)} | {
     "as_json", "quiet", "debug", "pick", "shard", "fail_on", "profile", "engine",
