@@ -24,6 +24,7 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import cos, exp, expm1, product, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.far_field import straight
+from meshonet.geometry.spacing.along_curve import first_within
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth, growth_rate, growth_ratio
 from meshonet.geometry.spacing.tanh_law import TanhLaw
 
@@ -38,11 +39,13 @@ _STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the tra
 _LEAST_WALL = 5  # fewest nodes of a wall, with its trailing edge counted twice
 
 
-def cells_of_wake(ni: int, nodes_wanted: int | None, first: float, length: float) -> int:
+def cells_of_wake(
+    ni: int, nodes_wanted: int | None, first: float, length: float, steps: tuple[int, ...] = (1,)
+) -> int:
     """Return the cells of the wake of a C grid with `ni` nodes along xi, both sides of the wake included.
 
     `nodes_wanted` include the trailing edge; with None, cells grow from `first` by 13 %, and are 20 to 23 %
-    of all cells.
+    of all cells, and about a multiple of the first of `steps` that is at most a quarter of them.
 
     Raises InputError: too few nodes are left for the wall.
     """
@@ -51,6 +54,8 @@ def cells_of_wake(ni: int, nodes_wanted: int | None, first: float, length: float
     else:
         least, most = (max(2, round(share * (ni - 1))) for share in _SHARES)
         cells = min(max(cells_for_growth(first, length, _GROWTH), least), most)
+        step = first_within(steps, 0.25 * cells)
+        cells = max(1, (2 * cells + step - 1) // (2 * step)) * step
     if ni - 2 * cells < _LEAST_WALL:
         raise InputError(
             f"{ni} nodes along a C grid, twice {cells + 1} of them on the wake, leave too few for the wall",

@@ -32,7 +32,7 @@ _FADE = 1.0  # widths of the base over which the correction of first cells off i
 
 @timed
 def around_base(
-    lines: BaseWake, *, first: float, growth: float | None, free_rows: bool, constant: int
+    lines: BaseWake, *, first: float, growth: float | None, free_rows: bool, constant: int, multiple: int = 1
 ) -> Solution:
     """Return the grid of two blocks around `lines`, with first cells of height `first` in their unit.
 
@@ -47,7 +47,7 @@ def around_base(
     west, east = (straight(south[k], lines.north[k], lines.nj) for k in (0, -1))
     boundary = Boundary(south, lines.north, west, east, "quad", name=lines.name, chord=lines.chord)
     front = Front(boundary, wake, ends / first)
-    nodes = marched(front, lines.nj - 1, first, growth, free_rows, constant)
+    nodes = marched(front, lines.nj - 1, first, growth, free_rows, constant, multiple)
     grid = _joined(nodes, between, wake, lines.name, first)
     heights = norms(
         np.concatenate([nodes[wake : len(nodes) - wake, 1] - lines.wall, between[1] - between[0]])

@@ -54,15 +54,15 @@ AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a le
 @timed
 def hyperbolic(
     boundary: Boundary, *, wall_spacing: float, growth: float | None = None, free_rows: bool = False,
-    constant: int = 1,
+    constant: int = 1, multiple: int = 1,
 ) -> Solution:  # fmt: skip
     """Return an O or C grid marched from the wall of `boundary`, whose nodes are kept bitwise.
 
     The far field of `boundary` determines the distance to march, its `nj` the number of rows, or, with
-    `free_rows`, `growth` does: the largest growth ratio. The ends of a C's rows move along its west and east,
-    taken as straight. `wall_spacing` is the first-cell height in chords, met to a relative 1e-8; the first
-    `constant` rows have this height. The boundary of the solution is the one that the march reached. The grid
-    may be folded if it was in every attempt.
+    `free_rows`, `growth` does: the largest growth ratio; the rows of cells are then a multiple of `multiple`.
+    The ends of a C's rows move along its west and east, taken as straight. `wall_spacing` is the first-cell
+    height in chords, met to a relative 1e-8; the first `constant` rows have this height. The boundary of the
+    solution is the one that the march reached. The grid may be folded if it was in every attempt.
 
     Raises InputError: a four-sided boundary; a spacing or growth out of range; rows that do not suffice;
     SolverError: no attempt gave finite nodes.
@@ -75,27 +75,38 @@ def hyperbolic(
             parameter="method",
         )
     first = wall_spacing * boundary.chord
-    nodes = marched(Front(boundary), boundary.nj - 1, first, growth, free_rows, constant)
+    nodes = marched(Front(boundary), boundary.nj - 1, first, growth, free_rows, constant, multiple)
     return _solution(boundary, nodes, first)
 
 
 def marched(
-    front: Front, asked: int, first: float, growth: float | None, free_rows: bool, constant: int
+    front: Front,
+    asked: int,
+    first: float,
+    growth: float | None,
+    free_rows: bool,
+    constant: int,
+    multiple: int = 1,
 ) -> Floats:
     """Return the nodes (ni, nj, 2) of a march of `asked` rows of cells, or of as many as `growth` needs.
 
+    With `free_rows` their number is a multiple of `multiple`.
+
     Raises InputError: rows that do not suffice; SolverError: no attempt gave finite nodes.
     """
-    least = cells = _rows(asked, first, front.outer - front.inner, growth, free_rows, constant)
+    distance = front.outer - front.inner
+    least = cells = _rows(asked, first, distance, growth, free_rows, constant, multiple)
+    if free_rows:
+        cells = -(-cells // multiple) * multiple
     nodes = _unfolded(front, cells, first, growth, constant)
     while growth and float(fastest(nodes).max()) > math.log(growth):
-        cells += 1 + (cells - least) // 8
+        cells += -(-(1 + (cells - least) // 8) // multiple) * multiple
         if cells > 2 * least + 8:
             problem = f"no number of rows keeps to a growth of {growth:g}"
             raise InputError(problem, "allow more", parameter="growth")
         nodes = _unfolded(front, cells, first, growth, constant)
     if cells > asked and not free_rows:
-        raise _too_few(asked, cells, growth or MOST_GROWTH)
+        raise _too_few(asked, cells, growth or MOST_GROWTH, multiple)
     return nodes
 
 
@@ -126,13 +137,22 @@ def check_layers(wall_spacing: float, growth: float | None = None) -> None:
     check_growth(growth, MOST_GROWTH)
 
 
-def _too_few(cells: int, needed: int, growth: float) -> InputError:
-    """Return the error for a march of too few rows of cells."""
+def _too_few(cells: int, needed: int, growth: float, multiple: int) -> InputError:
+    """Return the error for a march of too few rows of cells, `multiple` times as many as were asked for."""
     problem = f"{cells + 1} rows of nodes cannot reach the far field growing by {growth:g} each"
-    return InputError(problem, f"use {needed + 1} rows or more")
+    before = " before {refine}" if multiple > 1 else ""
+    return InputError(problem, f"use {-(-needed // multiple) + 1} rows or more{before}")
 
 
-def _rows(cells: int, first: float, distance: float, growth: float | None, free: bool, constant: int) -> int:
+def _rows(
+    cells: int,
+    first: float,
+    distance: float,
+    growth: float | None,
+    free: bool,
+    constant: int,
+    multiple: int,
+) -> int:
     """Return the number of cells from the wall to the far field, increased if the limit requires it."""
     allowed = growth or MOST_GROWTH
     equal = constant - 1
@@ -144,7 +164,7 @@ def _rows(cells: int, first: float, distance: float, growth: float | None, free:
     if growth and (free or needed > cells):
         return needed
     if needed > cells:
-        raise _too_few(cells, needed, allowed)
+        raise _too_few(cells, needed, allowed, multiple)
     growth_ratio(first, distance - equal * first, cells - equal)  # raises when even equal cells reach too far
     return cells
 

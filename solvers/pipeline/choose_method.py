@@ -86,7 +86,7 @@ def _first_cells(request: OneBlock) -> FirstCells:
     note = request.height_note(f"and x/c {request.chord_fraction:g}", in_unit=" chords")
     in_chords = request.y_plus is not None and request.length is None
     free_rows = request.growth is not None and request.sampling.nj is None
-    layers = request.constant_layers or 1, request.growth, free_rows
+    layers = request.constant_layers or 1, request.growth, free_rows, 2**request.refine
     height = None if request.by_wall else request.height()  # single walls have theirs in many blocks only
     return FirstCells(height, request.sides, *layers, in_chords=in_chords, note=note)
 

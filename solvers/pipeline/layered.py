@@ -45,6 +45,7 @@ class FirstCells:
     constant: int = 1  # so many first layers are equally high
     growth: float | None = None  # largest ratio of neighbouring cells, or None
     free_rows: bool = False  # whether growth decides how many rows there are
+    multiple: int = 1  # of which the number of rows is one then
     # the height is in chords everywhere; that of a four-sided domain is the extent of its south
     in_chords: bool = False
     note: str = ""  # where the height comes from, when it was computed
@@ -102,7 +103,12 @@ class Layered(Wrapper):
     def _march(self, boundary: Boundary, height: float) -> Solution:
         refuse(self.chosen, MARCHED)
         cells = self.cells
-        settings = {"growth": cells.growth, "free_rows": cells.free_rows, "constant": cells.constant}
+        settings = {
+            "growth": cells.growth,
+            "free_rows": cells.free_rows,
+            "constant": cells.constant,
+            "multiple": cells.multiple,
+        }
         solution = method_named("hyperbolic", wall_spacing=height, **settings).solve([boundary])[0]
         return replace(solution, notes=(cells.note, *solution.notes)) if cells.note else solution
 

@@ -269,6 +269,7 @@ def _of_base(lines: BaseWake, request: GridRequest, seconds: dict[str, float]) -
         growth=request.growth,
         free_rows=request.growth is not None and request.sampling.nj is None,
         constant=request.constant_layers or 1,
+        multiple=2**request.refine,
     )
     _add_times(seconds, solution, time.perf_counter() - begun)
     note = request.height_note(f"and x/c {request.chord_fraction:g}", in_unit=" chords")

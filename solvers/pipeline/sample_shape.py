@@ -54,7 +54,8 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
             return domain.noted(*_far_field_advice(request, "extents of the bodies")) if default else domain
     sampling = request.shape_sampling()
     if keeps_base(shape, request):
-        return _behind_base(shape, sampling, request)
+        k = 2**request.refine
+        return _behind_base(shape, _times(sampling, k) if k > 1 else sampling, request)
     boundary = edges_of(shape, sampling)
     if request.refine:
         boundary = edges_of(shape, _finer(sampling, shape, boundary, 2**request.refine))
@@ -109,6 +110,13 @@ def _far_field_advice(request: GridRequest, unit: str) -> tuple[str, ...]:
         return ()
     where = f"the far field is {DEFAULT_FAR_FIELD:g} {unit} away, the default"
     return (Advice(f"{where}: for lift and drag give {{far_field}} 100 or more"),)
+
+
+def _times(sampling: Sampling, k: int) -> Sampling:
+    """Return `sampling` with `k` times the cells of its counts, of which None follow from other sizes."""
+    counts = sampling.ni, sampling.nj or DEFAULT_NJ, sampling.wake_nodes
+    ni, nj, wake = (n and k * (n - 1) + 1 for n in counts)
+    return replace(sampling, ni=ni, nj=nj, wake_nodes=wake, refined=k)
 
 
 def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Sampling:

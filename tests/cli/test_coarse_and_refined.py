@@ -1,5 +1,6 @@
 """`solve-pde --coarse` and `--refine`: fewer nodes first, the same boundary after."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -58,13 +59,43 @@ def test_refine_keeps_the_ends_of_wall_and_wake(meshonet: Meshonet, topology: st
     assert (grid.ni, grid.nj, grid.topology) == (61, 17, topology)
 
 
-def test_refine_goes_with_a_first_grid_and_not_with_marching(meshonet: Meshonet, body_h5: Path) -> None:
+def test_refine_goes_with_a_first_grid(meshonet: Meshonet, body_h5: Path) -> None:
     meshonet("solve-pde", body_h5, "-o", "start.vts")
-    words = ("solve-pde", body_h5, "--refine", "1", "-o", "g.vts")
-    assert meshonet(*words, "--initial", "start.vts").code == 0
-    done = meshonet(*words, "--wall-spacing", "1e-3")
+    assert meshonet("solve-pde", body_h5, "--refine", "1", "-o", "g.vts", "--initial", "start.vts").code == 0
+
+
+@pytest.mark.parametrize(("name", "topology"), [("0012", "o"), ("0012", "c"), ("0012-sharp", "c")])
+def test_refine_goes_with_first_cells_which_are_those_of_the_finest_grid(
+    meshonet: Meshonet, name: str, topology: str
+) -> None:
+    words = ("infer", f"naca:{name}", "--topology", topology, "--first-cell", "1e-4", "--refine", "2")
+    assert meshonet(*words, "--growth", "1.2", "-o", "fine.cgns").code == 0
+    assert meshonet("quality", "fine.cgns", "--fail-on", "wall_growth>1.2").code == 0
+    (grid,) = read_grids("fine.cgns")
+    (wall,) = (patch for patch in grid.patches if patch.name == "wall" and patch.block == 0)
+    rows = grid.blocks[0].nodes[wall.start : wall.stop + 1, :2]
+    np.testing.assert_allclose(np.linalg.norm(np.diff(rows, axis=1), axis=-1), 1e-4, rtol=1e-6)
+    assert meshonet("convert", "fine.cgns", "coarse.cgns", "--coarsen", "4").code == 0
+
+
+def test_too_few_rows_to_be_refined_are_refused_with_a_number_that_suffices(meshonet: Meshonet) -> None:
+    words = (
+        "infer",
+        "naca:0012",
+        "--topology",
+        "o",
+        "--first-cell",
+        "1e-5",
+        "--growth",
+        "1.2",
+        "--refine",
+        "2",
+    )
+    done = meshonet(*words, "--res", "65x9", "-o", "g.vts")
     assert done.code == 2
-    assert "--refine is of no use to a grid marched from the wall; drop --refine" in done.err
+    rows = re.search(r"use (\d+) rows or more before --refine", done.err)
+    assert rows is not None
+    assert meshonet(*words, "--res", f"65x{rows[1]}", "-o", "g.vts").code == 0
 
 
 def test_corners_of_a_base_are_those_of_all_grids_of_a_family(meshonet: Meshonet) -> None:

@@ -81,3 +81,23 @@ def test_a_wide_base_has_enough_cells_of_the_size_of_its_neighbours() -> None:
 def test_bases_that_cannot_be_had_are_refused(name: str, sampling: Sampling, told: str) -> None:
     with pytest.raises(InputError, match=told):
         naca(name).boundary(sampling)
+
+
+@pytest.mark.parametrize("ni", [161, 257, 401])
+def test_the_angles_of_a_base_are_those_of_the_outline_in_coarsened_grids(ni: int) -> None:
+    x = 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 161)))
+    half = 0.3 * (np.sqrt(x) - x) + 0.05 * x**2
+    lower = -half + 0.04 * np.exp(-(((1.0 - x) / 0.03) ** 2))  # a surface that turns by 30 degrees at its end
+    body = Airfoil(np.concatenate([np.stack([x, half], axis=1)[::-1], np.stack([x, lower], axis=1)[1:]]))
+    curve = body.curve
+    wall = body.boundary(Sampling(ni, 60, "o", "curvature")).south
+    tiny = 1e-7 * np.array([1.0, -1.0])
+    ways = curve.tangent(curve.knots[[1, -1]] + tiny) * np.array([[1.0], [-1.0]])
+    for coarser in (1, 2, 4):
+        ring = wall[::coarser]
+        for corner, way, step in zip(curve.points[[1, -1]], ways, (1, -1), strict=True):
+            k = int(np.argmin(np.hypot(*(ring - corner).T)))
+            assert np.hypot(*(ring[k] - corner)) < 1e-12
+            edge = ring[k + step] - ring[k]
+            lean = np.degrees(np.arctan2(edge[0] * way[1] - edge[1] * way[0], (edge * way).sum()))
+            assert abs(lean) < 1.0

@@ -203,3 +203,9 @@ def test_a_wake_of_too_few_nodes_says_what_to_change() -> None:
         InputError, match=r"2 cells from .* would grow by more than 10 each; use more nodes, wake_nodes"
     ):
         c(wake_nodes=3)
+
+
+@pytest.mark.parametrize(("ni", "multiple"), [(257, 8), (513, 8), (253, 4), (255, 2)])
+def test_the_wake_ends_on_a_node_that_coarsening_keeps(ni: int, multiple: int) -> None:
+    first, last = span(c(CAMBERED, ni=ni), "wall")
+    assert first % multiple == last % multiple == 0

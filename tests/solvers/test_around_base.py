@@ -119,3 +119,22 @@ def test_few_nodes_are_shared_between_wake_and_wall(ni: int, most: float) -> Non
     wall = result.grid.blocks[0].nodes[row.start : row.stop + 1, 0]
     longest = np.linalg.norm(np.diff(wall, axis=0), axis=1).max()
     assert longest < most  # 0.32 and 0.25 chords where cells at the corners are as long as high
+
+
+def test_other_corners_of_the_section_are_on_nodes_of_every_level() -> None:
+    round_nose = 0.5 * np.pi * np.linspace(0.0, 1.0, 20)[1:]
+    upper = np.concatenate(
+        [
+            np.linspace([1.0, 0.02], [0.7, 0.1], 12),
+            np.linspace([0.7, 0.1], [0.3, 0.1], 12)[1:],
+            np.stack([0.3 * (1.0 - np.sin(round_nose)), 0.1 * np.cos(round_nose)], axis=1),
+        ]
+    )
+    body = Airfoil(np.concatenate([upper, upper[-2::-1] * [1.0, -1.0]]))
+    corners = body.curve.points[body.curve.corner_index]
+    assert len(corners) == 4  # two of them where the tail begins
+    grid = made(body, ni=401, nj=97).grid
+    for k in (1, 2, 4):
+        wall = coarser_grid(grid, k).blocks[0].nodes[:, 0]
+        for corner in corners:
+            assert np.hypot(*(wall - corner).T).min() < 1e-12

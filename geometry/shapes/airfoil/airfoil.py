@@ -276,7 +276,7 @@ class Airfoil:
         chord, ni = original.chord, sampling.ni or DEFAULT_NI
         length = (sampling.wake or sampling.radius) * chord
         step = (sampling.te_spacing or C_EDGE / ni) * chord
-        cells = cells_of_wake(ni, sampling.wake_nodes, step, length)
+        cells = cells_of_wake(ni, sampling.wake_nodes, step, length, sampling.corner_steps(ni - 1))
         law = "curvature" if sampling.spacing == "auto" else sampling.spacing
         te = sampling.te_spacing if law in ("uniform", "cosine", "conformal") else step / self.chord
         wall = self.wall(ni - 2 * cells, replace(sampling, spacing=law, te_spacing=te))

@@ -86,11 +86,14 @@ def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float |
     base = _base(corners, first, ratio, sampling.base_nodes, steps, growth)
     length = (sampling.wake or sampling.radius) * body.chord
     cells = _wake_cells(sampling, first, length, ratio, steps, growth)
-    ni = sampling.ni or DEFAULT_NI + 1 + 2 * cells
+    refined = sampling.refined
+    ni = sampling.ni or refined * DEFAULT_NI + 1 + 2 * cells
     if ni - 1 - 2 * cells < _LEAST_WALL:
+        least = 2 * _whole(cells, MULTIPLES) + _LEAST_WALL
         raise InputError(
             f"{ni} nodes along a C grid, twice {cells + 1} of them behind a base, leave too few for the wall",
-            f"use at least {2 * _whole(cells, MULTIPLES) + _LEAST_WALL + 1} or fewer {{wake_nodes}}",
+            f"use at least {-(-least // refined) + 1}{' before {refine}' if refined > 1 else ''} "
+            "or fewer {wake_nodes}",
         )
     corner = first if growth else corner_cell(ni - 1 - 2 * cells, first, body.chord)
     wall = _wall(body, ni - 1 - 2 * cells, sampling, corner, ratio if corner == first else _STEEP)
@@ -140,6 +143,10 @@ def _base(
     cells = fewest
     if nodes is not None:
         cells = nodes - 1
+        if cells % every[-1]:
+            problem = f"{nodes} nodes on the base of a grid refined by {every[-1]}"
+            near = _whole(cells, every) + 1
+            raise InputError(problem, f"use {near}", parameter="base_nodes")
         needed = layer_steps(np.empty(cells), width, min(first, width / cells), min(first, width / cells), 1)
         if needed > (growth or LARGEST):
             problem = f"{nodes} nodes on the base, {width:.3g} wide, grow by {needed:.3g} from first cells of"

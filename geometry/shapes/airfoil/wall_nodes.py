@@ -15,9 +15,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, along_and_across
 from meshonet.geometry.conformal.spacing import conformal_knots
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.elementary import geomspace
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import first_within, on_corners
 from meshonet.geometry.spacing.laws import LAWS
@@ -37,6 +38,12 @@ _BASE_JUMP = 4.0
 """Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
 _ROUND_CELLS = 14  # fewest cells on half a rounded base, if there are 16 times as many in total
 _BASE_SHARE = 0.35  # largest fraction of all cells on the base
+_LEAN = math.radians(0.8)
+"""Largest angle between a surface at a corner of the base and its first cells, those of a grid coarsened
+by `_COARSENED` too."""
+_COARSENED = 4
+_LONGER = 1.2  # factor on the length of that many cells, since they grow away from the corner
+_SMALLER = 64.0  # largest factor by which cells beside a base are smaller for this
 
 
 @dataclass(frozen=True)
@@ -96,10 +103,8 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
         arcs = conformal_knots(stations.curve, corners, ni, at, steps)
     else:
         arcs = _planned_arcs(stations, ni, sampling)
-    corners = stations.curve.corners  # those of the trailing edge are already on nodes
-    inside = corners[(corners > stations.half_base) & (corners < stations.upper)]
     ends = np.searchsorted(arcs, [stations.half_base, stations.upper])
-    return on_corners(arcs, inside, (int(ends[0]), int(ends[1])), steps[0])
+    return on_corners(arcs, _inner_corners(stations), (int(ends[0]), int(ends[1])), steps[0])
 
 
 def _planned_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
@@ -132,14 +137,15 @@ def _planned_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
 def arcs_to_corners(stations: Stations, cells: int, sampling: Sampling, first: float, ratio: float) -> Floats:
     """Return arc lengths (cells + 1,) from the lower to the upper corner of a base, by curvature.
 
-    Cells at the corners have length `first`, unless `te_spacing` is given, and grow by at most `ratio`.
+    Cells at the corners have length `first`, unless `te_spacing` is given, and grow by at most `ratio`. Other
+    corners are on nodes.
     """
     from meshonet.geometry.spacing.size_field import arcs_by_curvature
 
     plan = _natural(stations, WallCells(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
     le = sampling.le_spacing * stations.chord if sampling.le_spacing else plan.le
     te = sampling.te_spacing * stations.chord if sampling.te_spacing else first
-    return arcs_by_curvature(
+    arcs = arcs_by_curvature(
         stations.curve,
         (stations.half_base, stations.nose, stations.upper),
         cells,
@@ -148,6 +154,13 @@ def arcs_to_corners(stations: Stations, cells: int, sampling: Sampling, first: f
         exact=(True, sampling.le_spacing is not None),
         at_edge=math.log(ratio),
     )
+    return on_corners(arcs, _inner_corners(stations), (), sampling.corner_steps(cells)[0])
+
+
+def _inner_corners(stations: Stations) -> Floats:
+    """Return the arc lengths of the corners of a section that are not those of its trailing edge."""
+    corners = stations.curve.corners
+    return corners[(corners > stations.half_base) & (corners < stations.upper)]
 
 
 def _asked_half(cells: int, nodes: int, sampling: Sampling) -> int:
@@ -177,7 +190,8 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> WallCells:
     plan = _natural(stations, WallCells(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
     if stations.half_base:
         fixed = bool(wanted_te) or not LAWS[sampling.spacing].sets_ends
-        half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, fixed=fixed)
+        corner = _corner_step(stations, plan.te, cells, sampling)
+        half, step = _base_cells(stations.half_base, wanted_te or corner, cells, fixed=fixed)
         if not stations.rounded:
             nodes = sampling.base_nodes
             half_cells = _asked_half(cells, nodes, sampling) if nodes else 0
@@ -221,6 +235,28 @@ def _natural(stations: Stations, plan: WallCells, sampling: Sampling) -> WallCel
         return replace(plan, te=le if not stations.half_base else mean * min(0.5, _EDGE_STEP / n), le=le)
     edge = _EDGE_PART if sampling.spacing == "curvature" else min(0.5, _EDGE_STEP / n)
     return replace(plan, te=mean * edge, le=min(max(le, 0.05 * mean), 0.7 * mean))
+
+
+def _corner_step(stations: Stations, step: float, cells: int, sampling: Sampling) -> float:
+    """Return the length of cells beside a base: `step`, or less where a surface turns away from its end."""
+    if sampling.spacing != "curvature" or stations.rounded:
+        return step
+    coarser = min(_COARSENED, sampling.corner_steps(cells)[0]) if sampling.refined == 1 else sampling.refined
+    reach = _LONGER * coarser * step
+    straight = min(_straight_length(stations, end, reach) for end in (stations.half_base, stations.upper))
+    return max(min(step, straight / (_LONGER * coarser)), step / _SMALLER)
+
+
+def _straight_length(stations: Stations, corner: float, most: float) -> float:
+    """Return the length, at most `most`, over which a surface leans by at most `_LEAN` off its `corner`."""
+    sign = 1.0 if corner == stations.half_base else -1.0
+    lengths = geomspace(most / _SMALLER, most, 65)
+    tiny = 1e-6 * lengths[0]
+    way = sign * stations.curve.tangent(np.array([corner + sign * tiny]))[0]
+    chords = stations.curve.at(corner + sign * lengths) - stations.curve.at(np.array([corner]))
+    along, across = along_and_across(chords, way)
+    lean = np.flatnonzero(np.abs(across) > math.tan(_LEAN) * along)
+    return most if len(lean) == 0 else float(lengths[max(lean[0] - 1, 0)])
 
 
 def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tuple[int, float]:
