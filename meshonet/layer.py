@@ -13,6 +13,7 @@ to these functions. They need torch (extra ``train``).
 """
 
 from meshonet.solvers.neural.differentiable import AirfoilGrids, BodyGrids, QuadGrids
+from meshonet.solvers.neural.differentiable.airfoil import conformal
 from meshonet.solvers.neural.differentiable.grids import transfinite, variational, winslow
 
-__all__ = ["AirfoilGrids", "BodyGrids", "QuadGrids", "transfinite", "variational", "winslow"]
+__all__ = ["AirfoilGrids", "BodyGrids", "QuadGrids", "conformal", "transfinite", "variational", "winslow"]

@@ -10,7 +10,11 @@ from random_quads import random_quad
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.families.family import family
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.conformal.solve import solve as o_grids
 from meshonet.solvers.derivatives.optimum import OptimumDerivative
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.energy.functional import Weights, value
@@ -21,7 +25,9 @@ from meshonet import layer  # noqa: E402 - it imports torch
 from meshonet.solvers.neural.differentiable.block_cholesky import BlockCholesky  # noqa: E402
 from meshonet.solvers.neural.differentiable.functional import Functional, aspect_of  # noqa: E402
 
-FUNCTIONS = (layer.transfinite, layer.winslow, layer.variational)
+QUADS = (layer.transfinite, layer.winslow, layer.variational, layer.QuadGrids())
+NETWORKS = layer.BodyGrids(), layer.AirfoilGrids()
+AROUND = (layer.conformal, *NETWORKS)
 NAMES = ("south", "north", "west", "east")
 
 
@@ -72,26 +78,62 @@ def test_variational_systems_are_those_of_twofold_differentiation(counts: tuple[
     torch.testing.assert_close(factor.solve(change[..., 1:-1, 1:-1]), move)
 
 
-@pytest.mark.parametrize("function", FUNCTIONS)
+def inputs(function: Any, count: int) -> tuple[Any, list[Any]]:
+    """Return the function of the sides alone, and sides of `count` members."""
+    if function in QUADS:
+        return function, sides_of(domains(9, 8, 2 * count)[:count])
+    names = ("2412", "4412-sharp", "23012", "0024", "6409", "1408", "2424", "0010-sharp")[:count]
+    sections = [naca(name).boundary(Sampling(25, 6, "o", far_field=3.0)) for name in names]
+    if function in (layer.conformal, NETWORKS[1]):
+        return lambda south, north: function(south, north, 6), sides_of(sections)[:2]
+    holes = [family("hole").boundary(0.1 + 0.2 * k / count, 25, 6) for k in range(count)]
+    return lambda south, north: function(south, north, 6), sides_of(holes)[:2]
+
+
+@pytest.mark.parametrize("function", QUADS + AROUND)
 def test_gradients_are_those_of_finite_differences(function: Any) -> None:
-    given = [side.requires_grad_() for side in sides_of(domains(9, 8, 5)[:2])]
-    assert torch.autograd.gradcheck(function, given, fast_mode=True)
+    nodes, given = inputs(function, 2)
+    given = [side.requires_grad_() for side in given]
+    assert torch.autograd.gradcheck(nodes, given, fast_mode=True)
 
 
-@pytest.mark.parametrize("function", FUNCTIONS)
+@pytest.mark.parametrize("function", QUADS + AROUND)
 def test_members_through_vmap_are_those_alone(function: Any) -> None:
-    given = sides_of(domains(9, 8, 8))
+    nodes, given = inputs(function, 8)
 
     def loss(*sides: Any) -> Any:
-        return (function(*sides) ** 3).sum()
+        return (nodes(*sides) ** 3).sum()
 
-    together = torch.func.vmap(function)(*given)
+    together = torch.func.vmap(nodes)(*given)
     slopes = torch.func.vmap(torch.func.grad(loss))(*given)
-    for k in range(len(together)):
+    for k in (0, 3, 7):
         alone = [side[k].clone().requires_grad_() for side in given]
-        torch.testing.assert_close(together[k], function(*alone).detach(), rtol=0, atol=1e-11)
+        torch.testing.assert_close(together[k], nodes(*alone).detach(), rtol=0, atol=1e-11)
         loss(*alone).backward()
-        torch.testing.assert_close(slopes[k], alone[0].grad, rtol=0, atol=1e-8)
+        torch.testing.assert_close(slopes[k], alone[0].grad, rtol=1e-9, atol=1e-8)
+
+
+@pytest.mark.parametrize("function", QUADS + AROUND)
+def test_single_precision_has_the_nodes_of_double_precision_rounded(function: Any) -> None:
+    nodes, given = inputs(function, 2)
+    single = [side.float() for side in given]
+    assert nodes(*single).dtype == torch.float32
+    assert torch.equal(nodes(*single), nodes(*(side.double() for side in single)).float())
+
+
+def test_conformal_nodes_are_those_of_the_compiled_iteration() -> None:
+    sections = [naca(name).boundary(Sampling(81, 30, "o")) for name in ("2412", "4412-sharp", "23012")]
+    nodes = layer.conformal(*sides_of(sections)[:2], 30)
+    for own, boundary in zip(nodes.numpy(), sections, strict=True):
+        exact = o_grids([boundary], polish=12)[0].grid.nodes
+        np.testing.assert_allclose(own, exact, rtol=0, atol=1e-12 * np.abs(boundary.north).max())
+
+
+def test_a_body_without_a_map_is_named() -> None:
+    _, (south, north) = inputs(layer.conformal, 2)
+    south[1] = 0.0
+    with pytest.raises(InputError, match=r"member 1 of the batch"):
+        layer.conformal(south, north, 6)
 
 
 def test_sides_keep_their_nodes_and_dtype() -> None:
@@ -108,15 +150,15 @@ def test_one_side_serves_a_whole_batch() -> None:
     assert layer.winslow(souths, north[0], west[0], east[0]).shape == (2, 3, 9, 8, 2)
 
 
-@pytest.mark.parametrize("function", FUNCTIONS[1:])
+@pytest.mark.parametrize("function", QUADS[1:] + AROUND)
 def test_a_member_that_is_not_finite_is_named(function: Any) -> None:
-    given = sides_of(domains(9, 8, 5))
-    given[0][2, 4, 1] = torch.nan
-    with pytest.raises(SolverError, match=r"member 2 of the batch: a coordinate is not finite"):
-        function(*given)
+    nodes, given = inputs(function, 2)
+    given[0][1, 4, 1] = torch.nan
+    with pytest.raises(SolverError, match=r"member 1 of the batch: a coordinate is not finite"):
+        nodes(*given)
 
 
-@pytest.mark.parametrize("function", FUNCTIONS[1:])
+@pytest.mark.parametrize("function", QUADS[1:3])
 def test_a_member_without_a_solution_is_named(function: Any) -> None:
     given = sides_of(domains(9, 8, 5))
     for side in given:

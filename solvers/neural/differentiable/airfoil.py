@@ -3,24 +3,33 @@
 The formulas are those of `meshonet.solvers.conformal.solve`; folded cells are not repaired.
 """
 
+from functools import partial
+from typing import Any, Literal
+
 import numpy as np
 import torch
 from torch import Tensor
+from torch.autograd.function import once_differentiable
 
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.conformal import strip
 from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
 from meshonet.solvers.conformal.evaluate import StripGrid
+from meshonet.solvers.conformal.solve import SETTLED
 from meshonet.solvers.conformal.strip import MODES, across, smoothing, wavenumbers
 from meshonet.solvers.elliptic.winslow import left_side
+from meshonet.solvers.neural.differentiable.arguments import batched, check_sides
 from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
-from meshonet.solvers.neural.differentiable.sides import as_numpy, check_sides
+from meshonet.solvers.neural.differentiable.members import MemberError
+from meshonet.solvers.neural.differentiable.recorded import recorded
+from meshonet.solvers.neural.differentiable.sides import as_numpy
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import load
 from meshonet.solvers.neural.strip.encoding import decode, encode
 from meshonet.solvers.neural.strip.network import StripNetwork
 from meshonet.solvers.neural.strip.operator import StripOperator
 
+STEPS = 12  # of Picard's iteration; those before the last one leave some 1e-8 of the first change
 CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner counts as halved
 
 
@@ -28,11 +37,14 @@ class AirfoilGrids:
     """The airfoil operator as a differentiable function.
 
     `model`: a strip operator, its name or path, or ``base`` for the harmonic base without a network;
-    `polish`: number of Picard steps after the network; `device`: torch's name of the device. Raises
-    InputError: no such model, or one that cannot be read or is of another kind.
+    `polish`: number of Picard steps after the network, or ``converged`` for a converged solution, with
+    gradients by implicit differentiation; `device`: torch's name of the device. Raises InputError: no such
+    model, or one that cannot be read or is of another kind.
     """
 
-    def __init__(self, model: str | Operator = "airfoil-o", polish: int = 2, device: str = "cpu") -> None:
+    def __init__(
+        self, model: str | Operator = "airfoil-o", polish: int | Literal["converged"] = 2, device: str = "cpu"
+    ) -> None:
         operator = load(model) if isinstance(model, str) else model
         if not isinstance(operator, StripOperator):
             raise InputError(f"model {operator.name} is no strip operator", "use airfoil-o or base")
@@ -41,22 +53,30 @@ class AirfoilGrids:
         self._device = device
 
     def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
-        """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
+        """Return the nodes (..., ni, nj, 2) of O grids around bodies.
 
-        `south`, `north`: (batch, ni, 2) nodes of the bodies and of the far fields, float64, clockwise from
-        the trailing edge, the first repeated at the end; `nj`: node count from wall to far field. Raises
-        InputError: a body without a conformal lift; tensors of other shapes or not float64; `nj` below 2.
+        `south`, `north`: (..., ni, 2) nodes of the bodies and of the far fields, clockwise from the trailing
+        edge, the first repeated at the end; `nj`: node count from wall to far field. The arithmetic is in
+        double precision. Raises InputError: a body without a conformal lift, with the index of the member;
+        tensors of other shapes; `nj` below 2. Raises SolverError: a member does not converge.
         """
-        check_sides(torch.float64, 4, nj, south=south, north=north)
-        edges = [torch.complex(edge[:, :-1, 0], -edge[:, :-1, 1]).to(self._device) for edge in (south, north)]
-        bodies = [torch_walls(z, far) for z, far in zip(*edges, strict=True)]
+        check_sides(4, nj, south=south, north=north)
+        make = partial(recorded, partial(self._nodes, nj=nj))
+        return batched(make, (south, north), device=self._device)
+
+    def _nodes(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
+        edges = [torch.complex(edge[:, :-1, 0], -edge[:, :-1, 1]) for edge in (south, north)]
+        bodies = [_lifted(k, z, far) for k, (z, far) in enumerate(zip(*edges, strict=True))]
         wall, far = (torch.stack([getattr(body, name) for body in bodies]) for name in ("wall", "far"))
         a, b = strip.modes(wall, torch), strip.modes(far, torch)
         c = strip.harmonic(a, b, across().eta, torch)
         if self._correction is not None:
             c = c + self._correction(a, b, torch.tensor([body.hand for body in bodies], device=self._device))
-        for _ in range(self._polish):
-            c = _picard(c)
+        if self._polish == "converged":
+            c = Settled.apply(c)  # type: ignore[no-untyped-call]
+        else:
+            for _ in range(self._polish):
+                c = _picard(c)
         F = _evaluated(c, wall, far, nj)
         theta = _theta(F.shape[1], F)[:, None]
         planes = []
@@ -67,6 +87,69 @@ class AirfoilGrids:
         inner = torch.stack(planes).to(south)
         inner = torch.cat([inner, inner[:, :1]], 1)[:, :, 1:-1]
         return torch.cat([south[:, :, None], inner, north[:, :, None]], 2)
+
+
+def conformal(south: Tensor, north: Tensor, nj: int) -> Tensor:
+    """Return the nodes (..., ni, nj, 2) of converged conformal O grids around airfoils.
+
+    Gradients are those of the solution, by one linear system for each backward pass.
+
+    Parameters
+    ----------
+    south, north : (..., ni, 2) nodes of the bodies and of the far fields, clockwise from the trailing edge,
+        the first repeated at the end.
+    nj : int
+        Node count from wall to far field.
+
+    Raises
+    ------
+    InputError
+        A body without a conformal lift, with the index of the member; tensors of other shapes, of unequal
+        counts or of different dtypes; `nj` below 2.
+    SolverError
+        Picard's iteration does not converge for a member of the batch; the message has its index.
+    """
+    return AirfoilGrids("base", "converged", str(south.device))(south, north, nj)
+
+
+class Settled(torch.autograd.Function):
+    """From modes (batch, modes, LEVELS) to the limit of Picard's steps."""
+
+    @staticmethod
+    def forward(ctx: Any, c: Tensor) -> Tensor:
+        """Return the limit."""
+        for _ in range(STEPS):
+            before, c = c, _picard(c)
+        far = ~((c - before).abs().amax((1, 2)) < SETTLED)
+        if bool(far.any()):
+            problem = "Picard's iteration does not converge"
+            raise MemberError(int(far.nonzero()[0, 0]), problem, "use layer.AirfoilGrids, or another method")
+        ctx.save_for_backward(c)
+        return c
+
+    @staticmethod
+    @once_differentiable
+    def backward(ctx: Any, gradient: Tensor) -> Tensor:
+        """Return the derivative with respect to the modes that the iteration starts from.
+
+        Each step is taken at the limit. Those inside that converge lose their weight to those on the walls;
+        the highest ones, which are filtered, stay as they were.
+        """
+        with torch.enable_grad():
+            c = ctx.saved_tensors[0].detach().requires_grad_()
+            after = _picard(c)
+        for _ in range(STEPS):
+            (gradient,) = torch.autograd.grad(after, c, gradient, retain_graph=True)
+        return gradient
+
+
+def _lifted(member: int, z: Tensor, far: Tensor) -> TorchWalls:
+    if not bool((z != z[0]).any()):
+        raise InputError(f"member {member} of the batch: the body is a point", "leave it out")
+    try:
+        return torch_walls(z, far)
+    except InputError as error:
+        raise InputError(f"member {member} of the batch: {error.problem}", error.remedy) from error
 
 
 class _Correction:

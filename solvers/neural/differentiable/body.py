@@ -1,5 +1,6 @@
 """Differentiable O grids around bodies: `neural.quad.o_grids` in torch, without polish or repair."""
 
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -11,8 +12,9 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.resample import corner_damping
 from meshonet.solvers.algebraic.resample.o_grid import SQUARINGS, along_lines
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
+from meshonet.solvers.neural.differentiable.arguments import check_sides
 from meshonet.solvers.neural.differentiable.resample import between
-from meshonet.solvers.neural.differentiable.sides import NetworkGrids, as_complex, as_numpy, check_sides
+from meshonet.solvers.neural.differentiable.sides import NetworkGrids, as_complex, as_numpy
 from meshonet.solvers.neural.quad.encoding import LATENT
 from meshonet.solvers.neural.quad.inside import inside, slope
 from meshonet.solvers.neural.quad.o_grids import NOT_ROUND, moved
@@ -26,20 +28,24 @@ class BodyGrids(NetworkGrids):
     remedy: ClassVar[str] = "use one for bodies"
 
     def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
-        """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
+        """Return the nodes (..., ni, nj, 2) of O grids around bodies.
 
-        `south`, `north`: (batch, ni, 2) nodes of the bodies and of the far fields, clockwise, the first
+        `south`, `north`: (..., ni, 2) nodes of the bodies and of the far fields, clockwise, the first
         repeated at the end; `nj`: node count from wall to far field. Raises InputError: tensors of other
-        shapes, or of another dtype than the network's; `nj` below 2; walls that do not wind once around a
-        centre of the body.
+        shapes, or of different dtypes; `nj` below 2; walls that do not wind once around a centre of the body,
+        with the index of the member.
         """
-        check_sides(self._dtype, 4, nj, south=south, north=north)
+        check_sides(4, nj, south=south, north=north)
+        return self._batched(partial(self._nodes, nj=nj), south, north)
+
+    def _nodes(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
         sides = [edge.movedim(-1, 1) for edge in (south, north)]
         body, far = (as_complex(side) for side in sides)
         walls = torch.stack([as_complex(between(side, AROUND)) for side in sides], 2)
         strips, centres, once = around_middles(body, walls, _inside, torch)
         if not once.all():
-            raise InputError(*NOT_ROUND)
+            problem, remedy = NOT_ROUND
+            raise InputError(f"member {int(np.argmin(as_numpy(once)))} of the batch: {problem}", remedy)
         base, factor = even(strips, LATENT, torch), factors(strips, torch)[:, None, None]
         strip = moved(base, factor, self._head, self._answer, torch)
         grid = rolled(strip, centres[:, None, None], torch)

@@ -2,10 +2,9 @@
 
 from collections.abc import Callable
 
-import torch
 from torch import Tensor
 
-from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.differentiable.arguments import batched, check_sides
 from meshonet.solvers.neural.differentiable.implicit import Converged, Equations
 from meshonet.solvers.neural.differentiable.transfinite import Sides, arc_lengths, interpolated
 from meshonet.solvers.neural.differentiable.variational import Optimum
@@ -25,7 +24,7 @@ def transfinite(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Ten
     InputError
         Tensors of other shapes, of unequal counts, of different dtypes or not of floating-point numbers.
     """
-    return _batched(lambda sides: interpolated(sides, arc_lengths(sides)), south, north, west, east)
+    return _four_sided(lambda sides: interpolated(sides, arc_lengths(sides)), south, north, west, east)
 
 
 def winslow(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
@@ -75,35 +74,16 @@ def _solved(equations: Equations, *given: Tensor) -> Tensor:
         nodes: Tensor = Converged.apply(equations, start)[0]  # type: ignore[no-untyped-call]
         return nodes
 
-    return _batched(make, *given)
+    return _four_sided(make, *given)
 
 
-def _batched(make: Callable[[Sides], Tensor], *given: Tensor) -> Tensor:
+def _four_sided(
+    make: Callable[[Sides], Tensor], south: Tensor, north: Tensor, west: Tensor, east: Tensor
+) -> Tensor:
     """Return the nodes (..., ni, nj, 2); `make` takes sides (batch, 2, n) and returns (batch, 2, ni, nj)."""
-    _check(*given)
-    lead = torch.broadcast_shapes(*(side.shape[:-2] for side in given))
-    wide = [side.expand(*lead, *side.shape[-2:]).reshape(-1, *side.shape[-2:]) for side in given]
-    south, north, west, east = (side.double().movedim(-1, 1) for side in wide)
-    nodes = make((south, north, west, east)).movedim(1, -1).to(given[0].dtype)
-    return nodes.reshape(*lead, *nodes.shape[1:])
+    check_sides(3, south=south, north=north, west=west, east=east)
 
+    def nodes(*sides: Tensor) -> Tensor:
+        return make(tuple(side.movedim(-1, 1) for side in sides)).movedim(1, -1)
 
-def _check(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> None:
-    """Raise InputError for sides that bound no batch of grids."""
-    sides = {"south": south, "north": north, "west": west, "east": east}
-    for name, side in sides.items():
-        if side.ndim < 2 or side.shape[-1] != 2 or side.shape[-2] < 3 or not side.numel():
-            raise InputError(f"{name} has shape {tuple(side.shape)}", "give (..., n, 2) with n at least 3")
-        if not side.is_floating_point() or side.dtype != south.dtype or side.device != south.device:
-            problem = f"{name} is {side.dtype} on {side.device} and south {south.dtype} on {south.device}"
-            raise InputError(problem, "give floating-point numbers of one type on one device")
-    for first, second in (("south", "north"), ("west", "east")):
-        counts = [sides[name].shape[-2] for name in (first, second)]
-        if counts[0] != counts[1]:
-            problem = f"{first} has {counts[0]} nodes and {second} {counts[1]}"
-            raise InputError(problem, "opposite sides need equal counts")
-    try:
-        torch.broadcast_shapes(*(side.shape[:-2] for side in sides.values()))
-    except RuntimeError:
-        shapes = ", ".join(str(tuple(side.shape[:-2])) for side in sides.values())
-        raise InputError(f"the sides are of different batches: {shapes}", "give as many of each") from None
+    return batched(nodes, (south, north, west, east))

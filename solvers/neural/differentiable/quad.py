@@ -6,13 +6,13 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.arrays import Topology
+from meshonet.solvers.neural.differentiable.arguments import check_sides
 from meshonet.solvers.neural.differentiable.resample import between, folded, refined
 from meshonet.solvers.neural.differentiable.sides import (
     NetworkGrids,
     as_complex,
     as_numpy,
     as_planes,
-    check_sides,
 )
 from meshonet.solvers.neural.differentiable.transfinite import arc_lengths, interpolated
 from meshonet.solvers.neural.quad.coarse_grids import answered, in_frame, nearer, share
@@ -27,13 +27,16 @@ class QuadGrids(NetworkGrids):
     remedy: ClassVar[str] = "use one of four-sided domains, or BodyGrids"
 
     def __call__(self, south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
-        """Return the nodes (batch, ni, nj, 2) of grids inside four edges each.
+        """Return the nodes (..., ni, nj, 2) of grids inside four edges each.
 
-        `south`, `north`: (batch, ni, 2) nodes along xi, from west to east; `west`, `east`: (batch, nj, 2)
-        nodes along eta, from south to north; corners are shared. Raises InputError: tensors of other shapes,
-        or of another dtype than the network's.
+        `south`, `north`: (..., ni, 2) nodes along xi, from west to east; `west`, `east`: (..., nj, 2) nodes
+        along eta, from south to north; corners are shared. Raises InputError: tensors of other shapes, or of
+        different dtypes.
         """
-        check_sides(self._dtype, 2, south=south, north=north, west=west, east=east)
+        check_sides(2, south=south, north=north, west=west, east=east)
+        return self._batched(self._nodes, south, north, west, east)
+
+    def _nodes(self, south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
         sides = tuple(edge.movedim(-1, 1) for edge in (south, north, west, east))
         thin = tuple(between(side, LATENT) for side in sides)
         base = as_complex(interpolated(thin, arc_lengths(thin)))

@@ -1,5 +1,7 @@
-"""What differentiable operators share: checks of their arguments, the network, conversions of arrays."""
+"""What differentiable operators share: the network, conversions of arrays."""
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any, ClassVar
 
 import torch
@@ -7,6 +9,8 @@ from torch import Tensor
 
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.differentiable.arguments import batched
+from meshonet.solvers.neural.differentiable.recorded import recorded
 from meshonet.solvers.neural.fit.networks import QuadUNet
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.quad.encoding import features
@@ -14,29 +18,6 @@ from meshonet.solvers.neural.quad.operator import QuadOperator
 from meshonet.solvers.neural.registry import load
 
 SHIPPED: dict[Topology, str] = {"quad": "quad-general", "o": "hole-o"}  # by topology
-
-
-def check_sides(dtype: torch.dtype, least: int, nj: int = 2, **sides: Tensor) -> None:
-    """Raise InputError unless opposite sides have one shape (batch, n, 2), n at least `least`, and `dtype`.
-
-    `sides`: by name, in pairs of opposite ones.
-    """
-    names = list(sides)
-    for name, side in sides.items():
-        shape = tuple(side.shape)
-        if len(shape) != 3 or shape[2] != 2 or shape[1] < least or not shape[0]:
-            raise InputError(f"{name} has shape {shape}", f"give (batch, n, 2) with n at least {least}")
-        if side.dtype != dtype:
-            raise InputError(f"{name} is {side.dtype}", f"give {dtype}")
-    for first, second in zip(names[::2], names[1::2], strict=True):
-        shapes = [tuple(sides[name].shape) for name in (first, second)]
-        if shapes[0] != shapes[1]:
-            problem = f"{first} has shape {shapes[0]} and {second} {shapes[1]}"
-            raise InputError(problem, "opposite sides need equal counts")
-    if len({side.shape[0] for side in sides.values()}) > 1:
-        raise InputError("the sides are of different batches", "give as many of every side")
-    if nj < 2:
-        raise InputError(f"nj is {nj} nodes", "use at least 2")
 
 
 class NetworkGrids:
@@ -56,11 +37,14 @@ class NetworkGrids:
         operator = load(model or SHIPPED[self.topology]) if isinstance(model, str) else model
         if not isinstance(operator, QuadOperator) or operator.topology != self.topology:
             raise InputError(f"model {operator.name} makes {operator.topology} grids", self.remedy)
-        self._dtype, self._head = dtype, operator.head
+        self._dtype, self._device, self._head = dtype, device, operator.head
         self._network = QuadUNet(operator.widths, operator.blocks, around=self.topology == "o")
         state = {name: torch.from_numpy(array) for name, array in operator.weights.items()}
         self._network.load_state_dict(state)
         self._network.to(device=device, dtype=dtype).requires_grad_(False)
+
+    def _batched(self, make: Callable[..., Tensor], *sides: Tensor) -> Tensor:
+        return batched(partial(recorded, make), sides, self._dtype, self._device)
 
     def _answer(self, near: Tensor, step: Tensor) -> Tensor:
         return self._network(features(near, step, torch, self.topology == "o"))[:, self._head]

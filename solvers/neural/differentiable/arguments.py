@@ -1,0 +1,53 @@
+"""Arguments of the functions from sides to nodes: checks, batches, types."""
+
+from collections.abc import Callable, Sequence
+
+import torch
+from torch import Tensor
+
+from meshonet.geometry.errors import InputError
+
+
+def check_sides(least: int, nj: int = 2, **sides: Tensor) -> None:
+    """Raise InputError for sides (..., n, 2) that bound no batch of grids.
+
+    `sides`: by name, in pairs of opposite ones; `least`: nodes of a side at least; `nj`: the node count from
+    one to the other, where no side has it.
+    """
+    names = list(sides)
+    first = sides[names[0]]
+    for name, side in sides.items():
+        if side.ndim < 2 or side.shape[-1] != 2 or side.shape[-2] < least or not side.numel():
+            problem = f"{name} has shape {tuple(side.shape)}"
+            raise InputError(problem, f"give (..., n, 2) with n at least {least}")
+        if not side.is_floating_point() or side.dtype != first.dtype or side.device != first.device:
+            problem = (
+                f"{name} is {side.dtype} on {side.device} and {names[0]} {first.dtype} on {first.device}"
+            )
+            raise InputError(problem, "give floating-point numbers of one type on one device")
+    for one, other in zip(names[::2], names[1::2], strict=True):
+        counts = [sides[name].shape[-2] for name in (one, other)]
+        if counts[0] != counts[1]:
+            problem = f"{one} has {counts[0]} nodes and {other} {counts[1]}"
+            raise InputError(problem, "opposite sides need equal counts")
+    try:
+        torch.broadcast_shapes(*(side.shape[:-2] for side in sides.values()))
+    except RuntimeError:
+        shapes = ", ".join(str(tuple(side.shape[:-2])) for side in sides.values())
+        raise InputError(f"the sides are of different batches: {shapes}", "give as many of each") from None
+    if nj < 2:
+        raise InputError(f"nj is {nj} nodes", "use at least 2")
+
+
+def batched(
+    make: Callable[..., Tensor], sides: Sequence[Tensor], dtype: torch.dtype = torch.float64,
+    device: str | torch.device | None = None,
+) -> Tensor:  # fmt: skip
+    """Return nodes (..., ni, nj, 2) inside `sides` (..., n, 2), of their type and on their device.
+
+    `make` takes sides (batch, n, 2) and returns nodes (batch, ni, nj, 2), of type `dtype` and on `device`.
+    """
+    lead = torch.broadcast_shapes(*(side.shape[:-2] for side in sides))
+    wide = [side.expand(*lead, *side.shape[-2:]).reshape(-1, *side.shape[-2:]) for side in sides]
+    nodes = make(*(side.to(device=device, dtype=dtype) for side in wide)).to(sides[0])
+    return nodes.reshape(*lead, *nodes.shape[1:])
