@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from meshonet.geometry.arrays import Floats, extent_of
@@ -28,9 +28,9 @@ class Domain:
         Sentences for users on what a reader skipped in the file.
     periodic : tuple of Periodic, optional
         Pairs of stretches of the outer loop that are periodic.
-    marks : tuple of mapping, optional
-        Prescribed values by the name of a stretch, such as first-cell heights. A mirror of the domain takes
-        no stretch to one with another value.
+    heights, counts : mapping, optional
+        Prescribed first-cell heights and numbers of cells, by the name of stretches. A mirror of the domain
+        takes no stretch to one with another value.
 
     Raises
     ------
@@ -42,7 +42,8 @@ class Domain:
     name: str = ""
     notes: tuple[str, ...] = ()
     periodic: tuple[Periodic, ...] = ()
-    marks: tuple[Mapping[str, float], ...] = ()
+    heights: Mapping[str, float] = field(default_factory=dict)
+    counts: Mapping[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if not self.loops:

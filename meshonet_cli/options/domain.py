@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from meshonet.geometry.errors import InputError
-from meshonet_cli.options.groups import DOMAIN, numbers, option_of
+from meshonet_cli.options.groups import DOMAIN, by_name, numbers, option_of
 
 _option = option_of(DOMAIN)
+_COUNTS = "use SIDE=N, e.g. inlet=40,floor=120"
 
 # fmt: off
 BlocksName = Annotated[Literal["auto", "single"], _option(
@@ -68,6 +69,11 @@ class DomainOptions:
     )] = None
 
     walls: Walls = None
+    count: Annotated[str | None, _option(
+        "--count", metavar="SIDE=N,...",
+        help="Number of cells along each named side of the domain, e.g. inlet=40. Blocks have as many cells "
+        "on opposite sides, so that counts can exclude each other.",
+    )] = None
 
     def parameters(self) -> dict[str, Any]:
         """Return them for the library; raise InputError for what cannot be read."""
@@ -79,6 +85,7 @@ class DomainOptions:
             values["layout"] = layout_of(self.layout)
         if self.pitch is not None:
             values["pitch"] = numbers(self.pitch, (2,), "a vector", "use DX,DY, e.g. 0,0.8", "pitch")
+        values["count"] = {} if self.count is None else by_name(self.count, int, _COUNTS, "count")
         if self.walls is not None:
             values["walls"] = tuple(map(str.strip, self.walls.split(",")))
         return values

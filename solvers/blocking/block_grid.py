@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
 from meshonet.solvers.blocking.decomposition.errors import most_folded
+from meshonet.solvers.blocking.decomposition.named_counts import sums_of, with_counts
 from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric, node_images
 from meshonet.solvers.blocking.sizes.chords import Chords
@@ -33,6 +34,8 @@ ROUNDS, STEP, MORE = 7, 1.12, 1.19
 """How often at the most, by which factor, and up to how many times the cells asked for."""
 MOST_CUT_OFF = 9.5e-4
 """With that many cells, what they cut off less what they add, before wall nodes are held closer at bends."""
+RECOUNTS = 4
+"""How often cells are counted if numbers along some sides are given, for as many in total."""
 HELD_BACK = 0.6
 """Part of the angle that a wall may turn by along an edge, from then on from round to round."""
 
@@ -57,19 +60,21 @@ def fine_layout(
     while wanted / 4**halvings > OPTIMISED:
         halvings += 1
     own = 0  # halvings that are optimised themselves
-    while own < halved and wanted * 4 ** (own + 1) <= OPTIMISED:
+    while own < halved and not layout.mesh.domain.counts and wanted * 4 ** (own + 1) <= OPTIMISED:
         own += 1
     chords = Chords.of(layout, node_images(layout.mesh))
-    least = chords.least
+    least, along = chords.least, [chord for row in sums_of(chords).values() for chord in row]
     turning, counts, finer = ALLOWED, least, 4.0 ** (halvings - own)
     fine: Layout | None = None
     for _ in range(ROUNDS):
         before = counts
-        if cell_size and not cells:
-            counts = chords.counts_for_size(cell_size * 2**halvings, least)
-        else:
-            counts = chords.counts_for_cells(int(wanted / 4**halvings), least)
-        counts = counts_along_sides(chords, counts, least)
+        sizes = None if cells else cell_size and cell_size * 2**halvings
+        try:
+            counts = _counts(chords, least, wanted / 4**halvings, sizes, 2**halvings)
+        except InputError:  # more cells along walls and the given numbers exclude each other
+            if fine is None:
+                raise
+            break
         if fine is not None and chords.cells(counts) > MORE * wanted / 4**halvings:
             if abs(cut_off(fine)) / finer < MOST_CUT_OFF:
                 break
@@ -79,14 +84,32 @@ def fine_layout(
             break
         fine = trial
         more = _more_along_walls(chords.of_refined(fine), finer, 2**own)
+        more[along] = counts[along]
         if (more <= counts).all():
             break
         least = np.maximum(least, more)
+        least[along] = chords.least[along]
     assert fine is not None  # noqa: S101 - the first round makes it
     with timings.stage("refine"):
         times = 2 ** (halvings + halved - own)
+        if layout.mesh.domain.counts:
+            chords, times = chords.of_refined(fine), 2**halved
+            exact = with_counts(chords, chords.counts * 2**halvings, chords.least)
+            fine = refine(fine, exact, chords)
         fine = multiplied(fine, times) if times > 1 else fine
         return replace(fine, mesh=with_tied_sides(made_symmetric(fine.mesh)))
+
+
+def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, finer: int) -> Indices:
+    """Return counts (chords,) for cells of a size, or `wanted` cells, that suit the sides of a domain."""
+    cells = wanted
+    for _ in range(RECOUNTS):
+        counts = chords.counts_for_size(size, least) if size else chords.counts_for_cells(int(cells), least)
+        counts = with_counts(chords, counts_along_sides(chords, counts, least), least, finer=finer)
+        if size or not chords.layout.mesh.domain.counts:
+            break
+        cells *= wanted / chords.cells(counts)
+    return counts
 
 
 def cut_off(fine: Layout) -> float:

@@ -96,7 +96,7 @@ def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
     if height is not None:
         return _outside_layers(domain, request, height, layout)
     layout = layout or decompose(domain)
-    if not (request.cells or request.cell_size or request.res or request.refine):
+    if not (request.cells or request.cell_size or request.res or request.refine or request.count):
         return layout
     if domain.periodic:
         problem = "a count or size of cells for the layout of a domain with periodic sides"
@@ -155,7 +155,7 @@ def _outside_layers(domain: Domain, request: BlockRequest, height: AtWalls, layo
     from meshonet.solvers.blocking.layers.stretches import layered_walls
     from meshonet.solvers.blocking.layers.wall_layers import WallLayers
 
-    for name in ("cells", "cell_size", "res", "refine"):
+    for name in ("cells", "cell_size", "res", "refine", "count"):
         if getattr(request, name):
             problem = f"{{{name}}} for a layout with layers"
             raise InputError(problem, f"drop {{{name}}}: the grid has cells, which follow from the layers")
@@ -174,6 +174,10 @@ def _passage(domain: Domain, request: BlockRequest, height: float | None, timing
     if request.layout is not None:
         problem = "{layout} beside {pitch}"
         raise InputError(problem, "drop {layout}: the blocks of a cascade are always the same")
+    if request.count:
+        raise InputError(
+            "{count} beside {pitch}", "give {cells}: the counts of a cascade follow from its sizes"
+        )
     settings, size = None, request.cell_size
     if height is not None:
         settings = _settings(request, height)
@@ -191,13 +195,17 @@ def _passage(domain: Domain, request: BlockRequest, height: float | None, timing
 def _checked(domain: Domain, request: BlockRequest) -> Domain:
     check_domain(domain)
     known = list(dict.fromkeys(name for loop in domain.loops for name in loop.names))
+    for name in request.count:
+        if name not in known:
+            raise InputError(f"there is no side {name!r}", "use " + ", ".join(known), parameter="count")
+    domain = replace(domain, counts=request.count)
     option = "walls" if request.walls else "first_cell" if request.y_plus is None else "y_plus"
     for name in request.layered:
         if name not in known:
             raise InputError(f"there is no wall {name!r}", "use " + ", ".join(known), parameter=option)
     heights = request.heights()
     if isinstance(heights, Mapping):
-        domain = replace(domain, marks=(heights,))
+        domain = replace(domain, heights=heights)
     return with_periodic_sides(domain, request.periodic)
 
 

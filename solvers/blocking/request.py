@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError
@@ -18,6 +19,8 @@ CELLS = 2500
 LAYERED_CELLS = 20_000
 """Default number of cells of grids with layers."""
 MOST_HALVINGS = 8
+MOST_ALONG = 100_000
+"""Largest number of cells along a side."""
 LARGEST_PITCH = 1e12
 """Largest pitch in the unit of the blade, so that squares of coordinates do not overflow."""
 
@@ -42,6 +45,7 @@ class BlockRequest(FirstCell):
     inlet, outlet : lengths of the passage before and behind the blade, in its axial chords; None is 1.
     periodic : pairs of sides of the outer boundary, by name, that are translated copies of each other.
     layout : blocks to take, of this domain or of one like it.
+    count : numbers of cells along sides of the domain, by their names.
     refine : how often all cells are halved. `cells`, `cell_size` and `res` say what the coarsest grid of the
         family has, `first_cell` and `growth` what the finest has, which is the one that is made.
 
@@ -60,14 +64,14 @@ class BlockRequest(FirstCell):
     layout: Layout | None = None
     refine: int = 0
     periodic: tuple[tuple[str, str], ...] = ()
+    count: Mapping[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         sizes = [name for name in ("cells", "cell_size", "res") if getattr(self, name) is not None]
         if len(sizes) > 1:
             both = f"{{{sizes[0]}}} and {{{sizes[1]}}} both say how many cells there are"
             raise InputError(both, "give one of them")
-        if self.cells is not None and not 1 <= self.cells <= MOST_CELLS:
-            raise InputError(f"{self.cells} cells", f"use 1 to {MOST_CELLS}", parameter="cells")
+        self._check_counts()
         if not 0 <= self.refine <= MOST_HALVINGS:
             remedy = f"use 0 to {MOST_HALVINGS}"
             raise InputError(f"cells halved {self.refine} times", remedy, parameter="refine")
@@ -96,6 +100,14 @@ class BlockRequest(FirstCell):
             if getattr(self, name) is not None and self.pitch is None:
                 remedy = f"give {{pitch}} as well, or drop {{{name}}}"
                 raise InputError(f"{{{name}}} without {{pitch}}", remedy)
+
+    def _check_counts(self) -> None:
+        if self.cells is not None and not 1 <= self.cells <= MOST_CELLS:
+            raise InputError(f"{self.cells} cells", f"use 1 to {MOST_CELLS}", parameter="cells")
+        for name, count in self.count.items():
+            if not 1 <= count <= MOST_ALONG:
+                problem = f"{count} cells along {name!r}"
+                raise InputError(problem, f"use 1 to {MOST_ALONG}", parameter="count")
 
     @property
     def layered(self) -> tuple[str, ...]:

@@ -102,6 +102,7 @@ class ManyBlocks(Request):
     outlet: float | None = None
     layout: Layout | None = None
     periodic: tuple[tuple[str, str], ...] = ()
+    count: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def asks_for_blocks(self) -> tuple[str, ...]:
@@ -200,6 +201,8 @@ class GridRequest(OneBlock, ManyBlocks, Volume):
         Blocks to use again.
     periodic : tuple of tuple of str, optional
         Pairs of sides of a domain, by name, that are periodic.
+    count : mapping, optional
+        Numbers of cells along sides of a domain, by their names; with `refine` those of the coarsest grid.
     layers : int, optional
         Number of nodes along each grid line of a volume marched from a surface, including the wall node.
     symmetry : {'x', 'y', 'z', 'none'}, optional

@@ -48,7 +48,7 @@ GIVEN_SECTION = "a section that is a grid"
 _OF_MARCHED = _row("res", _SHAPE, _FIRST, "constant_layers repair_margin blocks refine", _SIDES)
 _OF_ONE = _OF_MARCHED | _row("slide wall_angle coarse initial")
 _OF_MANY = _row("res far_field te normalise", _FIRST, "constant_layers refine") | _row(
-    "cells cell_size walls pitch inlet outlet layout periodic"
+    "cells cell_size walls pitch inlet outlet layout periodic count"
 )
 USES: dict[str, frozenset[str]] = {
     MARCHED: _OF_MARCHED,
@@ -84,7 +84,7 @@ def chosen(request: Request) -> tuple[str, ...]:
             names.append("res" if name in COUNTED else name)
     for each in fields(request):
         value = getattr(request, each.name)
-        if each.name not in ALWAYS and value != each.default and value is not False:
+        if each.name not in ALWAYS and value != each.default and value is not False and value != {}:
             names.append(each.name)
     for name, value in request.settings.items():
         if value != SETTINGS.get(name):

@@ -138,6 +138,7 @@ DOMAINS = {
     "--cell-size": (f"step.wkt {MADE}", "OPTION .2", "nodes"),
     "--layout": (f"step.wkt --cells 400 {MADE}", "OPTION tall.json", "nodes"),
     "--periodic": (f"named.geojson {MADE}", "OPTION left,right", "nodes"),
+    "--count": (f"named.geojson {MADE}", "OPTION left=9", "nodes"),
     "--pitch": (f"naca:0012 --cells 900 {MADE}", "OPTION 0,0", "code"),
     "--inlet": (f"naca:0012 --cells 900 {MADE}", "OPTION .7", "code"),
     "--outlet": (f"naca:0012 --cells 900 {MADE}", "OPTION .7", "code"),

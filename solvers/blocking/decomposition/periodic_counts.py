@@ -24,7 +24,7 @@ def counts_along_sides(
     They are at least `least` (chords,), and those of chords `fixed` are as given.
     Raises BlockingError: there are none.
     """
-    rows = _rows(chords)
+    rows = rows_of(chords)
     if not rows:
         return counts
     rows += [({chord: 1.0}, float(count), float(count)) for chord, count in fixed.items()]
@@ -59,11 +59,11 @@ def _unmatched(sides: Periodic) -> str:
 def alike_along_sides(chords: Chords, counts: Indices) -> bool:
     """Return whether `counts` (chords,) are as many cells on both sides of every pair."""
     return all(
-        sum(value * counts[chord] for chord, value in row.items()) == 0.0 for row, _, _ in _rows(chords)
+        sum(value * counts[chord] for chord, value in row.items()) == 0.0 for row, _, _ in rows_of(chords)
     )
 
 
-def _rows(chords: Chords) -> list[Row]:
+def rows_of(chords: Chords) -> list[Row]:
     """Return for each pair of sides the coefficients of chords, of which the sum is to be zero."""
     mesh = chords.layout.mesh
     if not mesh.domain.periodic:

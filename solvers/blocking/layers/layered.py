@@ -27,6 +27,7 @@ from meshonet.geometry.layout.periodic_sides import with_tied_sides
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.decompose import Timings
+from meshonet.solvers.blocking.decomposition.named_counts import with_counts
 from meshonet.solvers.blocking.decomposition.periodic_counts import alike_along_sides
 from meshonet.solvers.blocking.decomposition.symmetry.images import made_symmetric, node_images
 from meshonet.solvers.blocking.layers.attach import attach
@@ -142,6 +143,8 @@ def _fine(walls: WallLayers, rows: WallRows, coarse: Layout, counts: Counts, tim
         cut = max((n for n, loop in zip(layers, rows.loops, strict=True) if loop == 0), default=0)
         for number, loop in enumerate(rows.loops):  # walls that periodic sides cut have the same at both
             cells[row == number] = cut if loop == 0 and walls.domain.periodic else layers[number]
+        fixed = {int(chord): int(cells[chord]) for chord in np.flatnonzero(row >= 0)}
+        cells = with_counts(chords, cells, chords.least, multiple=walls.settings.multiple, fixed=fixed)
         if not alike_along_sides(chords, cells):
             problem = "layers end at one of two periodic sides and not at the other"
             raise InputError(problem, "name the walls at both", parameter="walls")

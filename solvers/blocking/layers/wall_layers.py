@@ -16,6 +16,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
+from meshonet.solvers.blocking.decomposition.named_counts import nearer
 from meshonet.solvers.blocking.decomposition.periodic_counts import counts_along_sides
 from meshonet.solvers.blocking.decomposition.symmetry.images import images_of, made_symmetric
 from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
@@ -241,7 +242,7 @@ def wanted_counts(
     for _ in range(_BISECTIONS):
         scale = math.exp(0.5 * (low + high))
         metric = walls.metric(scale, 0.0 if cells else size, wakes)
-        counts = wanted.counts(metric, multiple)
+        counts = nearer(chords, wanted.counts(metric, multiple), multiple)
         for number, loop in enumerate(rows.loops):
             layers = walls.sizes[loop].rows(scale, walls.of_rows[number])
             counts[row == number] = round(layers * before.layers[number]) if before else layers

@@ -57,10 +57,10 @@ def test_mirror_images_keep_unlike_first_cells_and_share_like_ones() -> None:
     unlike = heights(meshonet.grid(tops, first_cell={"low": 1e-3, "high": 4e-3}, cells=4000))
     np.testing.assert_allclose(unlike["low"], 1e-3, rtol=1e-6)
     np.testing.assert_allclose(unlike["high"], 4e-3, rtol=1e-6)
-    marked = Domain(tops.loops, marks=({"low": 1e-3, "high": 4e-3},))
+    marked = Domain(tops.loops, heights={"low": 1e-3, "high": 4e-3})
     assert len(mirrors_of(tops)) == 2
     assert len(mirrors_of(marked)) == 1  # each tube is its own image in the line across the channel
-    assert len(mirrors_of(Domain(tops.loops, marks=({"low": 1e-3, "high": 1e-3},)))) == 2
+    assert len(mirrors_of(Domain(tops.loops, heights={"low": 1e-3, "high": 1e-3}))) == 2
 
 
 def test_y_plus_of_each_wall_is_converted_with_one_reynolds_number() -> None:

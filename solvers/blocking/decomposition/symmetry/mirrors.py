@@ -8,6 +8,7 @@ known exactly for any curve.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -81,19 +82,20 @@ def mirror_about(domain: Domain, centre: Floats, along: Floats) -> Mirror | None
             return None
         sums.append(total)
     mirror = Mirror(centre, along, loops, np.array(sums))
-    return mirror if _keeps_marks(domain, mirror) else None
+    return mirror if _keeps_given(domain, mirror) else None
 
 
-def _keeps_marks(domain: Domain, mirror: Mirror) -> bool:
+def _keeps_given(domain: Domain, mirror: Mirror) -> bool:
     """Return whether no stretch of a domain has another prescribed value than its image."""
-    if not domain.marks:
+    given: tuple[Mapping[str, float], ...] = (domain.heights, domain.counts)
+    if not any(given):
         return True
     for loop, number, total in zip(domain.loops, mirror.loops.tolist(), mirror.sums.tolist(), strict=True):
         ends = np.append(loop.corner_arcs, loop.length + loop.corner_arcs[:1])
         middles = 0.5 * (ends[1:] + ends[:-1]) if loop.corners else np.zeros(1)
         for arc in middles.tolist():
             names = loop.name_at(arc), domain.loops[number].name_at(total - arc)
-            if any(len({values[name] for name in names if name in values}) > 1 for values in domain.marks):
+            if any(len({values[name] for name in names if name in values}) > 1 for values in given):
                 return False
     return True
 
