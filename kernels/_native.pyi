@@ -190,7 +190,7 @@ class QuadDescent:
         lines: tuple[Indices, Indices, int, Floats], eased: tuple[Indices, Floats], inner: Indices,
         tied: tuple[Indices, Floats], unknown: Indices, wall: Indices,
         wall_nodes: tuple[Indices, Indices, Floats], wall_edges: tuple[Indices, Floats],
-        loops: tuple[tuple[object, ...], ...], bent: float, allowed: float,
+        loops: tuple[tuple[object, ...], ...], bent: float, allowed: float, crossed: Indices,
     ) -> None: ...  # fmt: skip
     def run(
         self,
@@ -201,9 +201,18 @@ class QuadDescent:
         gain: float,
         most: int,
         renew: bool,
+        steep: float = ...,
+        limit: float = ...,
     ) -> tuple[float, float, int]: ...
     def evaluate(
-        self, shape: float, smoothness: float, epsilon: float, size: float, gradient: Floats
+        self,
+        shape: float,
+        smoothness: float,
+        epsilon: float,
+        size: float,
+        gradient: Floats,
+        steep: float = ...,
+        limit: float = ...,
     ) -> float: ...
 
 # sparse: `pattern` is the symbolic factorisation: order, parent, start, row, fill

@@ -8,6 +8,7 @@
     hub = "hub.curve"            # x, y, z or x, r from inlet to outlet
     shroud = "shroud.curve"
     tip_gap = 0.0356             # a length, or "1 %" of the span; likewise hub_gap
+    inlet = -3.0                 # along the axis, or [[x, r], [x, r]] on hub and shroud; likewise outlet
     axis = "x"                   # of rotation
     coordinates = "xyz"          # of profiles; or "xrt": x, r, theta in radians
     unit = "cm"                  # of all lengths: the grid is in metres then
@@ -42,11 +43,12 @@ from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.cylinder import on_cylinder
 from meshonet.geometry.rows.row import Row
+from meshonet.geometry.rows.trim import Plane, trimmed
 from meshonet.geometry.sections.section import QUARTER, Section
 
 KEYS = (
-    "kind", "name", "blades", "profiles", "sections", "hub", "shroud", "tip_gap", "hub_gap", "axis",
-    "coordinates", "unit",
+    "kind", "name", "blades", "profiles", "sections", "hub", "shroud", "tip_gap", "hub_gap", "inlet",
+    "outlet", "axis", "coordinates", "unit",
 )  # fmt: skip
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 """Units of files, in metres."""
@@ -67,6 +69,8 @@ def read_row(data: Table, source: Source) -> Row:
     columns = _AXES[data.word("axis", tuple(_AXES), "x")]
     polar = data.word("coordinates", ("xyz", "xrt"), "xyz") == "xrt"
     hub, shroud = (_wall(data, key, folder, columns) * scale for key in ("hub", "shroud"))
+    planes = [_plane(data, key, scale) for key in ("inlet", "outlet")]
+    hub, shroud = (trimmed(points, planes[0], planes[1], wall) for wall, points in enumerate((hub, shroud)))
     if ("profiles" in data.data) == ("sections" in data.data):
         problem = "stands beside sections" if "profiles" in data.data else "is missing"
         raise data.error("profiles", problem, "give profiles or [[sections]]")
@@ -121,6 +125,20 @@ def _wall(data: Table, key: str, folder: Path, columns: tuple[int, int, int]) ->
         return points
     x, y, z = points[:, columns].T
     return np.stack([x, np.hypot(y, z)], axis=1)
+
+
+def _plane(data: Table, key: str, scale: float) -> Plane | None:
+    """Return where inlet or outlet is: along the axis, or through points on hub and shroud."""
+    value = data.data.get(key)
+    if value is None:
+        return None
+    if not isinstance(value, list):
+        return data.number(key) * scale
+    if len(value) != 2 or not all(isinstance(point, list) and len(point) == 2 for point in value):
+        raise data.error(key, f"{value!r} is no plane", "give x, or [[x, r], [x, r]] on hub and shroud")
+    ends = [Table({key: point}, data.place).pair(key, (0.0, 0.0)) for point in value]
+    (a, b), (c, d) = ends
+    return (a * scale, b * scale), (c * scale, d * scale)
 
 
 def _span(hub: Floats, shroud: Floats) -> float:

@@ -2,13 +2,14 @@
 
        E = mean over cells of mean over corners of
                (1-w) (a g + h/a) / (2χ) + w (g h / χ²)²  [+ t (A/χ + χ/A) / 2]
-         + β N mean over pairs of edges of (Δ log (l / target))²
+         + N mean over pairs of edges of β (Δ log (l / target))², for consecutive ones + γ max(|Δ log| - limit, 0)²
 
    N is the number of cells. Pairs are opposite edges of a cell and consecutive ones along a grid line; with targets all
    of one length the last term is that over blocks. The term in brackets, A the area a cell has at first, is for folded
    meshes: with χ > J cells would gain by shrinking to points. There ε is a part of A. A batch of cells at a time: their forces are worked out
    in vectors, then added to the nodes one by one. */
 #include "energy.h"
+#include "topology.h"
 #include "clones.h"
 #include "energy/corner.h"
 #include <math.h>
@@ -125,8 +126,9 @@ static double all_pairs(const QuadMesh *mesh, const double *restrict x, double *
     const ptrdiff_t *restrict edge = mesh->edge, *restrict line = mesh->line, n = mesh->edges;
     double *restrict length = mesh->length, *restrict force = mesh->force;
     const double *restrict target = mesh->target;
-    const double by = mesh->smoothness * (double)mesh->cells / (double)mesh->pairs;
-    double energy = 0.0;
+    const double each = (double)mesh->cells / (double)mesh->pairs, by = mesh->smoothness * each;
+    const double steep = mesh->steep * each, limit = mesh->limit;
+    double energy = 0.0, excess = 0.0;
     MESHONET_INDEPENDENT
     for (ptrdiff_t k = 0; k < n; k++) {
         const ptrdiff_t a = 2 * edge[2 * k], b = 2 * edge[2 * k + 1];
@@ -135,19 +137,33 @@ static double all_pairs(const QuadMesh *mesh, const double *restrict x, double *
     }
     MESHONET_INDEPENDENT
     for (ptrdiff_t k = 0; k < n; k++) {
-        double sum = 0.0;
+        double sum = 0.0, beyond = 0.0;
         for (int i = 0; i < 4; i++) {
             const double d = length[k] - length[line[4 * k + i]];
             sum += d, energy += d * d;
         }
-        force[k] *= 2.0 * by * sum;
+        for (int i = FIRST_BEHIND; i < 4; i++) {
+            const double d = length[k] - length[line[4 * k + i]];
+            const double more = d > limit ? d - limit : d < -limit ? d + limit : 0.0;
+            beyond += more, excess += more * more;
+        }
+        force[k] *= 2.0 * (by * sum + steep * beyond);
     }
+    for (ptrdiff_t k = 0; k < mesh->crossed_count && steep > 0.0; k++)
+        for (int i = 0; i < 2; i++) {
+            const ptrdiff_t own = mesh->crossed[2 * k + i], a = 2 * edge[2 * own], b = 2 * edge[2 * own + 1];
+            const double d = length[own] - length[mesh->crossed[2 * k + 1 - i]];
+            const double more = d > limit ? d - limit : d < -limit ? d + limit : 0.0;
+            const double dx = x[b] - x[a], dy = x[b + 1] - x[a + 1], by_x = 2.0 * steep * more / (dx * dx + dy * dy + 1e-300);
+            excess += more * more;
+            g[a] -= by_x * dx, g[a + 1] -= by_x * dy, g[b] += by_x * dx, g[b + 1] += by_x * dy;
+        }
     for (ptrdiff_t k = 0; k < n; k++) {
         const ptrdiff_t a = 2 * edge[2 * k], b = 2 * edge[2 * k + 1];
         const double fx = force[k] * (x[b] - x[a]), fy = force[k] * (x[b + 1] - x[a + 1]);
         g[a] -= fx, g[a + 1] -= fy, g[b] += fx, g[b + 1] += fy;
     }
-    return 0.5 * by * energy;
+    return 0.5 * (by * energy + steep * excess);
 }
 
 double quad_energy(const QuadMesh *mesh, const double *x, double *g, double *smallest)

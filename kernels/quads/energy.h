@@ -6,11 +6,12 @@
    cell and 1 / a, `area` (m) that which cells are held to while folded, and what Jacobians are parts of. Corners in `eased` (k, 3) are a node and those
    before and behind it, and give away the part `ease` (k) of their angle term. */
 typedef struct {
-    ptrdiff_t nodes, cells, edges, pairs, eased_count;
-    const ptrdiff_t *quads, *edge, *line, *eased;
+    ptrdiff_t nodes, cells, edges, pairs, eased_count, crossed_count;
+    const ptrdiff_t *quads, *edge, *line, *eased, *crossed; /* crossed (k, 2): edges at irregular nodes, whose growth counts too */
     const double *aspect, *area, *target, *ease;
     double *length, *force; /* (edges,) */
     double shape, smoothness, epsilon, size;
+    double steep, limit; /* weight of growth along lines and the logarithm of the ratio from which on it counts */
 } QuadMesh;
 
 /* Return the functional at nodes x (n, 2), its gradient g (n, 2), and the smallest Jacobian as a part of its cell's

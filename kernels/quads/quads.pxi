@@ -23,16 +23,17 @@ cdef extern from "quads/walls.h":
 
 cdef extern from "quads/energy.h":
     ctypedef struct QuadMesh:
-        ptrdiff_t nodes, cells, edges, pairs, eased_count
+        ptrdiff_t nodes, cells, edges, pairs, eased_count, crossed_count
         const ptrdiff_t *quads
         const ptrdiff_t *edge
         const ptrdiff_t *line
         const ptrdiff_t *eased
+        const ptrdiff_t *crossed
         const double *aspect
         const double *area
         const double *target
         const double *ease
-        double shape, smoothness, epsilon, size
+        double shape, smoothness, epsilon, size, steep, limit
 
 cdef extern from "quads/descent.h":
     ctypedef struct CQuadDescent "QuadDescent":
@@ -77,7 +78,7 @@ cdef class QuadDescent:
     parts). `inner` are the nodes that move freely, `tied` is (pairs, shifts (pairs, 2)); `unknown` and `wall` are (n,).
     `wall_nodes` (nodes, unknowns, arc) and `wall_edges` (edges, round) are sorted by loop. Each of `loops` is (cubic,
     table, start, stop, pieces, end, turned) and the numbers of its first and last nodes and edges. Wall edges may turn
-    by `allowed`; `bent` weighs what exceeds it.
+    by `allowed`; `bent` weighs what exceeds it. Growth counts for the pairs of edges `crossed` (k, 2) as well.
     """
 
     cdef CQuadDescent state
@@ -85,7 +86,7 @@ cdef class QuadDescent:
     cdef object held
 
     def __init__(self, nodes, tuple cells, tuple lines, tuple eased, inner, tuple tied, unknown, wall,
-                 tuple wall_nodes, tuple wall_edges, tuple loops, double bent, double allowed):
+                 tuple wall_nodes, tuple wall_edges, tuple loops, double bent, double allowed, crossed):
         cdef ptrdiff_t n = len(nodes), m = len(cells[0]), e = len(lines[0]), k = len(wall_nodes[0]), j
         cdef ptrdiff_t corners = len(eased[0]), ties = len(tied[0]), sides = len(wall_edges[0])
         cdef ptrdiff_t unknowns = 2 * len(inner) + np.count_nonzero(wall_nodes[1] >= 0)
@@ -94,6 +95,7 @@ cdef class QuadDescent:
         self.state.x = fills(nodes, (n, 2))
         mesh.nodes, mesh.cells, mesh.edges, mesh.pairs, mesh.eased_count = n, m, e, lines[2], corners
         mesh.quads, mesh.aspect = reads_places(cells[0], (m, 4), n), reads(cells[1], (m, 2))
+        mesh.crossed_count, mesh.crossed = len(crossed), reads_places(crossed, (len(crossed), 2), e)
         mesh.area, mesh.edge = reads(cells[2], (m,)), reads_places(lines[0], (e, 2), n)
         mesh.line, mesh.target = reads_places(lines[1], (e, NEXT_EDGES), e), reads(lines[3], (e,))
         mesh.eased, mesh.ease = reads_places(eased[0], (corners, 3), n), reads(eased[1], (corners,))
@@ -130,7 +132,7 @@ cdef class QuadDescent:
         walls.interval = fills_indices(interval, (k,))
         quad_descent_place(&self.state, unknowns, fills(room, room.shape), fills_single(small))
         self.held = (nodes, cells, lines, eased, inner, tied, unknown, wall, wall_nodes, wall_edges, loops, room, small,
-                     interval)
+                     interval, crossed)
 
     def __dealloc__(self):
         quad_descent_free(&self.state)
@@ -146,16 +148,18 @@ cdef class QuadDescent:
             raise ValueError("nodes that are not finite")
         return 0
 
-    def run(self, double shape, double smoothness, double epsilon, double size, double gain, int most, bint renew):
+    def run(self, double shape, double smoothness, double epsilon, double size, double gain, int most, bint renew, double steep=0.0, double limit=0.0):
         """Minimise; return (functional, smallest ratio of a Jacobian to the area of its cell, iterations).
 
         It stops if the functional falls by less than the fraction `gain` in each of three iterations, or after `most`.
-        With `renew` the preconditioner is first updated to the current nodes.
+        With `renew` the preconditioner is first updated to the current nodes. `steep` is the weight of ratios of
+        neighbouring lengths whose logarithms exceed `limit`.
         """
         cdef int done = 0, state = GOES_ON
         cdef QuadMesh *mesh = &self.state.mesh
         cdef Steps *steps = &self.state.steps
         mesh.shape, mesh.smoothness, mesh.epsilon, mesh.size = shape, smoothness, epsilon, size
+        mesh.steep, mesh.limit = steep, limit
         steps.reach, steps.farthest, steps.still, steps.gain = 0.125, 1.0, float("inf"), gain
         self._start(renew)
         while done < most and state == GOES_ON and steps.n > 0:
@@ -167,12 +171,14 @@ cdef class QuadDescent:
             quad_descent_end(&self.state)
         return steps.value, steps.smallest, done
 
-    def evaluate(self, double shape, double smoothness, double epsilon, double size, gradient):
+    def evaluate(self, double shape, double smoothness, double epsilon, double size, gradient,
+                 double steep=0.0, double limit=0.0):
         """Return the functional at the current nodes, and fill `gradient` (unknowns,)."""
         cdef QuadMesh *mesh = &self.state.mesh
         cdef ptrdiff_t k
         cdef Written to = fills(gradient, (self.state.steps.n,))
         mesh.shape, mesh.smoothness, mesh.epsilon, mesh.size = shape, smoothness, epsilon, size
+        mesh.steep, mesh.limit = steep, limit
         self._start(True)
         for k in range(self.state.steps.n):
             to[k] = self.state.steps.gradient[k]

@@ -68,6 +68,8 @@ ptrdiff_t line_neighbours(const ptrdiff_t *quads, const ptrdiff_t *edge_of, ptrd
     for (ptrdiff_t q = 0; q < m; q++)
         for (int i = 0; i < 2; i++)
             pair_up(&lines, edge[edge_of[4 * q + i]], edge[edge_of[4 * q + i + 2]]);
+    for (ptrdiff_t k = 0; k < e; k++)
+        filled[k] = FIRST_BEHIND;
     for (ptrdiff_t v = 0, first = 0; v < n; v++) {
         const ptrdiff_t count = start[v] - first, *at = corner + first;
         ptrdiff_t both[4][2];

@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #define NEXT_EDGES 4 /* neighbours of an edge along grid lines at the most: beside it in two cells, before and behind it */
+#define FIRST_BEHIND 2 /* the first of those before and behind it */
 
 /* Fill `line` (e, NEXT_EDGES) with the edges whose lengths those of each edge are compared with, itself where there are fewer:
    opposite ones in a quad, and the next ones through regular nodes: inner ones of four quads, and those of two along

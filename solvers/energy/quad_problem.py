@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, cross2
-from meshonet.geometry.elementary import log, sin
+from meshonet.geometry.elementary import arctan2, log, sin
 from meshonet.geometry.layout.lattice import corner_jacobians
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -119,7 +119,21 @@ class Problem:
             tuple(self._loop(number) for number in range(len(self.mesh.domain.loops))),
             BENT * (ALLOWED / turning) ** 2 / min(max(len(self.quads), 1), MANY),
             turning,
+            self._crossed(),
         )
+
+    def _crossed(self) -> Indices:
+        """Return pairs (k, 2) of edges at irregular nodes inside, with one edge between them.
+
+        These are the edges that leave a side of a block to both sides where the side ends in the node.
+        """
+        mesh, parts = self.mesh, [np.empty((0, 2), dtype=np.intp)]
+        for vertex in np.flatnonzero(mesh.irregular & ~mesh.wall_nodes & self.moves).tolist():
+            edges = np.flatnonzero((mesh.edges == vertex).any(axis=1))
+            away = mesh.nodes[mesh.edges[edges].sum(axis=1) - vertex] - mesh.nodes[vertex]
+            edges = edges[np.argsort(arctan2(away[:, 1], away[:, 0]), kind="stable")]
+            parts.append(np.stack([edges, np.roll(edges, -2)], axis=1))
+        return np.ascontiguousarray(np.concatenate(parts))
 
     def _areas(self) -> Floats:
         """Return the target areas (m,) of cells for untangling, which are near their current areas."""

@@ -50,7 +50,7 @@ class QuadOptimum:
 def optimise(
     mesh: QuadMesh, *, iterations: int = 60, held: Bools | None = None, aspects: Floats | None = None,
     targets: Floats | None = None, tolerance: float = 1e-4, turning: float = ALLOWED,
-    weights: tuple[float, float] = SIZED,
+    weights: tuple[float, float] = SIZED, growth: tuple[float, float] = (0.0, 0.0),
 ) -> QuadOptimum:  # fmt: skip
     """Return the mesh with all nodes at the minimum of the functional.
 
@@ -61,7 +61,8 @@ def optimise(
     than `turning` radians are penalised. The minimisation ends after `iterations`, not including those of
     untangling, or if three consecutive iterations gain less than a hundredth of `tolerance` times the value.
     Cells without free nodes are ignored, but if one of them is folded the mesh is not valid. `weights` are w
-    and β of the functional if there are `targets`.
+    and β of the functional if there are `targets`. `growth` is the weight of ratios of neighbouring edges, and
+    the logarithm from which on these count.
     """
     unknowns = unknowns_of(mesh, held)
     walls = walls_of(mesh, unknowns.fixed, unknowns.tied)
@@ -72,9 +73,10 @@ def optimise(
     if low <= 0.0:
         low, done = _unfold(problem, low)
     value = np.inf
-    for own in (FREE,) if targets is None or weights == FREE else (FREE, weights):
+    steps = (weights,) if growth[0] > 0.0 else (FREE,) if targets is None else (FREE, weights)
+    for own in steps:
         if low > 0.0:
-            value, low, more = problem.descent.run(*own, 0.0, 0.0, 0.01 * tolerance, iterations, True)
+            value, low, more = problem.descent.run(*own, 0.0, 0.0, 0.01 * tolerance, iterations, True, *growth)
             done += more
     moved = problem.result()
     valid = low > 0.0 and smallest_jacobian(moved.nodes, moved.quads) > 0.0

@@ -38,7 +38,7 @@ class GapBlocks:
 
 
 def gap_blocks(
-    row: Row, made: RowNodes, space: Floats, around: Indices, lead: int, zone: Zone, levels: tuple[int, int],
+    row: Row, made: RowNodes, space: Floats, columns: Indices, lead: int, zone: Zone, levels: tuple[int, int],
     first: float, growth: float,
 ) -> GapBlocks:  # fmt: skip
     """Return the blocks of a gap.
@@ -46,7 +46,8 @@ def gap_blocks(
     Parameters
     ----------
     made, space : nodes of the row, and their positions.
-    around : (k,) nodes of the blade, clockwise; `lead` is the position of that at the leading edge.
+    columns : (k, m) nodes of the layers from the blade, clockwise; `lead` is the number of that at the
+        leading edge.
     zone, levels : the gap, and the numbers of the levels that bound it.
     first, growth : height of cells inside the outline next to it, and their largest ratio.
 
@@ -54,13 +55,15 @@ def gap_blocks(
     """
     tip = zone.high == 1.0  # the blade is below this gap, otherwise above it
     heights = (zone.low, zone.high) if tip else (zone.high, zone.low)
-    outlines, maps = [], []
+    around = columns[:, 0]
+    outlines, outside, maps = [], [], []
     for level, height in zip(levels if tip else levels[::-1], heights, strict=True):
-        s, theta, _ = made.values[level][around].T
         maps.append(row.channel.meridional(height))
-        outlines.append(np.stack([maps[-1].forward(s), theta], axis=1))
+        for nodes, out in ((around, outlines), (columns[:, 1], outside)):
+            s, theta, _ = made.values[level][nodes].T
+            out.append(np.stack([maps[-1].forward(s), theta], axis=1))
     radius = float(norms(space[levels[0]][around][:, 1:]).mean())
-    fill = filled_outline(outlines[0], lead, first / radius, growth)
+    fill = filled_outline(outlines[0], outside[0], lead, first / radius, growth)
     planes = [fill.layout.mesh.nodes, _carried(fill, outlines[1])]
     ends = [
         np.stack([to.back(nodes[:, 0]), nodes[:, 1]], axis=1) for to, nodes in zip(maps, planes, strict=True)

@@ -11,6 +11,7 @@ r"""Five blocks inside the outline of a blade, in a gap: a ring of four, and a c
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -21,7 +22,7 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.elementary import power
+from meshonet.geometry.elementary import exp, power
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
@@ -29,14 +30,15 @@ from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.spacing.growth import cells_for_growth
 from meshonet.solvers.energy.quads import optimise
-from meshonet.solvers.rows.columns import resampled, with_first
 
-_MOST_ASIDE = 8
-"""Cells of half of side 1 or 3 at the most."""
-_INSET = 0.5  # part of half the thickness that the ring fills
+_ITERATIONS = 200
 _FEWEST_ROWS = 4
-_ITERATIONS = 150
 _POWER = 6.0  # how fast the core's lines gather towards its ends
+_BISECTIONS = 50
+_ROUND = 0.4  # of the width of an edge behind it, at which it ends
+_FEWER = 0.8
+FLAT, SMOOTH, STEEP, MARGIN = 0.95, 1e-3, 0.3, 0.93
+"""Weights of the functional, as in `key_sections`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,73 +55,121 @@ class GapFill:
     layout: Layout
 
 
-def outline_sides(outline: Floats, lead: int) -> list[Indices]:
-    """Return positions of the four sides among the nodes of an outline (k, 2), `lead` at the leading edge.
+def outline_sides(count: int, lead: int, aside: int) -> list[Indices]:
+    """Return positions of the four sides among `count` nodes of an outline, `lead` at the leading edge.
 
-    Sides 1 and 3 are as long as the round edges of the blade, about half circles.
+    Sides 1 and 3 reach `aside` nodes to both sides of the edges of the blade.
     """
-    count = len(outline)
-    half = count // 2
-    m = (_aside(outline, lead) + _aside(outline, lead + half) + 1) // 2
+    m, half = aside, count // 2
     cuts = [m, half - m, half + m, count - m, count + m]
     return [(lead + np.arange(a, b + 1)) % count for a, b in pairwise(cuts)]
 
 
-def _aside(outline: Floats, edge: int) -> int:
-    """Return how many nodes from an edge the outline has turned by about a right angle to both sides."""
-    count = len(outline)
-    m = np.arange(1, min(_MOST_ASIDE, count // 8) + 1)
-    one, other = outline[(edge + m) % count], outline[(edge - m) % count]
-    behind = norms(0.5 * (one + other) - outline[edge % count])
-    round_off = np.flatnonzero(behind >= 0.5 * norms(one - other))
-    return int(m[round_off[0]]) if len(round_off) else int(m[-1])
+def _counts(outline: Floats, lead: int, first: float, growth: float) -> tuple[int, int]:
+    """Return how many nodes sides 1 and 3 reach from the edges, and the rows of the ring.
 
-
-def filled_outline(outline: Floats, lead: int, first: float, growth: float) -> GapFill:
-    """Return the five blocks inside an outline (k, 2), clockwise, at whose edge cells are `first` high.
-
-    Raises NoValidGridError: they are folded.
+    These sides are about half circles. There are fewer rows than cells that grow from `first` evenly: where
+    the blade is thin, more would be askew.
     """
-    sides = outline_sides(outline, lead)
+    count = len(outline)
+    m = np.arange(1, max(count // 8, 2))
+    asides, widest = [], 0.0
+    for edge in (lead, lead + count // 2):
+        one, other = outline[(edge + m) % count], outline[(edge - m) % count]
+        behind, width = norms(0.5 * (one + other) - outline[edge % count]), norms(one - other)
+        round_off = np.flatnonzero(behind >= _ROUND * width)
+        asides.append(int(m[round_off[0]]) if len(round_off) else int(m[-1]))
+        half = np.arange(1, count // 2)
+        across = norms(outline[(edge + half) % count] - outline[(edge - half) % count])
+        widest = max(widest, float(across.max()))
+    aside = sum(asides) // 2
+    cells = round(_FEWER * (cells_for_growth(first, 0.5 * widest, growth) + 1))
+    return aside, max(_FEWEST_ROWS, cells - aside)
+
+
+def filled_outline(outline: Floats, outside: Floats, lead: int, first: float, growth: float) -> GapFill:
+    """Return the five blocks inside an outline (k, 2), clockwise, at whose edge cells are about `first` high.
+
+    `outside` (k, 2) are the nodes next to those of the outline on its other side. Raises NoValidGridError:
+    cells are folded.
+    """
+    aside, rows = _counts(outline, lead, first, growth)
+    sides = outline_sides(len(outline), lead, aside)
     order = np.concatenate([side[:-1] for side in sides])
-    start, blocks = _first_guess([outline[side] for side in sides], first, growth)
+    start, blocks = _first_guess([outline[side] for side in sides], outline, lead, rows, first, growth)
     loop = Loop.of_polygon(outline[order][::-1], (), ("blade",))
-    places = Places.inside(len(start))
-    around = np.arange(len(order))
+    count, k = len(start), len(order)
+    places = Places.inside(count + k)
+    around = np.arange(k)
     places.loop[around], places.arc[around] = 0, loop.curve.knots[::-1]
-    held = np.zeros(len(start), dtype=bool)
-    held[around] = True
-    mesh = QuadMesh(Domain((loop,), "gap"), start, lattice_quads([block[::-1] for block in blocks]), places)
-    optimum = optimise(mesh, iterations=_ITERATIONS, held=held)
+    held = np.zeros(count + k, dtype=bool)
+    held[:k] = held[count:] = True
+    closed = np.append(around, 0)
+    beyond = np.stack([count + closed, closed], axis=1)  # with them growth is limited across the outline
+    mesh = QuadMesh(
+        Domain((loop,), "gap"), np.concatenate([start, outside[order]]),
+        lattice_quads([block[::-1] for block in (*blocks, beyond)]), places,
+    )  # fmt: skip
+    lengths = norms(np.diff(mesh.nodes[mesh.edges], axis=1)[:, 0])
+    optimum = optimise(
+        mesh, iterations=_ITERATIONS, held=held, aspects=mesh.aspects(lengths), weights=(FLAT, SMOOTH),
+        growth=(STEEP, MARGIN * math.log(growth)),
+    )  # fmt: skip
     if not optimum.valid:
         raise NoValidGridError("cells in the gap stay folded")
-    nodes = optimum.mesh.nodes.copy()
-    for block in blocks[:4]:
-        lines = nodes[block]
-        steps = norms(np.diff(lines, axis=1))
-        even = np.repeat(steps.mean(axis=1)[:, None], steps.shape[1], axis=1)
-        nodes[block[:, 1:-1]] = resampled(lines, steps, with_first(even, np.minimum(first, even[:, 0])))[
-            :, 1:-1
-        ]
-    return GapFill(order, Layout(mesh.with_nodes(nodes), tuple(blocks)))
+    inside = QuadMesh(
+        mesh.domain, optimum.mesh.nodes[:count], lattice_quads([block[::-1] for block in blocks]),
+        places.take(np.arange(count)),
+    )  # fmt: skip
+    return GapFill(order, Layout(inside, tuple(blocks)))
 
 
-def _first_guess(sides: Sequence[Floats], first: float, growth: float) -> tuple[Floats, list[Indices]]:
+def _first_guess(
+    sides: Sequence[Floats], outline: Floats, lead: int, rows: int, first: float, growth: float
+) -> tuple[Floats, list[Indices]]:
     """Return nodes (n, 2), those of the outline first, and the blocks of their numbers."""
     low, high = sides[0], sides[2][::-1]
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     width = norms(half)
     along = np.concatenate([[0.0], np.cumsum(norms(np.diff(middle, axis=0)))])
     part = along / along[-1]
-    at = along + _INSET * (width[0] * power(1.0 - part, _POWER) - width[-1] * power(part, _POWER))
-    across = np.linspace(-1.0, 1.0, len(sides[1]))[None, :, None]
+    m = (len(sides[1]) - 1) // 2
+    depths = _grown(width, first, rows + m)
+    inset = depths[:, rows] / width  # part of half the thickness that the ring fills
+    shifts = []
+    for k, edge in ((0, lead), (-1, lead + len(outline) // 2)):
+        step = float(norms(low[k] - low[1 if k == 0 else -2]))
+        deep = float(np.minimum(first * power(growth, np.arange(float(rows))), step).sum())
+        behind = float(norms(outline[edge % len(outline)] - middle[k]))
+        shifts.append(min(max(deep - behind, inset[k] * width[k]), 0.2 * float(along[-1])))
+    at = along + shifts[0] * power(1.0 - part, _POWER) - shifts[1] * power(part, _POWER)
     centre, reach = cubic_spline(middle, along, at), cubic_spline(half, along, at)
-    core = centre[:, None] + (1.0 - _INSET) * across * reach[:, None]
-    rows = max(_FEWEST_ROWS, cells_for_growth(first, _INSET * float(width.max()), growth) + 1)
+    depths = _grown(norms(reach), first, rows + m) / norms(reach)[:, None]
+    across = np.concatenate([depths[:, rows:] - 1.0, 1.0 - depths[:, -2 : rows - 1 : -1]], axis=1)
+    core = centre[:, None] + across[..., None] * reach[:, None]
     inner = [core[:, 0], core[-1], core[::-1, -1], core[0, ::-1]]
-    t = np.linspace(0.0, 1.0, rows + 1)[:, None]
-    ring = [a[:, None] + t * (b - a)[:, None] for a, b in zip(sides, inner, strict=True)]
+    ring = []
+    for a, b in zip(sides, inner, strict=True):
+        length = norms(b - a)
+        t = _grown(length, first, rows) / length[:, None]
+        ring.append(a[:, None] + t[..., None] * (b - a)[:, None])
     return _numbered(ring, core)
+
+
+def _grown(lengths: Floats, first: float, cells: int) -> Floats:
+    """Return distances (n, cells + 1) from 0 to `lengths` (n,) of cells that grow from `first` by one ratio.
+
+    Where so many of the first would be too long, they are equal.
+    """
+    k = np.arange(float(cells))
+    low, high = np.zeros(len(lengths)), np.full(len(lengths), 3.0)
+    for _ in range(_BISECTIONS):
+        slope = 0.5 * (low + high)
+        less = first * exp(slope[:, None] * k).sum(axis=1) < lengths
+        low, high = np.where(less, slope, low), np.where(less, high, slope)
+    sizes = exp(low[:, None] * k)
+    sizes *= (lengths / sizes.sum(axis=1))[:, None]
+    return np.concatenate([np.zeros((len(lengths), 1)), np.cumsum(sizes, axis=1)], axis=1)
 
 
 def _numbered(ring: Sequence[Floats], core: Floats) -> tuple[Floats, list[Indices]]:

@@ -11,23 +11,32 @@ from meshonet.solvers.sparse import SparsePattern
 
 
 def harmonic(mesh: QuadMesh, moves: Floats, given: NDArray[np.bool_]) -> Floats:
-    """Return displacements (n, 2): `moves` (n, 2) where `given` (n,), elsewhere means of neighbours."""
-    free = np.flatnonzero(~given)
+    """Return displacements (n, 2): `moves` (n, 2) where `given` (n,), elsewhere means of neighbours.
+
+    Neighbours weigh as the inverse square of their distance, so that small cells keep their form. Nodes with
+    a partner move as that does.
+    """
+    partner = mesh.places.partner
+    own = np.where(partner >= 0, partner, np.arange(len(partner)))
+    given = given | given[own]
+    moves = np.where(given[:, None], moves, 0.0)
+    free = np.flatnonzero(~given & (partner < 0))
     number = np.full(len(given), -1)
     number[free] = np.arange(len(free))
-    a, b = mesh.edges.T
+    off = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
+    weight = 1.0 / (off**2).sum(axis=1)
+    a, b = own[mesh.edges].T
     inner = ~given[a] & ~given[b]
-    diagonal = np.bincount(mesh.edges.ravel(), minlength=len(given))[free].astype(np.float64)
+    diagonal = (np.bincount(a, weight, len(given)) + np.bincount(b, weight, len(given)))[free]
     rows = np.concatenate([np.arange(len(free)), number[a[inner]]])
     columns = np.concatenate([np.arange(len(free)), number[b[inner]]])
-    values = np.concatenate([diagonal, np.full(int(inner.sum()), -1.0)])
-    factor = SparsePattern(len(free), rows, columns).factor(values)
+    factor = SparsePattern(len(free), rows, columns).factor(np.concatenate([diagonal, -weight[inner]]))
     right = np.zeros((len(given), 2))
     for one, other in ((a, b), (b, a)):
         side = ~given[one] & given[other]
         for axis in (0, 1):
-            right[:, axis] += np.bincount(one[side], moves[other[side], axis], len(given))
+            right[:, axis] += np.bincount(one[side], weight[side] * moves[other[side], axis], len(given))
     out = moves.copy()
     for axis in (0, 1):
         out[free, axis] = factor.solve(np.ascontiguousarray(right[free, axis]))
-    return out
+    return out[own]

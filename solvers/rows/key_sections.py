@@ -2,50 +2,51 @@
 
 ::
 
-    the middle section: template, counts, optimum -> places of the nodes around the blade, for all sections
+    the middle section: template, counts, optimum -> layers, rows to inlet and outlet
+        -> places of the nodes around the blade, for all sections
     its neighbours, and theirs: the nodes of the last one carried along, then the optimum
 
+All sections are the optimum of the same functional, which limits the growth of cells along grid lines.
 Sections change little from one to the next, so that few iterations lead to the next optimum.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, pairs_of
+from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of, passage_optimum
-from meshonet.solvers.blocking.cascade.passage import BLADE, INLET, OUTLET
 from meshonet.solvers.blocking.cascade.passage_template import template
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs
-from meshonet.solvers.blocking.layers.layer_rows import JOIN
+from meshonet.solvers.blocking.layers.layer_rows import JOIN, layer_lines
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import refine
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.rows.columns import layer_columns
 from meshonet.solvers.rows.harmonic import harmonic
 from meshonet.solvers.rows.opposite import at_corners, opposite_places
 from meshonet.solvers.rows.section_plane import SectionPlane
+from meshonet.solvers.rows.wall_places import even_wall_places
+from meshonet.solvers.rows.whole_section import whole_section
 
-UPPER, TRAILING, LOWER, LEADING = 8, 9, 10, 11
-"""Numbers of the template's blocks around the blade."""
-ITERATIONS, FROM_NEIGHBOUR = 300, 60
+TRAILING, LEADING = 9, 11
+"""Numbers of the template's blocks around the edges of the blade."""
+COARSE = 300
+"""Iterations of the first optimum of the middle section."""
+FINE, FROM_NEIGHBOUR = 150, 80
 TOLERANCE = 1e-5
-_STEPS = 3  # in which nodes around the blade are moved to new places
-
-
-@dataclass(frozen=True, eq=False)
-class SectionLayout:
-    """The blocks outside the layers of a section, in the plane of its map."""
-
-    plane: SectionPlane
-    layout: Layout
+FLAT, SMOOTH = 0.95, 1e-3
+"""Weights w and β of the functional."""
+STEEP, MARGIN = 3.0, 0.93
+"""Weight of the growth of cells, and the part of its logarithm from which on it counts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,49 +55,85 @@ class SectionPlan:
 
     Parameters
     ----------
-    scale : of the sizes of cells along the blade.
-    times : how many times finer than the optimised ones blocks are to be.
-    rows : of layers.
-    wall : (k,) nodes around the blade, in the order of `places`.
-    places : (k,) where they are, u.
+    growth : largest ratio of neighbouring cells.
+    columns : (k, rows + 1) nodes of the layers, from the blade, clockwise around it.
+    outward : (k,) nodes beyond the layers of each column.
+    ends : nodes of inlet and outlet.
+    places : (k,) u of the first node of each column.
+    wake : theta by which the outlet is aside of the trailing edge at half the height, and its slope along it.
     """
 
-    scale: float
-    times: int
-    rows: int
-    wall: Indices
+    growth: float
+    columns: Indices
+    outward: Indices
+    ends: tuple[Indices, Indices]
     places: Floats
+    wake: tuple[float, float]
 
-    def metric(self, plane: SectionPlane) -> SizeMetric:
-        """Return the sizes of cells of a section: those beyond a number of layers that is the same in all."""
-        cascade = plane.cascade
-        thickness = cascade.ring.thickness
-        none = np.full(len(thickness), np.inf)
-        arcs = layer_arcs(thickness, cascade.layers.first, none, self.rows)
-        return replace(cascade.scaled(self.scale), across=JOIN * (arcs[:, -1] - arcs[:, -2]))
+    def aside(self, plane: SectionPlane) -> Floats:
+        """Return theta (2,) of the lines from the edges of a section's blade at inlet and outlet."""
+        return plane.edges[:, 1] + [0.0, self.wake[0] + self.wake[1] * (plane.height - 0.5)]
+
+
+@dataclass(frozen=True, eq=False)
+class KeySection:
+    """The nodes of a section.
+
+    Parameters
+    ----------
+    plane : of the section.
+    layout : its blocks in (m', theta). Its domain is that of the middle section.
+    places : (k,) where the first node of each column of layers is, u.
+    aside : theta (2,) of the lines from the edges of the blade at inlet and outlet.
+    """
+
+    plane: SectionPlane
+    layout: Layout
+    places: Floats
+    aside: Floats
 
 
 def planned(
-    planes: Sequence[SectionPlane], cells: int, *, opposite: bool
-) -> tuple[SectionPlan, SectionLayout]:
+    planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], wake: tuple[float, float],
+    *, opposite: bool,
+) -> tuple[SectionPlan, KeySection]:  # fmt: skip
     """Return the plan for sections of about so many `cells` each, and the middle one of `planes`.
 
-    With `opposite` nodes on both sides of the blade are opposite each other.
+    `longest` are the greatest lengths of the rows to inlet and outlet, by the number of their loop, `wake` is
+    that of the plan. With `opposite` nodes on both sides of the blade are opposite each other.
     """
-    plane = planes[len(planes) // 2]
     for early in (True, False):
         try:
-            return _planned(plane, planes, cells, opposite, early)
+            whole = _middle(planes, cells, longest, early)
+            break
         except NoValidGridError:
             if not early:
                 raise
-    raise AssertionError
+    plane = planes[len(planes) // 2]
+    columns = layer_columns(whole)
+    at = plane.places_of(whole.mesh.places.arc[columns[:, 0]])
+    places = at_corners(opposite_places(at) if opposite else at, plane.corners)
+    growth = plane.cascade.layers.growth
+    places = even_wall_places(planes, places, plane.corners, growth, opposite=opposite)
+    m = whole.mesh.nodes[:, 0]
+    near = 1e-9 * (m.max() - m.min())
+    ends = np.flatnonzero(m <= m.min() + near), np.flatnonzero(m >= m.max() - near)
+    plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, places, wake)
+    section = KeySection(plane, _optimum(plan, whole, FINE, ends_slide=True), at, plane.edges[:, 1])
+    return plan, _placed(plan, section)
 
 
-def _planned(
-    plane: SectionPlane, planes: Sequence[SectionPlane], cells: int, opposite: bool, early: bool
-) -> tuple[SectionPlan, SectionLayout]:
-    """Return the plan and the middle section, `early` with nodes at corners of the blade from the start."""
+def next_section(plan: SectionPlan, before: KeySection, plane: SectionPlane) -> KeySection:
+    """Return a section from its neighbour's.
+
+    Raises NoValidGridError: its cells stay folded.
+    """
+    return _moved(plan, before, plane, plan.places)
+
+
+def _middle(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], early: bool) -> Layout:
+    """Return the middle section, `early` with nodes at corners of the blade from the start."""
+    plane = planes[len(planes) // 2]
     cascade = plane.cascade
     coarse = passage_optimum(template(cascade.passage, at_corners=early), FIRST, None)
     chords = Chords.of(coarse)
@@ -104,84 +141,104 @@ def _planned(
     ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
     counts[ends] = counts[ends].max()
     rows = max(each.cascade.rows_of_layers for each in planes)
-    scale = float((metric.along / cascade.metric.along).mean())
+    metric = _joined(plane, float((metric.along / cascade.metric.along).mean()), rows)
     layout = refine(coarse, counts, chords)
-    wall = around_blade(layout)
-    plan = SectionPlan(scale, times, rows, wall, np.empty(0))
-    layout = _optimum(layout, plan.metric(plane), ITERATIONS, None)
-    places = plane.places_under(layout.mesh.places.arc[wall])
-    places = at_corners(opposite_places(places) if opposite else places, plane.corners)
-    plan = replace(plan, places=places)
-    for k in range(1, _STEPS + 1):  # the others follow, before cells fold
-        layout = _with_places(layout, plan, plane, 1.0 / (_STEPS + 1 - k))
-        layout = _optimum(layout, plan.metric(plane), ITERATIONS // _STEPS, wall)
-    return plan, SectionLayout(plane, layout)
-
-
-def next_section(plan: SectionPlan, before: SectionLayout, plane: SectionPlane) -> SectionLayout:
-    """Return a section from its neighbour's.
-
-    Raises NoValidGridError: its cells stay folded.
-    """
-    layout = carried(before, plane, plan)
-    held = np.flatnonzero(layout.mesh.places.loop >= 0)  # at inlet and outlet too, where nodes would gather
-    return SectionLayout(plane, _optimum(layout, plan.metric(plane), FROM_NEIGHBOUR, held))
-
-
-def around_blade(layout: Layout) -> Indices:
-    """Return the nodes (k,) around the blade, from the first of the upper side on, clockwise."""
-    sides = [layout.blocks[number][:-1, 0] for number in (UPPER, TRAILING, LOWER, LEADING)]
-    return np.concatenate(sides)
-
-
-def _with_places(layout: Layout, plan: SectionPlan, plane: SectionPlane, part: float) -> Layout:
-    """Return the layout with the nodes around the blade moved a `part` of the way to their places."""
-    mesh, wall = layout.mesh, plan.wall
-    loop = mesh.domain.loops[BLADE]
-    arc, nodes = mesh.places.arc.copy(), mesh.nodes.copy()
-    step = plane.image_arcs(plan.places) - arc[wall]
-    step = np.mod(step + 0.5 * loop.length, loop.length) - 0.5 * loop.length
-    arc[wall] = np.mod(arc[wall] + part * step, loop.length)
-    nodes[wall] = loop.at(arc[wall])
-    return replace(layout, mesh=mesh.with_nodes(nodes, arc))
-
-
-def carried(before: SectionLayout, plane: SectionPlane, plan: SectionPlan) -> Layout:
-    """Return the layout of a section's neighbour with its boundary that of the section.
-
-    Displacements are those in (m', theta), from the centres of the maps, and harmonic between the boundaries:
-    in the planes of the maps inlet and outlet are circles whose sizes differ by large factors. Inlet and
-    outlet follow the edges of the blade in theta.
-    """
-    mesh, domain = before.layout.mesh, plane.cascade.passage.domain
-    old, new = before.plane.cascade.passage, plane.cascade.passage
-    arc = mesh.places.arc.copy()
-    start = old.map.back(mesh.nodes) - pairs_of(np.array(old.map.centre))
-    end = start.copy()
-    arc[plan.wall] = plane.image_arcs(plan.places)
-    for passage, arcs, out in ((old, mesh.places.arc, start), (new, arc, end)):
-        centre = pairs_of(np.array(passage.map.centre))
-        out[plan.wall] = passage.front.at(passage.front_arcs(arcs[plan.wall])) - centre
-    aside = plane.edges_aside - before.plane.edges_aside
-    ends = ((INLET, new.inlet - old.inlet, aside[0]), (OUTLET, new.outlet - old.outlet, aside[1]))
-    for number, along, across in ends:
-        own = np.flatnonzero(mesh.places.loop == number)
-        end[own] = start[own] + [along, across]
-        arc[own] = new.line_arcs(number, new.map.forward(end[own] + pairs_of(np.array(new.map.centre))))
-    moves = harmonic(mesh, end - start, mesh.places.loop >= 0)
-    nodes = new.map.forward(start + moves + pairs_of(np.array(new.map.centre)))
-    for number, loop in enumerate(domain.loops):
-        own = np.flatnonzero(mesh.places.loop == number)
-        nodes[own] = loop.at(arc[own])
-    return replace(before.layout, mesh=QuadMesh(domain, nodes, mesh.quads, replace(mesh.places, arc=arc)))
-
-
-def _optimum(layout: Layout, metric: SizeMetric, iterations: int, wall: Indices | None) -> Layout:
-    """Return the layout with nodes where the functional is least, nodes `wall` (k,) held."""
-    held = None if wall is None else np.isin(np.arange(len(layout.mesh.nodes)), wall)
     optimum = optimise(
-        layout.mesh, iterations=iterations, targets=metric.gradual(layout.mesh), held=held,
-        tolerance=TOLERANCE, weights=WEIGHTS,
+        layout.mesh, iterations=COARSE, targets=metric.gradual(layout.mesh), tolerance=TOLERANCE,
+        weights=WEIGHTS,
+    )  # fmt: skip
+    if not optimum.valid:
+        raise NoValidGridError("cells of a section stay folded")
+    return whole_section(plane, replace(layout, mesh=optimum.mesh), times, rows, metric.largest, longest)
+
+
+def _joined(plane: SectionPlane, scale: float, rows: int) -> SizeMetric:
+    """Return the sizes of cells of a section, across the front those beyond so many `rows` of layers."""
+    cascade = plane.cascade
+    thickness = cascade.ring.thickness
+    none = np.full(len(thickness), np.inf)
+    arcs = layer_arcs(thickness, cascade.layers.first, none, rows)
+    return replace(cascade.scaled(scale), across=JOIN * (arcs[:, -1] - arcs[:, -2]))
+
+
+def _beyond(layout: Layout, columns: Indices) -> Indices:
+    """Return the nodes (k,) that follow the last ones of columns (k, m)."""
+    front = columns[:, -1]
+    inside = np.zeros(len(layout.mesh.nodes), dtype=bool)
+    inside[columns] = True
+    number = np.full(len(inside), -1)
+    number[front] = np.arange(len(front))
+    out = np.empty(len(front), dtype=np.intp)
+    for ends in (layout.mesh.edges, layout.mesh.edges[:, ::-1]):
+        leaving = (number[ends[:, 0]] >= 0) & ~inside[ends[:, 1]]
+        out[number[ends[leaving, 0]]] = ends[leaving, 1]
+    return out
+
+
+def _placed(plan: SectionPlan, section: KeySection) -> KeySection:
+    """Return the section with the nodes around the blade at the places of the plan, in steps if need be."""
+    for steps in (1, 2, 4):
+        try:
+            made = section
+            move = np.mod(plan.places - section.places + 0.5, 1.0) - 0.5
+            for k in range(1, steps + 1):
+                places = plan.places if k == steps else np.mod(section.places + k / steps * move, 1.0)
+                made = _moved(plan, made, section.plane, places, FINE)
+            return made
+        except NoValidGridError:
+            if steps == 4:
+                raise
+    raise AssertionError
+
+
+def _moved(
+    plan: SectionPlan, before: KeySection, plane: SectionPlane, places: Floats,
+    iterations: int = FROM_NEIGHBOUR,
+) -> KeySection:  # fmt: skip
+    """Return a section with nodes around the blade at `places` (k,), from its neighbour's."""
+    layout, own = _carried(plan, before, plane, places)
+    return KeySection(plane, _optimum(plan, layout, iterations), own, plan.aside(plane))
+
+
+def _carried(
+    plan: SectionPlan, before: KeySection, plane: SectionPlane, places: Floats
+) -> tuple[Layout, Floats]:
+    """Return the layout of a section's neighbour with layers, inlet and outlet those of the section, and the
+    places u of its nodes around the blade.
+
+    Inlet and outlet follow the edges of the blade, and the outlet its wake; between them and the layers
+    displacements are harmonic.
+    """
+    start, ring = before.layout.mesh.nodes, plane.cascade.ring
+    end, front = start.copy(), plane.front_arcs(places)
+    lines, walls = ring.columns(front)
+    inner = norms(start[plan.outward] - start[plan.columns[:, -1]])
+    rows = plan.columns.shape[1] - 1
+    end[plan.columns] = layer_lines(lines, ring.front.at(front), inner, rows, plane.cascade.layers)
+    aside = plan.aside(plane) - before.aside
+    for own, at, shift in zip(plan.ends, (0.0, plane.map.length), aside, strict=True):
+        end[own, 0] = at
+        end[own, 1] += shift
+    given = np.zeros(len(start), dtype=bool)
+    given[plan.columns] = True
+    for own in plan.ends:
+        given[own] = True
+    mesh = before.layout.mesh
+    nodes = start + harmonic(mesh, end - start, given)
+    nodes[given] = end[given]
+    return replace(before.layout, mesh=mesh.with_nodes(nodes)), plane.places_of(walls)
+
+
+def _optimum(plan: SectionPlan, layout: Layout, iterations: int, *, ends_slide: bool = False) -> Layout:
+    """Return the layout with nodes beyond the layers where the functional is least."""
+    held = np.zeros(len(layout.mesh.nodes), dtype=bool)
+    held[plan.columns] = True
+    if not ends_slide:
+        for own in plan.ends:
+            held[own] = True
+    optimum = optimise(
+        layout.mesh, iterations=iterations, held=held, tolerance=TOLERANCE, weights=(FLAT, SMOOTH),
+        growth=(STEEP, MARGIN * math.log(plan.growth)),
     )  # fmt: skip
     if not optimum.valid:
         raise NoValidGridError("cells of a section stay folded")

@@ -3,32 +3,35 @@
 from __future__ import annotations
 
 import contextvars
+import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
+import numpy as np
+
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import thread_count
-from meshonet.solvers.blocking.cascade.cascade_layout import straight_rows
-from meshonet.solvers.blocking.cascade.passage import NEAR
-from meshonet.solvers.rows.key_sections import SectionLayout, SectionPlan, next_section, planned
+from meshonet.solvers.blocking.cascade.passage import INLET, NEAR, OUTLET
+from meshonet.solvers.rows.key_sections import KeySection, SectionPlan, next_section, planned
 from meshonet.solvers.rows.section_plane import SectionPlane
-from meshonet.solvers.rows.section_table import SectionTable, section_table
 from meshonet.solvers.rows.span_lines import key_heights
 
 KEYS = 9
 """Sections that are made as plane cascades."""
 _PART = 0.6  # of the least room before or behind the blade that is left to blocks
 _HALVINGS = 3
+LEAN = 12.0
+"""Degrees by which lines along the span lean at the outlet at most, so that all wakes are followed."""
 
 
 @dataclass(frozen=True, eq=False)
 class KeyTables:
-    """Key sections at `key_heights`, from hub to casing."""
+    """Key sections at `key_heights`, from hub to casing, and what they have in common."""
 
-    planes: tuple[SectionPlane, ...]
-    tables: tuple[SectionTable, ...]
+    plan: SectionPlan
+    sections: tuple[KeySection, ...]
 
 
 def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
@@ -38,16 +41,15 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
     inlet or outlet; NoValidGridError: folds.
     """
     planes = _planes(row, first, growth)
-    plan, middle = planned(planes, cells, opposite=row.tip_gap > 0.0 or row.hub_gap > 0.0)
-    near, thickest = planes[0].cascade.near, planes[KEYS // 2].thickest
-    table = section_table(plan, middle, longest=_longest(planes))
+    gaps = row.tip_gap > 0.0 or row.hub_gap > 0.0
+    plan, middle = planned(planes, cells, _longest(planes), _wake(row, planes), opposite=gaps)
     half = KEYS // 2
 
-    def chain(others: Sequence[SectionPlane]) -> list[SectionTable]:
-        return _chain(plan, middle, table, others, plane_at)
+    def chain(others: Sequence[SectionPlane]) -> list[KeySection]:
+        return _chain(plan, middle, others, plane_at)
 
     def plane_at(height: float) -> SectionPlane:
-        return SectionPlane.of(row, height, first, growth).ending(near, thickest)
+        return SectionPlane.of(row, height, first, growth)
 
     ways = planes[half - 1 :: -1], planes[half + 1 :]
     if thread_count() > 1:
@@ -56,39 +58,57 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
             below, above = (job.result() for job in jobs)
     else:
         below, above = map(chain, ways)
-    return KeyTables(tuple(planes), (*below[::-1], table, *above))
+    return KeyTables(plan, (*below[::-1], middle, *above))
 
 
 def _planes(row: Row, first: float, growth: float) -> list[SectionPlane]:
-    """Return the key sections, in all of which straight rows lead to inlet and outlet."""
+    """Return the key sections; in the middle one straight rows lead to inlet and outlet."""
     planes = [SectionPlane.of(row, float(h), first, growth) for h in key_heights(KEYS)]
     before, behind = (min(NEAR, _PART * min(plane.room[k] for plane in planes)) for k in (0, 1))
-    thickest = planes[KEYS // 2].thickest
-    return [plane.ending((before, behind), thickest) for plane in planes]
+    half = KEYS // 2
+    planes[half] = planes[half].ending((before, behind), planes[half].thickest)
+    return planes
 
 
 def _longest(planes: Sequence[SectionPlane]) -> dict[int, float]:
     """Return the greatest lengths of the rows to inlet and outlet, by the number of their loop."""
-    rows = [row for plane in planes for row in straight_rows(plane.cascade)]
-    return {number: max(length for own, length, _ in rows if own == number) for number, _, _ in rows}
+    near = planes[len(planes) // 2].cascade.near
+    rows = [[max(room - part, 0.0) for room, part in zip(plane.room, near, strict=True)] for plane in planes]
+    pitch = planes[0].cascade.pitch[1]
+    return {number: pitch * max(row[k] for row in rows) for k, number in enumerate((INLET, OUTLET))}
+
+
+def _wake(row: Row, planes: Sequence[SectionPlane]) -> tuple[float, float]:
+    """Return theta of wakes at the outlet from the trailing edge: at half the height, and its slope.
+
+    That is the line nearest to the wakes of all sections which leans by `LEAN` degrees in space at the most.
+    """
+    off = np.array([plane.height - 0.5 for plane in planes])
+    aside = np.array([plane.wake for plane in planes])
+    edges = np.array([plane.edges[1, 1] for plane in planes])
+    mean = float(aside.mean())
+    slope, lean = (float((off * (each - each.mean())).sum() / (off**2).sum()) for each in (aside, edges))
+    radius = float(row.channel.at(np.array([1.0]), np.array([0.5]))[0, 1])
+    most = math.tan(math.radians(LEAN)) * row.channel.span / radius
+    return mean, min(max(lean + slope, -most), most) - lean
 
 
 def _chain(
-    plan: SectionPlan, section: SectionLayout, like: SectionTable, planes: Sequence[SectionPlane],
+    plan: SectionPlan, section: KeySection, planes: Sequence[SectionPlane],
     plane_at: Callable[[float], SectionPlane],
-) -> list[SectionTable]:  # fmt: skip
-    """Return the tables of sections that follow one another, each from the one before."""
-    tables = []
+) -> list[KeySection]:  # fmt: skip
+    """Return sections that follow one another, each from the one before."""
+    sections = []
     for plane in planes:
         section = _reached(plan, section, plane, plane_at, _HALVINGS)
-        tables.append(section_table(plan, section, like))
-    return tables
+        sections.append(section)
+    return sections
 
 
 def _reached(
-    plan: SectionPlan, section: SectionLayout, plane: SectionPlane,
+    plan: SectionPlan, section: KeySection, plane: SectionPlane,
     plane_at: Callable[[float], SectionPlane], halvings: int,
-) -> SectionLayout:  # fmt: skip
+) -> KeySection:  # fmt: skip
     """Return a section from another, where cells stay folded by way of that half-way between both."""
     try:
         return next_section(plan, section, plane)

@@ -41,7 +41,7 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     first, growth = request.height() * row.chord, request.ratio
     zones = zones_of(row, first, growth, request.cells)
     keys = key_tables(row, first, growth, section_cells(zones, request.cells))
-    stacked = StackedRow(row, keys.planes, keys.tables, zones, first, growth)
+    stacked = StackedRow(row, keys, zones, first, growth)
     made = stacked.nodes()
     space = made.space()
     second, partner = stacked.twins
@@ -51,8 +51,7 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     for zone, levels in zip(zones, stacked.bounds, strict=True):
         inside = None
         if zone.gap:
-            around = stacked.columns[:, 0]
-            inside = gap_blocks(row, made, space, around, stacked.leading, zone, levels, first, growth)
+            inside = gap_blocks(row, made, space, stacked.columns, stacked.leading, zone, levels, first, growth)
         gaps.append(inside)
     grid = _joined(row, stacked, zones, gaps, space, turn)
     return grid, (*_notes(zones, first), *_more_cells(grid, request.cells))

@@ -6,6 +6,7 @@ passage is that of a plane cascade with the pitch 2 pi / blades.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -19,11 +20,13 @@ from meshonet.geometry.rows.blade import clustered
 from meshonet.geometry.rows.channel import MeridionalMap
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.blocking.cascade.cascade import Cascade
-from meshonet.solvers.blocking.cascade.passage import BLADE
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 
 _AROUND = 400
 """Points of a section."""
+STEEPEST = 35.0
+"""Degrees from the axis by which wakes are followed at the most: cells behind the blade are askew by them."""
+_NEAR_EDGE = 0.06  # places before and behind the trailing edge by which the mean line is known there
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,17 +78,27 @@ class SectionPlane:
     def _opposite(self, u: Floats) -> Complexes:
         return complex_of(self.cascade.blade.at(self.wall_arcs(u)))
 
+    @cached_property
+    def edges(self) -> Floats:
+        """(m', theta) (2, 2) of the leading and the trailing edge."""
+        return self.cascade.blade.at(self.wall_arcs(np.array([0.0, 0.5])))
+
     @property
-    def edges_aside(self) -> Floats:
-        """Theta (2,) of the leading and the trailing edge, from the centre of the map."""
-        edges = self.cascade.blade.at(self.wall_arcs(np.array([0.0, 0.5])))
-        return np.asarray(edges[:, 1] - self.cascade.passage.map.centre.imag)
+    def wake(self) -> float:
+        """Theta by which the mean line goes on from the trailing edge to the outlet.
+
+        It does so at `STEEPEST` degrees from the axis at most.
+        """
+        one, other = self._opposite(np.array([0.5 - _NEAR_EDGE, 0.5 + _NEAR_EDGE]))
+        way = complex(*self.edges[1]) - complex(0.5 * (one + other))
+        most = math.tan(math.radians(STEEPEST))
+        slope = min(max(way.imag / way.real, -most), most) if way.real > 0.0 else 0.0
+        return slope * (self.map.length - float(self.edges[1, 0]))
 
     def ending(self, near: tuple[float, float], thickest: float) -> SectionPlane:
         """Return the section with straight rows that begin `near` pitches before and behind the blade.
 
-        The centre of its map is in the middle between both sides at the place `thickest`, so that maps of
-        neighbouring sections differ little.
+        The centre of its map is in the middle between both sides at the place `thickest`.
         """
         one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
         centre = complex(0.5 * (one + other))
@@ -108,25 +121,14 @@ class SectionPlane:
         """Return places u (n,) at arc lengths (n,) of the blade."""
         return np.interp(np.mod(arcs, self._walls[-1]), self._walls, np.append(self.places, 1.0))
 
-    def image_arcs(self, u: Floats) -> Floats:
-        """Return arc lengths (n,), in the plane of the passage's map, of the front above places u (n,)."""
-        ring, passage = self.cascade.ring, self.cascade.passage
+    def front_arcs(self, u: Floats) -> Floats:
+        """Return arc lengths (n,) of the front of the layers above places u (n,) of the blade."""
+        ring = self.cascade.ring
         length, start = self._walls[-1], ring.arcs[0]
         walls = np.append(ring.arcs, start + length)
         front = np.append(ring.front.curve.knots, ring.front.length)
         along = np.interp(start + np.mod(self.wall_arcs(u) - start, length), walls, front)
-        image = passage.domain.loops[BLADE]
-        knots = np.append(passage.front.curve.knots, passage.front.length)
-        there = np.interp(along, knots, np.append(image.curve.knots, image.length))
-        return np.asarray(np.mod(there, image.length))
-
-    def places_under(self, image_arcs: Floats) -> Floats:
-        """Return places u (n,) of the blade under arc lengths (n,) of the front, in the plane of the map."""
-        ring = self.cascade.ring
-        along = self.cascade.passage.front_arcs(image_arcs)
-        front = np.append(ring.front.curve.knots, ring.front.length)
-        arcs = np.interp(along, front, np.append(ring.arcs, ring.arcs[0] + self._walls[-1]))
-        return self.places_of(arcs)
+        return np.asarray(np.mod(along, ring.front.length))
 
 
 def _with_corners(u: Floats, corners: Floats) -> Floats:

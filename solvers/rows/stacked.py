@@ -16,10 +16,10 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.row import Row
-from meshonet.solvers.rows.columns import layer_columns, respaced_columns
+from meshonet.solvers.rows.columns import respaced_columns
+from meshonet.solvers.rows.key_sections import KeySection
+from meshonet.solvers.rows.key_tables import KeyTables
 from meshonet.solvers.rows.row_nodes import RowNodes, in_space
-from meshonet.solvers.rows.section_plane import SectionPlane
-from meshonet.solvers.rows.section_table import SectionTable
 from meshonet.solvers.rows.span_lines import SpanLines, key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, line_parts
 from meshonet.solvers.rows.zones import Zone
@@ -37,7 +37,7 @@ class StackedRow:
     Parameters
     ----------
     row : the row.
-    planes, tables : its key sections, at `key_heights`, from hub to casing.
+    keys : its key sections.
     zones : of the span, from hub to casing.
     first : height of first cells at the blade.
     growth : largest ratio of neighbouring cells.
@@ -49,26 +49,20 @@ class StackedRow:
     """
 
     def __init__(
-        self, row: Row, planes: Sequence[SectionPlane], tables: Sequence[SectionTable],
-        zones: Sequence[Zone], first: float, growth: float,
-    ) -> None:  # fmt: skip
+        self, row: Row, keys: KeyTables, zones: Sequence[Zone], first: float, growth: float
+    ) -> None:
         self.row, self.zones, self.first, self.growth = row, zones, first, growth
-        self.layout = tables[0].layout
-        self.columns = layer_columns(self.layout)
-        u = np.array([table.places for table in tables])
-        u = u[0] + np.cumsum(
-            np.concatenate([np.zeros((1, u.shape[1])), np.mod(np.diff(u, axis=0) + 0.5, 1.0) - 0.5]), axis=0
-        )
-        wall = np.full(len(self.layout.mesh.nodes), -1)
-        wall[tables[0].wall] = np.arange(len(tables[0].wall))
-        around = u[:, wall[self.columns[:, 0]]]
+        self.layout, self.columns = keys.sections[0].layout, keys.plan.columns
+        u = np.array([section.places for section in keys.sections])
+        steps = np.mod(np.diff(u, axis=0) + 0.5, 1.0) - 0.5
+        around = u[0] + np.cumsum(np.concatenate([np.zeros((1, u.shape[1])), steps]), axis=0)
         self.leading = int(np.abs(np.mod(around[0] + 0.5, 1.0) - 0.5).argmin())
         self.around = SpanLines.through(around, DEGREE)
-        self.lines = SpanLines.through(np.stack(list(map(self._key, planes, tables))), DEGREE)
+        self.lines = SpanLines.through(np.stack([self._key(section) for section in keys.sections]), DEGREE)
 
-    def _key(self, plane: SectionPlane, table: SectionTable) -> Floats:
+    def _key(self, section: KeySection) -> Floats:
         """Return s, theta (n, 2) of a key section, its layers exact in space."""
-        nodes = table.layout.mesh.nodes
+        nodes, plane = section.layout.mesh.nodes, section.plane
         values = np.stack([plane.map.back(nodes[:, 0]), nodes[:, 1]], axis=1)
         np.clip(values[:, 0], 0.0, 1.0, out=values[:, 0])
         column = values[self.columns]

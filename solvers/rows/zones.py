@@ -12,6 +12,7 @@ from meshonet.solvers.rows.span_spacing import Ends, spaced_cells
 PARTS, PARTS_CELLS = 42.0, 800_000
 """Cells along the span away from walls, if all of it were divided like that, of a row of so many cells."""
 _FEWEST = 1500  # cells of a section
+_LONGER = 1.15  # than across the gap lines may be, which lean
 GAP_ROWS = 17
 """Fewest cells across a gap."""
 
@@ -61,5 +62,5 @@ def zones_of(row: Row, first: float, growth: float, cells: int) -> list[Zone]:
 
 
 def _gap(low: float, high: float, width: float, first: float, growth: float) -> Zone:
-    cells = spaced_cells(width, (first, first), growth, width / 4.0, GAP_ROWS)
+    cells = spaced_cells(_LONGER * width, (first, first), growth, width / 4.0, GAP_ROWS)
     return Zone(low, high, (first, first), cells, True)

@@ -1,5 +1,6 @@
 """Rows of blades in TOML: what is read, and which place is named where something is not right."""
 
+import re
 from pathlib import Path
 
 import blade_row
@@ -55,6 +56,33 @@ def test_the_axis_may_be_z_and_lengths_in_millimetres(tmp_path: Path) -> None:
     for own, given in zip(row.profiles, blade_row.profiles(), strict=True):
         assert own == pytest.approx(given, abs=1e-12)
     assert row.tip_gap == pytest.approx(0.005)
+
+
+def test_inlet_and_outlet_may_be_places_along_the_axis(tmp_path: Path) -> None:
+    row = read(tmp_path, "inlet = -0.45\noutlet = 1.5")
+    for wall, whole in ((row.hub, blade_row.HUB), (row.shroud, blade_row.SHROUD)):
+        assert wall[[0, -1], 0] == pytest.approx([-0.45, 1.5], abs=1e-12)
+        assert wall[:, 1] == pytest.approx(np.interp(wall[:, 0], *whole.T), abs=1e-9)
+
+
+def test_inlet_and_outlet_may_be_points_on_hub_and_shroud(tmp_path: Path) -> None:
+    row = read(tmp_path, "outlet = [[1.4, 2.04], [1.6, 2.92]]")
+    assert (row.hub[0, 0], row.shroud[0, 0]) == (-1.0, -1.0)
+    assert (row.hub[-1, 0], row.shroud[-1, 0]) == pytest.approx((1.4, 1.6), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("inlet = -1.5", "the hub reaches from x = -1 to 2, not -1.5"),
+        ("inlet = [1, 2, 3]", "is no plane"),
+        ("outlet = [[1.4, 2.9], [1.6, 2.92]]", "from the hub"),
+        ("inlet = 1.8\noutlet = 1.6", "the outlet is before the inlet"),
+    ],
+)
+def test_planes_that_are_none_are_named(tmp_path: Path, key: str, words: str) -> None:
+    with pytest.raises(InputError, match=re.escape(words)):
+        read(tmp_path, key)
 
 
 def turned(line: str) -> str:

@@ -1,0 +1,85 @@
+"""Places of nodes around a blade whose steps grow by a limited ratio, at the wall and along the front of the
+layers, in all key sections.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.solvers.blocking.layers.even_line import Bools, Measures, evened_places
+from meshonet.solvers.rows.section_plane import SectionPlane
+
+MARGIN = 0.93
+"""Of the logarithm of the largest growth, to which steps are limited: nodes move a little later on."""
+_TIMES = 4  # evened again while this changes much
+_SAME = 1e-9
+
+
+def even_wall_places(
+    planes: Sequence[SectionPlane], places: Floats, corners: Floats, growth: float, *, opposite: bool
+) -> Floats:
+    """Return places u (k,) of nodes clockwise around the blade near the given ones, with even steps.
+
+    Those at `corners` (c,) stay. With `opposite` the places of both sides are opposite each other, and stay
+    so.
+    """
+    limit = MARGIN * math.log(growth)
+    lead = int(np.abs(np.mod(places + 0.5, 1.0) - 0.5).argmin())
+    u = np.mod(np.roll(places, -lead) + 1e-6, 1.0) - 1e-6
+    half = len(u) // 2
+    if opposite:
+        upper = np.append(u[:half], 0.5)
+        corner_sides = np.concatenate([corners, 1.0 - corners])
+        upper = _evened(upper, _fixed(upper, corner_sides), _side_measures(planes), limit, closed=False)
+        u = np.concatenate([upper[:half], 1.0 - upper[half:0:-1]])
+    else:
+        fixed = _fixed(u, corners)
+        fixed[0] = True
+        u = _evened(u, fixed, _measures(planes), limit, closed=True)
+    return np.roll(u, lead)
+
+
+def _fixed(u: Floats, corners: Floats) -> Bools:
+    """Return which places (k,) are at corners, at 0 or at 0.5."""
+    at = np.concatenate([[0.0, 0.5], corners])
+    return np.asarray((np.abs(u[:, None] - at) < _SAME).any(axis=1))
+
+
+def _evened(u: Floats, fixed: Bools, measures: Measures, limit: float, *, closed: bool) -> Floats:
+    for _ in range(_TIMES):
+        before, u = u, evened_places(u, fixed, measures, limit, closed)
+        if np.abs(u - before).max() < _SAME:
+            break
+    return u
+
+
+def _around(planes: Sequence[SectionPlane]) -> tuple[Floats, Floats]:
+    """Return places (m,) from 0 to 1, and lengths (k, m) at wall and front there, as parts of the whole."""
+    u = np.append(planes[0].places, 1.0)
+    values = []
+    for plane in planes:
+        wall = plane.wall_arcs(u)
+        length = plane.cascade.ring.front.length
+        front = plane.front_arcs(u[:-1])
+        steps = np.mod(np.diff(np.append(front, front[0])), length)
+        values += [wall / wall[-1], np.concatenate([[0.0], np.cumsum(steps)]) / length]
+    return u, np.array(values)
+
+
+def _measures(planes: Sequence[SectionPlane]) -> Measures:
+    u, values = _around(planes)
+    return Measures(u, values)
+
+
+def _side_measures(planes: Sequence[SectionPlane]) -> Measures:
+    """Return measures of both sides from the leading to the trailing edge."""
+    u, values = _around(planes)
+    q = np.unique(np.concatenate([u[u <= 0.5], 1.0 - u[u >= 0.5]]))
+    rows = []
+    for row in values:
+        rows += [np.interp(q, u, row), row[-1] - np.interp(1.0 - q, u, row)]
+    return Measures(q, np.array(rows))

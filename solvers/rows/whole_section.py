@@ -1,0 +1,62 @@
+"""A section with its layers, and with rows to inlet and outlet, from its blocks in the plane of the map."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.elementary import log
+from meshonet.geometry.layout.layout import Layout
+from meshonet.solvers.blocking.cascade.cascade_layout import row_steps, straight_rows
+from meshonet.solvers.blocking.cascade.passage import BLADE, extended, laid_out
+from meshonet.solvers.blocking.cascade.passage_template import cut_of
+from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
+from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
+from meshonet.solvers.blocking.sizes.refine import multiplied
+from meshonet.solvers.rows.section_plane import SectionPlane
+
+_BISECTIONS = 60
+_RATIO = 2.0
+
+
+def whole_section(
+    plane: SectionPlane, layout: Layout, times: int, layers: int, largest: float, longest: Mapping[int, float]
+) -> Layout:
+    """Return a section of the blocks of a layout in the plane of its map, each `times` as fine.
+
+    Parameters
+    ----------
+    layers : how many layers there are.
+    largest : size of the largest cells.
+    longest : greatest lengths of the rows to inlet and outlet in any section, by the number of their loop.
+        They have as many cells as these ask for.
+    """
+    cascade = plane.cascade
+    passage = cascade.passage
+    fine = multiplied(layout, times)
+    flat, cut = laid_out(fine, passage, cut_of(fine))
+    mesh = flat.mesh
+    inner = heights_inside(flat, BLADE)
+    rows = [ring_rows(mesh, BLADE, cascade.ring, layers, cascade.layers, inner)]
+    axis = np.array([passage.map.axis.real, passage.map.axis.imag])
+    for number, length, way in straight_rows(cascade):
+        start = mesh.nodes[loop_nodes(mesh, number)]
+        first = math.exp(log(heights_inside(flat, number)).mean())
+        count = len(row_steps(first, max(length, longest[number]), largest)) - 1
+        steps = _grown(first, length, count)
+        rows.append(Rows(number, start[:, None] + steps[:, None] * (way * axis), np.zeros(len(start)), False))
+    return extended(flat, cut, passage, cascade.blade, rows)
+
+
+def _grown(first: float, length: float, cells: int) -> Floats:
+    """Return distances (cells + 1,) from 0 to a length of cells that follow one of size `first` evenly."""
+    low, high = 1.0 / _RATIO, _RATIO
+    for _ in range(_BISECTIONS):
+        ratio = 0.5 * (low + high)
+        total = first * sum(math.pow(ratio, k + 1) for k in range(cells))
+        low, high = (low, ratio) if total > length else (ratio, high)
+    steps = np.concatenate([[0.0], np.cumsum([math.pow(ratio, k + 1) for k in range(cells)])])
+    return np.asarray(steps * (length / steps[-1]))
