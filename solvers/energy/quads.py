@@ -76,7 +76,9 @@ def optimise(
     steps = (weights,) if growth[0] > 0.0 else (FREE,) if targets is None else (FREE, weights)
     for own in steps:
         if low > 0.0:
-            value, low, more = problem.descent.run(*own, 0.0, 0.0, 0.01 * tolerance, iterations, True, *growth)
+            value, low, more = problem.descent.run(
+                *own, 0.0, 0.0, 0.01 * tolerance, iterations, True, *growth
+            )
             done += more
     moved = problem.result()
     valid = low > 0.0 and smallest_jacobian(moved.nodes, moved.quads) > 0.0

@@ -45,6 +45,8 @@ FINE, FROM_NEIGHBOUR = 150, 80
 TOLERANCE = 1e-5
 FLAT, SMOOTH = 0.95, 1e-3
 """Weights w and β of the functional."""
+BEND = 0.3
+"""Part of the way to the outlet in which lines bend into the direction of the wake."""
 STEEP, MARGIN = 3.0, 0.93
 """Weight of the growth of cells, and the part of its logarithm from which on it counts."""
 
@@ -60,7 +62,8 @@ class SectionPlan:
     outward : (k,) nodes beyond the layers of each column.
     ends : nodes of inlet and outlet.
     places : (k,) u of the first node of each column.
-    wake : theta by which the outlet is aside of the trailing edge at half the height, and its slope along it.
+    wake : theta by which wakes would be aside at the outlet, straight from the trailing edge, at half the
+        height, and its slope along the height.
     """
 
     growth: float
@@ -70,9 +73,13 @@ class SectionPlan:
     places: Floats
     wake: tuple[float, float]
 
-    def aside(self, plane: SectionPlane) -> Floats:
-        """Return theta (2,) of the lines from the edges of a section's blade at inlet and outlet."""
-        return plane.edges[:, 1] + [0.0, self.wake[0] + self.wake[1] * (plane.height - 0.5)]
+    def bent(self, plane: SectionPlane, nodes: Floats) -> Floats:
+        """Return nodes (n, 2) in (m', theta) of a section, those behind its blade moved aside with the wake."""
+        most = self.wake[0] + self.wake[1] * (plane.height - 0.5)
+        start = float(plane.edges[1, 0])
+        t = np.maximum(nodes[:, 0] - start, 0.0) / (plane.map.length - start)
+        aside = np.where(t < BEND, t * t / (2.0 * BEND), t - 0.5 * BEND)
+        return np.stack([nodes[:, 0], nodes[:, 1] + most * aside], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,13 +91,11 @@ class KeySection:
     plane : of the section.
     layout : its blocks in (m', theta). Its domain is that of the middle section.
     places : (k,) where the first node of each column of layers is, u.
-    aside : theta (2,) of the lines from the edges of the blade at inlet and outlet.
     """
 
     plane: SectionPlane
     layout: Layout
     places: Floats
-    aside: Floats
 
 
 def planned(
@@ -119,7 +124,7 @@ def planned(
     near = 1e-9 * (m.max() - m.min())
     ends = np.flatnonzero(m <= m.min() + near), np.flatnonzero(m >= m.max() - near)
     plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, places, wake)
-    section = KeySection(plane, _optimum(plan, whole, FINE, ends_slide=True), at, plane.edges[:, 1])
+    section = KeySection(plane, _optimum(plan, whole, FINE, ends_slide=True), at)
     return plan, _placed(plan, section)
 
 
@@ -197,7 +202,7 @@ def _moved(
 ) -> KeySection:  # fmt: skip
     """Return a section with nodes around the blade at `places` (k,), from its neighbour's."""
     layout, own = _carried(plan, before, plane, places)
-    return KeySection(plane, _optimum(plan, layout, iterations), own, plan.aside(plane))
+    return KeySection(plane, _optimum(plan, layout, iterations), own)
 
 
 def _carried(
@@ -206,8 +211,7 @@ def _carried(
     """Return the layout of a section's neighbour with layers, inlet and outlet those of the section, and the
     places u of its nodes around the blade.
 
-    Inlet and outlet follow the edges of the blade, and the outlet its wake; between them and the layers
-    displacements are harmonic.
+    Inlet and outlet follow the edges of the blade; between them and the layers displacements are harmonic.
     """
     start, ring = before.layout.mesh.nodes, plane.cascade.ring
     end, front = start.copy(), plane.front_arcs(places)
@@ -215,7 +219,7 @@ def _carried(
     inner = norms(start[plan.outward] - start[plan.columns[:, -1]])
     rows = plan.columns.shape[1] - 1
     end[plan.columns] = layer_lines(lines, ring.front.at(front), inner, rows, plane.cascade.layers)
-    aside = plan.aside(plane) - before.aside
+    aside = (plane.edges - before.plane.edges)[:, 1]
     for own, at, shift in zip(plan.ends, (0.0, plane.map.length), aside, strict=True):
         end[own, 0] = at
         end[own, 1] += shift

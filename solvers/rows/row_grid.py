@@ -51,7 +51,9 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     for zone, levels in zip(zones, stacked.bounds, strict=True):
         inside = None
         if zone.gap:
-            inside = gap_blocks(row, made, space, stacked.columns, stacked.leading, zone, levels, first, growth)
+            inside = gap_blocks(
+                row, made, space, stacked.columns, stacked.leading, zone, levels, first, growth
+            )
         gaps.append(inside)
     grid = _joined(row, stacked, zones, gaps, space, turn)
     return grid, (*_notes(zones, first), *_more_cells(grid, request.cells))

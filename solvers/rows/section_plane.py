@@ -24,7 +24,7 @@ from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 
 _AROUND = 400
 """Points of a section."""
-STEEPEST = 35.0
+STEEPEST = 45.0
 """Degrees from the axis by which wakes are followed at the most: cells behind the blade are askew by them."""
 _NEAR_EDGE = 0.06  # places before and behind the trailing edge by which the mean line is known there
 

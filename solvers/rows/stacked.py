@@ -48,11 +48,9 @@ class StackedRow:
     leading : which of these columns starts nearest to the leading edge.
     """
 
-    def __init__(
-        self, row: Row, keys: KeyTables, zones: Sequence[Zone], first: float, growth: float
-    ) -> None:
+    def __init__(self, row: Row, keys: KeyTables, zones: Sequence[Zone], first: float, growth: float) -> None:
         self.row, self.zones, self.first, self.growth = row, zones, first, growth
-        self.layout, self.columns = keys.sections[0].layout, keys.plan.columns
+        self.layout, self.plan, self.columns = keys.sections[0].layout, keys.plan, keys.plan.columns
         u = np.array([section.places for section in keys.sections])
         steps = np.mod(np.diff(u, axis=0) + 0.5, 1.0) - 0.5
         around = u[0] + np.cumsum(np.concatenate([np.zeros((1, u.shape[1])), steps]), axis=0)
@@ -62,7 +60,8 @@ class StackedRow:
 
     def _key(self, section: KeySection) -> Floats:
         """Return s, theta (n, 2) of a key section, its layers exact in space."""
-        nodes, plane = section.layout.mesh.nodes, section.plane
+        plane = section.plane
+        nodes = self.plan.bent(plane, section.layout.mesh.nodes)
         values = np.stack([plane.map.back(nodes[:, 0]), nodes[:, 1]], axis=1)
         np.clip(values[:, 0], 0.0, 1.0, out=values[:, 0])
         column = values[self.columns]
