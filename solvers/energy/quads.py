@@ -61,8 +61,8 @@ def optimise(
     than `turning` radians are penalised. The minimisation ends after `iterations`, not including those of
     untangling, or if three consecutive iterations gain less than a hundredth of `tolerance` times the value.
     Cells without free nodes are ignored, but if one of them is folded the mesh is not valid. `weights` are w
-    and β of the functional if there are `targets`. `growth` is the weight of ratios of neighbouring edges, and
-    the logarithm from which on these count.
+    and β of the functional if there are `targets` or if growth counts. `growth` is the weight of ratios of
+    consecutive edges, and the logarithm from which on these count.
     """
     unknowns = unknowns_of(mesh, held)
     walls = walls_of(mesh, unknowns.fixed, unknowns.tied)

@@ -74,7 +74,7 @@ class SectionPlan:
     wake: tuple[float, float]
 
     def bent(self, plane: SectionPlane, nodes: Floats) -> Floats:
-        """Return nodes (n, 2) in (m', theta) of a section, those behind its blade moved aside with the wake."""
+        """Return nodes (n, 2) in (m', theta) of a section, those behind the blade moved with the wake."""
         most = self.wake[0] + self.wake[1] * (plane.height - 0.5)
         start = float(plane.edges[1, 0])
         t = np.maximum(nodes[:, 0] - start, 0.0) / (plane.map.length - start)
@@ -208,8 +208,7 @@ def _moved(
 def _carried(
     plan: SectionPlan, before: KeySection, plane: SectionPlane, places: Floats
 ) -> tuple[Layout, Floats]:
-    """Return the layout of a section's neighbour with layers, inlet and outlet those of the section, and the
-    places u of its nodes around the blade.
+    """Return a neighbour's layout with layers, inlet and outlet of a section, and u of nodes at the blade.
 
     Inlet and outlet follow the edges of the blade; between them and the layers displacements are harmonic.
     """

@@ -1,5 +1,6 @@
-"""Places of nodes around a blade whose steps grow by a limited ratio, at the wall and along the front of the
-layers, in all key sections.
+"""Places of nodes around a blade whose steps grow by a limited ratio.
+
+They do so at the wall and along the front of the layers, in all key sections.
 """
 
 from __future__ import annotations
