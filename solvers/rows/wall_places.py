@@ -30,7 +30,9 @@ def even_wall_places(
     """
     limit = MARGIN * math.log(growth)
     lead = int(np.abs(np.mod(places + 0.5, 1.0) - 0.5).argmin())
-    u = np.mod(np.roll(places, -lead) + 1e-6, 1.0) - 1e-6
+    u = np.roll(places, -lead)
+    start = float(np.mod(u[0] + 0.5, 1.0)) - 0.5
+    u = start + np.concatenate([[0.0], np.cumsum(np.mod(np.diff(u), 1.0))])
     half = len(u) // 2
     if opposite:
         upper = np.append(u[:half], 0.5)
@@ -41,13 +43,14 @@ def even_wall_places(
         fixed = _fixed(u, corners)
         fixed[0] = True
         u = _evened(u, fixed, _measures(planes), limit, closed=True)
-    return np.roll(u, lead)
+    return np.mod(np.roll(u, lead), 1.0)
 
 
 def _fixed(u: Floats, corners: Floats) -> Bools:
     """Return which places (k,) are at corners, at 0 or at 0.5."""
     at = np.concatenate([[0.0, 0.5], corners])
-    return np.asarray((np.abs(u[:, None] - at) < _SAME).any(axis=1))
+    off = np.mod(u[:, None] - at + 0.5, 1.0) - 0.5
+    return np.asarray((np.abs(off) < _SAME).any(axis=1))
 
 
 def _evened(u: Floats, fixed: Bools, measures: Measures, limit: float, *, closed: bool) -> Floats:
