@@ -36,6 +36,11 @@ class Places:
         none = np.full(count, -1, dtype=np.intp)
         return cls(none, np.zeros(count), np.zeros(count, dtype=np.intp), none.copy())
 
+    def and_then(self, *others: Places) -> Places:
+        """Return the places of these nodes, followed by those of `others`."""
+        every = (self, *others)
+        return Places(*(np.concatenate([getattr(each, name) for each in every]) for name in vars(self)))
+
     def take(self, nodes: Indices) -> Places:
         """Return the places of the given nodes, without their partners."""
         cleared = np.full(len(nodes), -1, dtype=np.intp)

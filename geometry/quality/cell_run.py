@@ -1,12 +1,14 @@
-"""One pass of the compiled metrics over all cells of a planar block."""
+"""One pass of the compiled metrics over all cells of a planar block, and the statistics of a metric."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.quality.metrics import QUAD_METRICS
+from meshonet.geometry.arrays import Floats, percentiles_of
+from meshonet.geometry.quality.metrics import QUAD_METRICS, Metric
+from meshonet.geometry.summary import Summary
 from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import measure_cells
 
@@ -38,3 +40,15 @@ def run_over(x: Floats, y: Floats, kept: slice = NONE, *, periodic: bool = False
     values = np.empty((last - first, len(x) - 1, x.shape[1] - 1))
     measure_cells(x, y, periodic, wake, table, where, first, values, threads_for(x.size))
     return CellRun(table, where, values)
+
+
+def summary_of(metric: Metric, blocks: Sequence[Floats], percentiles: bool) -> Summary:
+    """Return the statistics of a metric from its values (ni-1, nj-1[, nk-1]) in the cells of each block."""
+    ends = [cells.min() if metric.worst == "min" else -cells.max() for cells in blocks]
+    block = int(np.argmin(ends))
+    cells = blocks[block]
+    at = np.argmin(cells) if metric.worst == "min" else np.argmax(cells)
+    every = np.concatenate([cells.ravel() for cells in blocks])
+    low, mean, high = float(every.min()), float(every.mean()), float(every.max())
+    part = percentiles_of(every, PERCENTS) if percentiles else [None, None]
+    return Summary(low, mean, high, (block, *map(int, np.unravel_index(at, cells.shape))), *part)

@@ -14,7 +14,7 @@ from meshonet.geometry.arrays import Floats, as_planar, norms, percentiles_of
 from meshonet.geometry.blocks.block import form_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
-from meshonet.geometry.quality.cell_run import FEW, PERCENTS, CellRun, run_over
+from meshonet.geometry.quality.cell_run import FEW, PERCENTS, CellRun, run_over, summary_of
 from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS, metric_of, metrics_of
 from meshonet.geometry.summary import Quality, Summary
 from meshonet.geometry.threads import threads_for
@@ -103,8 +103,6 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     more = [metric for metric in metrics_of(grid) if metric.cells]
     if not more:
         return quality
-    from meshonet.geometry.quality.measure_blocks import summary_of
-
     metrics = dict(quality.metrics)
     for metric in more:
         summary = summary_of(metric, per_cell_of_blocks(grid, metric.name), percentiles)

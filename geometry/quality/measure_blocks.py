@@ -7,14 +7,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, percentiles_of
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.cell_run import PERCENTS, run_over
-from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS, Metric
+from meshonet.geometry.quality.cell_run import run_over, summary_of
+from meshonet.geometry.quality.metrics import NAMES, QUAD_METRICS
 from meshonet.geometry.quality.surfaces import areas, quad_metrics
-from meshonet.geometry.summary import Quality, Summary
+from meshonet.geometry.summary import Quality
 
 _TINY, _LARGE = 1e-300, 1e30
 """A cell without area has a neighbour of ratio `_LARGE`, as in the compiled metrics."""
@@ -54,15 +54,3 @@ def _area_ratios_across(grid: Grid, ratios: Sequence[Floats]) -> None:
             axis, end = PLACES[side]
             beside = np.moveaxis(ratios[block], axis, 0)[end, span[0][0] : span[0][1]]
             np.maximum(beside, ratio[::way], out=beside)
-
-
-def summary_of(metric: Metric, blocks: Sequence[Floats], percentiles: bool) -> Summary:
-    """Return the statistics of a metric from its values (ni-1, nj-1[, nk-1]) in the cells of each block."""
-    ends = [cells.min() if metric.worst == "min" else -cells.max() for cells in blocks]
-    block = int(np.argmin(ends))
-    cells = blocks[block]
-    at = np.argmin(cells) if metric.worst == "min" else np.argmax(cells)
-    every = np.concatenate([cells.ravel() for cells in blocks])
-    low, mean, high = float(every.min()), float(every.mean()), float(every.max())
-    part = percentiles_of(every, PERCENTS) if percentiles else [None, None]
-    return Summary(low, mean, high, (block, *map(int, np.unravel_index(at, cells.shape))), *part)

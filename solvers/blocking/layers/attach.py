@@ -64,12 +64,7 @@ def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
             if each.layers:
                 layers[len(blocks)] = away
             blocks.append(table[block][:, ::-1] if each.layers else table[block[::-1]])
-    joined = Places(
-        np.concatenate([each.loop for each in places]),
-        np.concatenate([each.arc for each in places]),
-        np.concatenate([each.cells for each in places]),
-        np.concatenate([each.partner for each in places]),
-    )
+    joined = places[0].and_then(*places[1:])
     joined.arc[joined.loop < 0] = 0.0
     joined.cells[joined.loop < 0] = 0
     whole = QuadMesh(domain, np.concatenate(nodes), lattice_quads(blocks), joined)

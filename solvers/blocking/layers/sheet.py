@@ -61,9 +61,7 @@ def with_sheet(mesh: QuadMesh, number: int) -> QuadMesh:
         added.loop[i], added.arc[i] = on, np.mod(arc[node] + INSET * way, loop.length)
         nodes[n + i] = loop.at(added.arc[i : i + 1])[0]
     row = [[path[i], path[i + 1], n + i + 1, n + i] for i in range(count - 1)]
-    pairs = zip(vars(mesh.places).values(), vars(added).values(), strict=True)
-    places = Places(*(np.concatenate(pair) for pair in pairs))
-    return QuadMesh(mesh.domain, nodes, np.concatenate([quads, row]), places)
+    return QuadMesh(mesh.domain, nodes, np.concatenate([quads, row]), mesh.places.and_then(added))
 
 
 def _half_edges(mesh: QuadMesh) -> Half:

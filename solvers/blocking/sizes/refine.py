@@ -63,7 +63,7 @@ class _Refined:
         self.first = len(vertices) + np.concatenate([[0], np.cumsum(inner)])
         self.nodes = np.empty((int(self.first[-1]), 2))
         self.nodes[: len(vertices)] = self.old.nodes[vertices]
-        self.places = _joined(self.old.places.take(vertices), Places.inside(int(inner.sum())))
+        self.places = self.old.places.take(vertices).and_then(Places.inside(int(inner.sum())))
         self.edges = [self._edge(k) for k in range(len(chords.edges))]
         self._set_partners()
         self.layout = self._filled()
@@ -137,7 +137,7 @@ class _Refined:
             parts.append(inside)
             lattices.append(lattice)
             count += len(inside)
-        places = _joined(self.places, Places.inside(count - len(self.nodes)))
+        places = self.places.and_then(Places.inside(count - len(self.nodes)))
         quads = lattice_quads(lattices)
         mesh = QuadMesh(self.old.domain, np.concatenate(parts), quads, places)
         return Layout(mesh, tuple(lattices))
@@ -153,11 +153,6 @@ class _Refined:
         if not strides[0][1] and not strides[1][1] and self.at is None:
             fine[:, :: strides[0][0], :: strides[1][0]] = coarse[0]
         return np.asarray(fine[:, 1:-1, 1:-1].reshape(2, -1).T)
-
-
-def _joined(first: Places, second: Places) -> Places:
-    pairs = zip(vars(first).values(), vars(second).values(), strict=True)
-    return Places(*(np.concatenate(pair) for pair in pairs))
 
 
 def _wall_arcs(loop: Loop, arcs: Floats, at: Floats) -> tuple[Floats, Indices]:
