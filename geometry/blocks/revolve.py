@@ -35,8 +35,8 @@ AXIS = "axis"
 FLOWS: tuple[End, End] = (("inlet", "inlet"), ("outlet", "outlet"))
 """Ends of a sector that is flown through along the turn."""
 _ON_AXIS = 1e-12  # over the size of the grid: nodes nearer to the axis are on it
-_MOST_PLANES = 10_000
-_LEAST_DEG = 1e-3
+_MOST_PLANES = 10_000  # more is taken for a typing error
+_LEAST_DEG = 1e-3  # thinner cells lose their digits beside the radius
 
 
 class AxisLine(NamedTuple):

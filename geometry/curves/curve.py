@@ -14,9 +14,9 @@ from meshonet.kernels._native import curve_locate, curve_points, curve_slopes, c
 
 _STEPS = 8  # parts of an interval in the table of arc length
 _GAUSS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])  # three-point quadrature in each part
-_WEIGHTS = np.array([5.0, 8.0, 5.0]) / (18.0 * _STEPS)
+_WEIGHTS = np.array([5.0, 8.0, 5.0]) / (18.0 * _STEPS)  # Gauss's, of the whole interval
 _INNER = ((np.arange(_STEPS)[:, None] + _GAUSS) / _STEPS).ravel()
-_EDGES = np.arange(_STEPS + 1) / _STEPS
+_EDGES = np.arange(_STEPS + 1) / _STEPS  # ends of the parts
 
 
 class Curve:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 SAME = 1e-6
 """Largest distance between one side, moved, and the other, in extents of the domain."""
-_SAMPLES = 129
+_SAMPLES = 129  # points at which two sides are compared
 _NOTHING = 1e-9  # part of a shift below which a coordinate of it is rounding of the input
 _BITS = 50  # of coordinates that are kept where sums of them have to be exact
 

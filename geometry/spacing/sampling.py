@@ -12,7 +12,7 @@ TrailingEdge: TypeAlias = Literal["auto", "exact", "round", "wedge"]
 TRAILING_EDGES: tuple[TrailingEdge, ...] = get_args(TrailingEdge)
 
 DEFAULT_NI = 200  # default node counts
-DEFAULT_NJ = 100
+DEFAULT_NJ = 100  # half as many as along xi
 DEFAULT_FAR_FIELD = 15.0  # in chords
 MULTIPLES = (8, 4, 2, 1)
 """Steps of nodes one of which corners of airfoils stand on, the largest that cells suffice for and that

@@ -27,7 +27,7 @@ OPTIMISED = 6000
 """Largest number of cells that are optimised directly; finer grids are splines through half as many in
 each direction.
 """
-ITERATIONS = 150
+ITERATIONS = 150  # of the optimum, at the most; it usually ends before by its gain
 CUT_OFF = 7e-4
 """Fraction of the area that cells may cut off along walls before the walls get more cells."""
 ROUNDS, STEP, MORE = 7, 1.12, 1.19

@@ -18,7 +18,7 @@ CELLS = 2500
 """Default number of cells."""
 LAYERED_CELLS = 20_000
 """Default number of cells of grids with layers."""
-MOST_HALVINGS = 8
+MOST_HALVINGS = 8  # 65,536 times as many cells
 MOST_ALONG = 100_000
 """Largest number of cells along a side."""
 LARGEST_PITCH = 1e12

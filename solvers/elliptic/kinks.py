@@ -17,7 +17,7 @@ Half as many where that is more than `NEAR` fine cells and Winslow's equations w
 sweeps change is nearer to the kink, and the largest angles are the same to a tenth of a degree.
 """
 
-NEAR = 40
+NEAR = 40  # fine cells from the kink
 
 SWEEPS = 4  # sweeps there
 

@@ -30,7 +30,7 @@ The harmonic term alone untangles more cells, but with larger angles; around spi
 
 SMOOTHING = Weights()  # weights with which the corners of an unfolded patch are opened
 
-SMOOTHING_ITERATIONS = 1500
+SMOOTHING_ITERATIONS = 1500  # at the most; it ends before by `SMOOTHING_STILL`
 SMOOTHING_STILL = 3e-5
 """Displacement of nodes, in cells, below which the smoothing stops."""
 

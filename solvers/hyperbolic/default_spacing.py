@@ -22,7 +22,7 @@ PART = 0.05
 """First cell over the smallest cell of the wall. At 0.25 lines lean by up to 80 degrees around some sections
 with 400 rows; at 0.05 by 29 at the most, and by 4 around most."""
 MOST = 0.25  # the same where rows are few, so that they grow by no more than `GROWTH`
-GROWTH = 1.2
+GROWTH = 1.2  # largest ratio of neighbouring rows
 CHOSEN = "no first cell was asked for: it follows from the smallest one along the wall"
 STEEPEST = 1.3  # growth beyond which marched grids have larger angles than variational ones
 

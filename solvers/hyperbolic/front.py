@@ -22,7 +22,7 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.solvers.hyperbolic.level_spacing import Edge, level_steps, sharpest_edge
 from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
-_OPENING = 5.0
+_OPENING = 5.0  # growth of first cells far behind the edge, in those of the wall per chord
 _NEAR = 0.3
 """First cells at x chords behind the edge are 1 + `_OPENING` x²/(x + `_NEAR`) times those of the wall."""
 

@@ -23,7 +23,7 @@ from meshonet.kernels._native import line_neighbours
 
 THIN = 3.0
 """Aspect ratio above which a boundary cell belongs to layers, whose heights are kept."""
-_ROUNDS = 200
+_ROUNDS = 200  # of diffusion, at the most
 _SHARE = 0.17
 """Fraction of the excess ratio between two edges by which each changes in a round; an edge has up to four
 neighbours.

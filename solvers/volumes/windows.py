@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-NEIGHBOURS = [step for step in product((-1, 0, 1), repeat=3) if any(step)]
+NEIGHBOURS = [step for step in product((-1, 0, 1), repeat=3) if any(step)]  # of a tile
 TILE = 5
 """Cells along each side of a tile; bad cells in touching tiles form a group."""
 LARGEST = 36

@@ -31,7 +31,7 @@ PLAIN_ROWS, PLAIN_GROWTH = 6.0, 1.1
 """Number of rows within this thickness and their growth ratio, if no first-cell height is given."""
 GAP_PART = 0.25
 """Largest fraction of the narrowest gap between blades that layers fill."""
-_SAMPLES = 400
+_SAMPLES = 400  # points of the blade at which the gap is measured
 ACROSS = 12.0
 """Smallest number of cells per pitch, before the requested number of cells is distributed."""
 COARSEST = 20.0

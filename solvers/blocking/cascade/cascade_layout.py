@@ -46,14 +46,18 @@ CORNERS = ("at first", "later", "nowhere")
 """When nodes are moved to the corners of the blade, in the order of attempts."""
 LEAST = 4
 """Smallest number of cells along the side of an optimised block."""
-FIRST, ITERATIONS, PASSES = 150, 120, 2
+FIRST, ITERATIONS, PASSES = (
+    150,
+    120,
+    2,
+)  # iterations: of the template, of each sized optimum; and how many of these
 WEIGHTS = 0.95, 1e-3
 """Weights w and β of the functional. A smaller β improves angles, but lets rounding errors move nodes by 1
 %.
 """
 ROW_GROWTH = 1.1
 """Growth ratio of cells towards inlet and outlet."""
-_BISECTIONS = 14
+_BISECTIONS = 14  # of a range of 400 to 1: the scale to 0.04 %
 
 
 def cascade_layout(

@@ -28,7 +28,7 @@ from meshonet.geometry.linear import solve
 from meshonet.geometry.polygon.corners import Indices
 
 _GAUSS = (-(3.0**-0.5), 3.0**-0.5)  # places in a side from -1 to 1, of weight 1
-_TINY = 1e-12
+_TINY = 1e-12  # in place of a distance of 0, where the integrand is 0 in the limit
 _LONGEST = 0.25  # step of the potential, of period π, between the points of Cauchy's integral
 _LEAST = 1e-9  # of the slit: by how much the potential rises from point to point
 

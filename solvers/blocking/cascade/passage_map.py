@@ -18,7 +18,7 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of
 from meshonet.geometry.elementary import log, modulus, tanh, times
 
-_SMALL = 1e-12
+_SMALL = 1e-12  # width of a blade below which a chord of it is no inside
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ MOVE = 1e-2
 """σ."""
 MARGIN = 0.006
 """Margin by which ratios, in logarithms, should be below the limit."""
-STEPS = 24
+STEPS = 24  # of Gauss-Newton at the most; the weight reaches its largest value in 15
 MOST, RELAXED, TRIES = 6.0, 1.5, 6
 """Steps by which places may move, and by what limits that take more are multiplied, so often."""
 

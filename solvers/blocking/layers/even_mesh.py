@@ -43,7 +43,7 @@ RAIL = 1e9
 """What holds nodes that slide on their tangent, by σ."""
 WORTH, FEW = 0.7, 5e-4
 """Part of what exceeds the limit that a round may leave for another one, and share of ratios that are few."""
-_ANGLES = np.radians(60.0), np.radians(120.0)
+_ANGLES = np.radians(60.0), np.radians(120.0)  # limits of θ0, so that bad corners improve
 
 Bools = NDArray[np.bool_]
 

@@ -27,7 +27,7 @@ MOST_GROWTH = 1.25
 DEARER, DEARER_DEG = 1.25, 0.25
 """By how much even growth may raise the mean deviation of angles from 90 degrees: a factor, and degrees."""
 
-FEW_ITERATIONS = 10
+FEW_ITERATIONS = 10  # after untangling: only nodes around folds move
 NEAR_FOLDS = 5
 """Cells around folded ones that are optimised with them."""
 

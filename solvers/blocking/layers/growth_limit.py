@@ -31,7 +31,7 @@ LINEAR = 0.1
 """Excess beyond which the penalty is linear, so that a ratio that cannot be reduced does not bend all
 cells.
 """
-HALVINGS = 10
+HALVINGS = 10  # of a step that raises the value; it is then left out
 
 Numbers = TypeVar("Numbers", Floats, Complexes)
 

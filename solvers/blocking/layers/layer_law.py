@@ -8,7 +8,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import exp, log
 
-_STEPS = 60
+_STEPS = 60  # of bisection, to round-off
 _MOST = 60.0  # of the logarithm of the last cell over the first
 STEEPER = 0.2
 """Fraction by which the logarithm of a ratio of neighbouring cells may exceed that of the constant ratio."""

@@ -46,7 +46,7 @@ from meshonet.solvers.blocking.sizes.even_metric import metric_places
 from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.energy.quads import optimise
 
-ITERATIONS, STRIDING = 120, 60
+ITERATIONS, STRIDING = 120, 60  # of each optimum, and of one before it on fewer cells
 SWEEPS = 10
 """Sweeps that make wanted lengths change gradually: with twice as many, cells in slots grow too fast."""
 COUNTINGS = 3

@@ -27,7 +27,7 @@ MARCH_GROWTH = 1.2
 """Ratio of neighbouring levels of the march; the layers are redistributed along its lines later."""
 THINNER = 0.6
 """Factor of the thickness after the march has folded with all settings."""
-TRIES = 4
+TRIES = 4  # thicknesses, the last a fifth of the first
 FEWEST_CELLS = 4.0
 """Smallest thickness of layers in first cells."""
 

@@ -22,11 +22,11 @@ FAR = 4.0
 """Distance of an outer loop, relative to the circle around all bodies, above which it counts as distant."""
 NEAR = 2.2
 """Radius of the circle that replaces it, relative to the circle around all bodies."""
-_POINTS = 240
-_EVEN = 1.1
+_POINTS = 240  # of the circle, a spline through them
+_EVEN = 1.1  # ratio of neighbouring first cells of rows, at the most
 _UNLIKE = 1.2  # first cells of rows over their mean
 _OWN = 0.5  # part of a row in which it becomes like the others
-MOST_GROWTH = 1.18
+MOST_GROWTH = 1.18  # of cells in rows to the far field
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,7 +32,7 @@ STEEPEST = 0.6
 """Largest fraction of a column that its last cell takes."""
 OPENS = 0.15
 """Distance behind a sharp edge, relative to its loop, over which the first cells of a wake grow."""
-_STEPS = 50
+_STEPS = 50  # of bisection, to round-off
 
 Bools = NDArray[np.bool_]
 

@@ -23,7 +23,7 @@ COLUMNS = 140.0
 """Number of cells along a loop if all were as long as the longest."""
 TURN = np.radians(3.5)
 """Largest angle by which a wall turns along one cell, for the default number of cells."""
-CELLS_IN_GAP = 15.0
+CELLS_IN_GAP = 15.0  # cells along a wall are so many times shorter than the gap in front
 ALONG = 0.2
 """Growth of sizes along walls per length."""
 UNEVEN = 2.0
@@ -36,7 +36,7 @@ AROUND_CORNER = 2.5
 """Ratio of arc length to straight distance below which the same wall counts as around a corner, not as a
 gap.
 """
-_SAMPLES, _WINDOW = 400, 3
+_SAMPLES, _WINDOW = 400, 3  # points around a loop, and those on either side over which its bend is averaged
 
 
 @dataclass(frozen=True, eq=False)

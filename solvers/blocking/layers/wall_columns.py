@@ -16,7 +16,7 @@ TURN = np.radians(4.0)
 """Largest angle by which the wall turns along one cell."""
 GROWTH = 0.1
 """Largest difference of neighbouring cells relative to their length."""
-_SAMPLES = 4000
+_SAMPLES = 4000  # places around a loop at which sizes are tabulated: 28 a cell of the longest
 _CORNER_PART = 1.0 / 40.0  # cell at a corner, in cells elsewhere
 _PIECE_PART = 1.0 / 3.0  # and at the most in lengths of the pieces of wall that end there
 _RESOLVED = 0.01  # samples that a cell at a corner is long, at the least, without more samples there

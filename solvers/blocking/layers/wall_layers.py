@@ -42,7 +42,7 @@ MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
 ROWS = 3
 """Cells that stand for a row of layers in the optimum, which so never sees cells far longer than high."""
-_BISECTIONS = 14
+_BISECTIONS = 14  # of a range of 240 to 1: the scale to 0.03 %
 
 
 @dataclass(frozen=True, eq=False)

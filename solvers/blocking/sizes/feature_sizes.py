@@ -13,7 +13,7 @@ from meshonet.solvers.blocking.sizes.wall_turning import wall_bend
 
 TURN = np.radians(20.0)
 """Largest angle by which a wall turns along one cell."""
-CELLS_IN_GAP = 2.5
+CELLS_IN_GAP = 2.5  # so that at least two quads cross every gap
 CELLS_AROUND = 24.0
 """Smallest number of cells around a loop."""
 ALONG_WALL = 0.2
@@ -22,7 +22,7 @@ INSIDE = 0.2
 """Growth of sizes with the distance from walls."""
 CELLS_ACROSS = 30.0
 """Smallest number of cells across a domain, far from all features."""
-_SAMPLES, _WINDOW = 400, 3
+_SAMPLES, _WINDOW = 400, 3  # points around a loop, and those on either side over which its bend is averaged
 
 
 def feature_sizes(domain: Domain) -> SizeMetric:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 
-_STEPS = 3
+_STEPS = 3  # of projection onto the tangent, which converges quadratically
 
 
 def on_loops(mesh: QuadMesh, which: NDArray[np.bool_]) -> QuadMesh:

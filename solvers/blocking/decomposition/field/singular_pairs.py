@@ -30,7 +30,7 @@ triangles resolve.
 """
 MOST_PAIRS = 64
 """Largest number of pairs that are examined, the nearest ones."""
-_TURN = 2.0 * np.pi
+_TURN = 2.0 * np.pi  # a full turn, radians
 
 
 @dataclass(frozen=True, eq=False)

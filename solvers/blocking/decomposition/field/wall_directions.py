@@ -17,7 +17,7 @@ from meshonet.solvers.blocking.decomposition.surface.surface import NEXT, Triang
 
 Flags: TypeAlias = NDArray[np.bool_]
 
-QUARTER = 0.5 * np.pi
+QUARTER = 0.5 * np.pi  # symmetry of the field, radians
 _REACH = 0.15
 """Length over which a corner rotates the field, relative to its loop, and at most half the way to the next
 corner.

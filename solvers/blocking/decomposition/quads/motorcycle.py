@@ -25,7 +25,7 @@ NEAR = 1e-6
 PROBED = 1500
 """Number of triangles through which a ray is followed to test whether it meets a node."""
 
-CANCELLED, AT_NODE, AT_RAY, AT_WALL, TOO_LONG = range(5)
+CANCELLED, AT_NODE, AT_RAY, AT_WALL, TOO_LONG = range(5)  # how rays end, as in kernels/motorcycle
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from meshonet.geometry.elementary import angle, times
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.field.seamless_map import SeamlessMap
 
-QUARTER = np.pi / 2
+QUARTER = np.pi / 2  # angle between coordinate lines, radians
 SLACK = 0.5
 """Angle in radians by which a ray may lie outside of the triangle to which it is assigned."""
 

@@ -30,7 +30,7 @@ PER_PIECE = 4.0
 """
 FLOOR = 1.0 / 25.0
 """Smallest size at walls, relative to the largest size, or to `OF_LOOP` times the loop."""
-OF_LOOP = 1.0 / 16.0
+OF_LOOP = 1.0 / 16.0  # of its length, the largest edge on a loop: 16 make a circle round
 MOST = 2.0
 """Largest ratio of nodes on walls to requested nodes; long narrow gaps then get fewer."""
 CONE = 0.6

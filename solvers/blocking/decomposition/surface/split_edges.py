@@ -9,7 +9,7 @@ import numpy as np
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.decomposition.surface.triangulation import Triangulation
 
-_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
+_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # corners of a triangle after and before each
 
 
 def split_edges_between_walls(triangulation: Triangulation) -> Triangulation:

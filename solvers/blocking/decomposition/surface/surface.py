@@ -18,8 +18,8 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_fans
 from meshonet.solvers.blocking.decomposition.surface.triangulation import Triangulation
 
-NEXT = np.array([1, 2, 0])
-PREVIOUS = np.array([2, 0, 1])
+NEXT = np.array([1, 2, 0])  # corner of a triangle after each
+PREVIOUS = np.array([2, 0, 1])  # and before each
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,7 +24,7 @@ SAME = 1e-7
 meant to be symmetric deviate by up to 1e-12, others by more than 1e-4."""
 MOST = 64
 """Directions looked at closely: a circle has as many as points, of which the first will do."""
-_ROOT = math.sqrt(2.0)
+_ROOT = math.sqrt(2.0)  # length of the sum of two unit vectors at right angles
 _STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of two places an interval
 
 
