@@ -61,6 +61,8 @@ def read_stack(source: Source) -> Stack | Row:
         kind = data.word("kind", (*KINDS, "row"), "wing")
         if kind == "row":
             return read_row(data, source)
+        if "kind" not in data.data and "blades" in data.data:
+            raise data.error("kind", "is missing, and a wing has no blades", 'write kind = "row"')
         data.only("kind", "tip", "between", *_SPACINGS, "name", "about", "sections")
         about = data.pair("about", QUARTER)
         sections: list[Section] = []

@@ -87,6 +87,14 @@ class Table:
         x, y = self._numbers(key, 2)
         return x, y
 
+    def pairs(self, key: str, least: int) -> list[list[float]]:
+        """Return a list of at least `least` pairs of numbers."""
+        rows = self.data.get(key)
+        if not isinstance(rows, list) or len(rows) < least:
+            raise self.error(key, f"{_shown(rows)} is not {least} pairs or more", "give [[x, r], [x, r]]")
+        named = {f"{key}[{k}]": row for k, row in enumerate(rows)}
+        return [Table(named, self.place)._numbers(name, 2) for name in named]
+
     def _numbers(self, key: str, count: int) -> list[float]:
         values = self.data.get(key)
         if not isinstance(values, list) or len(values) != count:

@@ -6,7 +6,7 @@
     blades = 36
     profiles = "profile.curve"   # one file with a block of points a profile, or ["hub.csv", "tip.csv"]
     hub = "hub.curve"            # x, y, z or x, r from inlet to outlet
-    shroud = "shroud.curve"
+    shroud = [[-5, 25], [9, 24]] # or x, r of points
     tip_gap = 0.0356             # a length, or "1 %" of the span; likewise hub_gap
     inlet = -3.0                 # along the axis, or [[x, r], [x, r]] on hub and shroud; likewise outlet
     axis = "x"                   # of rotation
@@ -16,7 +16,7 @@
 In place of profiles, sections of airfoils on cylinders::
 
     [[sections]]                 # from hub to shroud
-    airfoil = "naca:65-010"      # or a file, looked for beside this one
+    airfoil = "naca:6508"        # or a file, looked for beside this one
     chord = 5.0
     radius = 20.0
     stagger = 40                 # degrees from the axis, towards growing theta
@@ -78,6 +78,9 @@ def read_row(data: Table, source: Source) -> Row:
     if "profiles" in data.data:
         files = _files(data, folder)
         profiles = [points for file in files for points in point_blocks(file, (3,))]
+        if polar and any(np.ptp(points[:, 2]) > np.pi for points in profiles):
+            most = max(float(np.ptp(points[:, 2])) for points in profiles)
+            raise data.error("coordinates", f"theta of a profile spans {most:.4g}", "give theta in radians")
         profiles = [scaled * scale for scaled in map(_placed(columns, polar), profiles)] if not polar else [
             _placed(columns, polar)(points * [scale, scale, 1.0]) for points in profiles
         ]  # fmt: skip
@@ -115,7 +118,9 @@ def _placed(columns: tuple[int, int, int], polar: bool) -> Callable[[Floats], Fl
 
 
 def _wall(data: Table, key: str, folder: Path, columns: tuple[int, int, int]) -> Floats:
-    """Return x, r (n, 2) of hub or shroud."""
+    """Return x, r (n, 2) of hub or shroud, a file or a list."""
+    if isinstance(data.data.get(key), list):
+        return np.array(data.pairs(key, least=2))
     source = open_source(str(folder / data.text(key)))
     blocks = point_blocks(source, (3, 2))
     if len(blocks) > 1 and any(len(block) > 1 for block in blocks[1:]):

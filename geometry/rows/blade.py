@@ -10,11 +10,14 @@ from meshonet.geometry.arrays import Floats, middle
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.elementary import cos
 from meshonet.geometry.errors import InputError, in_place
+from meshonet.geometry.notes import Change
 from meshonet.geometry.rows.channel import Channel
 from meshonet.geometry.rows.profile import BladeProfile
 
 MOST_EXTENDED = 0.2
 """Part of the span by which a blade is made longer, at the most, to reach hub and casing."""
+_CHECKED = 400  # places around the blade at which profiles are compared
+_FARTHEST = 90.0  # degrees around the axis from one profile to the next: no blade leans as much
 _NEWTON = 8
 _TOLERANCE = 1e-14
 _HALF_TURN = np.pi
@@ -27,10 +30,11 @@ class BladeSurface:
 
     Parameters
     ----------
-    profiles : two or more, (n, 3) x, y, z, in order from hub to casing.
+    profiles : two or more, (n, 3) x, y, z, in order from hub to casing; the opposite order is reversed, which
+        `notes` say.
     channel : that the blade stands in.
 
-    Raises InputError: profiles that are not in this order, that do not reach far enough, or as
+    Raises InputError: profiles that are not in this order, that cross or do not reach far enough, or as
     `BladeProfile`; with the number of the profile, from 1.
     """
 
@@ -40,9 +44,14 @@ class BladeSurface:
         for number, points in enumerate(profiles, start=1):
             with in_place(f"profile {number}"):
                 self.profiles.append(BladeProfile(points, channel))
+        self.notes: tuple[str, ...] = ()
+        if (np.diff([profile.height for profile in self.profiles]) < 0.0).all():
+            self.profiles.reverse()
+            self.notes = (Change("profiles are given from casing to hub and are taken the other way round"),)
         self.knots = np.array([profile.height for profile in self.profiles])
         self._check()
         self._turns = self._unwrapped()
+        self._check_neighbours()
 
     def _check(self) -> None:
         heights = self.knots
@@ -52,16 +61,44 @@ class BladeSurface:
             problem = (
                 f"is at {100 * heights[k + 1]:.3g} % of the span, behind one at {100 * heights[k]:.3g} %"
             )
-            raise InputError(problem, "give profiles from hub to casing", place=f"profile {k + 2}")
+            raise InputError(problem, "give profiles from hub to casing", place=self._place(k + 1))
         foot, tip = self.channel.foot, self.channel.tip
         low, high = self.profiles[0].range[1], self.profiles[-1].range[0]
         if low - foot > MOST_EXTENDED:
             problem = f"begins at {100 * low:.3g} % of the span"
-            raise InputError(problem, "give a profile nearer to the hub", place="profile 1")
+            raise InputError(problem, "give a profile nearer to the hub", place=self._place(0))
         if tip - high > MOST_EXTENDED:
             problem = f"ends at {100 * high:.3g} % of the span"
-            place = f"profile {len(self.profiles)}"
+            place = self._place(len(self.profiles) - 1)
             raise InputError(problem, "give a profile nearer to the casing", place=place)
+
+    def _place(self, k: int) -> str:
+        """Return the place of a profile, by its number as given."""
+        return f"profile {len(self.profiles) - k if self.notes else k + 1}"
+
+    def _check_neighbours(self) -> None:
+        """Raise InputError for a profile that crosses the one before, or lies far from it around the axis."""
+        u = clustered(_CHECKED)
+        values = np.stack([profile.at(u) for profile in self.profiles])
+        middle = values[..., 1].mean(axis=1) + self._turns
+        for k in range(1, len(values)):
+            apart = float(np.degrees(abs(middle[k] - middle[k - 1])))
+            if apart > _FARTHEST:
+                problem = f"lies {apart:.4g} degrees around the axis from the one before"
+                raise InputError(problem, "give profiles of one blade", place=self._place(k))
+            if not (values[k, :, 2] > values[k - 1, :, 2]).all():
+                problem = "crosses the one before"
+                raise InputError(problem, "give profiles beside each other", place=self._place(k))
+
+    def check_pitch(self, pitch: float) -> None:
+        """Raise InputError if blades a `pitch` in radians apart touch each other."""
+        angles = [profile.thickness for profile in self.profiles]
+        k = int(np.argmax(angles))
+        if angles[k] >= pitch:
+            problem = (
+                f"is {np.degrees(angles[k]):.4g} degrees thick, and blades are {np.degrees(pitch):.4g} apart"
+            )
+            raise InputError(problem, "use fewer blades", place=self._place(k))
 
     def _unwrapped(self) -> Floats:
         """Return multiples of 2 pi (p,) that are added to theta, so that profiles follow each other."""

@@ -23,7 +23,8 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, middle, norms
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_place
+from meshonet.geometry.rows.profile_points import apart
 
 _PIECES = 512
 """Pieces of the tables of hub and casing."""
@@ -66,7 +67,7 @@ class Channel:
 
     def __init__(self, hub: Floats, casing: Floats, hub_gap: float = 0.0, tip_gap: float = 0.0) -> None:
         s = np.linspace(0.0, 1.0, _PIECES + 1)
-        low, high = (_by_arc(points, s) for points in (hub, casing))
+        low, high = (_by_arc(points, s, name) for points, name in ((hub, "hub"), (casing, "casing")))
         for name, points in (("hub", low), ("casing", high)):
             if not points[:, 1].min() > 0.0:
                 raise InputError(f"the {name} reaches the axis, r = {points[:, 1].min():.6g}", "give r > 0")
@@ -76,8 +77,9 @@ class Channel:
         left = along[:, 0] * (high - low)[:, 1] - along[:, 1] * (high - low)[:, 0]
         if not (left > 0.0).all():
             k = int(np.argmin(left))
-            problem = f"hub and casing cross or lie the wrong way round near x = {low[k, 0]:.6g}"
-            raise InputError(problem, "give both from inlet to outlet, the hub inside the casing")
+            problem = f"hub and casing cross, turn back or lie the wrong way round near x = {low[k, 0]:.6g}"
+            remedy = "give both from inlet to outlet, along growing x in an axial machine, the hub inside"
+            raise InputError(problem, remedy)
         self._cubics = CubicTable(np.concatenate([low, high - low], axis=1), s).unit_cubics()
         self.span = middle(widths)
         self.length = middle(np.array([norms(np.diff(line, axis=0)).sum() for line in (low, high)]))
@@ -205,7 +207,8 @@ def _distance(points: Floats, wall: CubicTable, s: Floats) -> Floats:
     return norms(points - wall(at))
 
 
-def _by_arc(points: Floats, s: Floats) -> Floats:
+def _by_arc(points: Floats, s: Floats, name: str) -> Floats:
     """Return points (n, 2) at parts s (n,) of the length of a curve."""
-    curve = Curve(np.ascontiguousarray(points))
+    with in_place(name):
+        curve = Curve(apart(np.ascontiguousarray(points, dtype=np.float64), closed=False))
     return curve.at(s * curve.length)

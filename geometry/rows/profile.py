@@ -17,12 +17,11 @@ from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.rows.channel import Channel
+from meshonet.geometry.rows.profile_points import check_profile, distinct_points
 
-LEAST_POINTS = 12
 _SAMPLES = 2000  # points of the curve among which the edges are looked for
 _BASE = 0.1  # of the chord: corners that are no farther apart than this, and blunt, have an edge between them
 _SEAM = 4  # points that are taken along beyond the first and the last
-_NEAR = 1e-9  # of the chord: a last point so near to the first repeats it
 
 
 class BladeProfile:
@@ -30,19 +29,15 @@ class BladeProfile:
 
     Parameters
     ----------
-    points : (n, 3) x, y, z around the profile in either direction, the axis along x; the first may be
-        repeated at the end.
+    points : (n, 3) x, y, z around the profile in either direction, the axis along x; points may be repeated.
     channel : that it stands in.
 
-    Raises InputError: too few points, points that coincide, points that are not in the channel's range.
+    Raises InputError: too few points, points that are no closed curve around an area, or that are not in the
+    channel's range.
     """
 
     def __init__(self, points: Floats, channel: Channel) -> None:
-        p = np.asarray(points, dtype=np.float64)
-        if len(p) > 1 and norms(p[-1] - p[0]) <= _NEAR * np.ptp(p, axis=0).max():
-            p = p[:-1]
-        if len(p) < LEAST_POINTS:
-            raise InputError(f"{len(p)} points", f"give {LEAST_POINTS} or more around the blade")
+        p = distinct_points(points)
         r = np.hypot(p[:, 1], p[:, 2])
         theta = np.unwrap(arctan2(p[:, 1], p[:, 2]))
         s, h = channel.places(np.stack([p[:, 0], r], axis=1))
@@ -56,6 +51,7 @@ class BladeProfile:
         self.range = float(h.min()), float(h.max())
         self._map = channel.meridional(self.height)
         plane = np.stack([self._map.forward(s), theta], axis=1)
+        check_profile(plane, p)
         if polygon_area(plane) > 0.0:
             plane, h = plane[::-1], h[::-1]
         self.curve = Curve(np.ascontiguousarray(plane), closed=True)
@@ -101,6 +97,15 @@ class BladeProfile:
         """Lengths of the sides, from the leading to the trailing edge and back."""
         first = float(np.mod(self.trailing - self.leading, self.curve.length))
         return first, self.curve.length - first
+
+    @cached_property
+    def thickness(self) -> float:
+        """Largest angle in radians between the sides at one m', about."""
+        u = np.linspace(0.0, 0.5, _SAMPLES // 2)
+        sides = [self.curve.at(self.arcs(places)).T for places in (u, 1.0 - u)]
+        at = np.linspace(sides[0][0][0], sides[0][0][-1], _SAMPLES // 2)
+        first, second = (np.interp(at, np.maximum.accumulate(m), theta) for m, theta in sides)
+        return float(np.abs(first - second).max())
 
     def arcs(self, u: Floats) -> Floats:
         """Return arc lengths (n,) of places u (n,), 0 to 1."""

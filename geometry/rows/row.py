@@ -55,11 +55,12 @@ class Row:
         if not FEWEST <= self.blades <= MOST:
             raise InputError(f"{self.blades} blades", f"use {FEWEST} to {MOST}", place="blades")
         if len(self.profiles) < 2:
-            raise InputError(f"{len(self.profiles)} profiles", "give two or more", place="profiles")
+            problem = f"{len(self.profiles)} of a blade"
+            raise InputError(problem, "give two or more, from hub to casing", place="profiles")
         for place, gap in (("tip_gap", self.tip_gap), ("hub_gap", self.hub_gap)):
             if not gap >= 0.0:
                 raise InputError(f"{gap:g} is negative", "use 0 or more", place=place)
-        _ = self.surface
+        self.surface.check_pitch(self.pitch)
 
     @cached_property
     def channel(self) -> Channel:
@@ -70,6 +71,11 @@ class Row:
     def surface(self) -> BladeSurface:
         """The surface of the blade."""
         return BladeSurface(self.profiles, self.channel)
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """Notes on what was changed of the profiles, `notes` first."""
+        return (*self.notes, *self.surface.notes)
 
     @property
     def pitch(self) -> float:

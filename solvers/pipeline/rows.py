@@ -31,7 +31,7 @@ def make_row(row: Row, request: RowRequest | None = None) -> Result:
         with stage("grid", seconds):
             grid, notes = row_grid(row, request)
             grid = copied(grid, request.copies)
-        notes = (*row.notes, *notes)
+        notes = (*row.changes, *notes)
         note = request.height_note(f"on a chord of {row.chord:.6g}", scale=row.chord)
         solution = Solution(grid, "row", notes=(*notes, note) if note else notes)
         return judged(solution, seconds, request, remedy=_REMEDY)

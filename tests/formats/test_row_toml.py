@@ -85,6 +85,33 @@ def test_planes_that_are_none_are_named(tmp_path: Path, key: str, words: str) ->
         read(tmp_path, key)
 
 
+def test_walls_may_be_listed(tmp_path: Path) -> None:
+    path = blade_row.write_row(tmp_path)
+    text = path.read_text().replace('"hub.csv"', "[[-1, 2.0], [2, 2.05]]")
+    path.write_text(text.replace('"shroud.curve"', "[[-1, 3], [-1, 3], [2, 2.9]]"))
+    row = stack_of(str(path))
+    assert isinstance(row, Row)
+    assert row.hub.tolist() == [[-1.0, 2.0], [2.0, 2.05]]
+    assert row.channel.at(np.array([0.5]), np.array([1.0]))[0] == pytest.approx([0.5, 2.95])
+
+
+def test_theta_is_in_radians(tmp_path: Path) -> None:
+    path = blade_row.write_row(tmp_path, 'coordinates = "xrt"')
+    for unit in (1.0, 180.0 / np.pi):
+        text = ""
+        for x, y, z in (p for points in blade_row.profiles() for p in [points.T]):
+            rows = np.stack([x, np.hypot(y, z), unit * np.arctan2(y, z)], axis=1)
+            text += "profile\n" + "".join("{:.17g} {:.17g} {:.17g}\n".format(*row) for row in rows)
+        (tmp_path / "profile.curve").write_text(text)
+        if unit == 1.0:
+            row = stack_of(str(path))
+            assert isinstance(row, Row)
+            assert row.profiles[2] == pytest.approx(blade_row.profiles()[2], abs=1e-14)
+        else:
+            with pytest.raises(InputError, match=r"coordinates: theta of a profile spans .* in radians"):
+                stack_of(str(path))
+
+
 def turned(line: str) -> str:
     x, y, z = (1000.0 * float(word) for word in line.split())
     return f"{y!r} {z!r} {x!r}"
@@ -136,3 +163,22 @@ def test_blades_have_to_be_counted(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=words):
             stack_of(str(path))
         path.write_text(text)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('kind = "row"\n', "", 'kind: is missing, and a wing has no blades; write kind = "row"'),
+        ('"hub.csv"', "[[-1, 2]]", r"hub: .* is not 2 pairs or more; give \[\[x, r\], \[x, r\]\]"),
+        ('"hub.csv"', "[[-1, 2], [2]]", r"hub\[1\]: \[2\] is not 2 numbers"),
+        ('"hub.csv"', "[[2, 2.05], [-1, 2]]", "hub and casing cross, turn back or lie the wrong way round"),
+        ('"hub.csv"', "[[-1, 2], [-1, 2]]", "hub: a curve of 1 points"),
+    ],
+)
+def test_what_a_file_says_of_walls_and_kind_is_checked(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    path = blade_row.write_row(tmp_path)
+    path.write_text(path.read_text().replace(old, new))
+    with pytest.raises(InputError, match=words):
+        stack_of(str(path))

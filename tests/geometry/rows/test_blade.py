@@ -49,8 +49,22 @@ def test_a_profile_is_met_at_its_height() -> None:
     ("profiles", "words"),
     [
         (
-            blade_row.profiles()[::-1],
-            "profile 2: is at .* % of the span, .*; give profiles from hub to casing",
+            [blade_row.profiles()[k] for k in (0, 2, 1, 3)],
+            "profile 3: is at .* % of the span, .*; give profiles from hub to casing",
+        ),
+        ([p[:80] for p in blade_row.profiles()], "profile 1: is open between its first and its last point"),
+        ([p * [1, 0, 1] for p in blade_row.profiles()], "profile 1: encloses no area"),
+        (
+            [np.concatenate([p[:40], p[40:80][::-1], p[80:]]) for p in blade_row.profiles()],
+            "profile 1: crosses itself near",
+        ),
+        (
+            [p * [1, -1, -1] if k == 2 else p for k, p in enumerate(blade_row.profiles())],
+            "profile 3: lies 179.* degrees around the axis",
+        ),
+        (
+            [p * (0.75 + 0.5 * p[:, :1]) if k == 1 else p for k, p in enumerate(blade_row.profiles())],
+            "profile 2: crosses the one before|profile 3: crosses the one before",
         ),
         (blade_row.profiles()[2:], "profile 1: begins at 7.* % of the span"),
         (
@@ -71,3 +85,22 @@ def test_a_profile_is_met_at_its_height() -> None:
 def test_profiles_that_make_no_blade_are_refused_by_number(profiles, words: str) -> None:
     with pytest.raises(InputError, match=words):
         Row(profiles, blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
+
+
+def test_profiles_from_casing_to_hub_are_reversed_with_a_note() -> None:
+    given = blade_row.profiles()
+    row = Row(given[::-1], blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
+    assert row.changes == ("profiles are given from casing to hub and are taken the other way round",)
+    assert np.array_equal(section(given[::-1]), section(given))
+    with pytest.raises(InputError, match="profile 2: begins at 7"):
+        Row(given[:1:-1], blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
+
+
+def test_blades_that_touch_are_refused() -> None:
+    with pytest.raises(InputError, match=r"profile 1: is 2.49\d degrees thick, and blades are 1.8 apart"):
+        Row(blade_row.profiles(), blade_row.HUB, blade_row.SHROUD, 200)
+
+
+def test_points_that_repeat_each_other_do_not_matter() -> None:
+    twice = [np.repeat(p, 2, axis=0) for p in blade_row.profiles()]
+    assert np.array_equal(section(twice), section(blade_row.profiles()))

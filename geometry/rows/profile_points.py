@@ -1,0 +1,61 @@
+"""Points of profiles and walls as they are given: repeated ones are left out, open profiles are refused."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.polygon.self_intersection import find_crossing
+
+LEAST_POINTS = 12
+_SAME = 1e-9
+"""Distance, over the size of the profile, at which consecutive points repeat each other."""
+_THIN = 1e-5
+"""Least area of a profile over the square of its size; that of a flat plate 1e-5 chords thick."""
+_OPEN = 0.1
+"""Widest base of a trailing edge between the first and the last point, over the size of the profile."""
+_STEPS = 3.0
+"""The same in longest steps, for profiles of few points."""
+
+
+def apart(points: Floats, *, closed: bool) -> Floats:
+    """Return points (n, d) without those that the next repeats, for the last one the first if `closed`."""
+    steps = norms(points - np.roll(points, -1, axis=0))
+    kept = steps > _SAME * np.ptp(points, axis=0).max(initial=0.0)
+    kept[-1:] |= not closed
+    return np.ascontiguousarray(points[kept])
+
+
+def distinct_points(points: Floats) -> Floats:
+    """Return points (n, 3) around a profile without repeated ones.
+
+    Raises InputError: fewer than `LEAST_POINTS` are left.
+    """
+    p = np.asarray(points, dtype=np.float64)
+    p = apart(p, closed=True) if len(p) else p
+    if len(p) < LEAST_POINTS:
+        raise InputError(f"{len(p)} points", f"give {LEAST_POINTS} or more around the blade")
+    return p
+
+
+def check_profile(plane: Floats, points: Floats) -> None:
+    """Raise InputError unless points (n, 3) are around a blade; `plane` (n, 2) are their m' and theta."""
+    size = float(norms(np.ptp(plane, axis=0)))
+    steps = norms(plane - np.roll(plane, 1, axis=0))
+    if steps[0] > max(_OPEN * size, _STEPS * steps[1:].max()):
+        problem = (
+            f"is open between its first and its last point, {_place(points[0])} and {_place(points[-1])}"
+        )
+        raise InputError(problem, "give points all around the blade")
+    if abs(polygon_area(plane)) < _THIN * size * size:
+        raise InputError("encloses no area", "give points around the blade, not a line")
+    crossing = find_crossing(plane)
+    if crossing is not None:
+        k = int(norms(plane - [crossing.x, crossing.y]).argmin())
+        raise InputError(f"crosses itself near {_place(points[k])}", "give its points in order around it")
+
+
+def _place(point: Floats) -> str:
+    return "({:.6g}, {:.6g}, {:.6g})".format(*point)
