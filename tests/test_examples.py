@@ -17,6 +17,7 @@ from spatial_shapes import box
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.revolve import Revolution, revolved
 from meshonet_cli.commands import COMMANDS
 
@@ -69,7 +70,8 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (made / "bend.toml").write_text(bend)
     write_row(made).rename(made / "rotor.toml")
     square = np.stack(np.meshgrid([0.0, 1.0], [1.0, 1.5, 2.0], indexing="ij"), axis=-1)
-    revolved(Grid((Block(square),)), Revolution(360.0 / BLADES)).write(made / "rotor.cgns")
+    walls = (Patch("hub", "south", 0, 1, kind="wall"), Patch("shroud", "north", 0, 1, kind="wall"))
+    revolved(Grid((Block(square),), walls), Revolution(360.0 / BLADES, 3)).write(made / "rotor.cgns")
     (made / "path.csv").write_text("0,0,0\n9,0,0\n18,5,1\n")
     (made / "duct.csv").write_text("0,0\n1,0.2\n2,0\n2,1\n0,1\n")
     assert shell("meshonet layout plate.geojson -o plate.json", made).returncode == 0

@@ -39,6 +39,9 @@ class Picture(View):
         from meshonet.formats.figure.page.page import write_page
 
         grid = only_one(grids, "a picture")
+        if kind == "html" and self.of_row:
+            name = "meridional" if self.meridional else "span"
+            raise InputError(f"{{{name}}} is for pictures", "write .png, .svg or .pdf", parameter=name)
         if kind == "html" and isinstance(path, Path):
             write_page(path, grid, self.metric, self)
             return

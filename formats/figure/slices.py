@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -104,20 +105,35 @@ def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
 
     Raises InputError: the plane intersects no cell.
     """
-    polygons, shown = [], []
-    for number, block in enumerate(grid.blocks):
-        cells = _crossed(block.nodes[..., at.direction] - at.coordinate)
-        corners = np.stack([block.nodes[tuple((cells + corner).T)] for corner in _CORNERS], axis=1)
-        polygons.append(_polygons(corners, at))
-        if values:
-            shown.append(values[number][tuple(cells.T)])
-    joined = np.concatenate(polygons)
-    if not len(joined):
+    nodes = [block.nodes for block in grid.blocks]
+    distances = [each[..., at.direction] - at.coordinate for each in nodes]
+    made = cut_where(distances, [np.delete(each, at.direction, axis=-1) for each in nodes], values)
+    if not len(made.polygons):
         low, high = (float(corner[at.direction]) for corner in grid.box)
         problem = f"the plane {at} cuts no cell"
         remedy = f"the grid is from {'xyz'[at.direction]} = {low:.6g} to {high:.6g}"
         raise InputError(problem, remedy, parameter="slice")
-    return Cut(joined, np.concatenate(shown) if values else None)
+    return made
+
+
+def cut_where(distances: Sequence[Floats], flat: Sequence[Floats], values: list[Floats] | None) -> Cut:
+    """Return the polygons in which a surface intersects cells.
+
+    Parameters
+    ----------
+    distances : for each block the signed distances (ni, nj, nk) of its nodes from the surface.
+    flat : for each block the coordinates (ni, nj, nk, 2) in which polygons are drawn.
+    values : for each block those of its cells.
+    """
+    polygons, shown = [], []
+    for number, (distance, plane) in enumerate(zip(distances, flat, strict=True)):
+        cells = _crossed(distance)
+        at = [tuple((cells + corner).T) for corner in _CORNERS]
+        corners = (np.stack([each[place] for place in at], axis=1) for each in (distance, plane))
+        polygons.append(_polygons(*corners))
+        if values:
+            shown.append(values[number][tuple(cells.T)])
+    return Cut(np.concatenate(polygons), np.concatenate(shown) if values else None)
 
 
 _CORNERS = np.array(list(product((0, 1), repeat=3)))
@@ -138,15 +154,16 @@ def _crossed(distance: Floats) -> NDArray[np.intp]:
     return np.argwhere(high & ~low)
 
 
-def _polygons(corners: Floats, at: Slice) -> Floats:
-    """Return the polygons (n, 12, 2) in which the plane intersects cells with corners (n, 8, 3)."""
-    distance = corners[..., at.direction] - at.coordinate
+def _polygons(distance: Floats, plane: Floats) -> Floats:
+    """Return the polygons (n, 12, 2) in which a surface intersects cells.
+
+    `distance` (n, 8) of their corners from it, `plane` (n, 8, 2) the coordinates of corners in the picture.
+    """
     a, b = _EDGES.T
     part = np.divide(
         distance[:, a], distance[:, a] - distance[:, b],
-        out=np.full((len(corners), _MOST), np.nan), where=(distance[:, a] >= 0) != (distance[:, b] >= 0),
+        out=np.full((len(distance), _MOST), np.nan), where=(distance[:, a] >= 0) != (distance[:, b] >= 0),
     )  # fmt: skip
-    plane = np.delete(corners, at.direction, axis=2)
     points = plane[:, a] + part[..., None] * (plane[:, b] - plane[:, a])
     middle = np.nanmean(points, axis=1, keepdims=True) if len(points) else points[:, :1]
     around = np.arctan2(*np.moveaxis(points - middle, -1, 0)[::-1])

@@ -16,6 +16,7 @@ from meshonet.formats.figure.blocks import shown_counts
 from meshonet.formats.figure.figure import colour_bar, draw, frame, note, step_words
 from meshonet.formats.figure.layers import INK, Box, Colouring, limits_of
 from meshonet.formats.figure.painting import faint_ink, paint, painted, steps_of
+from meshonet.formats.figure.row_sections import RowSections
 from meshonet.formats.figure.slices import CellSheet, Cut, cut, layers
 from meshonet.formats.figure.view import View, flat_box
 from meshonet.geometry.arrays import Floats
@@ -39,6 +40,8 @@ def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure
     """
     values = [np.asarray(part) for part in colouring.parts] if colouring else None
     where = view.part
+    if view.of_row:
+        return _row_figure(grid, values, colouring, view)
     if where is None:
         return _seen(grid, _surface(grid, values), colouring, view)
     if grid.form != "volume":
@@ -140,32 +143,68 @@ def _cut_figure(
     grid: Grid, polygons: Cut, colouring: Colouring | None, view: View, zoom: Box | None
 ) -> Figure:
     """Return a picture of the polygons in which a plane intersects cells."""
-    from matplotlib.collections import PolyCollection
+    names = [name for k, name in enumerate("xyz") if view.part is None or k != view.part.direction]
+    title = f"{grid.name}   {view.part}".strip()
+    return _sections_figure(replace(grid, name=title), [polygons], names, colouring, zoom, [""])
 
-    points = polygons.polygons
+
+def _row_figure(grid: Grid, values: list[Any] | None, colouring: Colouring | None, view: View) -> Figure:
+    """Return a picture of sections of a blade row."""
+    sections, zoom = RowSections(grid), flat_box(view.zoom)
+    if view.meridional:
+        title = f"{grid.name}   meridional".strip()
+        cuts, names, labels = [sections.meridional(values)], ["x", "r"], [""]
+    else:
+        title = f"{grid.name}   span {', '.join(f'{span:g}' for span in view.span)}".strip()
+        cuts, names = (
+            [sections.at(span, values) for span in view.span],
+            ["m'", "r theta"],
+        )
+        labels = [f"span {span:g}" if len(view.span) > 1 else "" for span in view.span]
+    return _sections_figure(replace(grid, name=title), cuts, names, colouring, zoom, labels)
+
+
+def _sections_figure(
+    grid: Grid, cuts: Sequence[Cut], names: Sequence[str], colouring: Colouring | None, zoom: Box | None,
+    labels: Sequence[str],
+) -> Figure:  # fmt: skip
+    """Return a picture of the polygons of sections beside each other."""
+    boxes = [zoom or _box_around(each.polygons) for each in cuts]
+    figure, axes, bar = frame(boxes, colouring is not None)
+    limits = limits_of(colouring, [each.values for each in cuts if each.values is not None])
+    for ax, box, each, label in zip(axes, boxes, cuts, labels, strict=True):
+        _draw_polygons(ax, box, each, colouring, limits)
+        ax.set(xlim=box[:2], ylim=box[2:])
+        note(ax, f"{label}   {names[0]} to the right, {names[1]} upwards".strip())
+    _finish(axes[0], bar, grid, colouring, limits)
+    return figure
+
+
+def _box_around(points: Floats) -> Box:
+    """Return a box a little larger than polygons (n, m, 2)."""
     low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
     pad = 0.02 * float((high - low).max())
-    whole = float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)
-    box = zoom or whole
-    figure, (ax,), bar = frame([box], colouring is not None)
-    limits = limits_of(colouring, [] if polygons.values is None else [polygons.values])
+    return float(low[0] - pad), float(high[0] + pad), float(low[1] - pad), float(high[1] + pad)
+
+
+def _draw_polygons(
+    ax: Axes, box: Box, cut: Cut, colouring: Colouring | None, limits: tuple[float, float]
+) -> None:
+    """Draw polygons, with lines that are fainter where these are small."""
+    from matplotlib.collections import PolyCollection
+
     pixels = ax.get_window_extent().width / (box[1] - box[0])
-    x, y = np.moveaxis(points, -1, 0)
+    x, y = np.moveaxis(cut.polygons, -1, 0)
     areas = 0.5 * np.abs((x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1))
     size = np.sqrt(areas) * pixels
     fills: dict[str, Any] = {"facecolors": "#e1e6eb"}
-    if colouring and polygons.values is not None:
-        fills = {"array": polygons.values, "cmap": colouring.scale, "clim": limits}
+    if colouring and cut.values is not None:
+        fills = {"array": cut.values, "cmap": colouring.scale, "clim": limits}
     widths = np.clip(0.06 * size, 0.0, 0.4)
     collection = PolyCollection(
-        list(points), edgecolors=faint_ink(0.6), linewidths=widths, rasterized=True, zorder=1, **fills
+        list(cut.polygons), edgecolors=faint_ink(0.6), linewidths=widths, rasterized=True, zorder=1, **fills
     )
     ax.add_collection(collection)
-    names = [name for k, name in enumerate("xyz") if view.part is None or k != view.part.direction]
-    ax.set(xlim=box[:2], ylim=box[2:])
-    note(ax, f"{names[0]} to the right, {names[1]} upwards")
-    _finish(ax, bar, replace(grid, name=f"{grid.name}   {view.part}".strip()), colouring, limits)
-    return figure
 
 
 def _finish(

@@ -27,6 +27,8 @@ class View:
     slice : slice of a volume: ``i=10``, ``k=-1`` or ``x=.5``; None draws the walls, or the whole boundary of
         a volume without walls.
     seen_from : azimuth and elevation in degrees, for pictures in space; None is `SEEN_FROM`.
+    span : parts of the span of a blade row, 0 to 1 from hub to shroud, at which its sections are drawn.
+    meridional : draw the meridional section of a blade row.
 
     Raises InputError: an unknown form of slice, a box without extent, `every` below 1.
     """
@@ -35,6 +37,8 @@ class View:
     every: int | None = None
     slice: Slice | str | None = None
     seen_from: tuple[float, float] | None = None
+    span: tuple[float, ...] = ()
+    meridional: bool = False
 
     def __post_init__(self) -> None:
         zoom = self.zoom or (0, 1, 0, 1)
@@ -49,7 +53,19 @@ class View:
         if self.every is not None and self.every < 1:
             problem = f"every {self.every}-th line cannot be drawn"
             raise InputError(problem, "use 1 or more", parameter="every")
+        for span in self.span:
+            if not 0.0 < span < 1.0:
+                raise InputError(f"{span:g} of the span", "use more than 0 and less than 1", parameter="span")
+        chosen = [name for name in ("slice", "span", "meridional") if getattr(self, name)]
+        if len(chosen) > 1:
+            problem = f"{{{chosen[0]}}} and {{{chosen[1]}}} are different pictures"
+            raise InputError(problem, "give one of them")
         _ = self.part
+
+    @property
+    def of_row(self) -> bool:
+        """Whether sections of a blade row are drawn."""
+        return self.meridional or bool(self.span)
 
     @property
     def part(self) -> Slice | None:
@@ -68,7 +84,8 @@ class View:
 
 def check_flat(view: View) -> None:
     """Raise InputError for settings that only grids in space have: a slice, a direction of view."""
-    for name, value in (("slice", view.slice), ("seen_from", view.seen_from)):
+    settings = ("slice", view.slice), ("seen_from", view.seen_from), ("span", view.span or None)
+    for name, value in (*settings, ("meridional", view.meridional or None)):
         if value is not None:
             raise InputError("the grid is in the plane", f"leave {{{name}}} out", parameter=name)
 

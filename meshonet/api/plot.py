@@ -18,6 +18,8 @@ def plot(
     every: int | None = None,
     slice: str | None = None,  # noqa: A002
     seen_from: tuple[float, float] | None = None,
+    span: float | tuple[float, ...] = (),
+    meridional: bool = False,
     to_format: str | None = None,
 ) -> None:
     """Draw a grid, coloured by a quality metric.
@@ -39,6 +41,10 @@ def plot(
         the whole boundary of a volume without walls.
     seen_from : tuple of 2 float, optional
         Azimuth and elevation in degrees of the view in space.
+    span : float or tuple of float, optional
+        Parts of the span of a blade row, 0 to 1 from hub to shroud, at which its sections are drawn.
+    meridional : bool, optional
+        Draw the meridional section of a blade row, in x and r.
     to_format : str, optional
         ``png``, ``svg``, ``pdf`` or ``html``; needed if the extension does not determine it.
 
@@ -52,7 +58,8 @@ def plot(
     >>> import meshonet
     >>> plot(meshonet.tfi("naca:2412", res=(41, 17)), "grid.png", metric=None)
     """
-    picture = Picture(zoom, every, slice, seen_from, metric)
+    spans = span if isinstance(span, tuple) else (span,)
+    picture = Picture(zoom, every, slice, seen_from, spans, meridional, metric)
     kind = picture_format(str(output), to_format).name
     with whole_file(str(output)) as part:
         picture.draw(kind, part, [single_grid(grid)])

@@ -10,12 +10,15 @@ EXAMPLES = (
     "meshonet plot grid.vts -o grid.png",
     "meshonet plot grid.vts --zoom 0.9,1.1,-0.1,0.1 --every 1 --metric skewness -o edge.svg",
     "meshonet plot wing.cgns --slice y=.5 -o slice.png",
+    "meshonet plot rotor.cgns --span .1,.5,.9 -o sections.png",
     "meshonet plot wing.cgns -o wing.html",
 )
 _BOX = ("a box", "use x0,x1,y0,y1", "zoom")
 """Description, remedy and parameter for errors about a box."""
 _DIRECTION = ("a direction", "use azimuth and elevation in degrees, e.g. -125,25", "seen_from")
 """Description, remedy and parameter for errors about a direction."""
+_SPANS = ("parts of the span", "use numbers between 0 and 1, e.g. .1,.5,.9", "span")
+"""Description, remedy and parameter for errors about sections of a blade row."""
 _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 
@@ -58,6 +61,16 @@ def plot(
         "last), or a plane such as x=.5. [default: no slice; the walls are drawn, or the whole boundary of "
         "a volume without walls]",
     )] = None,
+    span: Annotated[str | None, _option(
+        "--span", metavar="S,...",
+        help="Draw the section of a blade row at this part of the span, between 0 at the hub and 1 at the "
+        "shroud; several, separated by commas, are drawn side by side.",
+    )] = None,
+    meridional: Annotated[bool, _option(
+        "--meridional",
+        help="Draw the meridional section of a blade row: the cells that a half-plane through axis and blade "
+        "cuts, in x and r.",
+    )] = False,
     seen_from: Annotated[str | None, _option(
         "--seen-from", metavar="AZIMUTH,ELEVATION",
         help="Direction from which volumes and surfaces are seen: azimuth and elevation in degrees. "
@@ -73,6 +86,8 @@ def plot(
     from meshonet_cli.tasks.pictures import plot_grids
 
     box, direction = o.numbers(zoom, (4, 6), *_BOX), o.numbers(seen_from, (2,), *_DIRECTION)
-    picture = Picture(box, every, slice_, direction, None if metric == "none" else metric)
+    spans = o.numbers(span, tuple(range(1, 10)), *_SPANS) or ()
+    colours = None if metric == "none" else metric
+    picture = Picture(box, every, slice_, direction, spans, meridional, colours)
     return plot_grids(run.batch(run.inputs(grid, grids=True), files), picture)
 # fmt: on

@@ -28,6 +28,7 @@ from spatial_shapes import ball, cubed_sphere, half_sphere
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.revolve import Revolution, revolved
 from meshonet_cli.app import application
 
@@ -233,6 +234,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--every": ("grid.h5 -o made.png -q", "OPTION 5", "bytes"),
         "--slice": ("cube.vts -o made.png -q", "OPTION z=1.5", "bytes"),
         "--seen-from": ("cube.vts -o made.png -q", "OPTION 30,60", "bytes"),
+        "--span": ("passage.h5 -o made.png -q", "OPTION .3,.6", "bytes"),
+        "--meridional": ("passage.h5 -o made.png -q", "OPTION", "bytes"),
     },
     "layout": LAYOUT | chosen("@domains.txt -o made-{stem}.json -q", "*ep") | {
         **engines("step.wkt hole.wkt -o {stem}.json -q"),
@@ -409,7 +412,8 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     cube = np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1)
     Grid.from_nodes(cube).write(folder / "cube.vts")
     Grid.from_nodes(cube + 0.03 * cube[..., ::-1] ** 2).write(folder / "bent.vts")
-    sector = Grid.from_nodes(cube[:, :, 0, :2] + [0.0, 1.0])
+    walls = (Patch("hub", "south", 0, 3, kind="wall"), Patch("shroud", "north", 0, 3, kind="wall"))
+    sector = Grid.from_nodes(cube[:, :, 0, :2] + [0.0, 1.0], patches=walls)
     revolved(sector, Revolution(20.0)).write(folder / "passage.h5")
     cubed_sphere().write(folder / "ball.xyz")
     half_sphere().write(folder / "cap.xyz")

@@ -1,0 +1,191 @@
+r"""Sections of the passage of a blade row, between its patches `hub` and `shroud`: at a span, and meridional.
+
+::
+
+    at a span        r theta ^    /\  /\       the surface at this part of the way from hub to shroud,
+                             |   /  \/  \      unrolled to m' and theta, both times its mean radius, so that
+                             +------------> m'   angles are true
+
+    meridional             r ^ --shroud--      cells that a half-plane through the axis and the blade cuts;
+                             |   |blade|       beyond the passage, the same cells of the next one
+                             | ---hub----
+                             +------------> x
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.formats.figure.slices import Cut, cut_where
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.screw import screw_of
+from meshonet.geometry.errors import InputError
+
+_POINTS = 200
+"""Points of the curves of hub and shroud."""
+_STEP = 8
+"""Points of a curve from one of its rough points to the next."""
+_NEWTON = 8
+_AT_ONCE = 1 << 13
+"""Nodes that are looked up together."""
+
+
+@dataclass(frozen=True, eq=False)
+class RowSections:
+    """The sections of a grid; the axis is that of its periodic sides, x without these.
+
+    Raises InputError: a grid that is no volume with patches `hub` and `shroud`.
+    """
+
+    grid: Grid
+
+    def __post_init__(self) -> None:
+        names = {patch.name for patch in self.grid.patches}
+        if self.grid.form != "volume" or not {"hub", "shroud"} <= names:
+            problem = "the grid is no blade row with patches hub and shroud"
+            raise InputError(problem, "use {slice}", parameter="span")
+
+    @cached_property
+    def pitch(self) -> float:
+        """Angle in radians from a periodic side to the other, a whole turn without these."""
+        return self._axis[0]
+
+    @cached_property
+    def _axis(self) -> tuple[float, Floats, Floats]:
+        """Pitch, a point of the axis and its direction."""
+        motions = (each.transform for each in self.grid.connections if each.transform)
+        screws = (screw_of(motion) for motion in motions)
+        screw = next((each for each in screws if each.angle), None)
+        if screw is None:
+            return 2.0 * math.pi, np.zeros(3), np.array([1.0, 0.0, 0.0])
+        return abs(screw.angle), screw.centre, screw.axis
+
+    @cached_property
+    def places(self) -> list[Floats]:
+        """For each block its nodes' distances along the axis and from it, and angles (ni, nj, nk, 3)."""
+        return [self._cylindrical(block.nodes) for block in self.grid.blocks]
+
+    def _cylindrical(self, nodes: Floats) -> Floats:
+        _, centre, axis = self._axis
+        up = np.eye(3)[2 if abs(axis[2]) < 0.9 else 1]
+        up = up - (up * axis).sum() * axis
+        up /= norms(up)
+        off = nodes - centre
+        x, a, b = ((off * way).sum(axis=-1) for way in (axis, up, np.cross(up, axis)))
+        middle = np.arctan2(b.mean(), a.mean())  # a block does not reach around the axis
+        c, s = np.cos(middle), np.sin(middle)
+        theta = middle + np.arctan2(c * b - s * a, c * a + s * b)
+        return np.stack([x, np.hypot(a, b), theta], axis=-1)
+
+    @cached_property
+    def _curves(self) -> tuple[Floats, Floats]:
+        """Points (n, 2) of hub and shroud, from one end to the other, at equal parts of their lengths."""
+        return self._curve("hub"), self._curve("shroud")
+
+    def _curve(self, name: str) -> Floats:
+        """Order the nodes of a wall from its end at the inlet, each the nearest to the one before."""
+        cloud = self._nodes(name)
+        size = float(np.ptp(cloud, axis=0).max())
+        _, first = np.unique(np.round(cloud * (_POINTS / size)), axis=0, return_index=True)
+        rest = cloud[first]
+        inlet = self._nodes("inlet") if any(p.name == "inlet" for p in self.grid.patches) else rest[:1]
+        here = rest[int(_nearest(rest, inlet).argmin())]
+        ordered = []
+        while len(rest):
+            k = int(norms(rest - here).argmin())
+            here = rest[k]
+            ordered.append(here)
+            rest = np.delete(rest, k, axis=0)
+        line = np.array(ordered)
+        arc = np.concatenate([[0.0], np.cumsum(norms(np.diff(line, axis=0)))]) / size
+        at = np.linspace(0.0, arc[-1], _POINTS)
+        return np.stack([np.interp(at, arc, line[:, k]) for k in (0, 1)], axis=1)
+
+    def _nodes(self, name: str) -> Floats:
+        """Return x and r (n, 2) of the nodes of a patch."""
+        parts = [self._cylindrical(self.grid.at(p)) for p in self.grid.patches if p.name == name]
+        return np.concatenate([part[..., :2].reshape(-1, 2) for part in parts])
+
+    @cached_property
+    def _spans(self) -> list[tuple[Floats, Floats]]:
+        """For each block the parts of the ways from hub to shroud and from inlet to outlet."""
+        found = []
+        for nodes in self.places:
+            flat = nodes[..., :2].reshape(-1, 2)
+            part, along = _ruled(flat, *self._curves)
+            found.append((part.reshape(nodes.shape[:-1]), along.reshape(nodes.shape[:-1])))
+        return found
+
+    def at(self, span: float, values: list[Floats] | None) -> Cut:
+        """Return the section at a part of the way from hub to shroud.
+
+        Raises InputError: no cell is there.
+        """
+        hub, shroud = self._curves
+        line = hub + span * (shroud - hub)
+        steps = norms(np.diff(line, axis=0)) / (0.5 * (line[1:, 1] + line[:-1, 1]))
+        m, mean = np.concatenate([[0.0], np.cumsum(steps)]), float(line[:, 1].mean())
+        knots = np.linspace(0.0, 1.0, _POINTS)
+        flat = [
+            mean * np.stack([np.interp(along, knots, m), nodes[..., 2]], axis=-1)
+            for nodes, (_, along) in zip(self.places, self._spans, strict=True)
+        ]
+        made = cut_where([part - span for part, _ in self._spans], flat, values)
+        if not len(made.polygons):
+            raise InputError(f"no cell is at {span:g} of the span", "use 0 to 1", parameter="span")
+        return made
+
+    def meridional(self, values: list[Floats] | None) -> Cut:
+        """Return the cells that a half-plane through the axis and the blade cuts, in x and r."""
+        blades = {patch.block for patch in self.grid.patches if patch.name == "blade"}
+        theta = [nodes[..., 2] for nodes in self.places]
+        middle = float(np.mean([theta[k].mean() for k in sorted(blades) or range(len(theta))]))
+        low, high = min(each.min() for each in theta), max(each.max() for each in theta)
+        first, last = ((end - middle) / self.pitch for end in (low, high))
+        flat = [nodes[..., :2] for nodes in self.places]
+        cuts = [
+            cut_where([each - middle - k * self.pitch for each in theta], flat, values)
+            for k in range(math.ceil(first), math.floor(last) + 1)
+        ]
+        shown = [each.values for each in cuts if each.values is not None]
+        return Cut(np.concatenate([each.polygons for each in cuts]), np.concatenate(shown) if shown else None)
+
+
+def _nearest(points: Floats, cloud: Floats) -> Floats:
+    """Return the distances (n,) of points (n, 2) from the nearest of a cloud (m, 2)."""
+    step = max(1, len(cloud) // _POINTS)
+    return np.asarray(norms(points[:, None] - cloud[::step]).min(axis=1))
+
+
+def _ruled(points: Floats, hub: Floats, shroud: Floats) -> tuple[Floats, Floats]:
+    """Return where points (n, 2) are on the straight lines between equal parts of hub and shroud.
+
+    The parts (n,) of the way along their line, and the part of the curves' lengths at which it is.
+    """
+    lines = np.concatenate([hub, shroud - hub], axis=1)
+    slopes = (len(lines) - 1) * np.diff(lines, axis=0)
+    rough = [curve[::_STEP] for curve in (hub, shroud)]
+    across, along = np.empty(len(points)), np.empty(len(points))
+    for first in range(0, len(points), _AT_ONCE):
+        own = points[first : first + _AT_ONCE]
+        near = [((own[:, None] - each) ** 2).sum(axis=-1).argmin(axis=1) for each in rough]
+        t = 0.5 * (near[0] + near[1]) * _STEP / (len(lines) - 1)
+        for _ in range(_NEWTON):
+            k = np.clip((t * (len(lines) - 1)).astype(np.intp), 0, len(slopes) - 1)
+            slope = slopes[k]
+            here = lines[k] + (t - k / (len(lines) - 1))[:, None] * slope
+            off, way = own - here[:, :2], here[:, 2:]
+            change = _cross(off, slope[:, 2:]) - _cross(slope[:, :2], way)
+            t = t - _cross(off, way) / change
+        across[first : first + _AT_ONCE] = (off * way).sum(axis=1) / (way**2).sum(axis=1)
+        along[first : first + _AT_ONCE] = t
+    return across, along
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
