@@ -12,7 +12,7 @@ MOST_BYTES = 64 << 20
 """Largest drawing that is read; no outline needs as many curves."""
 SAG = 1e-5
 """Largest distance of a chord from its curve, relative to the extent."""
-_MEET = 1e-6
+MEET = 1e-6
 """Largest distance of two ends that are joined, relative to the extent."""
 
 
@@ -34,7 +34,7 @@ def joined(lines: list[tuple[str, Floats]]) -> MeshBoundary:
     if sum(len(line) for _, line in lines) > MOST_EDGES:
         raise InputError(f"has more than {MOST_EDGES} points", "simplify the drawing")
     points = np.concatenate([line for _, line in lines])
-    reach = _MEET * extent_of(points)
+    reach = MEET * extent_of(points)
     counts = [len(line) for _, line in lines]
     stops = np.cumsum(counts)
     starts = stops - counts

@@ -1,7 +1,8 @@
 """Domains and outlines from vector geometry: WKT (one geometry per file or line) and GeoJSON.
 
 A polygon is a domain, with its holes; a closed line is a body, or an outline with corners; two open lines are
-the walls of a channel, four the edges of a domain, and a line ``# name`` above one of WKT names it.
+the walls of a channel, four the edges of a domain. Any other number of open lines whose ends meet are the
+sides of a domain, with closed lines among them as holes. A line ``# name`` above one of WKT names it.
 Collections hold several. A third coordinate is dropped. Properties of a GeoJSON feature besides ``name``:
 ``names``, for each ring one name or a list of one for each stretch between corners; ``corners``, for each
 ring a list of numbers of its points, counted from 0; and ``periodic``, pairs of names of sides of the outer
@@ -18,6 +19,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from meshonet.formats.mesh.surface import shapes_of
+from meshonet.formats.outlines.joined import joined
 from meshonet.formats.source import LARGEST, Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
@@ -121,6 +124,10 @@ def _named(drawn: list[_Geometry], stem: str) -> Iterator[Shape]:
     if len(edges) == 4 or (len(edges) == 2 and all(edge.is_wall for edge in edges)):
         yield (four_edges if len(edges) == 4 else channel)(edges, stem)
         return
+    lines = _lines(drawn)
+    if lines:
+        yield from shapes_of(joined(lines), stem)
+        return
     parts = [(each, rings) for each in drawn for rings in _rings(each.geometry, each.place)]
     if not parts:
         raise InputError("holds no geometry", _ASK)
@@ -144,6 +151,20 @@ def _edges(drawn: list[_Geometry]) -> list[DrawnEdge]:
             places = [", ".join(filter(None, (each.place, f"point {k}"))) for k in range(len(points))]
             edges.append(DrawnEdge(points, places, printable(str(each.properties.get("name") or ""))))
     return edges
+
+
+def _lines(drawn: list[_Geometry]) -> list[tuple[str, Floats]]:
+    """Return name and points of each line if all geometries are lines, and some of them are open."""
+    lines = [
+        (printable(str(each.properties.get("name") or "")), line)
+        for each in drawn
+        for line in getattr(each.geometry, "geoms", [each.geometry])
+    ]
+    if any(line.geom_type != "LineString" or line.is_empty for _, line in lines):
+        return []
+    if len(lines) < 2 or all(line.is_closed for _, line in lines):
+        return []
+    return [(name, _points(line)) for name, line in lines]
 
 
 def _shape(drawn: _Geometry, rings: list[Any], name: str) -> Shape:

@@ -5,8 +5,9 @@ allowed. A third column is z and is ignored. An open curve is closed by a straig
 
 Four blocks are edges in any order and direction if their ends meet; the first is south. If opposite edges
 have equal counts, the points are used as boundary nodes; otherwise the curves are sampled. Two open blocks
-side by side are the walls of a channel, whose ends are joined by straight lines. A line ``# name`` above each
-block names the sides.
+side by side are the walls of a channel, whose ends are joined by straight lines. Any other number of open
+blocks whose ends meet are the sides of a domain; closed blocks among them are holes. A line ``# name`` above
+each block names sides and closed curves.
 
 A single curve that ends in one trailing edge is taken for an airfoil. Several closed curves are separated by
 blank lines, or each repeats its first point. Curves inside another curve are holes of the domain that it
@@ -19,12 +20,16 @@ from typing import TypeVar
 
 import numpy as np
 
+from meshonet.formats.mesh.surface import shapes_of
+from meshonet.formats.outlines.joined import MEET, joined
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.rows import Line, decode, left_out, mostly_rows, read_lines, table
+from meshonet.geometry.arrays import extent_of
 from meshonet.geometry.domain.nesting import nested
 from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.closed_curve import closed_curve
+from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.edges import DrawnEdge, channel, four_edges
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, polygon_shape
@@ -68,11 +73,17 @@ def parse(text: str, source: str, stem: str = "") -> list[Shape]:
                 return [four_edges(edges, name, notes)]
             if all(edge.is_wall for edge in edges):
                 return [channel(edges, name, notes)]
+        drawn = [(edge.name, edge.points) for edge in _edges(blocks, lines)] if len(blocks) > 1 else []
+        if drawn and _are_sides(blocks, named=bool(drawn[0][0])):
+            return [_noted(shape, notes) for shape in shapes_of(joined(drawn), name)]
         if not rings:
             raise InputError("0 blocks of points", "give closed curves, or four edges divided by blank lines")
         if len(rings) == 1:
             return [domain_or_body(_with_notes(_closed_curve(rings[0], name), notes))]
-        return _domains(rings, name, notes)
+        names = [""] * len(rings)
+        if len(rings) == len(blocks):
+            names = [called for called, _ in drawn]
+        return _domains(rings, names, name, notes)
 
 
 def sniff(head: bytes) -> bool:
@@ -97,6 +108,30 @@ def _edges(blocks: list[list[Line]], lines: list[Line]) -> list[DrawnEdge]:
     ]
 
 
+def _are_sides(blocks: list[list[Line]], named: bool) -> bool:
+    """Return whether some blocks are open curves, and each of their ends is at an end of another one.
+
+    Blocks that are `named` are such, too, if some are too short for closed curves.
+    """
+    ends = [block[k].values[:2] for block in blocks if len(block) > 1 and not _closed(block) for k in (0, -1)]
+    if not ends or min(map(len, blocks)) < 2:
+        return False
+    if named and min(map(len, blocks)) == 2:
+        return True
+    points = np.array([line.values[:2] for block in blocks for line in block])
+    apart = np.hypot(*(np.array(ends)[:, None] - np.array(ends)).transpose(2, 0, 1))
+    return bool(((apart <= MEET * extent_of(points)).sum(axis=1) > 1).all())
+
+
+def _noted(shape: Shape, notes: tuple[str, ...]) -> Shape:
+    """Return a shape with `notes` on what was left out of its file."""
+    if not notes:
+        return shape
+    if isinstance(shape, Outline | Airfoil):
+        return _with_notes(shape, notes)
+    return shape.noted(*notes) if isinstance(shape, DomainShape) else shape
+
+
 def _closed(rows: list[Line]) -> bool:
     return len(rows) > 3 and rows[0].values[:2] == rows[-1].values[:2]
 
@@ -114,17 +149,22 @@ def _rings(rows: list[Line]) -> list[list[Line]]:
     return rings
 
 
-def _domains(rings: list[list[Line]], name: str, notes: tuple[str, ...]) -> list[Shape]:
-    """Return the domain of each ring that is not inside another one; rings inside it are its holes."""
+def _domains(rings: list[list[Line]], names: list[str], name: str, notes: tuple[str, ...]) -> list[Shape]:
+    """Return the domain of each ring that is not inside another one; rings inside it are its holes.
+
+    `names` are those of the rings, or empty.
+    """
     few = next((ring for ring in rings if len(ring) < 3), None)
     if few is not None:
         problem, place = f"{len(rings)} blocks of points, one of {len(few)}", f"line {few[0].number}"
         raise InputError(problem, "give closed curves, or four edges divided by blank lines", place=place)
     drawn = [
         PolygonRing(
-            np.array([line.values[:2] for line in ring]), places=[f"line {line.number}" for line in ring]
+            np.array([line.values[:2] for line in ring]),
+            names=[own] * bool(own),
+            places=[f"line {line.number}" for line in ring],
         )
-        for ring in rings
+        for ring, own in zip(rings, names, strict=True)
     ]
     groups = nested([ring.points for ring in drawn])
     shapes: list[Shape] = []
