@@ -201,6 +201,8 @@ bench: $(VENV)/.developing
 	$(BIN)/python benchmarks/bench_elliptic.py --largest 3200 --page docs/benchmarks/elliptic.md
 	$(BIN)/python benchmarks/bench_quads.py --page docs/benchmarks/quad-operator.md
 	$(BIN)/python benchmarks/bench_bodies.py --page docs/benchmarks/body-operator.md
+	$(BIN)/python benchmarks/bench_confidence.py --page docs/benchmarks/confidence.md
+	$(BIN)/python benchmarks/yardstick entries build/yardstick --page docs/benchmarks/yardstick.md
 	$(BIN)/python benchmarks/bench_variational.py --page docs/benchmarks/variational.md
 	$(BIN)/python benchmarks/bench_hyperbolic.py $(if $(FILES),--files $(FILES)) --page docs/benchmarks/marching.md
 	$(BIN)/python benchmarks/bench_tfi.py

@@ -27,6 +27,23 @@ class Outcome(Enum):
         return spelled(self.value)
 
 
+@dataclass(frozen=True)
+class Confidence:
+    """Confidence in the answer of a neural operator.
+
+    Parameters
+    ----------
+    expected_error : expected relative L2 distance from the solution that the operator imitates; infinite if
+        nothing is known.
+    threshold : expected error up to which answers without folded cells are accepted.
+    accepted : whether the answer is accepted.
+    """
+
+    expected_error: float
+    threshold: float
+    accepted: bool
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """A grid and how it was made.
@@ -43,6 +60,7 @@ class Solution:
     seconds : wall-clock seconds by stage.
     notes : sentences for the user, for example about a restart.
     boundary : boundary of the grid if it differs from the given one: marching ends at its own far field.
+    confidence : expected error of a network's answer.
     first_cells : prescribed first-cell heights by side, in the unit of the boundary.
     """
 
@@ -56,6 +74,7 @@ class Solution:
     notes: tuple[str, ...] = ()
     boundary: Boundary | None = None
     outcome: Outcome = Outcome.DONE
+    confidence: Confidence | None = None
     first_cells: Mapping[str, float] = field(default_factory=dict)
 
 

@@ -45,6 +45,11 @@ def infer(
         help="Evaluate networks with torch on this device, all grids of a batch together. Then --polish "
         "auto is 3 iterations for airfoil-o and none for other models. [default: NumPy, without torch]",
     )] = None,
+    fallback: Annotated[bool, _option(
+        "--fallback",
+        help="Where the expected error of a network's answer is above 0.03, or cells of it are folded, use "
+        "the method that the network imitates.",
+    )] = False,
     refine: o.Refine = 0,
 ) -> int:
     """Make grids by the method that suits the kind of shape.
@@ -54,11 +59,12 @@ def infer(
     cell, is marched from the wall. A four-sided domain is filled by the variational method. Any other planar
     domain is split into blocks. A volume inside six faces is filled by the variational method, and the volume
     outside of a surface is marched from it if a first cell is given. A neural operator makes the grid only
-    if --model, --polish or --device is given.
+    if --model, --polish, --device or --fallback is given; the report has the expected error of its answer.
     """
     from meshonet_cli.tasks.grids import write_grids
 
     settings = {"model": model, "polish": o.polish_steps(polish), "answer": answer, "device": device}
+    settings["fallback"] = fallback or None
     request = grids.request("best", settings, volume, refine=refine, blocks=blocks, **domain.parameters())
     batch = grids.batch(grids.inputs(boundary), grids)
     return write_grids(batch, request, grids.criteria(), assemble=domain.assemble)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from meshonet.geometry.notes import changes_in
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.quality.gates import Judgement
     from meshonet.geometry.summary import Quality
     from meshonet.solvers.progress import HistoryRow
+    from meshonet.solvers.solution import Confidence
     from meshonet_cli.terminal.summary import MemberRow
 
 _METHODS = {"conformal": "conformal map"}
@@ -44,6 +46,7 @@ class Report(Timed):
     history: tuple[HistoryRow, ...] = ()
     blocks: BlockCounts | None = None
     judgement: Judgement | None = None
+    confidence: Confidence | None = None
 
     @property
     def warning(self) -> str:
@@ -70,7 +73,8 @@ class Report(Timed):
         return {
             **self.member_json(), "method": self.method, "model": self.model, "ni": self.ni, "nj": self.nj,
             "topology": self.topology, **self._along_wall(), **blocks, "folded": self.quality.folded,
-            "path": list(self.path), "residual": self.residual, "cycles": self.cycles,
+            "path": list(self.path), "confidence": self._confidence_json(),
+            "residual": self.residual, "cycles": self.cycles,
             "quality": quality_dict(self.quality), "seconds": self.times_json(),
             "notes": [with_options(note) for note in self.notes], "changes": list(changes_in(self.notes)),
             "gates_not_met": gates_not_met(self.judgement),
@@ -85,6 +89,12 @@ class Report(Timed):
             counts = self._along_wall()
             head += f" with {counts['body_nodes']} nodes on the body and {counts['wake_nodes']} on the wake"
         lines = [head, f"method     {self._made()}" + (f", model {self.model}" if self.model else "")]
+        if self.confidence is not None:
+            judged = "accepted" if self.confidence.accepted else "not accepted"
+            limit = f"threshold {self.confidence.threshold:g}"
+            lines.append(
+                f"confidence expected error {self.confidence.expected_error:.1e}, {judged} ({limit})"
+            )
         if self.residual is not None:
             cycles = f"{self.cycles} cycle{'' if self.cycles == 1 else 's'}"
             lines.append(f"residual   {self.residual:.1e} after {cycles}")
@@ -95,6 +105,13 @@ class Report(Timed):
         ]
         return "\n  ".join([*lines, *map(with_options, self.notes)])
 
+    def _confidence_json(self) -> dict[str, Any] | None:
+        """Return the confidence in a network's answer; JSON has no infinite numbers."""
+        if self.confidence is None:
+            return None
+        facts = asdict(self.confidence)
+        return facts if math.isfinite(facts["expected_error"]) else {**facts, "expected_error": None}
+
     def line(self) -> str:
         """Return the report of a member of a batch as text: one line, followed by lines about changes."""
         angle = self.quality["max_angle"].max
@@ -103,6 +120,8 @@ class Report(Timed):
             f"{self.quality.folded} folded, max angle {angle:.1f}, "
             f"{self._made()}, {span(self.seconds['total'])}"
         )
+        if self.confidence is not None:
+            head += f", expected error {self.confidence.expected_error:.1e}"
         return "\n  ".join([head, *changes_in(self.notes)])
 
     def _along_wall(self) -> dict[str, int]:

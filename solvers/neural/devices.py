@@ -55,6 +55,7 @@ def solve_on(
         raise InputError("torch sees no CUDA device", remedy, parameter="device")
     operator.check(boundaries)
     grids = _grids(device, operator, polish)
+    cycles = _steps(polish) if isinstance(operator, StripOperator) else None
     solutions: dict[int, Solution] = {}
     for rows in in_batches(boundaries):
         some = [boundaries[k] for k in rows]
@@ -70,7 +71,9 @@ def solve_on(
                 solutions[k] = replace(solution, notes=("not made on the device", *solution.notes))
                 continue
             grid = boundary.grid(own, {"method": "operator", "model": operator.name, "device": device})
-            solutions[k] = Solution(grid, "operator", model=operator.name, seconds={"grid": spent})
+            solutions[k] = Solution(
+                grid, "operator", model=operator.name, cycles=cycles, seconds={"grid": spent}
+            )
     return [solutions[k] for k in range(len(boundaries))]
 
 
@@ -83,8 +86,7 @@ def _grids(device: Device, operator: Operator, polish: Polish) -> Callable[[Sequ
     grids: Any
     quad = operator.topology == "quad"
     if isinstance(operator, StripOperator):
-        steps = STEPS if polish == "auto" else 0 if polish == "off" else polish
-        grids = AirfoilGrids(operator, steps, device)
+        grids = AirfoilGrids(operator, _steps(polish), device)
     elif polish not in ("auto", "off", 0):
         raise InputError("steps of descent are not taken on a device", "leave {polish} or {device} out")
     else:
@@ -99,6 +101,10 @@ def _grids(device: Device, operator: Operator, polish: Polish) -> Callable[[Sequ
         return nodes
 
     return stacked
+
+
+def _steps(polish: Polish) -> int:
+    return STEPS if polish == "auto" else 0 if polish == "off" else polish
 
 
 def _nodes(

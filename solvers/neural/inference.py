@@ -12,9 +12,11 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.conformal import solve as conformal
 from meshonet.solvers.conformal.solve import Polish
+from meshonet.solvers.neural.confidence import THRESHOLD, Goal
 from meshonet.solvers.neural.devices import Device, solve_on
+from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import BASE, DEFAULTS, load
-from meshonet.solvers.solution import Solution
+from meshonet.solvers.solution import Confidence, Solution
 
 Answer = Literal["valid", "pasted", "raw"]
 """Treatment of a network's output: ``raw`` none; ``pasted`` its edges are replaced by the boundary's nodes,
@@ -27,14 +29,18 @@ def infer_many(
     polish: Polish = "auto",
     answer: Answer = "valid",
     device: Device | None = None,
+    *,
+    fallback: bool = False,
 ) -> list[Solution]:
     """Return a grid inside each boundary by a shipped model, or by one that `meshonet train` made.
 
     `model` is the name of a shipped model, the path of a ``.safetensors`` file, ``base`` for the conformal
     solver, or None for the default of the topology. `polish` are steps after the network
     (`operator.Operator.solve`). On a `device` torch computes the grids, where polish ``auto`` means 3 Picard
-    steps of a strip operator and none of a quad operator; without one NumPy does. Raises InputError: a model
-    that does not exist, cannot be read or does not suit a boundary; no such device.
+    steps of a strip operator and none of a quad operator; without one NumPy does. Solutions have the
+    `confidence` in the network's answers; with `fallback`, answers that are not accepted are replaced by
+    grids of the method that the network imitates. Raises InputError: a model that does not exist, cannot be
+    read or does not suit a boundary; no such device.
     """
     named = None if model is None else load(model)
     solutions: dict[int, Solution] = {}
@@ -42,14 +48,46 @@ def infer_many(
         rows = [k for k, boundary in enumerate(boundaries) if boundary.topology == topology]
         some = [boundaries[k] for k in rows]
         if topology == "c" and (named is None or named.batched):
-            _refuse(model=model, polish=None if polish == "auto" else polish, device=device)
+            _refuse(
+                model=model, polish=None if polish == "auto" else polish, device=device,
+                fallback=fallback or None,
+            )  # fmt: skip
         network = named or load(DEFAULTS[topology])
         if device is None:
             solved = network.solve(some, polish, paste=answer != "raw")
         else:
             solved = solve_on(device, network, some, polish, instead=_without_network)
-        solutions |= zip(rows, solved, strict=True)
+        pairs = zip(some, solved, strict=True)
+        judged = [_judged(network, boundary, own, fallback=fallback) for boundary, own in pairs]
+        solutions |= zip(rows, judged, strict=True)
     return [solutions[k] for k in range(len(boundaries))]
+
+
+def _judged(network: Operator, boundary: Boundary, solution: Solution, *, fallback: bool) -> Solution:
+    """Return a solution with the confidence in it, or its replacement if it is not accepted."""
+    if solution.model in (None, BASE):  # no network made it
+        return solution
+    error, folded = network.expected_error(boundary, solution), count_folded(solution.grid.nodes)
+    confidence = Confidence(error, THRESHOLD, accepted=error <= THRESHOLD and not folded)
+    if confidence.accepted or not fallback:
+        return replace(solution, confidence=confidence)
+    solved = _solved(boundary, network.goal)
+    why = f"{folded} cells are folded" if folded else f"its expected error is {error:.1e}"
+    note = f"the answer of {network.name} was replaced by the {network.goal} method's: {why}"
+    return replace(solved, confidence=confidence, notes=(*solved.notes, note))
+
+
+def _solved(boundary: Boundary, goal: Goal) -> Solution:
+    """Return the grid of the method that a network imitates."""
+    if goal == "conformal":
+        return conformal.solve([boundary], substitute=grid_of_body)[0]
+    if goal == "variational":
+        from meshonet.solvers.energy import variational
+
+        return variational.solve(boundary)
+    from meshonet.solvers.elliptic import solve as elliptic
+
+    return elliptic.solve(boundary)
 
 
 def grid_of_body(boundary: Boundary, why: str) -> Solution | None:
@@ -76,18 +114,15 @@ def grid_of_body(boundary: Boundary, why: str) -> Solution | None:
 
 def _without_network(boundary: Boundary) -> Solution:
     """Return the grid of a boundary unsuited to networks: by the conformal solver, for a quad variational."""
-    if boundary.topology == "o":
-        return conformal.solve([boundary], substitute=grid_of_body)[0]
-    from meshonet.solvers.energy.variational import solve
-
-    return solve(boundary)
+    return _solved(boundary, "conformal" if boundary.topology == "o" else "variational")
 
 
 def _refuse(**parameters: object) -> None:
     """Raise InputError for parameters that do not apply to C grids, which no network makes."""
     for name, value in parameters.items():
         if value is not None:
-            problem = f"{{{name}}} {value} is of no use to a c grid: it is marched, no model makes it"
+            given = f"{{{name}}}" if value is True else f"{{{name}}} {value}"
+            problem = f"{given} is of no use to a c grid: it is marched, no model makes it"
             raise InputError(problem, f"drop {{{name}}}")
 
 
@@ -99,6 +134,7 @@ class OperatorMethod:
     polish: Polish = "auto"
     answer: Answer = "valid"
     device: Device | None = None
+    fallback: bool = False
     name = "operator"
 
     @cached_property
@@ -115,4 +151,4 @@ class OperatorMethod:
         start: Sequence[Grid] | None = None,  # noqa: ARG002 - networks start from nothing
     ) -> list[Solution]:
         """Return a solution for each of the boundaries, in batches where the network allows it."""
-        return infer_many(problems, self.model, self.polish, self.answer, self.device)
+        return infer_many(problems, self.model, self.polish, self.answer, self.device, fallback=self.fallback)

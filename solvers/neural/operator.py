@@ -9,6 +9,7 @@ from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.conformal.solve import Polish
+from meshonet.solvers.neural.confidence import Goal, expected_error
 from meshonet.solvers.solution import Solution
 
 BATCH = 64  # most boundaries that are solved together, for the memory that they take
@@ -51,6 +52,18 @@ class Operator(ABC):
         batches of the quad network, which do not change grids. Raises InputError: a boundary of another
         topology.
         """
+
+    @property
+    def goal(self) -> Goal:
+        """The method whose grids the operator imitates."""
+        return "winslow"
+
+    def expected_error(self, boundary: Boundary, solution: Solution) -> float:
+        """Return the expected relative L2 error of a solution of `solve` (`confidence`).
+
+        Infinite where the solver that it imitates cannot go on from it.
+        """
+        return expected_error(solution.grid, boundary, self.goal)
 
     def check(self, boundaries: Sequence[Boundary]) -> None:
         """Raise InputError unless all boundaries have the operator's topology."""

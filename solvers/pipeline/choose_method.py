@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from meshonet.solvers.pipeline.layered import FirstCells
     from meshonet.solvers.pipeline.methods import Method
 
-NETWORK_SETTINGS = ("model", "polish", "device")
+NETWORK_SETTINGS = ("model", "polish", "device", "fallback")
 """Settings of the operator; if one of them is given, a network makes the grid."""
 
 

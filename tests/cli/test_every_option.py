@@ -196,6 +196,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--polish": (f"{BODY} {MADE}", "OPTION 1", "nodes"),
         "--refine": (f"step.wkt --cells 400 {MADE}", "OPTION 1", "nodes"),
         "--device": (f"{BODY} {MADE}", "OPTION cpu", "nodes" if TORCH else "code"),
+        "--fallback": (f"wave.h5 --model m.safetensors {MADE}", "OPTION", "nodes"),
         "--answer": (f"duct.h5 --model m.safetensors {MADE}", "OPTION raw", "nodes"),
         "--repair": (f"wave.h5 --model m.safetensors --answer pasted {MADE}", "OPTION", "code"),
         "--no-repair": (f"wave.h5 --model m.safetensors {MADE}", "OPTION", "code"),

@@ -14,6 +14,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.threads import limited_to, thread_count
 from meshonet.solvers.conformal.solve import Polish
+from meshonet.solvers.neural.confidence import Goal
 from meshonet.solvers.neural.operator import Operator, in_batches
 from meshonet.solvers.neural.quad.canonical import canonical
 from meshonet.solvers.neural.quad.encoding import HEADS, WINSLOW
@@ -45,6 +46,11 @@ class QuadOperator(Operator):
         if dtype not in self._networks:
             self._networks[dtype] = Network(self.weights, self.blocks, dtype, around=self.topology == "o")
         return self._networks[dtype]
+
+    @property
+    def goal(self) -> Goal:
+        """The method whose grids the operator imitates."""
+        return "winslow" if self.head == WINSLOW else "variational"
 
     def solve(
         self,

@@ -1,5 +1,6 @@
 """The airfoil operator: the conformal solver, started from a network's correction of the harmonic base."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
@@ -9,9 +10,11 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.quality.compare import compare
 from meshonet.solvers.conformal import solve as conformal
 from meshonet.solvers.conformal.solve import Polish
 from meshonet.solvers.conformal.strip import LEVELS, smoothing
+from meshonet.solvers.neural.confidence import Goal
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS, decode, encode
 from meshonet.solvers.neural.strip.network import StripNetwork, check_shapes
@@ -67,3 +70,15 @@ class StripOperator(Operator):
         if not self.network:
             return conformal.solve(boundaries, polish)
         return conformal.solve(boundaries, polish, self.residual, self.name)
+
+    @property
+    def goal(self) -> Goal:
+        """The method whose grids the operator imitates."""
+        return "conformal"
+
+    def expected_error(self, boundary: Boundary, solution: Solution) -> float:
+        """Return how far one more Picard step moves the nodes of a solution, as a relative L2 distance."""
+        better = self.solve([boundary], (solution.cycles or 0) + 1)[0]
+        if better.model is None:  # the step diverges
+            return math.inf
+        return compare(solution.grid, better.grid).relative_l2

@@ -1,0 +1,194 @@
+"""Expected errors of networks' answers beside their true errors, on kinds of shapes that no network has seen.
+
+    python benchmarks/bench_confidence.py [--count 40] [--page docs/benchmarks/confidence.md]
+
+Shapes are those of benchmarks/yardstick. The trained network is `meshonet`, which learns arches and is asked
+for other shapes too. A picture of all answers is written beside the page.
+"""
+
+from __future__ import annotations
+
+import os
+
+for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
+
+import tempfile
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from page import arguments, publish
+from scipy.stats import spearmanr
+from yardstick.shapes import BODIES, KINDS, shapes
+
+import meshonet
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import MeshonetError
+from meshonet.geometry.quality.compare import compare
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.solvers.conformal.solve import solve as conformal
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.energy.variational import solve as variational
+from meshonet.solvers.neural.confidence import THRESHOLD
+from meshonet.solvers.neural.operator import Operator
+from meshonet.solvers.neural.registry import load
+
+SEED = 7
+QUADS = tuple(kind for kind in KINDS if kind not in BODIES)
+EXACT: dict[str, Callable[[Boundary], Grid]] = {
+    "variational": lambda boundary: variational(boundary).grid,
+    "winslow": lambda boundary: winslow(boundary, tol=1e-8).grid,
+    "conformal": lambda boundary: conformal([boundary], 12)[0].grid,
+}
+"""The grids that networks imitate, to more accuracy than their answers have."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Errors of an answer, its number of folded cells, and the processor seconds of the estimate."""
+
+    true: float
+    expected: float
+    folded: int
+    seconds: float
+
+
+def main() -> None:
+    """Measure, print, and write the page and its picture."""
+    parser = arguments(__doc__)
+    parser.add_argument("--count", type=int, default=40, help="shapes of each kind")
+    parser.add_argument("--epochs", type=int, default=2000, help="of the trained network")
+    options = parser.parse_args()
+    groups: dict[str, list[Answer]] = {}
+    quads, bodies = (list(_drawn(kinds, options.count, nj)) for kinds, nj in ((QUADS, 65), (BODIES, 33)))
+    for polish in ("auto", "off"):
+        for model, drawn in (("quad-general", quads), ("hole-o", bodies), ("airfoil-o", bodies)):
+            groups[f"`{model}`, `--polish {polish}`"] = list(answers(load(model), drawn, polish))
+    trained = _trained(options.epochs)
+    groups["`meshonet`, trained on arches"] = list(answers(trained, _others(options.count), "auto"))
+    publish(
+        "\n".join([HEAD.format(count=options.count, threshold=THRESHOLD), *rows(groups), TAIL]), options.page
+    )
+    if options.page:
+        draw(groups, options.page.with_suffix(".png"))
+
+
+def answers(operator: Operator, boundaries: Iterable[Boundary], polish: str) -> Iterator[Answer]:
+    """Yield the errors of an operator's answers; shapes for which there is no solution are left out."""
+    for boundary in boundaries:
+        try:
+            exact = EXACT[operator.goal](boundary)
+            solution = operator.solve([boundary], polish)[0]  # type: ignore[arg-type]
+        except MeshonetError:
+            continue
+        if solution.model is None:
+            continue
+        begun = time.process_time()
+        expected = operator.expected_error(boundary, solution)
+        spent = time.process_time() - begun
+        true = compare(solution.grid, exact).relative_l2
+        yield Answer(true, expected, count_folded(solution.grid.nodes), spent)
+
+
+def rows(groups: dict[str, list[Answer]]) -> Iterator[str]:
+    """Yield the rows of the table."""
+    for name, group in groups.items():
+        true, expected = np.array([(a.true, a.expected) for a in group]).T
+        folded = np.array([a.folded > 0 for a in group])
+        low = expected <= THRESHOLD
+        known = np.isfinite(expected)
+        ratio = np.percentile(expected[known] / true[known], (5, 50, 95))
+        cells = [
+            name, f"{len(group)}", f"{np.median(true):.1e} / {true.max():.1e}",
+            f"{spearmanr(true, expected)[0]:.2f}", " / ".join(f"{part:.2f}" for part in ratio),
+            f"{low.sum()}", f"{(low & folded).sum()}", f"{(~low & folded).sum()} of {(~low).sum()}",
+            f"{1e3 * np.median([a.seconds for a in group]):.1f}",
+        ]  # fmt: skip
+        yield "| " + " | ".join(cells) + " |"
+
+
+def draw(groups: dict[str, list[Answer]], path: Path) -> None:
+    """Draw true over expected errors."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(6.5, 5), layout="constrained")
+    for k, (name, group) in enumerate(groups.items()):
+        known = [a for a in group if np.isfinite(a.expected)]
+        at = [a.expected for a in known], [a.true for a in known]
+        axes.loglog(*at, ".", ms=4, color=f"C{k}", alpha=0.6, label=name.replace("`", ""))
+        bad = [a for a in known if a.folded]
+        axes.loglog([a.expected for a in bad], [a.true for a in bad], "kx", ms=6, mew=1)
+    ends = np.array([1e-8, 1.0])
+    axes.loglog(ends, ends, "k-", lw=0.7)
+    axes.axvline(THRESHOLD, color="k", ls=":", lw=0.8)
+    axes.set(xlabel="expected error", ylabel="true error", xlim=ends, ylim=ends)
+    axes.legend(fontsize=7)
+    figure.savefig(path, dpi=110, metadata={"Software": None})
+    plt.close(figure)
+
+
+def _drawn(kinds: Sequence[str], count: int, nj: int, ni: int = 65) -> Iterator[Boundary]:
+    for kind in kinds:
+        for s in shapes(kind, SEED, count, ni, nj):
+            yield Boundary(s.south, s.north, s.west, s.east, s.topology, name=s.name)  # type: ignore[arg-type]
+
+
+def _trained(epochs: int) -> Operator:
+    """Return `meshonet` trained on 30 arches of 33 x 33 nodes."""
+    with tempfile.TemporaryDirectory() as folder:
+        names = [f"{folder}/{k}.h5" for k in range(36)]
+        for name, edges in zip(names, meshonet.sample_family("arch", 36, res=33), strict=True):
+            meshonet.solve_pde(edges, method="winslow", tol=1e-8).write(name)
+        path = f"{folder}/arch.safetensors"
+        meshonet.train(names, path, model="meshonet", split="interpolation", epochs=epochs)
+        return load(path)
+
+
+def _others(count: int) -> Iterator[Boundary]:
+    """Yield arches within the range of the training and beyond, and shapes of other families."""
+    for family in ("arch", "hexagon", "semicircle"):
+        yield from meshonet.sample_family(family, count, res=33)
+    yield from _drawn(("wavy", "bumps"), count, 33, 33)
+
+
+HEAD = """# Confidence in networks' answers
+
+<!-- made by python benchmarks/bench_confidence.py --page docs/benchmarks/confidence.md -->
+
+Read this page to decide whether you can rely on the expected error that `infer --model` reports, and on its
+threshold.
+
+The expected error of an answer is the distance by which a few steps of the solver that the network imitates
+move its nodes, divided by the size of the grid: 16 iterations of the variational method for `quad-general`
+and `hole-o`, one more Picard step for `airfoil-o`, two multigrid cycles of Winslow's equations for
+`quad-winslow` and the networks of [the paper](../theory/paper-models.md), shipped or trained by you. The true
+error is the relative L2 distance from the converged solution. An answer is accepted if its expected error is
+at most {threshold:g} and none of its cells is folded. With `--fallback`, `infer` solves for all other grids.
+
+Shapes are {count} of each kind in `benchmarks/yardstick`, which no network was trained on: six kinds of
+four-sided domains with 65 x 65 nodes, three kinds of bodies with 65 x 33. `meshonet` was trained on 30 arches
+of 33 x 33 nodes; it is evaluated on arches, on the paper's hexagons and semicircles, and on two of the kinds.
+Its boundary nodes are replaced by the true ones, which folds cells.
+
+The column *low* counts expected errors up to the threshold, whatever the folds; the next one says how many of
+these answers have folded cells. The last column is processor time of one thread.
+
+| network | answers | true error, median / worst | rank correlation | expected / true, 5 / 50 / 95 % """
+HEAD += """| low | folded among low | folded among others | ms |
+| --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
+
+TAIL = """
+![expected and true errors](confidence.png)
+
+Each point is an answer; crosses have folded cells, and the dotted line is the threshold.
+"""
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,64 @@
+"""Expected errors of networks' answers, without knowledge of the solutions.
+
+A few steps of the solver that a network imitates, from the network's answer, move its nodes by about the
+distance to the solution: the residual of the equations, in the norm of an approximate inverse. The number is
+the root mean square of these distances over that of the distances of nodes from their mean, as the relative
+L2 error of `meshonet.geometry.quality.compare`.
+"""
+
+import math
+from typing import Literal
+
+import numpy as np
+
+from meshonet.geometry.arrays import as_planar
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.quality.compare import compare
+from meshonet.solvers.algebraic.resample.grids import refine_grid, thinned
+
+Goal = Literal["winslow", "variational", "conformal"]
+"""The method whose grids a network imitates."""
+
+THRESHOLD = 0.03
+"""Expected error up to which an answer without folded cells is accepted (docs/benchmarks/confidence.md)."""
+
+MOST = 129  # nodes along a direction from which an answer is judged on fewer nodes
+CYCLES = 2  # multigrid cycles for Winslow's equations
+ITERATIONS = 16  # of the minimisation of the variational functional
+
+
+def expected_error(grid: Grid, boundary: Boundary, goal: Goal) -> float:
+    """Return the expected relative L2 distance of `grid` from the grid of the method `goal`.
+
+    `goal` is ``winslow`` or ``variational``. Infinite where the solver cannot go on from `grid`.
+    """
+    counts = tuple(min(n, MOST) for n in (boundary.ni, boundary.nj))
+    if counts != (boundary.ni, boundary.nj):
+        boundary = thinned(boundary, *counts)
+        grid = boundary.grid(as_planar(refine_grid(grid.nodes, boundary)))
+    try:
+        better = (_nearer_winslow if goal == "winslow" else _nearer_optimum)(grid, boundary)
+        error = compare(grid, better).relative_l2
+    except (InputError, SolverError):
+        return math.inf
+    return error if math.isfinite(error) else math.inf
+
+
+def _nearer_winslow(grid: Grid, boundary: Boundary) -> Grid:
+    from meshonet.solvers.elliptic.solve import solve
+
+    return solve(boundary, tol=1e-12, max_cycles=CYCLES, initial=grid).grid
+
+
+def _nearer_optimum(grid: Grid, boundary: Boundary) -> Grid:
+    from meshonet.solvers.energy.descent import descend
+    from meshonet.solvers.energy.variational import STILL, WEIGHTS
+
+    nodes = as_planar(np.array(grid.nodes))
+    weights = WEIGHTS[boundary.topology]
+    _, valid = descend(nodes, weights, STILL, ITERATIONS, periodic=boundary.periodic)
+    if not valid:
+        raise SolverError("cells stay folded")
+    return boundary.grid(nodes)
