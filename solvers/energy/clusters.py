@@ -1,46 +1,46 @@
-"""Windows of nodes around groups of bad cells."""
+"""Windows of nodes around groups of bad cells, in the plane or in space."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, as_planar
 
-NEIGHBOURS = [(da, db) for da in (-1, 0, 1) for db in (-1, 0, 1) if (da, db) != (0, 0)]
-
 
 @dataclass(frozen=True)
 class Window:
-    """Nodes i0 .. i1 and j0 .. j1, inclusive; i may extend across the seam of an O grid.
+    """Nodes `first` to `last`, inclusive, along each direction; i may extend across the seam of an O grid.
 
-    >>> Window(-2, 4, 0, 3).cells
+    >>> Window((-2, 0), (4, 3)).cells
     18
     """
 
-    i0: int
-    i1: int
-    j0: int
-    j1: int
+    first: tuple[int, ...]
+    last: tuple[int, ...]
 
     @property
     def cells(self) -> int:
         """Number of cells."""
-        return (self.i1 - self.i0) * (self.j1 - self.j0)
+        return int(np.prod(np.subtract(self.last, self.first)))
 
     def rows(self, ni: int, periodic: bool) -> NDArray[np.intp]:
         """Return the first indices of the nodes in a grid with `ni` rows."""
-        rows = np.arange(self.i0, self.i1 + 1)
+        rows = np.arange(self.first[0], self.last[0] + 1)
         return rows % (ni - 1) if periodic else rows
 
-    def cut(self, nodes: Floats, periodic: bool) -> Floats:
-        """Return a planar copy of the window's part of `nodes` (ni, nj, 2)."""
-        return as_planar(nodes[self.rows(len(nodes), periodic), self.j0 : self.j1 + 1])
+    def cut(self, nodes: Floats, periodic: bool = False) -> Floats:
+        """Return a planar copy of the window's part of `nodes` (ni, nj, 2) or (ni, nj, nk, 3)."""
+        others = (slice(low, high + 1) for low, high in zip(self.first[1:], self.last[1:], strict=True))
+        return as_planar(nodes[(self.rows(len(nodes), periodic), *others)])
 
     def put(self, nodes: Floats, periodic: bool, patch: Floats) -> None:
         """Set the inner nodes of the window to those of `patch`, which has the shape returned by `cut`."""
-        nodes[self.rows(len(nodes), periodic)[1:-1], self.j0 + 1 : self.j1] = patch[1:-1, 1:-1]
+        others = (slice(low + 1, high) for low, high in zip(self.first[1:], self.last[1:], strict=True))
+        inner = (slice(1, -1),) * len(self.first)
+        nodes[(self.rows(len(nodes), periodic)[1:-1], *others)] = patch[inner]
         if periodic:
             nodes[-1] = nodes[0]
 
@@ -48,37 +48,41 @@ class Window:
 def windows(
     bad: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool, largest: int
 ) -> Iterator[Window]:
-    """Yield windows around the groups of cells `bad` (n, 2), with at least `margin` cells around each.
+    """Yield windows around the groups of cells `bad` (n, d), with at least `margin` cells around each.
 
     Bad cells form a group if their tiles of `margin` cells touch. A group that needs more than `largest`
-    cells is divided, if necessary down to single tiles. Windows stay inside the (ni, nj) nodes of `shape`; if
-    `periodic`, a window may extend across the seam, but not overlap itself.
+    cells is divided, if necessary down to single tiles. Windows stay inside the nodes of `shape`, (ni, nj) or
+    (ni, nj, nk); if `periodic`, a window may extend across the seam, but not overlap itself.
 
     >>> list(windows(np.array([[20, 0], [22, 1]]), 6, (100, 50), False, 2500))
-    [Window(i0=12, i1=30, j0=0, j1=12)]
+    [Window(first=(12, 0), last=(30, 12))]
     """
     around = -(-(shape[0] - 1) // margin)
-    waiting = {(int(a), int(b)) for a, b in np.unique(bad // margin, axis=0)}
+    steps = [step for step in product((-1, 0, 1), repeat=len(shape)) if any(step)]
+    waiting = {tuple(tile) for tile in np.unique(bad // margin, axis=0).tolist()}
     while waiting:
         group = [waiting.pop()]
-        for a, b in group:
-            for da, db in NEIGHBOURS:
-                near = ((a + da) % around if periodic else a + da, b + db)
+        for tile in group:
+            for step in steps:
+                beside = tuple(a + b for a, b in zip(tile, step, strict=True))
+                near = (beside[0] % around, *beside[1:]) if periodic else beside
                 if near in waiting:
                     waiting.remove(near)
-                    group.append((a + da, b + db))
+                    group.append(beside)
         yield from _cover(np.array(sorted(group)), margin, shape, periodic, largest)
 
 
 def _cover(
     tiles: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool, largest: int
 ) -> Iterator[Window]:
-    """Yield windows that cover `tiles` (n, 2) of `margin` cells; a large group is halved repeatedly."""
+    """Yield windows that cover `tiles` (n, d) of `margin` cells; a large group is halved repeatedly."""
     low, high = tiles.min(axis=0), tiles.max(axis=0)
-    i0, j0 = (int(k) for k in (low - 1) * margin)
-    i1, j1 = (int(k) for k in (high + 2) * margin)
-    i0, i1 = (i0, min(i1, i0 + shape[0] - 2)) if periodic else (max(i0, 0), min(i1, shape[0] - 1))
-    window = Window(i0, i1, max(j0, 0), min(j1, shape[1] - 1))
+    first, last = (low - 1) * margin, (high + 2) * margin
+    inside = slice(1, None) if periodic else slice(None)
+    if periodic:
+        last[0] = min(last[0], first[0] + shape[0] - 2)
+    first[inside], last[inside] = np.maximum(first, 0)[inside], np.minimum(last, np.array(shape) - 1)[inside]
+    window = Window(tuple(first.tolist()), tuple(last.tolist()))
     if window.cells <= largest or len(tiles) == 1:
         yield window
         return

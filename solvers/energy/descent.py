@@ -135,7 +135,7 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
             continue
         if count_folded(patch) and not unfold(patch, weights, aspect=aspect)[0]:
             continue
-        eased = relief[window.rows(len(nodes), True)] if window.j0 == 0 else None
+        eased = relief[window.rows(len(nodes), True)] if window.first[1] == 0 else None
         still = STILL * float(np.sqrt((m - 1) * (n - 1)))
         Descent(patch, weights, aspect=aspect).run(still, ITERATIONS, relief=eased)
         window.put(nodes, True, patch)

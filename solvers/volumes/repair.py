@@ -6,13 +6,14 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import folded_cells
 from meshonet.geometry.quality.volumes import solid_metric
+from meshonet.solvers.energy.clusters import Window, windows
 from meshonet.solvers.energy.hex_functional import OPENING, OPTIMAL, UNFOLDING
 from meshonet.solvers.energy.hexes import NEARLY
 from meshonet.solvers.volumes.descent import PlanesDescent
-from meshonet.solvers.volumes.windows import Window, windows
 
 MARGINS = 5, 8, 11, 14
 """Numbers of nodes around a group of folded cells in a window, for successive rounds."""
+LARGEST_CELLS = 40_000  # of a window: two seconds of untangling
 ROUNDS, ROUND = 20, 8
 """Largest number of rounds of untangling in a window, and iterations of each."""
 FIRST, OPEN, LAST = 15, 8, 10
@@ -30,24 +31,25 @@ def repair(planes: Floats) -> int:
     for margin in MARGINS:
         if len(bad) == 0:
             break
-        for window in windows(bad, margin, planes.shape[1:]):
-            _mend(planes, window)
+        for window in windows(bad, margin, nodes.shape[:3], False, LARGEST_CELLS):
+            _mend(nodes, window)
         bad = folded_cells(nodes)
     return len(bad)
 
 
 def open_flat_cells(planes: Floats) -> None:
     """Open flat cells of planes (3, ni, nj, nk) in windows, in place."""
-    (scaled,) = solid_metric(Grid.from_nodes(np.moveaxis(planes, 0, -1)), "scaled_jacobian")
-    for window in windows(np.argwhere(scaled < NEARLY), MARGINS[0], planes.shape[1:]):
-        _mend(planes, window)
+    nodes = np.moveaxis(planes, 0, -1)
+    (scaled,) = solid_metric(Grid.from_nodes(nodes), "scaled_jacobian")
+    for window in windows(np.argwhere(scaled < NEARLY), MARGINS[0], nodes.shape[:3], False, LARGEST_CELLS):
+        _mend(nodes, window)
 
 
-def _mend(planes: Floats, window: Window) -> None:
-    part = np.ascontiguousarray(planes[:, window[0], window[1], window[2]])
-    if min(part.shape[1:]) > 2:
-        _unfold(part)
-        planes[:, window[0], window[1], window[2]] = part
+def _mend(nodes: Floats, window: Window) -> None:
+    part = window.cut(nodes)
+    if min(part.shape[:3]) > 2:
+        _unfold(np.moveaxis(part, -1, 0))
+        window.put(nodes, False, part)
 
 
 def _unfold(part: Floats) -> None:

@@ -46,11 +46,7 @@ CORNERS = ("at first", "later", "nowhere")
 """When nodes are moved to the corners of the blade, in the order of attempts."""
 LEAST = 4
 """Smallest number of cells along the side of an optimised block."""
-FIRST, ITERATIONS, PASSES = (
-    150,
-    120,
-    2,
-)  # iterations: of the template, of each sized optimum; and how many of these
+FIRST, ITERATIONS, PASSES = 150, 120, 2  # iterations of the template and of each sized optimum; their number
 WEIGHTS = 0.95, 1e-3
 """Weights w and β of the functional. A smaller β improves angles, but lets rounding errors move nodes by 1
 %.
