@@ -4,9 +4,11 @@
 """
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from contextvars import ContextVar
+from contextvars import ContextVar, copy_context
+from typing import TypeVar
 
 from meshonet.geometry.errors import InputError
 
@@ -17,6 +19,9 @@ NODES_EACH = 1 << 17
 """Nodes per thread: starting one takes as long as the fastest kernel takes for 5,000 nodes."""
 MANY_VISITS = 16
 """How often kernels that iterate, as descents and marches do, visit a node at the least."""
+
+Item = TypeVar("Item")
+Made = TypeVar("Made")
 
 _limit: ContextVar[int | None] = ContextVar("threads", default=None)
 
@@ -36,6 +41,19 @@ def thread_count() -> int:
 def threads_for(nodes: int, visits: int = 1) -> int:
     """Return the number of threads for a loop that visits `nodes` nodes `visits` times; 1 if it is short."""
     return max(min(thread_count(), visits * nodes // NODES_EACH), 1)
+
+
+def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made]:
+    """Return what `work` returns for each of `items`, several at once if threads are free.
+
+    Worth it where each takes milliseconds, most of them in kernels or NumPy's loops.
+    """
+    threads = min(thread_count(), len(items))
+    if threads < 2:
+        return [work(item) for item in items]
+    with ThreadPoolExecutor(threads) as pool:
+        jobs = [pool.submit(copy_context().run, work, item) for item in items]
+        return [job.result() for job in jobs]
 
 
 @contextmanager

@@ -25,6 +25,7 @@ from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.profile_points import apart
+from meshonet.geometry.threads import in_threads
 
 _PIECES = 512
 """Pieces of the tables of hub and casing."""
@@ -120,10 +121,13 @@ class Channel:
         """Return x, r (..., 2) at s and h, arrays of one shape."""
         flat, height = s.ravel(), h.ravel()
         out = np.empty((len(flat), 2))
-        for start in range(0, len(flat), _AT_ONCE):
+
+        def work(start: int) -> None:
             part = slice(start, start + _AT_ONCE)
             low, way = self._walls(flat[part])
             out[part] = low + self.fraction(flat[part], height[part])[:, None] * way
+
+        in_threads(work, range(0, len(flat), _AT_ONCE))
         return out.reshape(*s.shape, 2)
 
     def _walls(self, s: Floats) -> tuple[Floats, Floats]:

@@ -10,6 +10,7 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.elementary import product
 from meshonet.geometry.linear import least_squares
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.rows.channel import MeridionalMap
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.rows.gap_fill import GapFill, filled_outline
 from meshonet.solvers.rows.harmonic import harmonic
@@ -56,7 +57,9 @@ def gap_blocks(
     tip = zone.high == 1.0  # the blade is below this gap, otherwise above it
     heights = (zone.low, zone.high) if tip else (zone.high, zone.low)
     around = columns[:, 0]
-    outlines, outside, maps = [], [], []
+    maps: list[MeridionalMap] = []
+    outlines: list[Floats] = []
+    outside: list[Floats] = []
     for level, height in zip(levels if tip else levels[::-1], heights, strict=True):
         maps.append(row.channel.meridional(height))
         for nodes, out in ((around, outlines), (columns[:, 1], outside)):

@@ -41,8 +41,8 @@ TRAILING, LEADING = 9, 11
 """Numbers of the template's blocks around the edges of the blade."""
 COARSE = 300
 """Iterations of the first optimum of the middle section."""
-FINE, FROM_NEIGHBOUR = 150, 80
-TOLERANCE = 1e-5
+FINE, FROM_NEIGHBOUR = 80, 25
+TOLERANCE = 1e-3
 FLAT, SMOOTH = 0.95, 1e-3
 """Weights w and β of the functional."""
 BEND = 0.3
@@ -133,7 +133,7 @@ def next_section(plan: SectionPlan, before: KeySection, plane: SectionPlane) -> 
 
     Raises NoValidGridError: its cells stay folded.
     """
-    return _moved(plan, before, plane, plan.places)
+    return _moved(plan, before, plane, plan.places, FROM_NEIGHBOUR)
 
 
 def _middle(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], early: bool) -> Layout:
@@ -197,8 +197,7 @@ def _placed(plan: SectionPlan, section: KeySection) -> KeySection:
 
 
 def _moved(
-    plan: SectionPlan, before: KeySection, plane: SectionPlane, places: Floats,
-    iterations: int = FROM_NEIGHBOUR,
+    plan: SectionPlan, before: KeySection, plane: SectionPlane, places: Floats, iterations: int
 ) -> KeySection:  # fmt: skip
     """Return a section with nodes around the blade at `places` (k,), from its neighbour's."""
     layout, own = _carried(plan, before, plane, places)

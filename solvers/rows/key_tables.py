@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import contextvars
 import math
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.rows.row import Row
-from meshonet.geometry.threads import thread_count
+from meshonet.geometry.threads import in_threads
 from meshonet.solvers.blocking.cascade.passage import INLET, NEAR, OUTLET
 from meshonet.solvers.rows.key_sections import KeySection, SectionPlan, next_section, planned
 from meshonet.solvers.rows.section_plane import SectionPlane
@@ -52,18 +50,19 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
         return SectionPlane.of(row, height, first, growth)
 
     ways = planes[half - 1 :: -1], planes[half + 1 :]
-    if thread_count() > 1:
-        with ThreadPoolExecutor(len(ways)) as pool:
-            jobs = [pool.submit(contextvars.copy_context().run, chain, way) for way in ways]
-            below, above = (job.result() for job in jobs)
-    else:
-        below, above = map(chain, ways)
+    below, above = in_threads(chain, ways)
     return KeyTables(plan, (*below[::-1], middle, *above))
 
 
 def _planes(row: Row, first: float, growth: float) -> list[SectionPlane]:
     """Return the key sections; in the middle one straight rows lead to inlet and outlet."""
-    planes = [SectionPlane.of(row, float(h), first, growth) for h in key_heights(KEYS)]
+
+    def plane_at(height: float) -> SectionPlane:
+        plane = SectionPlane.of(row, height, first, growth)
+        _ = plane.room  # marches the layers
+        return plane
+
+    planes = in_threads(plane_at, key_heights(KEYS).tolist())
     before, behind = (min(NEAR, _PART * min(plane.room[k] for plane in planes)) for k in (0, 1))
     half = KEYS // 2
     planes[half] = planes[half].ending((before, behind), planes[half].thickest)

@@ -9,6 +9,10 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import cos, product
 from meshonet.geometry.linear import inverse
+from meshonet.geometry.threads import in_threads
+
+_AT_ONCE = 1 << 15
+"""Values that are worked out together, so that they stay in the cache."""
 
 
 def key_heights(count: int) -> Floats:
@@ -38,11 +42,16 @@ class SpanLines:
     def at(self, heights: Floats, columns: slice | Floats | None = None) -> Floats:
         """Return values (p, m, ...) of all n or some `columns` (m,) at heights (p, m) or (p, 1)."""
         c = self.coefficients if columns is None else self.coefficients[:, columns]
-        x = (2.0 * heights - 1.0).reshape(*heights.shape, *(1,) * (c.ndim - 2))
-        after, here = np.zeros(1), c[-1] + 0.0 * x
-        for row in c[-2:0:-1]:  # Clenshaw, Math. Comp. 9 (1955) 118
-            after, here = here, row + 2.0 * x * here - after
-        return np.asarray(c[0] + x * here - after)
+        x = (4.0 * heights - 2.0).reshape(*heights.shape, *(1,) * (c.ndim - 2))
+        out = np.empty((len(heights), *np.broadcast_shapes(x.shape[1:], c.shape[1:])))
+        own = max(1, _AT_ONCE * out.shape[1] // max(out.size, 1))
+
+        def work(start: int) -> None:
+            part = slice(start, start + own)
+            _clenshaw(c[:, part], x if x.shape[1] == 1 else x[:, part], out[:, part])
+
+        in_threads(work, range(0, out.shape[1], own))
+        return out
 
     def slopes_at_keys(self) -> Floats:
         """Return derivatives (k, n, ...) by the height at `key_heights` (k)."""
@@ -66,6 +75,22 @@ class SpanLines:
     def _at_keys(self, count: int | None = None) -> Floats:
         heights = key_heights(count or len(self.coefficients))
         return self.at(heights[:, None])
+
+
+def _clenshaw(c: Floats, x: Floats, out: Floats) -> None:
+    """Fill `out` (p, m, ...) with the sums of c (k, m, ...) times Chebyshev polynomials of x / 2.
+
+    Clenshaw, Math. Comp. 9 (1955) 118.
+    """
+    after, here = np.zeros(out.shape), np.broadcast_to(c[-1], out.shape).copy()
+    for row in c[-2:0:-1]:
+        after *= -1.0
+        after += x * here
+        after += row
+        after, here = here, after
+    np.multiply(0.5 * x, here, out=out)
+    out -= after
+    out += c[0]
 
 
 def _polynomials(x: Floats, count: int) -> list[Floats]:
