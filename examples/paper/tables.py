@@ -32,6 +32,7 @@ RACERS = (
     "meshonet", "meshonet-hard", "deeponet", "pod-deeponet", "fno1d", "fno2d", "wno", "kno", "lno", "mionet",
 )  # fmt: skip
 BASELINES = ("deeponet", "pod-deeponet", "fno1d", "fno2d")
+NEWER = ("wno", "kno", "lno")
 PHYSICS = (
     ("mgnet", "Winslow's equations and the boundary (`mgnet`)"),
     ("mgnet-finite", "the same, derivatives by central differences (`finite=0.01`)"),
@@ -52,7 +53,7 @@ def main() -> None:
     results = pages / "results"
     parts = [words.HEAD, options.note, words.STANDS, lowest(results), words.CLAIMS, claims(results)]
     parts += [words.QUALITY, *quality(results), words.RACE, race(results, pages)]
-    parts += [words.SHELF, shelf(results), words.PHYSICS, physics(results)]
+    parts += [shelf(results), words.PHYSICS, physics(results)]
     parts += [words.TIME.format(machine=options.machine), times(results), words.MAPS, maps(pages)]
     parts += [words.SETTINGS, budgets(results)]
     text = "\n\n".join(part.strip() for part in parts if part)
@@ -135,7 +136,7 @@ def lowest(results: Path) -> str:
     """Return whether MeshONet's loss is the least of a race, in one sentence a case."""
     sentences = []
     for case in raced(results):
-        logs = {name: sorted(results.glob(f"{case}.{name}.race*.csv")) for name in RACERS}
+        logs = {name: finished(results, case, name) for name in RACERS}
         last = {name: [read_log(path)[-1]["mean_square"] for path in found] for name, found in logs.items()}
         last = {name: found for name, found in last.items() if found and name != "meshonet-hard"}
         if "meshonet" not in last:
@@ -147,11 +148,21 @@ def lowest(results: Path) -> str:
         verdict = (
             f"is above that of {len(below)} of {known} baselines" if below else "is the lowest, as claimed"
         )
+        newer = [name for name in NEWER if name in means]
+        if newer:
+            fewer = sum(means[name] < means["meshonet"] for name in newer)
+            verdict += f", and above that of {fewer} of {len(newer)} newer operators ({', '.join(newer)})"
         figures = ", ".join(f"{name} {means[name]:.1e} ± {pstdev(last[name]):.0e}" for name in order)
         sentences.append(
             f"**Loss on one budget** ({case}): MeshONet's {verdict}. Mean square error: {figures}."
         )
     return words.LOWEST + "\n\n".join(sentences) if sentences else ""
+
+
+def finished(results: Path, case: str, model: str) -> list[Path]:
+    """Return the logs of the runs of a model that have been evaluated."""
+    logs = sorted(results.glob(f"{case}.{model}.race*.csv"))
+    return [log for log in logs if log.with_suffix(".json").exists()]
 
 
 def raced(results: Path) -> list[str]:
@@ -164,7 +175,7 @@ def race(results: Path, pages: Path) -> str:
     rows, curves, losses = [], {}, {}
     for case in raced(results):
         for model in RACERS:
-            runs = [read_log(path) for path in sorted(results.glob(f"{case}.{model}.race*.csv"))]
+            runs = [read_log(path) for path in finished(results, case, model)]
             told = [summary(path) for path in sorted(results.glob(f"{case}.{model}.race*.json"))]
             errors = [one["relative_l2"]["median"] for one in told if one]
             if not runs or not errors:
@@ -216,7 +227,7 @@ def shelf(results: Path) -> str:
         for model in models
     ]
     sentences = "\n".join(f"- {text}" for text in counts if text)
-    return f"{words.AGAINST}\n\n{sentences}\n\n{table(['case', 'split', *models], rows)}"
+    return f"{words.SHELF}\n{words.AGAINST}\n\n{sentences}\n\n{table(['case', 'split', *models], rows)}"
 
 
 def _compared(model: str, cases: Sequence[dict[str, list[float]]]) -> str:
