@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,16 +32,19 @@ class Window:
         rows = np.arange(self.first[0], self.last[0] + 1)
         return rows % (ni - 1) if periodic else rows
 
+    def _index(self, rows: NDArray[np.intp], less: int) -> tuple[Any, ...]:
+        """Return the index of the nodes in some rows, without `less` at both ends of other directions."""
+        ends = zip(self.first[1:], self.last[1:], strict=True)
+        return rows, *(slice(low + less, high + 1 - less) for low, high in ends)
+
     def cut(self, nodes: Floats, periodic: bool = False) -> Floats:
         """Return a planar copy of the window's part of `nodes` (ni, nj, 2) or (ni, nj, nk, 3)."""
-        others = (slice(low, high + 1) for low, high in zip(self.first[1:], self.last[1:], strict=True))
-        return as_planar(nodes[(self.rows(len(nodes), periodic), *others)])
+        return as_planar(nodes[self._index(self.rows(len(nodes), periodic), 0)])
 
     def put(self, nodes: Floats, periodic: bool, patch: Floats) -> None:
         """Set the inner nodes of the window to those of `patch`, which has the shape returned by `cut`."""
-        others = (slice(low + 1, high) for low, high in zip(self.first[1:], self.last[1:], strict=True))
         inner = (slice(1, -1),) * len(self.first)
-        nodes[(self.rows(len(nodes), periodic)[1:-1], *others)] = patch[inner]
+        nodes[self._index(self.rows(len(nodes), periodic)[1:-1], 1)] = patch[inner]
         if periodic:
             nodes[-1] = nodes[0]
 
