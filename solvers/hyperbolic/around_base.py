@@ -24,6 +24,7 @@ from meshonet.geometry.threads import threads_for
 from meshonet.kernels._native import redistribute
 from meshonet.solvers.hyperbolic.front import Front, opening
 from meshonet.solvers.hyperbolic.march import check_layers, marched
+from meshonet.solvers.layers.limited import limit_growth
 from meshonet.solvers.solution import Solution, timed
 
 _FULL = 0.95  # largest height of the H block's first cells far behind the base, in its mean cells
@@ -41,7 +42,7 @@ def around_base(
     Raises InputError: as `hyperbolic`; SolverError: the march diverged.
     """
     check_layers(first / lines.chord, growth)
-    ends, between = _h_block(lines, first)
+    ends, between = _h_block(lines, first, growth)
     wake = len(lines.lower) - 1
     south = np.concatenate([lines.lower[:0:-1], lines.wall[:-1], lines.upper])
     west, east = (straight(south[k], lines.north[k], lines.nj) for k in (0, -1))
@@ -58,8 +59,11 @@ def around_base(
     return Solution(grid, "hyperbolic", notes=(*lines.notes, note, base))
 
 
-def _h_block(lines: BaseWake, first: float) -> tuple[Floats, Floats]:
-    """Return the steps (k,) at both wake lines and the nodes (k, m, 2) of the block between them."""
+def _h_block(lines: BaseWake, first: float, growth: float | None) -> tuple[Floats, Floats]:
+    """Return the steps (k,) at both wake lines and the nodes (k, m, 2) of the block between them.
+
+    `growth` limits the growth ratio along lines from the base.
+    """
     ways = lines.upper - lines.lower
     width, cells = norms(ways), len(lines.base) - 1
     behind = norms(lines.lower - lines.lower[0])
@@ -75,6 +79,8 @@ def _h_block(lines: BaseWake, first: float) -> tuple[Floats, Floats]:
     redistribute(x, y, np.full(len(x), first), fade, threads_for(x.size))
     inner[..., 0], inner[..., 1] = x.T, y.T
     nodes[-1, 1:-1] = (lines.lower[-1] + t[-1] * ways[-1])[1:-1]
+    if growth:
+        limit_growth(inner.swapaxes(0, 1), growth, 1)
     return ends, nodes
 
 

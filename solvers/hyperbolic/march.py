@@ -34,6 +34,7 @@ from meshonet.solvers.hyperbolic.settings import (
     SHARP_ATTEMPTS,
     MarchSettings,
 )
+from meshonet.solvers.layers.limited import limit_growth
 from meshonet.solvers.solution import Solution, timed
 from meshonet.solvers.stages import filling
 
@@ -182,6 +183,8 @@ def _evened(
         rate = math.log(1.0 + (growth - 1.0) * WITHIN)
         shares = even_shares(nodes, steps, rate, constant)
         nodes, steps = _marched(front, cells, first, settings, constant, edge=None, shares=shares)
+    if nodes is not None and growth is not None and float(fastest(nodes).max()) > math.log(growth):
+        limit_growth(nodes, growth, constant)  # beside a concave corner even equal steps grow
     return nodes
 
 

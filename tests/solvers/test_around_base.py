@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -138,3 +139,17 @@ def test_other_corners_of_the_section_are_on_nodes_of_every_level() -> None:
         wall = coarser_grid(grid, k).blocks[0].nodes[:, 0]
         for corner in corners:
             assert np.hypot(*(wall - corner).T).min() < 1e-12
+
+
+@pytest.mark.parametrize("topology", ["o", "c"])
+def test_cells_grow_as_asked_off_a_concave_corner(topology: Literal["o", "c"]) -> None:
+    points = blunt(0.2).curve.points[1:]
+    step = np.array([[1.0, 0.095], [0.999, 0.095], [0.9988, 0.0958]])  # a shoulder that turns by 76 degrees
+    upper = points[points[:, 1] > 0][::-1]
+    body = Airfoil(np.concatenate([step, upper[upper[:, 0] < 0.99], points[points[:, 1] <= 0][::-1]]))
+    sampling = Sampling(topology=topology, ni=513, nj=129)
+    result = make_grid(body, GridRequest(sampling=sampling, first_cell=1e-5, growth=1.2))
+    figure = quality_report(result.grid).figures("wall_growth")
+    assert figure is not None
+    assert figure.value <= 1.2
+    assert result.quality.folded == 0

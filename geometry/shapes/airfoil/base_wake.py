@@ -88,15 +88,18 @@ def behind_base(body: Airfoil, sampling: Sampling, first: float, growth: float |
     cells = _wake_cells(sampling, first, length, ratio, steps, growth)
     refined = sampling.refined
     ni = sampling.ni or refined * DEFAULT_NI + 1 + 2 * cells
-    if ni - 1 - 2 * cells < _LEAST_WALL:
-        least = 2 * _whole(cells, MULTIPLES) + _LEAST_WALL
+    on_wall, fewest = ni - 1 - 2 * cells, _LEAST_WALL
+    while growth and corner_cell(fewest, first, body.chord) > first:
+        fewest += 2
+    if on_wall < fewest:
+        least = 2 * _whole(cells, MULTIPLES) + fewest
         raise InputError(
             f"{ni} nodes along a C grid, twice {cells + 1} of them behind a base, leave too few for the wall",
             f"use at least {-(-least // refined) + 1}{' before {refine}' if refined > 1 else ''} "
             "or fewer {wake_nodes}",
         )
-    corner = first if growth else corner_cell(ni - 1 - 2 * cells, first, body.chord)
-    wall = _wall(body, ni - 1 - 2 * cells, sampling, corner, ratio if corner == first else _STEEP)
+    corner = first if growth else corner_cell(on_wall, first, body.chord)
+    wall = _wall(body, on_wall, sampling, corner, ratio if corner == first else _STEEP)
     axis = wake_axis(body.leading_edge, body.trailing_edge)
     lower, upper = _lines(wall, axis, body.chord, length, first, cells)
     centre = 0.5 * (body.leading_edge + body.trailing_edge)
