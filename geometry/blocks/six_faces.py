@@ -69,12 +69,10 @@ class SixFaces:
                 raise InputError(problem, "give both the same nodes", place=place_of(own[at]))
 
     @classmethod
-    def of_block(
-        cls, nodes: Floats, *, name: str = "", patches: tuple[Patch, ...] = (), notes: tuple[str, ...] = ()
-    ) -> SixFaces:
+    def of_block(cls, nodes: Floats, *, name: str = "", patches: tuple[Patch, ...] = ()) -> SixFaces:
         """Return the outer faces of nodes (ni, nj, nk, 3)."""
         west, east, south, north, bottom, top = (face_of(nodes, side) for side in FACES)
-        return cls(west, east, south, north, bottom, top, name, patches, notes)
+        return cls(west, east, south, north, bottom, top, name, patches)
 
     @property
     def counts(self) -> tuple[int, int, int]:

@@ -28,14 +28,13 @@ class Crossing:
     y: float
 
 
-def find_crossing(points: Floats, *, closed: bool = True) -> Crossing | None:
+def find_crossing(points: Floats) -> Crossing | None:
     """Return the first crossing or contact of a polygon (n, 2) with itself, or None if it is simple.
 
     >>> find_crossing(np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]))
     Crossing(first=0, second=2, x=0.5, y=0.5)
     """
-    pairs = find_crossings(points, closed=closed)
-    return min(pairs, key=lambda c: (c.first, c.second), default=None)
+    return min(find_crossings(points), key=lambda c: (c.first, c.second), default=None)
 
 
 def check_outline(points: Floats, places: Sequence[str] = ()) -> None:

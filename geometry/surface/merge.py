@@ -35,10 +35,10 @@ def near_pairs(points: Floats, distance: float) -> Indices:
     return np.concatenate(pairs)
 
 
-def merged(patches: Sequence[Floats], tolerance: float = TOLERANCE) -> tuple[Floats, tuple[Indices, ...]]:
+def merged(patches: Sequence[Floats]) -> tuple[Floats, tuple[Indices, ...]]:
     """Return the nodes (n, 3) of `patches` (ni, nj, 3), and each patch's node numbers (ni, nj) in them.
 
-    Edge nodes within `tolerance` times the size of the surface are one node, with the coordinates of the
+    Edge nodes within `TOLERANCE` times the size of the surface are one node, with the coordinates of the
     first. Numbers ascend in the order in which nodes first appear.
     """
     points = np.concatenate([np.ascontiguousarray(patch).reshape(-1, 3) for patch in patches])
@@ -46,7 +46,7 @@ def merged(patches: Sequence[Floats], tolerance: float = TOLERANCE) -> tuple[Flo
         np.pad(np.zeros([n - 2 for n in patch.shape[:2]], bool), 1, constant_values=True) for patch in patches
     ]
     on_edge = np.flatnonzero(np.concatenate([edge.ravel() for edge in edges]))
-    pairs = on_edge[near_pairs(points[on_edge], tolerance * extent_of(points))]
+    pairs = on_edge[near_pairs(points[on_edge], TOLERANCE * extent_of(points))]
     numbers = joined_labels(len(points), [(pairs[:, 0], pairs[:, 1])])
     kept = np.unique(numbers, return_index=True)[1]
     ends = np.cumsum([0, *(patch.shape[0] * patch.shape[1] for patch in patches)])
