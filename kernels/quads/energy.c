@@ -126,8 +126,8 @@ static double all_pairs(const QuadMesh *mesh, const double *restrict x, double *
     const ptrdiff_t *restrict edge = mesh->edge, *restrict line = mesh->line, n = mesh->edges;
     double *restrict length = mesh->length, *restrict force = mesh->force;
     const double *restrict target = mesh->target;
-    const double each = (double)mesh->cells / (double)mesh->pairs, by = mesh->smoothness * each;
-    const double steep = mesh->steep * each, limit = mesh->limit;
+    const double cells = (double)mesh->cells, pairs = (double)mesh->pairs, limit = mesh->limit;
+    const double by = mesh->smoothness * cells / pairs, steep = mesh->steep * cells / pairs;
     double energy = 0.0, excess = 0.0;
     MESHONET_INDEPENDENT
     for (ptrdiff_t k = 0; k < n; k++) {
