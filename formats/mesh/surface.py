@@ -22,6 +22,7 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.closed_curve import closed_curve
+from meshonet.geometry.shapes.domain_shape import DomainShape, itself
 from meshonet.geometry.shapes.named_edges import Labelled, runs
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, polygon_shape
@@ -159,8 +160,8 @@ def _domain(loop: EdgeLoop, surface: MeshBoundary, name: str) -> Shape:
     corners = _corners(loop, surface)
     if corners is None:
         curve = closed_curve(points[loop.nodes], name)
-        meshed = bool(surface.cells) and not isinstance(curve, Airfoil)
-        if not meshed and isinstance(domain_or_body(curve), Outline | Airfoil):
+        interior = (bool(surface.cells) or len(set(loop.names)) > 1) and not isinstance(curve, Airfoil)
+        if not interior and isinstance(domain_or_body(curve), Outline | Airfoil):
             return _labelled(curve, [loop], points)
         shape = polygon_shape([_ring(loop, points)], name)
         return replace(shape, one=partial(_labelled, curve, [loop], points))
@@ -173,7 +174,11 @@ def _domain(loop: EdgeLoop, surface: MeshBoundary, name: str) -> Shape:
     counts = np.diff([*corners, len(loop.nodes)])
     if counts[0] != counts[2] or counts[1] != counts[3]:
         a, b, c, d = corners
-        return _labelled(Outline(points[loop.nodes], name, corners=(a, b, c, d)), [loop], points)
+        outline = _labelled(Outline(points[loop.nodes], name, corners=(a, b, c, d)), [loop], points)
+        inside = polygon_shape([_ring(loop, points)], name)
+        if isinstance(inside, DomainShape):
+            return replace(inside, many=False, one=partial(itself, outline))
+        return outline
     ring, names = points[np.append(loop.nodes, loop.nodes[0])], loop.names
     stops = [*corners[1:], len(loop.nodes)]
     edges = {side: ring[start : stop + 1] for side, start, stop in zip(SIDES, corners, stops, strict=True)}

@@ -1,16 +1,17 @@
 """Outlines from DXF drawings, ``.dxf``, read by ezdxf (extra ``dxf``); names are those of the layers.
 
-Lines, polylines, arcs, circles, ellipses and splines of the model space are joined at coincident ends. Curves
-are approximated by chords. https://ezdxf.mozman.at
+Lines, polylines, arcs, circles, ellipses and splines of the model space, also in inserted blocks, are joined
+at coincident ends. Curves are approximated by chords. https://ezdxf.mozman.at
 """
 
 import io
 from collections.abc import Iterator
+from itertools import islice
 from typing import Any
 
 import numpy as np
 
-from meshonet.formats.mesh.surface import shapes_of
+from meshonet.formats.mesh.surface import MOST_EDGES, shapes_of
 from meshonet.formats.outlines.joined import MOST_BYTES, SAG, extent_checked, joined
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
@@ -28,6 +29,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     """
     try:
         from ezdxf import path
+        from ezdxf.disassemble import recursive_decompose
         from ezdxf.filemanagement import read
     except ImportError:
         raise InputError("needs the package ezdxf", "install it: pip install 'meshonet[dxf]'") from None
@@ -40,9 +42,10 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         raise InputError("is no DXF drawing that can be read (zero bytes)", "save it again as ASCII DXF")
     try:
         drawing = read(io.StringIO(data.decode("utf-8", "replace").replace("\r\n", "\n")))
+        entities = list(islice(recursive_decompose(drawing.modelspace()), MOST_EDGES + 1))
         curves = [
             (printable(str(entity.dxf.layer)), path.make_path(entity))
-            for entity in drawing.modelspace()
+            for entity in entities[:MOST_EDGES]
             if entity.dxftype() in _KINDS
         ]
         lines = _lines(curves)
@@ -52,6 +55,8 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         reason = printable(str(error).split("\n")[0])[:100] or type(error).__name__
         problem = f"is no DXF drawing that can be read ({reason})"
         raise InputError(problem, "save it again as ASCII DXF") from error
+    if len(entities) > MOST_EDGES:
+        raise InputError(f"has more than {MOST_EDGES} entities", "simplify the drawing")
     if not lines:
         raise InputError("has no curves in its model space", "draw lines, polylines, arcs or splines")
     yield from shapes_of(joined(lines), source.stem)
