@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 import grimp
@@ -125,6 +126,7 @@ NAMED = re.compile(r"(\w+(?:\.\w+)*)(?::\w+)?")
 """A module, or a function in it, as in tables of functions and in import_module."""
 
 
+@cache
 def import_graph() -> grimp.ImportGraph:
     """Return what imports what, in functions too, and by strings as by statements."""
     graph = grimp.build_graph("meshonet", "meshonet_cli", exclude_type_checking_imports=True)

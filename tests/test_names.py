@@ -3,6 +3,7 @@
 import ast
 import re
 from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -10,6 +11,7 @@ ROOMS = ("geometry", "formats", "solvers", "meshonet_cli", "meshonet/api", "kern
 PAGE = ROOT / "docs" / "development" / "architecture.md"
 
 
+@cache
 def classes() -> dict[str, list[str]]:
     """Return the modules of each class name, from the sources."""
     modules: dict[str, list[str]] = defaultdict(list)
