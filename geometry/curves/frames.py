@@ -7,7 +7,6 @@ Transactions on Graphics 27 (2008) 2; fourth order in the step.
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 import numpy as np
 
@@ -31,7 +30,7 @@ def frames_along(
 
     Raises InputError: `up` is parallel to the path.
     """
-    fine = np.concatenate([np.linspace(a, b, steps, endpoint=False) for a, b in pairwise(s)])
+    fine = (s[:-1, None] + (np.arange(steps) / steps) * np.diff(s)[:, None]).ravel()
     fine = np.append(fine, s[-1])
     points, tangents, _ = path.at(fine)
     first = tangents[0]
@@ -65,11 +64,23 @@ def _reflected(points: Floats, tangents: Floats, y: Floats) -> Floats:
     mirrored = tangents[:-1] - (2.0 * (step * tangents[:-1]).sum(axis=1) / size)[:, None] * step
     second = tangents[1:] - mirrored
     weight = (second * second).sum(axis=1)
-    for k in range(len(step)):
-        y = y - (2.0 * product(step[k], y) / size[k]) * step[k]
-        if weight[k] > 0:
-            y = y - (2.0 * product(second[k], y) / weight[k]) * second[k]
-        y = y - product(y, tangents[k + 1]) * tangents[k + 1]  # removes rounding errors
-        y = y / math.hypot(*y)
-        axes[k + 1] = y
+    axis = y.tolist()  # numbers, not arrays of three: a long path has a million steps
+    rows = zip(*(each.tolist() for each in (step, size, second, weight, tangents[1:])), strict=True)
+    for k, (across, square, beside, other, tangent) in enumerate(rows, start=1):
+        axis = _less(axis, across, 2.0 * _dot(across, axis) / square)
+        if other > 0:
+            axis = _less(axis, beside, 2.0 * _dot(beside, axis) / other)
+        axis = _less(axis, tangent, _dot(axis, tangent))  # removes rounding errors
+        length = math.hypot(*axis)
+        axis = [axis[0] / length, axis[1] / length, axis[2] / length]
+        axes[k] = axis
     return axes
+
+
+def _dot(a: list[float], b: list[float]) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _less(a: list[float], b: list[float], times: float) -> list[float]:
+    """Return a - times b."""
+    return [a[0] - times * b[0], a[1] - times * b[1], a[2] - times * b[2]]

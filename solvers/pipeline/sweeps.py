@@ -12,7 +12,7 @@ from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.pipeline.sections import section_grid
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import stage
-from meshonet.solvers.sweeping.sweep import Sweep, reach_of, self_crossing, sweep, walled
+from meshonet.solvers.sweeping.sweep import Sweep, check_planes, reach_of, self_crossing, sweep, walled
 
 _REMEDY = "use a wider bend, a smaller section or more {planes}"  # where cells fold
 
@@ -34,6 +34,7 @@ def make_sweep(
             section, notes = section_grid(shape, request, around)
         with stage("grid", seconds):
             if isinstance(path, Revolution):
+                check_planes(section, path.planes)
                 grid = revolved(walled(section), path, FLOWS)
             else:
                 grid = sweep(section, path, settings)

@@ -82,6 +82,7 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     for the section; a path that takes too many planes; as `frames_along`.
     """
     settings = settings or Sweep()
+    check_planes(section, settings.planes)
     section = walled(section)
     _check_closed(path, settings)
     s = np.linspace(0.0, path.length, settings.planes or _planes(section, path))
@@ -96,6 +97,14 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
             each[-1] = each[0]
     nodes = [_carried(block.nodes, points, x, y) for block in section.blocks]
     return thickened(section, nodes, None if path.closed else (("inlet", "inlet"), ("outlet", "outlet")))
+
+
+def check_planes(section: Grid, planes: int | None) -> None:
+    """Raise InputError if a section has more cells in so many planes than grids can have."""
+    if planes is not None:
+        shapes = (block.nodes.shape for block in section.blocks)
+        cells = sum((shape[0] - 1) * (shape[1] - 1) for shape in shapes) * (planes - 1.0)
+        check_reach(cells, "cells", f"a section in {planes} planes", "give fewer", parameter="planes")
 
 
 def _carried(plane: Floats, points: Floats, x: Floats, y: Floats) -> Floats:

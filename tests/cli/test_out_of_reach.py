@@ -104,6 +104,14 @@ def test_first_cells_off_one_wall_slide_its_nodes(meshonet: Meshonet, duct_csv: 
     assert off[side] < 5.0
 
 
+def test_planes_beyond_what_grids_can_have_are_refused_at_once(meshonet: Meshonet) -> None:
+    Path("path.csv").write_text("0 0 0\n1 0 0\n2 .3 0\n3 1 0\n")
+    done = meshonet("sweep", "circle:0.5", "path.csv", "--planes", "100000", "-o", "pipe.h5")
+    assert done.code == 2
+    assert "--planes: a section in 100000 planes takes" in done.err
+    assert not Path("pipe.h5").exists()
+
+
 @pytest.mark.parametrize(
     ("words", "noted"),
     [
