@@ -54,3 +54,14 @@ def test_the_pressure_that_a_pipe_bend_loses_is_that_of_a_grid_twice_as_fine(tmp
     coarse, fine = (value_of("pressure", printed("pipe-bend-openfoam", tmp_path, *size)) for size in sizes)
     assert coarse == pytest.approx(fine, rel=0.03)
     assert fine > 32 * 0.01 * (2 + math.pi + 3)
+
+
+@pytest.mark.client("SRFSimpleFoam")
+def test_flow_through_a_rotor_converges_and_interpolated_periodic_sides_change_nothing(tmp_path: Path) -> None:
+    ends = []
+    for kind in ("cyclic", "cyclicAMI"):
+        words = printed("blade-row", tmp_path, f"TYPE={kind}", "ITERATIONS=30")
+        first, last = (float(words[k + 1]) for k, word in enumerate(words) if word == "errors")
+        assert last < first / 20
+        ends.append(last)
+    assert ends[0] == pytest.approx(ends[1], rel=1e-3)
