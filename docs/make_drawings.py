@@ -101,6 +101,7 @@ def main() -> None:
         faces,
         network,
         levels,
+        channel,
     ):
         draw()
 
@@ -375,6 +376,41 @@ def levels() -> None:
     drawing.text((0.0, 0.2), "patches")
     drawing.text((0.0, -0.15), "plane of symmetry", FAINT, 12)
     drawing.save("levels", "Patches of a surface and the levels marched off them; red: between blocks")
+
+
+def channel() -> None:
+    """Draw the channel of a blade row with its key sections, and one of them unrolled."""
+    drawing = Drawing((-0.3, 7.6), (-0.45, 2.3), 660)
+    s = np.linspace(0.0, 1.0, 41)
+    hub = np.stack([3.0 * s, 0.35 * s**2], axis=1)
+    shroud = np.stack([3.0 * s, 2.0 - 0.25 * s], axis=1)
+    tip = hub + 0.94 * (shroud - hub)
+    for part in (1.0 - np.cos(np.linspace(0.0, np.pi, 9))) / 2.0:
+        drawing.line(hub + part * (tip - hub), GOOD, 0.8)
+    for line in (hub, shroud):
+        drawing.line(line, INK, 2.4)
+    for k in range(0, 41, 5):
+        drawing.line([hub[k], shroud[k]], FAINT, 0.8, "3 3")
+    drawing.area([hub[14], hub[25], tip[23], tip[16]], BAD)
+    drawing.text((1.5, 0.95), "blade", BAD, 12)
+    drawing.text((1.5, 2.1), "shroud, h = 1", INK, 12)
+    drawing.text((0.3, -0.2), "hub, h = 0", INK, 12, "start")
+    drawing.text((3.08, 1.6), "gap", INK, 12, "start")
+    drawing.text((3.08, 0.9), "x, r", FAINT, 12, "start")
+    t = np.linspace(0.0, 2.0 * np.pi, 61)
+    a, b = 0.62 * np.cos(t), 0.07 * np.sin(t) + 0.1 * (1.0 - np.cos(t) ** 2)
+    c, d = np.cos(0.7), np.sin(0.7)
+    blade = np.stack([5.5 + a * c - b * d, 0.9 + a * d + b * c], axis=1)
+    side = np.array([[4.0, 0.45], [5.0, 0.45], [5.95, 1.25], [7.0, 1.25]])
+    for shift in (-0.45, 0.65):
+        drawing.line(side + np.array([0.0, shift]), GOOD, 1.6)
+    drawing.line([[4.0, 0.0], [4.0, 1.1]], INK, 1.6)
+    drawing.line([[7.0, 0.8], [7.0, 1.9]], INK, 1.6)
+    drawing.area(blade, BAD)
+    drawing.line([[4.3, 0.0], [4.3, 1.1]], FAINT, 1.2, "3 3")
+    drawing.text((4.36, 0.5), "2π/N", FAINT, 12, "start")
+    drawing.text((5.9, 0.3), "m', θ at constant h", FAINT, 12, "start")
+    drawing.save("channel", "The channel in x and r with key sections, and one of them in m' and theta")
 
 
 if __name__ == "__main__":

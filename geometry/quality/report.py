@@ -12,6 +12,7 @@ from meshonet.geometry.quality.figure import Figure
 from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import Gate, Judgement, beyond
 from meshonet.geometry.quality.measure import measure, worst_cells_of
+from meshonet.geometry.quality.periodic import periods
 from meshonet.geometry.quality.profiles import CheckResult, ProfileReport, profile_report
 from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet.geometry.summary import Quality
@@ -125,6 +126,8 @@ class QualityReport:
             "walls": [_wall(row) for row in self.figures.wall_rows],
         }
         along = {"xi": growth.xi, "eta": growth.eta} | growth.families()
+        if rows := periods(grid):
+            facts["periodic"] = [vars(row) for row in rows]
         facts["growth"] = {name: extreme_dict(extreme) for name, extreme in along.items()}
         if self.profile:
             checks = [_check(result) for result in self.profile.results]

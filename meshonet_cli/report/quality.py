@@ -10,6 +10,7 @@ from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import Judgement
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.metrics import metrics_of
+from meshonet.geometry.quality.periodic import Period, periods
 from meshonet.geometry.quality.profiles import CheckResult, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
 from meshonet.geometry.quality.verdicts import named, verdict_word
@@ -59,6 +60,7 @@ class Measured(Timed):
             rows.append(lines_table(report.figures.blocks))
         if report.figures.wall_rows and (report.profile or many or grid.form == "plane"):
             rows.append(walls_table(report.figures.wall_rows))
+        rows += [_period_line(row) for row in periods(grid)]
         if report.profile or not many:
             rows.append(growth_table(report.figures))
         if report.profile:
@@ -67,6 +69,15 @@ class Measured(Timed):
         if report.comparison:
             rows.append(comparison_lines(report.comparison))
         return "\n".join(rows)
+
+
+def _period_line(row: Period) -> str:
+    """Return a period as text."""
+    if row.angle:
+        motion, size = f"turned by {row.angle:.6g} degrees", "the radius"
+    else:
+        motion, size = f"shifted by {row.shift:.6g}", "this"
+    return f"periodic sides: {motion}, nodes then {row.mismatch:.2g} of {size} apart"
 
 
 def quality_table(grid: Grid, quality: Quality) -> str:

@@ -57,7 +57,7 @@ def test_the_pressure_that_a_pipe_bend_loses_is_that_of_a_grid_twice_as_fine(tmp
 
 
 @pytest.mark.client("SRFSimpleFoam")
-def test_flow_through_a_rotor_converges_and_interpolated_periodic_sides_change_nothing(tmp_path: Path) -> None:
+def test_flow_through_a_rotor_converges_with_both_kinds_of_periodic_sides(tmp_path: Path) -> None:
     ends = []
     for kind in ("cyclic", "cyclicAMI"):
         words = printed("blade-row", tmp_path, f"TYPE={kind}", "ITERATIONS=30")

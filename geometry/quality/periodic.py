@@ -1,0 +1,79 @@
+"""How well periodic sides match: distances of their nodes after the turn or the shift between the sides.
+
+Turns are compared in cylindrical coordinates, not by the matrix that the nodes were made with.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.screw import Screw, screw_of
+from meshonet.geometry.elementary import arctan2
+
+_ALIKE = 1e-9
+"""Relative difference of motions, and of a number of periods in a turn, that is rounding."""
+
+
+@dataclass(frozen=True)
+class Period:
+    """A turn or a shift by which periodic sides differ."""
+
+    angle: float
+    """In degrees, 0 for a shift."""
+    shift: float
+    """Length of the shift, 0 for a turn."""
+    mismatch: float
+    """Largest distance of nodes after it, over their distance from the axis or over the shift."""
+
+
+def periods(grid: Grid) -> tuple[Period, ...]:
+    """Return the periods of a grid, each once."""
+    found: list[tuple[Motion, list[tuple[Floats, Floats]]]] = []
+    for each in grid.connections:
+        if each.transform is None:
+            continue
+        ways = [(way, way.transform or Motion()) for way in (each, each.reversed())]
+        known = ((way, sides) for way, own in ways for motion, sides in found if motion.alike(own, _ALIKE))
+        way, sides = next(known, (each, None))
+        if sides is None:
+            sides = []
+            found.append((each.transform, sides))
+        sides.append(_sides(grid, way))
+    return tuple(_period(screw_of(motion), sides) for motion, sides in found)
+
+
+def _sides(grid: Grid, each: Connection) -> tuple[Floats, Floats]:
+    """Return the nodes (n, 3) of both sides of a connection in one order; in the plane z is 0."""
+    pair = replace(each, transform=None).nodes(grid.face)
+    flat = (nodes.reshape(-1, nodes.shape[-1]) for nodes in pair)
+    own, donor = (np.pad(nodes, ((0, 0), (0, 3 - nodes.shape[1]))) for nodes in flat)
+    return own, donor
+
+
+def _period(screw: Screw, sides: Sequence[tuple[Floats, Floats]]) -> Period:
+    own, donor = (np.concatenate(nodes) for nodes in zip(*sides, strict=True))
+    if not screw.angle:
+        length = float(norms(screw.shift))
+        return Period(0.0, length, float(norms(donor - own - screw.shift).max()) / length)
+    turn = 2.0 * math.pi / screw.angle
+    angle = 2.0 * math.pi / round(turn) if abs(turn - round(turn)) <= _ALIKE * abs(turn) else screw.angle
+    (x, r, a), (x2, r2, b) = (_cylindrical(nodes, screw) for nodes in (own, donor))
+    across = np.cross(a, b)
+    around = arctan2((across * screw.axis).sum(axis=1), (a * b).sum(axis=1)) - angle
+    off = np.stack([x2 - x - (screw.shift * screw.axis).sum(), r2 - r, r * around])
+    return Period(math.degrees(abs(angle)), 0.0, float((norms(off.T) / np.maximum(r, 1e-300)).max()))
+
+
+def _cylindrical(nodes: Floats, screw: Screw) -> tuple[Floats, Floats, Floats]:
+    """Return places along the axis, distances from it, and the ways (n, 3) from it to nodes."""
+    off = nodes - screw.centre
+    x = (off * screw.axis).sum(axis=1)
+    way = off - x[:, None] * screw.axis
+    return x, norms(way), way
