@@ -84,13 +84,12 @@ def test_shapes_that_are_nearly_the_same_are_repaired_alike_with_a_wide_margin()
     rounding is enough, so that one margin of several may come out otherwise: 0.005 to 0.03, and 0.08 for 6.
     """
     moved = {}
+    starts = [solve(family("wrench").boundary(opening, 101, 101)).grid.nodes for opening in (0.25, 0.26)]
     for margin in (6, 9, 10, 12, 14, 15):
-        made = []
-        for opening in (0.25, 0.26):
-            nodes = solve(family("wrench").boundary(opening, 101, 101)).grid.nodes.copy(order="K")
+        made = [nodes.copy(order="K") for nodes in starts]
+        for nodes in made:
             assert folded(nodes) > 0
             assert repair(nodes, False, margin) == 0
-            made.append(nodes)
         moved[margin] = np.abs(made[1] - made[0]).max()
     narrow, *wide = moved.values()
     assert np.median(wide) < 0.01
