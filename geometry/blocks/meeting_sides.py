@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry import elementary
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import Floats, Side, norms
 from meshonet.geometry.blocks.block import PLACES, Block, Range, form_of, sides_of
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.outer_patches import JOINED, rectangles
@@ -144,7 +144,7 @@ def _edges(corners: Floats) -> Floats:
     ring = corners.reshape(len(corners), -1, corners.shape[-1])
     ring = ring[:, [0, 2, 3, 1]] if ring.shape[1] == 4 else ring
     steps = (np.roll(ring, -1, axis=1) - ring)[:, : 1 if ring.shape[1] == 2 else 4]
-    return np.asarray(np.sqrt((steps**2).sum(axis=-1)))
+    return norms(steps)
 
 
 def _extended(corners: Floats) -> NDArray[np.bool_]:

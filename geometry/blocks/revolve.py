@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.arrays import Floats, as_planar, extent_of
 from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.connection import Connection, Motion
@@ -202,7 +202,7 @@ def _turned(plane: Floats, frame: AxisFrame, turn: Revolution) -> Floats:
     nodes = frame.places(plane[:, :, None], turn.angles)
     if turn.closed:
         nodes[:, :, -1] = nodes[:, :, 0]
-    return np.moveaxis(np.ascontiguousarray(np.moveaxis(nodes, -1, 0)), 0, -1)
+    return as_planar(nodes)
 
 
 def _with_axis(grid: Grid, frame: AxisFrame) -> Grid:
@@ -238,5 +238,4 @@ def bent(nodes: Sequence[Floats], turn: Revolution) -> list[Floats]:
         max(float(each[..., 2].max()) for each in nodes),
     )
     angle = math.radians(turn.degrees) / (high - low)
-    made = [frame.places(each[..., :2], angle * (each[..., 2] - low)) for each in nodes]
-    return [np.moveaxis(np.ascontiguousarray(np.moveaxis(each, -1, 0)), 0, -1) for each in made]
+    return [as_planar(frame.places(each[..., :2], angle * (each[..., 2] - low))) for each in nodes]

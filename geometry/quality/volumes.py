@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, Side, as_planar, percentiles_of
+from meshonet.geometry.arrays import Floats, Side, as_planar, norms, percentiles_of
 from meshonet.geometry.blocks.block import PLACES, Block
 from meshonet.geometry.blocks.connection import cells_at
 from meshonet.geometry.blocks.grid import Grid
@@ -67,7 +67,7 @@ def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[Ba
                 points[a, b, 1] - points[a, b, 0],
             ]
         )
-        size = np.sqrt((edges**2).sum(axis=-1)).prod(axis=0)
+        size = norms(edges).prod(axis=0)
         jacobian = (edges[0] * np.cross(edges[1], edges[2])).sum(axis=-1)
         scaled = np.divide(jacobian, size, out=np.ones_like(size), where=size > 0)
         least = np.minimum(least, scaled)

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, as_planar, norms
 from meshonet.geometry.blocks.extrude import End, thickened
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.elementary import exp
@@ -136,10 +136,5 @@ def _lofted(
         ni, nj = block.counts
         unit = np.stack([plane.blocks[k].nodes.reshape(-1, 2) for plane in planes])
         made = stack.lofted(unit, z, weight).reshape(len(z), ni, nj, 3)
-        nodes.append(_planar(made))
+        nodes.append(as_planar(made.transpose(1, 2, 0, 3)))
     return replace(thickened(planes[0], nodes, ends), name=stack.name)
-
-
-def _planar(planes: Floats) -> Floats:
-    """Return nodes (ni, nj, nk, 3) in planar memory layout from planes (nk, ni, nj, 3)."""
-    return np.moveaxis(np.ascontiguousarray(planes.transpose(3, 1, 2, 0)), 0, -1)

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
@@ -67,9 +66,9 @@ class Passage:
         axial = passage.axial(points)
         before, behind = min(near[0] * abs(pitch), inlet), min(near[1] * abs(pitch), outlet)
         first, last = float(axial.min()) - before, float(axial.max()) + behind
-        blade = Loop(_polygon(passage.forward(points)), front.corners, front.names)
+        blade = Loop.of_polygon(passage.forward(points), front.corners, front.names)
         ends = [
-            Loop(_polygon(passage.line(distance, _ROUND)), (), (side,))
+            Loop.of_polygon(passage.line(distance, _ROUND), (), (side,))
             for distance, side in ((first, "inlet"), (last, "outlet"))
         ]
         return cls(front, passage, Domain((blade, *ends), name), first, last)
@@ -94,10 +93,6 @@ class Passage:
         here = np.append(loop.curve.knots, loop.length)
         there = np.append(self.front.curve.knots, self.front.length)
         return np.asarray(np.interp(np.mod(arcs, loop.length), here, there))
-
-
-def _polygon(points: Floats) -> Curve:
-    return Curve(points, closed=True, corners=(), straight=np.ones(len(points), dtype=bool))
 
 
 def laid_out(layout: Layout, passage: Passage, cut: Indices) -> tuple[Layout, Indices]:
@@ -164,7 +159,7 @@ def _closed(layout: Layout, passage: Passage, lower: Indices, upper: Indices) ->
     order = np.concatenate(ring)
     sizes = np.cumsum([0, *(len(part) for part in ring)])
     corners = [0, len(lower) - 1, int(sizes[2]), int(sizes[3]) - 1]
-    outer = Loop(_polygon(nodes[order]), tuple(corners), STRETCH_NAMES)
+    outer = Loop.of_polygon(nodes[order], tuple(corners), STRETCH_NAMES)
     loop, arc, cells = np.where(places.loop == BLADE, 1, -1), places.arc.copy(), places.cells.copy()
     cells[loop < 0] = 0
     loop[order], arc[order] = 0, outer.curve.knots
