@@ -2,8 +2,9 @@
 
 ::
 
-    blade   O grids marched from the sections, between two walls, ``hub`` and ``shroud``. Twist and scaling
-            decrease away from the blade, so that the far field is a straight cylinder.
+    blade   O grids marched from the sections, between two walls, ``hub`` and ``shroud``. Twist and scaling,
+            and the differences between the grids, decrease away from the blade, so that the far field is a
+            straight cylinder.
     duct    one block if all sections have four sides, else five; ``inlet`` and ``outlet`` at the ends.
 """
 
@@ -16,7 +17,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, as_planar, norms
 from meshonet.geometry.blocks.extrude import End, thickened
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.elementary import exp
+from meshonet.geometry.elementary import arctan2, cos, exp, sin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.section import Section
 from meshonet.geometry.sections.stack import Stack
@@ -34,6 +35,7 @@ from meshonet.solvers.sweeping import butterfly
 
 _FADE = 4.0
 """Distance from a blade, in chords, at which its twist and scaling are reduced to one third."""
+_CENTRE = np.array([0.5, 0.0])  # of the far field of a section of unit chord
 _GROWTH = 1.2  # of layers where none is given, as of volumes that are marched
 
 
@@ -51,16 +53,38 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
     for section in stack.sections:
         nodes, note = unit_nodes(section, plan)
         wall = nodes[::-1].copy()  # clockwise, as planar grids around bodies are
-        edges = o_boundary(wall, rows, np.array([0.5, 0.0]), request.far_field, chord=1.0, turned=False)
+        edges = o_boundary(wall, rows, _CENTRE, request.far_field, chord=1.0, turned=False)
         march = GridRequest(method="hyperbolic", first_cell=height / section.chord)
         planes.append(make_grid(edges, march).grid)
         notes.append(note)
     nodes_of = np.stack([plane.nodes for plane in planes])
     away = norms(nodes_of - nodes_of[:, :, :1]).mean(axis=0)
     weight = exp(-((away / min(_FADE, request.far_field / 3.0)) ** 2))
+    planes = [
+        plane.with_nodes(each) for plane, each in zip(planes, _alike_far_away(nodes_of, weight), strict=True)
+    ]
     grid = _lofted(stack, planes, request.span, (("hub", "wall"), ("shroud", "wall")), weight.ravel())
     named = [replace(p, name="blade", kind="wall") if p.name == "wall" else p for p in grid.patches]
     return replace(grid, patches=tuple(named)), tuple(dict.fromkeys(note for note in notes if note))
+
+
+def _alike_far_away(grids: Floats, weight: Floats) -> Floats:
+    """Return O grids (k, ni, nj, 2) moved to their mean in polar coordinates, but for a part of `weight`.
+
+    Around sections of unlike shapes lines of equal number leave in unlike directions: lines between the grids
+    would lean.
+    """
+    off = grids - _CENTRE
+    radius = norms(off)
+    angle = np.unwrap(arctan2(off[..., 1], off[..., 0]), axis=1)
+    turn = (1.0 - weight) * (angle.mean(axis=0) - angle)
+    scale = 1.0 + (1.0 - weight) * (radius.mean(axis=0) / radius - 1.0)
+    c, s = scale * cos(turn), scale * sin(turn)
+    x, y = off[..., 0], off[..., 1]
+    nodes = _CENTRE + np.stack([c * x - s * y, s * x + c * y], axis=-1)
+    nodes[:, -1] = nodes[:, 0]
+    nodes[:, :, 0] = grids[:, :, 0]
+    return nodes
 
 
 def duct_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:

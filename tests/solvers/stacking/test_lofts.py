@@ -7,6 +7,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import measure
 from meshonet.geometry.sections.section import Section
 from meshonet.geometry.sections.stack import Stack
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.circle import Circle
 from meshonet.geometry.shapes.outline import Outline
@@ -20,6 +21,14 @@ BOX = Outline(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]), "box")
 def blade(twist: float = -30.0) -> Stack:
     root = Section(naca("2412"), 1.0, 0.0)
     return Stack((root, Section(naca("0009"), 0.5, 2.0, x=0.1, twist=twist)), kind="blade")
+
+
+def thick_flatback() -> Airfoil:
+    """A section 45 % thick with a base of 23 % of the chord."""
+    x = 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 81)))
+    half = 2.25 * (0.2969 * np.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+    half += 0.115 * x**3
+    return Airfoil(np.concatenate([np.stack([x, half], axis=1)[::-1], np.stack([x, -half], axis=1)[1:]]))
 
 
 def duct(*shapes, chords=(1.0, 2.0)) -> Stack:
@@ -63,6 +72,17 @@ def test_a_blade_has_its_sections_walls_and_a_far_field_that_is_a_cylinder(twist
         ("blade", "wall", "south"), ("farfield", "farfield", "north"),
         ("hub", "wall", "bottom"), ("shroud", "wall", "top"),
     }  # fmt: skip
+
+
+def test_lines_between_unlike_sections_of_a_blade_do_not_lean_in_the_far_field():
+    flatback = Section(thick_flatback(), 0.7, 1.6, x=0.1)
+    stack = Stack((Section(naca("0009"), 1.0, 0.0), flatback), kind="blade")
+    grid, _ = blade_volume(stack, StackRequest(around=129, first_cell=1e-5))
+    nodes = grid.blocks[0].nodes
+    far = nodes[:, -1]
+    lean = np.linalg.norm(far[:, -1, :2] - far[:, 0, :2], axis=-1)
+    assert lean.max() < 1e-2 * 15.0
+    assert measure(grid)["scaled_jacobian"].min > 0.45
 
 
 def test_first_cells_of_a_blade_are_as_high_as_asked_at_its_sections():
