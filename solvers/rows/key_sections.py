@@ -119,13 +119,17 @@ def planned(
     at = plane.places_of(whole.mesh.places.arc[columns[:, 0]])
     places = at_corners(opposite_places(at) if opposite else at, plane.corners)
     growth = plane.cascade.layers.growth
-    places = even_wall_places(planes, places, plane.corners, growth, opposite=opposite)
+    even = even_wall_places(planes, places, plane.corners, growth, opposite=opposite)
     m = whole.mesh.nodes[:, 0]
     near = 1e-9 * (m.max() - m.min())
     ends = np.flatnonzero(m <= m.min() + near), np.flatnonzero(m >= m.max() - near)
-    plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, places, wake)
+    plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, even, wake)
     section = KeySection(plane, _optimum(plan, whole, FINE, ends_slide=True), at)
-    return plan, _placed(plan, section)
+    try:
+        return plan, _placed(plan, section)
+    except NoValidGridError:  # layers are folded where nodes had to move far
+        plan = replace(plan, places=places)
+        return plan, _placed(plan, section)
 
 
 def next_section(plan: SectionPlan, before: KeySection, plane: SectionPlane) -> KeySection:
