@@ -1,5 +1,6 @@
 """The joint optimum of a quad mesh: what it is, what stays, and that it is found from folded starts."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.solvers.blocking.layers.even_mesh import consecutive_edges, growth_along
 from meshonet.solvers.energy.quad_problem import Problem, smallest_jacobian, unknowns_of
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.energy.walls import turned, walls_of
@@ -82,14 +84,15 @@ def test_it_is_the_functional_of_its_definition() -> None:
     assert value == pytest.approx(functional(where, 0.9, 2e-3), rel=1e-12)
 
 
+@pytest.mark.parametrize("growth", [(), (3.0, 0.05)], ids=["", "growth"])
 @pytest.mark.parametrize("epsilon", [0.0, 2.0])
-def test_its_gradient_is_that_of_finite_differences(epsilon: float) -> None:
+def test_its_gradient_is_that_of_finite_differences(epsilon: float, growth: tuple[float, ...]) -> None:
     mesh = shaken(optimise(butterfly(circle(40, 3.0), core=3, rings=2)).mesh, 0.05 if epsilon == 0 else 0.8)
     problem = problem_of(mesh)
     unknowns = 2 * len(problem.inner) + int(problem.slides.sum())
     gradient, other = np.empty(unknowns), np.empty(unknowns)
     terms = 0.9 if epsilon == 0 else 0.1, 2e-3, epsilon, 0.3
-    noise = 1e-9 * abs(problem.descent.evaluate(*terms, gradient))
+    noise = 1e-9 * abs(problem.descent.evaluate(*terms, gradient, *growth))
     nodes, arc, step = problem.nodes.copy(), problem.arc.copy(), 1e-6
     for k in range(unknowns):
         values = []
@@ -99,8 +102,25 @@ def test_its_gradient_is_that_of_finite_differences(epsilon: float) -> None:
                 problem.nodes[problem.inner[k // 2], k % 2] += sign * step
             else:
                 problem.arc[np.flatnonzero(problem.of_wall == k)] += sign * step
-            values.append(problem.descent.evaluate(*terms, other))
+            values.append(problem.descent.evaluate(*terms, other, *growth))
         assert gradient[k] == pytest.approx((values[0] - values[1]) / (2 * step), rel=2e-4, abs=noise + 1e-7)
+
+
+def test_growth_beyond_the_limit_is_made_less_along_lines_and_around_irregular_nodes() -> None:
+    mesh = optimise(butterfly(circle(), rings=2)).mesh
+    fixed = mesh.wall_nodes
+    limit = math.log(1.1)
+    before, after = (
+        largest_growth(optimise(mesh, held=fixed, iterations=300, growth=(weight, limit)).mesh)
+        for weight in (0.0, 30.0)
+    )
+    assert before > 1.3
+    assert after < 1.0 + 0.6 * (before - 1.0)
+
+
+def largest_growth(mesh: QuadMesh) -> float:
+    z = mesh.nodes @ np.array([1.0, 1j])
+    return float(np.exp(np.abs(growth_along(z, consecutive_edges(mesh))).max()))
 
 
 def test_a_rectangle_becomes_squares() -> None:

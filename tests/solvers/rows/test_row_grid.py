@@ -10,6 +10,7 @@ import pytest
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.pipeline.rows import make_row
+from meshonet.solvers.rows.key_tables import key_tables
 from meshonet.solvers.rows.request import RowRequest, row_request
 
 FIRST = 1e-3
@@ -112,6 +113,33 @@ def test_the_gap_has_rows_enough_and_narrow_ones_lower_first_cells_and_say_so() 
 def test_more_cells_than_asked_for_are_said() -> None:
     result = make_row(blade_row.blade_row(), RowRequest(first_cell=FIRST, cells=20_000, threads=1))
     assert any("instead of 20000" in note for note in result.notes)
+
+
+@pytest.mark.parametrize("gap", GAPS)
+def test_cells_grow_by_a_limited_ratio_along_lines_inside_blocks(gap: str) -> None:
+    ratios = []
+    for block in made(gap).blocks:
+        for axis in range(3):
+            steps = np.moveaxis(np.linalg.norm(np.diff(block.nodes, axis=axis), axis=-1), axis, 0)
+            ratios.append((steps[1:] / steps[:-1]).ravel())
+    growth = np.exp(np.abs(np.log(np.concatenate(ratios))))
+    assert np.percentile(growth, 98.0) < 1.27
+    if gap == "none":
+        assert growth.max() < 1.6
+
+
+def test_lines_behind_the_blade_bend_into_the_direction_of_its_mean_line() -> None:
+    """Halfway up that is the stagger of 29 degrees, less 13 at the end of the arc."""
+    row = blade_row.blade_row()
+    keys = key_tables(row, FIRST, 1.2, 1500)
+    section = keys.sections[len(keys.sections) // 2]
+    edge, end = section.plane.edges[1, 0], section.plane.map.length
+    m = np.linspace(0.0, end, 2001)
+    line = keys.plan.bent(section.plane, np.stack([m, np.zeros_like(m)], axis=1))
+    assert (line[m < edge, 1] == 0.0).all()
+    slope = np.gradient(line[:, 1], m)
+    assert slope[-20:] == pytest.approx(math.tan(math.radians(16.0)), abs=0.05)
+    assert np.abs(np.diff(slope)).max() < 0.01
 
 
 def test_bits_do_not_depend_on_the_number_of_threads() -> None:
