@@ -73,6 +73,12 @@ class QuadMesh:
         """(e, 2) node numbers of each edge, the lower first, in ascending order."""
         return self._sides[2]
 
+    @property
+    def edge_lengths(self) -> Floats:
+        """(e,) lengths of the edges."""
+        first, second = self.nodes[self.edges].transpose(1, 2, 0)
+        return np.hypot(*(second - first))
+
     def edges_between(self, first: Indices, second: Indices) -> Indices:
         """Return the numbers of the edges between pairs of nodes, given as two arrays of one shape."""
         low, high, n = np.minimum(first, second), np.maximum(first, second), len(self.nodes)

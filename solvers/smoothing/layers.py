@@ -18,7 +18,7 @@ from meshonet.geometry.elementary import exp, log
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import line_neighbours
-from meshonet.solvers.smoothing.spacing import THIN, lengths, thin_heights
+from meshonet.solvers.smoothing.spacing import THIN, thin_heights
 
 ROWS = 200
 """Largest number of rows of layers."""
@@ -94,7 +94,7 @@ def _lines(mesh: QuadMesh) -> _WallLines:
 
 def _thin(mesh: QuadMesh) -> NDArray[np.bool_]:
     """Return for each edge (e,) whether it is the short side of all adjacent cells, by `THIN`."""
-    ratio = mesh.aspects(lengths(mesh))[:, None]
+    ratio = mesh.aspects(mesh.edge_lengths)[:, None]
     short = np.concatenate([ratio, 1.0 / ratio, ratio, 1.0 / ratio], axis=1) > THIN
     wide = np.zeros(len(mesh.edges), dtype=bool)
     wide[mesh.edge_of[~short]] = True

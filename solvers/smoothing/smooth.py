@@ -24,7 +24,7 @@ from meshonet.solvers.energy.quads import FREE, optimise
 from meshonet.solvers.smoothing.hold_back import held_back
 from meshonet.solvers.smoothing.judge import PlaneMeasures, measures
 from meshonet.solvers.smoothing.layers import with_layers
-from meshonet.solvers.smoothing.spacing import lengths, wanted_lengths
+from meshonet.solvers.smoothing.spacing import wanted_lengths
 from meshonet.solvers.solution import Outcome, Solution, timed
 
 METHOD = "variational"
@@ -66,7 +66,7 @@ def _optima(given: Layout, *, slide: bool, iterations: int) -> Iterator[Layout]:
     fixed = (places.loop >= 0) & (places.partner < 0)
     fixed[places.partner[places.partner >= 0]] = False
     stays = np.zeros(len(mesh.nodes), dtype=bool) if slide else fixed
-    own, even = lengths(mesh), wanted_lengths(mesh, EVEN, slide=slide)
+    own, even = mesh.edge_lengths, wanted_lengths(mesh, EVEN, slide=slide)
     for wanted in [own] if np.array_equal(even, own) else [even, own]:
         towards = partial(
             optimise,

@@ -30,18 +30,12 @@ neighbours.
 """
 
 
-def lengths(mesh: QuadMesh) -> Floats:
-    """Return the lengths (e,) of `mesh.edges`."""
-    ends = mesh.nodes[mesh.edges]
-    return np.asarray(np.hypot(*(ends[:, 1] - ends[:, 0]).T))
-
-
 def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
     """Return target lengths (e,) of `mesh.edges` whose neighbours differ by about the factor `most` at most.
 
     Nodes of the boundary are fixed unless they `slide`.
     """
-    own = log(lengths(mesh))
+    own = log(mesh.edge_lengths)
     cap, stays = math.log(most), thin_heights(mesh)
     if not slide:
         stays |= mesh.on_wall
@@ -63,7 +57,7 @@ def wanted_lengths(mesh: QuadMesh, most: float, *, slide: bool) -> Floats:
 def thin_heights(mesh: QuadMesh) -> NDArray[np.bool_]:
     """Return for each edge (e,) whether it leaves the boundary at a cell that is thin in its direction."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
-    ratio = mesh.aspects(lengths(mesh))[cell]
+    ratio = mesh.aspects(mesh.edge_lengths)[cell]
     thin = np.where(side % 2 == 0, ratio < 1.0 / THIN, ratio > THIN)
     beside = mesh.edge_of[cell[:, None], (side[:, None] + [1, 3]) % 4][thin]
     heights = np.zeros(len(mesh.edges), dtype=bool)

@@ -19,7 +19,7 @@ from meshonet.geometry.quality.checkmesh import faces
 from meshonet.geometry.quality.measure import measure
 from meshonet.solvers.smoothing.refine import refined
 from meshonet.solvers.smoothing.smooth import smooth
-from meshonet.solvers.smoothing.spacing import lengths, thin_heights, wanted_lengths
+from meshonet.solvers.smoothing.spacing import thin_heights, wanted_lengths
 from meshonet.solvers.solution import Outcome
 
 
@@ -50,8 +50,8 @@ def nozzle(first: float = 0.01) -> Grid:
 def heights(grid: Grid, like: Grid) -> Floats:
     """Heights of the first cells that are thin, and thinner than 0.05, in a grid of the same blocks."""
     mesh = layout_of(like).mesh
-    of = thin_heights(mesh) & (lengths(mesh) < 0.05)
-    return lengths(layout_of(grid).mesh)[of]
+    of = thin_heights(mesh) & (mesh.edge_lengths < 0.05)
+    return layout_of(grid).mesh.edge_lengths[of]
 
 
 @pytest.mark.parametrize("slide", [False, True])
@@ -117,9 +117,9 @@ def test_jumps_between_blocks_are_evened_out_where_the_boundary_may_slide() -> N
 
 def test_lengths_change_only_where_neighbours_differ_by_more_than_asked() -> None:
     mesh = layout_of(o_ring(m=9, growth=1.25)).mesh
-    np.testing.assert_allclose(wanted_lengths(mesh, 1.3, slide=True), lengths(mesh))
+    np.testing.assert_allclose(wanted_lengths(mesh, 1.3, slide=True), mesh.edge_lengths)
     evened = wanted_lengths(mesh, 1.1, slide=True)
-    assert np.abs(np.log(evened / lengths(mesh))).max() > 0.05
+    assert np.abs(np.log(evened / mesh.edge_lengths)).max() > 0.05
 
 
 def test_folded_blocks_are_unfolded() -> None:

@@ -168,8 +168,7 @@ def _optimised(
     mesh = layout.mesh
     targets = counts.metric.gradual(mesh, SWEEPS)
     if rows.loops:
-        step = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
-        targets *= exp(middle(log(np.hypot(*step.T) / targets)))  # cells are larger than they will be
+        targets *= exp(middle(log(mesh.edge_lengths / targets)))  # cells are larger than they will be
         for number, loop in enumerate(rows.loops):
             for table in rows.columns(layout, number):
                 thick = _thickness(walls, mesh, table[:, 0], loop, counts.scale)

@@ -130,8 +130,7 @@ def _beyond(layout: Layout, tables: list[Indices]) -> Floats:
     for table in tables:
         inside[table] = True
         front[table[:, -1]] = True
-    length = np.hypot(*(mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]).T)
-    beyond = np.zeros(len(mesh.nodes))
+    length, beyond = mesh.edge_lengths, np.zeros(len(mesh.nodes))
     for here, there in ((0, 1), (1, 0)):
         leaving = front[mesh.edges[:, here]] & ~inside[mesh.edges[:, there]]
         np.maximum.at(beyond, mesh.edges[leaving, here], length[leaving])

@@ -67,8 +67,7 @@ class BaseComplex:
     def side_lengths(self, unit: Floats | None = None) -> Floats:
         """Return the lengths (b, 4) of south, north, west and east of each block, in units (e,) of edges."""
         edge, first, _ = self.sides
-        step = self.mesh.nodes[self.mesh.edges[:, 1]] - self.mesh.nodes[self.mesh.edges[:, 0]]
-        length = np.hypot(step[:, 0], step[:, 1])
+        length = self.mesh.edge_lengths
         if unit is not None:
             length = length / unit
         along = np.where(edge >= 0, length[edge], 0.0)

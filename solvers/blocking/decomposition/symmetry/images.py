@@ -83,8 +83,7 @@ def _image(mesh: QuadMesh, mirror: Mirror) -> Indices | None:
     loops = np.where(places.loop >= 0, mirror.loops[places.loop], -1)
     suits = np.array_equal(places.loop[to], loops) and np.array_equal(places.cells[to], places.cells)
     off = norms(mirror.images(mesh.nodes) - mesh.nodes[to]).mean()
-    edges = norms(mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]])
-    return to if suits and off < edges.mean() else None
+    return to if suits and off < mesh.edge_lengths.mean() else None
 
 
 def _continued(mesh: QuadMesh, quad: int, image: int, corner: int) -> Indices | None:
