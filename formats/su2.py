@@ -7,6 +7,7 @@ comments to copy there. Meshes that are read give boundaries, from points, cells
 https://su2code.github.io/docs_v7/Mesh-File/
 """
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import BinaryIO
@@ -30,6 +31,8 @@ _KINDS = {2: "3", 4: "9", 8: "12"}
 """VTK's numbers of lines, quadrilaterals and hexahedra, by their number of nodes."""
 _NODES = {b"3": 2, b"5": 3, b"9": 4}
 """Number of nodes of lines, triangles and quadrilaterals, by VTK's numbers."""
+_ROUNDING = 1e-14
+"""Relative error of an angle that comes from a rotation matrix."""
 _CUT = "the file is cut short: write it again"
 """Remedy for a truncated file."""
 
@@ -66,10 +69,17 @@ def _periodic(mesh: Unstructured, word: Mapping[str, str]) -> str:
     pairs = []
     for pair in mesh.periodic:
         screw = screw_of(pair.motion)
-        numbers = *screw.centre, *np.degrees(screw.angles), *screw.shift
+        numbers = *screw.centre, *map(_degrees, screw.angles.tolist()), *screw.shift
         listed = ", ".join(f"{number + 0.0:.17g}" for number in numbers)
         pairs.append(f"{word[pair.name]}, {word[pair.partner]}, {listed}")
     return f"% The configuration file needs this line:\n% MARKER_PERIODIC= ( {', '.join(pairs)} )\n"
+
+
+def _degrees(angle: float) -> float:
+    """Return an angle in degrees; one that is a whole part of the turn, to rounding, is so exactly."""
+    value = math.degrees(angle)
+    parts = round(360.0 / value) if abs(value) > _ROUNDING else 0
+    return 360.0 / parts if parts and abs(360.0 / parts - value) <= _ROUNDING * abs(value) else value
 
 
 def _write_cells(stream: BinaryIO, nodes: Indices) -> None:

@@ -76,6 +76,7 @@ def test_su2_turns_one_periodic_marker_to_the_other(passage: Grid, copies: int, 
     numbers = [float(word) for word in line[2].split(",")]
     assert numbers == pytest.approx([0, 0, 0, numbers[3], 0, 0, 0, 0, 0], abs=1e-300)
     assert abs(numbers[3]) == pytest.approx(copies * 360.0 / BLADES, rel=1e-14)
+    assert copies > 1 or abs(numbers[3]) == 360.0 / BLADES
     there, partner = turned(mesh.on(line[0]), numbers[3]), mesh.on(line[1])
     near = np.sqrt(((there[:, None] - partner) ** 2).sum(axis=-1)).min(axis=1)
     assert near.max() < 1e-13
