@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.errors import InputError
@@ -18,6 +19,19 @@ _OPEN = 0.1
 """Widest base of a trailing edge between the first and the last point, over the size of the profile."""
 _STEPS = 3.0
 """The same in longest steps, for profiles of few points."""
+
+
+def as_points(values: ArrayLike, columns: int) -> Floats:
+    """Return values as an array (n, columns) of numbers. Raises InputError: they are none."""
+    try:
+        points = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        points = np.empty(0)
+    if points.ndim != 2 or points.shape[1] != columns or not np.isfinite(points).all():
+        shape = f" of shape {points.shape}" if points.size else ""
+        problem = f"no points{shape}" if np.isfinite(points).all() else "points that are not finite"
+        raise InputError(problem, f"give numbers (n, {columns})")
+    return points
 
 
 def apart(points: Floats, *, closed: bool) -> Floats:

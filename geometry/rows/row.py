@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Integral, Real
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.blade import BladeSurface
 from meshonet.geometry.rows.channel import Channel
+from meshonet.geometry.rows.profile_points import as_points
 
 FEWEST, MOST = 2, 1000
 """Blades of a row."""
@@ -52,14 +55,23 @@ class Row:
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        if not FEWEST <= self.blades <= MOST:
-            raise InputError(f"{self.blades} blades", f"use {FEWEST} to {MOST}", place="blades")
+        if not isinstance(self.blades, Integral) or not FEWEST <= self.blades <= MOST:
+            remedy = f"use a whole number from {FEWEST} to {MOST}"
+            raise InputError(f"{self.blades} blades", remedy, place="blades")
         if len(self.profiles) < 2:
             problem = f"{len(self.profiles)} of a blade"
             raise InputError(problem, "give two or more, from hub to casing", place="profiles")
         for place, gap in (("tip_gap", self.tip_gap), ("hub_gap", self.hub_gap)):
-            if not gap >= 0.0:
-                raise InputError(f"{gap:g} is negative", "use 0 or more", place=place)
+            if not isinstance(gap, Real) or not 0.0 <= gap < math.inf:
+                raise InputError(f"{gap} is no width of a gap", "use 0 or more", place=place)
+        for place in ("hub", "shroud"):
+            with in_place(place):
+                object.__setattr__(self, place, as_points(getattr(self, place), 2))
+        profiles = []
+        for number, points in enumerate(self.profiles, start=1):
+            with in_place(f"profile {number}"):
+                profiles.append(as_points(points, 3))
+        object.__setattr__(self, "profiles", tuple(profiles))
         self.surface.check_pitch(self.pitch)
 
     @cached_property

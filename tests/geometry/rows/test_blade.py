@@ -104,3 +104,31 @@ def test_blades_that_touch_are_refused() -> None:
 def test_points_that_repeat_each_other_do_not_matter() -> None:
     twice = [np.repeat(p, 2, axis=0) for p in blade_row.profiles()]
     assert np.array_equal(section(twice), section(blade_row.profiles()))
+
+
+def test_a_row_may_be_given_as_lists() -> None:
+    lists = [p.tolist() for p in blade_row.profiles()]
+    row = Row(lists, blade_row.HUB.tolist(), blade_row.SHROUD.tolist(), np.int64(23), np.float32(0.0))
+    u = np.linspace(0.0, 1.0, 9)
+    assert np.array_equal(row.surface.section(0.5, u), blade_row.blade_row().surface.section(0.5, u))
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"profiles": [p[:, :2] for p in blade_row.profiles()]}, r"profile 1: no points of shape \(160, 2\)"),
+        ({"profiles": [p * np.nan for p in blade_row.profiles()]}, "profile 1: points that are not finite"),
+        ({"profiles": blade_row.profiles()[0]}, r"profile 1: no points of shape \(3,\)"),
+        ({"profiles": [["a"]] * 3}, "profile 1: no points"),
+        ({"hub": [1, 2, 3]}, r"hub: no points of shape \(3,\); give numbers \(n, 2\)"),
+        ({"shroud": blade_row.HUB + np.inf}, "shroud: points that are not finite"),
+        ({"blades": 2.5}, "blades: 2.5 blades; use a whole number"),
+        ({"blades": "23"}, "blades: 23 blades; use a whole number"),
+        ({"tip_gap": np.nan}, "tip_gap: nan is no width of a gap"),
+        ({"hub_gap": "1 %"}, "hub_gap: 1 % is no width of a gap"),
+    ],
+)
+def test_what_is_no_row_in_python_is_refused(change, words: str) -> None:
+    given = {"profiles": blade_row.profiles(), "hub": blade_row.HUB, "shroud": blade_row.SHROUD, "blades": 23}
+    with pytest.raises(InputError, match=words):
+        Row(**(given | change))
