@@ -14,6 +14,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.neural.devices import INSTALL_TORCH
 
 if TYPE_CHECKING:
+    from meshonet.geometry.blocks.six_faces import SixFaces
     from meshonet.solvers.neural.fit.loop import Progress
     from meshonet.solvers.neural.fit.plan import Plan
     from meshonet.solvers.neural.samples import Samples
@@ -105,13 +106,14 @@ def train(
     except ImportError:
         raise InputError("training needs torch", INSTALL_TORCH) from None
     from meshonet.solvers.neural.fit.team import team
-    from meshonet.solvers.neural.fit.train import standard
+    from meshonet.solvers.neural.fit.train import OF_VOLUMES, standard
     from meshonet.solvers.neural.fit.train import train as fit
     from meshonet.solvers.neural.registry import load
 
     torch.set_num_threads(threads)
     sources = [str(d) for d in ([datasets] if isinstance(datasets, str | Path) else datasets)]
     name = model or _suited(sources[0], from_format)
+    volumes = _volumes(sources, from_format, split) if name == "meshnet" else []
     own, chosen = name in ("strip", "quad"), dict(settings or {})
     members = team(plan.get("device") or "auto")
     say = note if note and members.leads else lambda _: None
@@ -123,7 +125,7 @@ def train(
             raise InputError("the strip operator takes no {settings}", f"leave it {another}")
         if own and (split or plan.get("points")):
             raise InputError(f"the {name} operator takes no {{split}} or {{points}}", f"leave them {another}")
-        full = _full_plan(standard(name), plan, long=not own)
+        full = _full_plan(standard(OF_VOLUMES if volumes else name), plan, long=not own)
         choices: dict[str, Any] = {"settings": chosen}
         data: Any
         if name == "strip":
@@ -134,12 +136,14 @@ def train(
             data = quads_of(read_grids(source, from_format) for source in sources)
             say(f"{len(data)} domains solved by both methods")
             choices = {"initial": None if initial is None else load(initial), "weights": chosen}
+        elif volumes:
+            data = volumes
         else:
             data = _samples(sources, split, from_format)
         recipe = {"command": "meshonet train", "datasets": [Path(source).name for source in sources]}
         figures = fit(
-            name, data, path, full, members, recipe=recipe, held_out=held_out, resume=resume,
-            report=report if members.leads else None, **choices,
+            OF_VOLUMES if volumes else name, data, path, full, members, recipe=recipe, held_out=held_out,
+            resume=resume, report=report if members.leads else None, **choices,
         )  # fmt: skip
     finally:
         members.close()
@@ -180,6 +184,19 @@ def _points(text: str) -> tuple[int, int] | None:
         raise InputError(problem, "use all or e.g. 1200", parameter="points")
     boundary = int(text) // 6
     return int(text) - boundary, boundary
+
+
+def _volumes(sources: Sequence[str], fmt: str | None, way: str | None) -> list[SixFaces]:
+    """Return the six faces of every volume of the sources; nothing if the first grid is planar."""
+    from meshonet.geometry.blocks.six_patches import six_faces
+
+    grids = (grid for source in sources for grid in read_grids(source, fmt))
+    first = next(grids, None)
+    if first is None or first.blocks[0].nodes.shape[-1] == 2:
+        return []
+    if way is not None:
+        raise InputError("{split} is of no use to volumes", "leave it out")
+    return [six_faces(grid) for grid in (first, *grids)]
 
 
 def _strips(sources: Sequence[str], fmt: str | None, note: Callable[[str], None]) -> Any:

@@ -111,7 +111,7 @@ def train(
         help="Solved grids of one family as .h5 file, made by solve-pde. The strip operator takes "
         "boundaries of O grids instead, for example from sample-boundary --family procedural. The quad "
         "operator takes two datasets of the same domains, one solved by winslow and one by variational, "
-        "with 33x33 nodes (65x33 around bodies).",
+        "with 33x33 nodes (65x33 around bodies). meshnet also takes volumes.",
     )],
     output: Annotated[str, _output("-o", "--output", metavar="FILE",
         help="Model file to write, .safetensors.",

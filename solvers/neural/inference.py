@@ -15,7 +15,7 @@ from meshonet.solvers.conformal.solve import Polish
 from meshonet.solvers.neural.confidence import THRESHOLD, Goal
 from meshonet.solvers.neural.devices import Device, solve_on
 from meshonet.solvers.neural.operator import Operator
-from meshonet.solvers.neural.registry import BASE, DEFAULTS, load
+from meshonet.solvers.neural.registry import BASE, DEFAULTS, load, makes_volumes
 from meshonet.solvers.solution import Confidence, Solution
 
 Answer = Literal["valid", "pasted", "raw"]
@@ -142,6 +142,8 @@ class OperatorMethod:
         """The topology of boundaries that the network processes in one batch; None if one by one."""
         if self.device is None and self.model == BASE:
             return None  # no network
+        if self.model is not None and makes_volumes(self.model):
+            return None
         network = load(self.model or DEFAULTS["o"])
         return network.topology if network.batched else None
 

@@ -29,7 +29,8 @@ class Kind(NamedTuple):
 STRIP = Kind("meshonet strip operator", "encoding", 1)
 QUAD = Kind("meshonet quad operator", "encoding", 2)
 PAPER = Kind("meshonet operator", "version", 1)
-KINDS = {kind.text: kind for kind in (STRIP, QUAD, PAPER)}
+VOLUME = Kind("meshonet volume network", "version", 1)
+KINDS = {kind.text: kind for kind in (STRIP, QUAD, PAPER, VOLUME)}
 """Kinds by their `text`; files of another version are refused."""
 
 

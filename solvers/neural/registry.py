@@ -10,7 +10,7 @@ from typing import Any
 
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.errors import InputError, meant
-from meshonet.solvers.neural.model_file import OURS, PAPER, QUAD, STRIP, Kind, read_model
+from meshonet.solvers.neural.model_file import OURS, PAPER, QUAD, STRIP, VOLUME, Kind, read_model
 from meshonet.solvers.neural.operator import Operator
 
 FOLDER = Path(__file__).parent / "pretrained"  # of the shipped files
@@ -75,11 +75,22 @@ def load(name: str | Path) -> Operator:
     return operator
 
 
+def makes_volumes(name: str) -> bool:
+    """Return whether a model fills six faces (`meshonet.solvers.neural.volumes`), not planar boundaries.
+
+    Raises InputError: no such model; a file that is not one of ours.
+    """
+    return name not in (BASE, *shipped()) and read_model(model_path(name))[0] == VOLUME
+
+
 @lru_cache(maxsize=4)
 def _load(path: Path, _modified: int) -> Operator:
     kind, header, arrays = read_model(path)
     own = header.get("name")
     name = own if isinstance(own, str) and own.isprintable() else path.stem
+    if kind == VOLUME:
+        remedy = "give six faces, or use another {model}"
+        raise InputError("this model makes volumes only", remedy, source=str(path))
     cls: type[Operator] = resolve_name(OPERATORS[kind])
     try:
         return cls.of_file(name, header, arrays)

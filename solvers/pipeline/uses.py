@@ -58,10 +58,11 @@ USES: dict[str, frozenset[str]] = {
     MANY: _OF_MANY,
     SMOOTHED: _OF_MANY | _row("slide max_cycles"),
     OFF_SURFACE: _row(_FIRST, "far_field layers symmetry poles"),
-    INSIDE: _row("res coarse blending tol max_cycles energy"),
+    INSIDE: _row("res coarse blending tol max_cycles energy model answer"),
     "variational in space": _row("res coarse max_cycles energy"),
     "winslow in space": _row("res tol max_cycles"),
     "tfi in space": _row("res blending"),
+    "a network in space": _row("res model answer"),
     JOINED: _row("slide max_cycles"),
     GIVEN_SECTION: frozenset(),
 }

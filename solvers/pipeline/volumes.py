@@ -81,9 +81,14 @@ def _fill(shape: SpatialShape, request: Volume) -> Solution:
     counts = _counts(request.sampling)
     if counts is not None:
         faces = faces.resampled(counts)
+    settings = {each: value for each, value in request.settings.items() if each in request.chosen}
+    if "model" in settings:
+        from meshonet.solvers.neural.volumes.network import infer_volume
+
+        refuse(request.chosen, "a network in space")
+        return _noted(infer_volume(faces, **settings), *faces.notes)
     name = "variational" if request.method in _OPEN else request.method
     refuse(request.chosen, f"{name} in space")
-    settings = {each: value for each, value in request.settings.items() if each in request.chosen}
     if request.coarse != "auto":
         settings["coarse"] = request.coarse
     if request.energy is not None:

@@ -39,6 +39,10 @@ class Task(nn.Module):
         `step` seeds random draws, so that a resumed run and every process draw the same.
         """
 
+    def differentiate(self, parts: Tensor, team: Team) -> None:  # noqa: ARG002 - for those who average themselves
+        """Set the gradients of the parameters for the weighted parts of the loss."""
+        parts.sum().backward()
+
     def validate(self) -> dict[str, float]:
         """Return ``loss`` and other figures over the held-out shapes; nothing when there are none."""
         return {}
@@ -175,7 +179,7 @@ def _one_epoch(
             with torch.autocast(team.device.type, torch.bfloat16, enabled=plan.amp):
                 parts = run(rows.to(team.device), done) * weight
             optimiser.zero_grad()
-            parts.sum().backward()
+            task.differentiate(parts, team)
         except (RuntimeError, MemoryError) as error:
             raise _explained(error, plan) from error
         parts = team.mean(parts.detach())

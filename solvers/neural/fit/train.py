@@ -11,7 +11,14 @@ from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.models.architectures import MODELS
 
-TRAINERS = {"strip": "meshonet.solvers.neural.fit.strip", "quad": "meshonet.solvers.neural.fit.quad"}
+OF_VOLUMES = "meshnet-volume"
+"""Name under which ``meshnet`` is trained on volumes."""
+
+TRAINERS = {
+    "strip": "meshonet.solvers.neural.fit.strip",
+    "quad": "meshonet.solvers.neural.fit.quad",
+    OF_VOLUMES: "meshonet.solvers.neural.fit.volume",
+}
 """Modules of models that are not trained as the paper's are."""
 
 
@@ -33,11 +40,11 @@ def train(
     Raises InputError: no such model; too few shapes; a checkpoint of another model, data or settings; choices
     that do not suit the model. Raises SolverError: as `meshonet.solvers.neural.fit.loop.fit`.
 
-    `model` is one of `models.architectures.MODELS`; `data` are `strip.dataset.Strips` for ``strip``,
-    `fit.quad_grids.Quads` for ``quad``, else `samples.Samples`; `plan` as `standard`; `held_out` shapes are
-    never trained on, None for the model's own number; `resume` goes on from a checkpoint beside `output`;
-    `report` is called every `plan.log_every` epochs and at the end; `choices` are what ``run`` of
-    the model's module in `fit` takes.
+    `model` is one of `models.architectures.MODELS`, or `OF_VOLUMES`; `data` are `strip.dataset.Strips` for
+    ``strip``, `fit.quad_grids.Quads` for ``quad``, a list of `SixFaces` for `OF_VOLUMES`, else
+    `samples.Samples`; `plan` as `standard`; `held_out` shapes are never trained on, None for the model's own
+    number; `resume` goes on from a checkpoint beside `output`; `report` is called every `plan.log_every`
+    epochs and at the end; `choices` are what ``run`` of the model's module in `fit` takes.
     """
     module = _module(model)
     held_out = module.HELD_OUT if held_out is None else held_out
@@ -59,6 +66,6 @@ def standard(model: str) -> Plan:
 
 
 def _module(model: str) -> Any:
-    if model not in MODELS:
+    if model not in (*MODELS, OF_VOLUMES):
         raise InputError(f"model {model!r} is not known", "use one of " + ", ".join(MODELS))
     return resolve_name(TRAINERS.get(model, "meshonet.solvers.neural.fit.operators"))

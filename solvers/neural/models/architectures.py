@@ -5,11 +5,13 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from pkgutil import resolve_name
-from typing import Any
+from typing import Any, TypeVar
 
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.errors import InputError, meant
 from meshonet.solvers.neural.models.architecture import Architecture
+
+M = TypeVar("M")
 
 ARCHITECTURES: dict[str, str] = {
     "meshonet": "meshonet.solvers.neural.models.branch_trunk:MeshONet",
@@ -45,10 +47,17 @@ def architecture(name: str, topology: Topology, settings: Mapping[str, Any] | No
             f"model {name!r} is not known", meant(name, MODELS) + "use one of " + ", ".join(MODELS)
         )
     cls: type[Architecture] = resolve_name(ARCHITECTURES[name])
-    defaults = {field.name: field.default for field in dataclasses.fields(cls)}
-    if "periodic" in defaults:
-        defaults["periodic"] = topology == "o"
-    changed = {key: _fitting(name, defaults, key, value) for key, value in (settings or {}).items()}
+    around = {"periodic": topology == "o"} if hasattr(cls, "periodic") else {}
+    return with_settings(cls, name, {**around, **(settings or {})})
+
+
+def with_settings(cls: type[M], name: str, settings: Mapping[str, Any]) -> M:
+    """Return a model of class `cls` with `settings` in place of its defaults.
+
+    Raises InputError: no such setting, or a value of another type than the default.
+    """
+    defaults = {field.name: field.default for field in dataclasses.fields(cls)}  # type: ignore[arg-type]
+    changed = {key: _fitting(name, defaults, key, value) for key, value in settings.items()}
     return cls(**{**defaults, **changed})
 
 

@@ -1,0 +1,209 @@
+"""Training of 3DMeshNet on the six faces of volumes, all geometries at once.
+
+::
+
+    loss = sum over both parts of exp(-s) L / 2 + s / 2
+    L_winslow = mean |sum_ij a_ij X_ij|^2        a the adjugate of the metric, central differences
+    L_faces   = mean |X - U|^2
+
+in units of each geometry's own size; s are trained with the network (the logarithm of the variance of each
+part). Gradients of the two parts that conflict are projected onto each other's normal plane. Peng, Chen &
+Liu, arXiv 2407.01560; Kendall, Gal & Cipolla, arXiv 1705.07115; Yu et al., arXiv 2001.06782.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.blocks.six_faces import FACES, SixFaces
+from meshonet.geometry.errors import InputError, MeshonetError
+from meshonet.geometry.quality.compare import compare
+from meshonet.geometry.quality.measure import folded_cells
+from meshonet.solvers.neural.fit.loop import Run, Task
+from meshonet.solvers.neural.fit.model_task import tensor, tensors
+from meshonet.solvers.neural.fit.operators import MACHINE
+from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.team import Team
+from meshonet.solvers.neural.model_file import VOLUME, write_model
+from meshonet.solvers.neural.models.architectures import with_settings
+from meshonet.solvers.neural.models.layers import dense, initial
+from meshonet.solvers.neural.volumes.network import VolumeMeshNet, VolumeNetwork, scales
+
+PLAN = Plan(epochs=15_000, points=(1000, 600))
+HELD_OUT = 0
+
+
+class VolumeTask(Task):
+    """Training of `model` on `volumes`; `points` are drawn for each step, inside and on the faces."""
+
+    parts = ("winslow", "faces", "weights")
+
+    def __init__(
+        self, model: VolumeMeshNet, volumes: Sequence[SixFaces], points: tuple[int, int], seed: int,
+        device: torch.device,
+    ) -> None:  # fmt: skip
+        super().__init__()
+        self.model, self.volumes, self.points, self.seed = model, volumes, points, seed
+        self.count = len(volumes)
+        rng = np.random.default_rng([seed, 0])
+        for name, value in initial(model.shapes(self.count), rng).items():
+            self.register_parameter(name, nn.Parameter(tensor(value)))
+        self.spread = nn.Parameter(torch.tensor([0.0, -float(np.log(model.rim))]))
+        self.fixed = scales(volumes)
+        centre, size = self.fixed["fixed/centre"], self.fixed["fixed/size"]
+        places = zip(volumes, centre, size, strict=True)
+        rims = [_rim(faces) for faces in volumes]
+        self.places = tensors({str(k): at for k, (at, _) in enumerate(rims)}, device)
+        nodes = {str(k): (u - c) / s for k, ((_, u), (_, c, s)) in enumerate(zip(rims, places, strict=True))}
+        self.rims = tensors(nodes, device)
+        self.to(device)
+
+    def forward(self, rows: Tensor, step: int) -> Tensor:
+        """Return the weighted parts of the loss over the geometries `rows`, then the logarithms."""
+        rng = np.random.default_rng([self.seed, 1, step])
+        inner = tensor(rng.uniform(-1.0, 1.0, (self.points[0], 3))).to(rows.device)
+        draws = rng.random(self.points[1])
+        winslow, faces = [], []
+        for k in rows.tolist():
+            net = {key: value[k : k + 1] for key, value in self.named_parameters() if key != "spread"}
+            winslow.append((residual(net, inner, 2.0 * self.model.finite) ** 2).sum(-1).mean())
+            some = torch.from_numpy((draws * len(self.rims[str(k)])).astype(np.int64)).to(rows.device)
+            answer = dense(torch, net, "net", self.places[str(k)][some][None])[0]
+            faces.append(((answer - self.rims[str(k)][some]) ** 2).sum(-1).mean())
+        both = torch.stack([torch.stack(winslow).mean(), torch.stack(faces).mean()])
+        return torch.cat([0.5 * torch.exp(-self.spread) * both, 0.5 * self.spread.sum()[None]])
+
+    def differentiate(self, parts: Tensor, team: Team) -> None:
+        """Set the gradients of the parameters, those of conflicting parts projected."""
+        if not self.model.projected:
+            super().differentiate(parts, team)
+            return
+        weights = [value for key, value in self.named_parameters() if key != "spread"]
+        first, second = (
+            torch.autograd.grad(part, weights, retain_graph=True) for part in (parts[0], parts[1])
+        )
+        summed = project(_flat(first), _flat(second))
+        (self.spread.grad,) = torch.autograd.grad(parts.sum(), [self.spread])
+        self.spread.grad = team.mean(self.spread.grad)
+        summed = team.mean(summed)
+        for value, gradient in zip(weights, summed.split([w.numel() for w in weights]), strict=True):
+            value.grad = gradient.view_as(value)
+
+    def network(self, name: str = "trained") -> VolumeNetwork:
+        """Return the networks with the current weights."""
+        own = {key: value.detach().cpu().numpy() for key, value in self.named_parameters() if key != "spread"}
+        return VolumeNetwork(name, {**own, **self.fixed})
+
+    def figures(self, epoch: int) -> dict[str, Any]:
+        """Return the epoch, and the errors against Winslow's grids where these exist."""
+        from meshonet.solvers.volumes.winslow import winslow
+
+        network, errors, away, folded = self.network(), [], 0.0, 0
+        for faces in self.volumes:
+            nodes = network.nodes(faces)
+            rim = _rim(faces)[1]
+            away = max(away, float(np.sqrt(((_rim(SixFaces.of_block(nodes))[1] - rim) ** 2).sum(-1)).max()))
+            folded += len(folded_cells(nodes))
+            try:
+                errors.append(compare(faces.grid(nodes), winslow(faces).grid).relative_l2)
+            except MeshonetError:
+                continue
+        if not errors:
+            return {"epoch": epoch}
+        own = {"median": float(np.median(errors)), "worst": float(np.max(errors))}
+        return {"epoch": epoch, "train": {**own, "boundary": away, "folded": folded, "grids": self.count}}
+
+    def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
+        """Write the model file."""
+        arrays = {key: np.asarray(value) for key, value in self.network().weights.items()}
+        write_model(
+            path, VOLUME, arrays, path.stem, "quad", recipe=recipe, figures=figures,
+            model="meshnet", settings=asdict(self.model),
+        )  # fmt: skip
+
+
+def residual(net: Mapping[str, Tensor], points: Tensor, h: float) -> Tensor:
+    """Return the residual (p, 3) of Winslow's equations at points (p, 3), by differences of step h."""
+    unit = h * torch.eye(3, dtype=points.dtype, device=points.device)
+    pairs = list(combinations(range(3), 2))
+    steps = [torch.zeros_like(unit[0]), *unit, *-unit]
+    for i, j in pairs:
+        steps += [unit[i] + unit[j], unit[i] - unit[j], unit[j] - unit[i], -unit[i] - unit[j]]
+    at = (points[None] + torch.stack(steps)[:, None]).reshape(1, -1, 3)
+    x = dense(torch, net, "net", at)[0].view(len(steps), -1, 3)
+    first = [(x[1 + i] - x[4 + i]) / (2.0 * h) for i in range(3)]
+    metric = torch.stack([torch.stack([(a * b).sum(-1) for b in first], -1) for a in first], -2)
+    total = torch.zeros_like(x[0])
+    for i in range(3):
+        bend = (x[1 + i] - 2.0 * x[0] + x[4 + i]) / h**2
+        total = total + _cofactor(metric, i, i)[:, None] * bend
+    for k, (i, j) in enumerate(pairs):
+        a, b, c, d = x[7 + 4 * k : 11 + 4 * k]
+        total = total + 2.0 * _cofactor(metric, i, j)[:, None] * (a - b - c + d) / (4.0 * h**2)
+    return total
+
+
+def project(first: Tensor, second: Tensor) -> Tensor:
+    """Return the sum of two gradients (n,), each without its component against the other."""
+    dot = first @ second
+    if dot >= 0.0:
+        return first + second
+    return first + second - dot * (second / (second @ second) + first / (first @ first))
+
+
+def _cofactor(metric: Tensor, i: int, j: int) -> Tensor:
+    (a, b), (c, d) = ([k for k in range(3) if k != each] for each in (i, j))
+    minor = metric[:, a, c] * metric[:, b, d] - metric[:, a, d] * metric[:, b, c]
+    return minor if (i + j) % 2 == 0 else -minor
+
+
+def _flat(gradients: Sequence[Tensor]) -> Tensor:
+    return torch.cat([gradient.reshape(-1) for gradient in gradients])
+
+
+def _rim(faces: SixFaces) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """Return the network's inputs (p, 3) at all nodes of the faces, and the nodes (p, 3)."""
+    places = []
+    for side in FACES:
+        axis, end = PLACES[side]
+        axes = [np.linspace(-1.0, 1.0, n) for n in faces.counts]
+        axes[axis] = np.array([-1.0 if end == 0 else 1.0])
+        places.append(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3))
+    return np.concatenate(places), np.concatenate([face.reshape(-1, 3) for face in faces.faces])
+
+
+def run(
+    model: str, data: Sequence[SixFaces], plan: Plan, team: Team, held_out: int,
+    settings: Mapping[str, Any] | None = None,
+) -> Run:  # fmt: skip
+    """Return the run that trains a network for each volume of `data`.
+
+    Raises InputError: volumes held out; settings that the model does not have.
+    """
+    if held_out:
+        raise InputError("a network for one volume holds none out", "leave {held_out} out")
+    made = with_settings(VolumeMeshNet, model.partition("-")[0], settings or {})
+    if not 0.0 < made.finite < 0.5:
+        raise InputError(f"finite={made.finite:g}", "use a step between 0 and 0.5", parameter="set")
+    if plan.points is None:
+        raise InputError("{points} all of a volume", "give a number")
+    task = VolumeTask(made, data, plan.points, plan.seed, team.device)
+    recipe = {key: value for key, value in asdict(plan).items() if key not in MACHINE}
+    return Run(task, {**recipe, "grids": len(data)}, {**asdict(made), "data": _fingerprint(data)})
+
+
+def _fingerprint(volumes: Sequence[SixFaces]) -> str:
+    import hashlib
+
+    digest = hashlib.sha256()
+    for faces in volumes:
+        for face in faces.faces:
+            digest.update(np.ascontiguousarray(face).tobytes())
+    return digest.hexdigest()[:16]
