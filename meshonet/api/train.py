@@ -96,11 +96,7 @@ def train(
     >>> train(names, "arch.safetensors", split="random", epochs=1, batch=4, points=60)["model"]
     'meshonet'
     """
-    path = Path(output)
-    if path.suffix != ".safetensors":
-        raise InputError("a model file ends in .safetensors", "rename the output", source=str(path))
-    if not path.parent.is_dir():
-        raise InputError(f"no folder {path.parent}", "make it first", source=str(path))
+    path = _model_path(output)
     try:
         import torch
     except ImportError:
@@ -136,10 +132,8 @@ def train(
             data = quads_of(read_grids(source, from_format) for source in sources)
             say(f"{len(data)} domains solved by both methods")
             choices = {"initial": None if initial is None else load(initial), "weights": chosen}
-        elif volumes:
-            data = volumes
         else:
-            data = _samples(sources, split, from_format)
+            data = volumes or _samples(sources, split, from_format)
         recipe = {"command": "meshonet train", "datasets": [Path(source).name for source in sources]}
         figures = fit(
             OF_VOLUMES if volumes else name, data, path, full, members, recipe=recipe, held_out=held_out,
@@ -148,6 +142,16 @@ def train(
     finally:
         members.close()
     return {"model": name, "shapes": len(data), "figures": figures} if members.leads else {}
+
+
+def _model_path(output: str | Path) -> Path:
+    """Return the path of a model file. Raises InputError: another ending, or no such folder."""
+    path = Path(output)
+    if path.suffix != ".safetensors":
+        raise InputError("a model file ends in .safetensors", "rename the output", source=str(path))
+    if not path.parent.is_dir():
+        raise InputError(f"no folder {path.parent}", "make it first", source=str(path))
+    return path
 
 
 def _suited(source: str, fmt: str | None) -> str:
