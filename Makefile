@@ -195,7 +195,7 @@ QUICK := COUNT=12 RES=41 EPOCHS=60 EPOCHS_COMPARED=20 EPOCHS_SHELF=5 EPOCHS_PHYS
 paper-quick: $(VENV)/.developing
 	$(PAPER) OUT=$(abspath build/paper) PAGES=$(abspath build/paper/pages) $(QUICK)
 
-# FILES: a folder of airfoil .dat files; finished rows are kept in build/bench, and a run goes on from them
+# ROW: Rotor 37 as a TOML file. FILES: a folder of airfoil .dat files; finished rows are kept in build/bench, and a run goes on from them
 bench: $(VENV)/.developing
 	$(BIN)/python benchmarks/bench_operator.py $(if $(FILES),--files $(FILES)) --keep build/bench --page docs/benchmarks/o-grids.md
 	$(BIN)/python benchmarks/bench_elliptic.py --largest 3200 --page docs/benchmarks/elliptic.md
@@ -209,6 +209,7 @@ bench: $(VENV)/.developing
 	$(BIN)/python benchmarks/bench_volumes.py --page docs/benchmarks/volumes.md
 	$(if $(FILES),$(BIN)/python benchmarks/bench_engines.py --airfoils $(FILES) --page docs/benchmarks/engines.md)
 	$(if $(FILES),$(BIN)/python benchmarks/bench_wings.py --airfoils $(FILES) --page docs/benchmarks/wings.md)
+	$(if $(ROW),$(BIN)/python benchmarks/bench_rows.py --row $(ROW) --airfoils $(FILES) --page docs/benchmarks/rows.md)
 
 docs: text pictures
 

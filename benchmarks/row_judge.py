@@ -54,8 +54,11 @@ class Judged:
         return np.concatenate(list(self.growth.values()))
 
 
-def judge(grid: Grid, row: Row, first: float) -> Judged:
-    """Return the figures of a grid whose first cells are to be `first` high, or less in narrow gaps."""
+def judge(grid: Grid, row: Row, first: float, *, blade: bool = True) -> Judged:
+    """Return the figures of a grid whose first cells are to be `first` high, or less in narrow gaps.
+
+    Without `blade` the distance from its surface is left out, which takes longest.
+    """
     blocks = [np.asarray(block.nodes) for block in grid.blocks]
     parts = [_cells(block) for block in blocks]
     scaled, angle = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
@@ -63,7 +66,7 @@ def judge(grid: Grid, row: Row, first: float) -> Judged:
     return Judged(
         sum(int(np.prod(block.shape[:3])) for block in blocks), len(scaled), folded, opened, bezier, scaled,
         angle, _first(grid, blocks, row, first), _growth(grid, blocks), _periodic(grid),
-        _off_blade(grid, row),
+        _off_blade(grid, row) if blade else math.nan,
     )  # fmt: skip
 
 

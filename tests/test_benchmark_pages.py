@@ -19,6 +19,7 @@ SCRIPTS = {
     "training-speed": "training",
     "marching-surfaces": "marching",
     "wings": "wings",
+    "rows": "rows",
     "volumes": "volumes",
     "engines": "engines",
     "threads": "threads",
