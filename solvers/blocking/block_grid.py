@@ -34,6 +34,8 @@ ROUNDS, STEP, MORE = 7, 1.12, 1.19
 """How often at the most, by which factor, and up to how many times the cells asked for."""
 MOST_CUT_OFF = 9.5e-4
 """With that many cells, what they cut off less what they add, before wall nodes are held closer at bends."""
+MOST_HALVED = 8
+"""Largest number of times that cells are halved without an optimisation."""
 RECOUNTS = 4
 """How often cells are counted if numbers along some sides are given, for as many in total."""
 HELD_BACK = 0.6
@@ -64,13 +66,17 @@ def fine_layout(
         own += 1
     chords = Chords.of(layout, node_images(layout.mesh))
     least, along = chords.least, [chord for row in sums_of(chords).values() for chord in row]
+    size = None if cells else cell_size
+    while (
+        along and halvings < MOST_HALVED and not _few(_counts(chords, least, wanted, size, halvings), chords)
+    ):
+        halvings += 1  # given numbers along sides need more cells than are asked for
     turning, counts, finer = ALLOWED, least, 4.0 ** (halvings - own)
     fine: Layout | None = None
     for _ in range(ROUNDS):
         before = counts
-        sizes = None if cells else cell_size and cell_size * 2**halvings
         try:
-            counts = _counts(chords, least, wanted / 4**halvings, sizes, 2**halvings)
+            counts = _counts(chords, least, wanted, size, halvings)
         except InputError:  # more cells along walls and the given numbers exclude each other
             if fine is None:
                 raise
@@ -100,12 +106,22 @@ def fine_layout(
         return replace(fine, mesh=with_tied_sides(made_symmetric(fine.mesh)))
 
 
-def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, finer: int) -> Indices:
-    """Return counts (chords,) for cells of a size, or `wanted` cells, that suit the sides of a domain."""
-    cells = wanted
+def _few(counts: Indices, chords: Chords) -> bool:
+    """Return whether counts (chords,) are few enough cells to be optimised."""
+    return chords.cells(counts) <= 2 * OPTIMISED
+
+
+def _counts(chords: Chords, least: Indices, wanted: float, size: float | None, halvings: int) -> Indices:
+    """Return counts (chords,) that suit the sides of a domain, for a grid that is halved some times later.
+
+    That has cells of a size, or else `wanted` cells.
+    """
+    cells = wanted = wanted / 4**halvings
+    size = size and size * 2**halvings
     for _ in range(RECOUNTS):
-        counts = chords.counts_for_size(size, least) if size else chords.counts_for_cells(int(cells), least)
-        counts = with_counts(chords, counts_along_sides(chords, counts, least), least, finer=finer)
+        few = max(int(cells), 1)
+        counts = chords.counts_for_size(size, least) if size else chords.counts_for_cells(few, least)
+        counts = with_counts(chords, counts_along_sides(chords, counts, least), least, finer=2**halvings)
         if size or not chords.layout.mesh.domain.counts:
             break
         cells *= wanted / chords.cells(counts)

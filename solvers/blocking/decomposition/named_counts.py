@@ -11,6 +11,7 @@ import numpy as np
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.periodic_sides import following, sides_of
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.reach import check_reach
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.periodic_counts import rows_of
 from meshonet.solvers.blocking.decomposition.quads.arc_counts import nearest_whole
@@ -90,7 +91,10 @@ def with_counts(
         return np.asarray(around * nearest_whole(counts / around, np.ceil(least / around), rows))
 
     try:
-        return solved(given)
+        found = solved(given)
+        cause, remedy = "so many cells along sides", "give fewer"
+        check_reach(chords.cells(found) * float(finer) ** 2, "cells", cause, remedy, parameter="count")
+        return found
     except BlockingError:
         if finer > 1:
             return counts

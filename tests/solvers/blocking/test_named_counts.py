@@ -66,6 +66,9 @@ def test_symmetric_grids_stay_symmetric() -> None:
 def test_what_no_blocks_can_have_is_refused() -> None:
     with pytest.raises(InputError, match=r"1 cells along 'inlet'.*or more"):
         meshonet.grid(CHANNEL, count={"inlet": 1}, cells=900)
+    for more in ({}, LAYERS):
+        with pytest.raises(InputError, match=r"count.*more than 2e"):
+            meshonet.grid(CHANNEL, count={"inlet": 100_000, "floor": 100_000}, **more)
     empty = Domain.of_polygons([BOX[:, ::-1]], names=[["inlet", "roof", "outlet", "floor"]])
     with pytest.raises(InputError, match="exclude each other"):
         meshonet.grid(empty, count={"inlet": 20, "outlet": 30}, cells=900)
