@@ -24,6 +24,7 @@ with 400 rows; at 0.05 by 29 at the most, and by 4 around most."""
 MOST = 0.25  # the same where rows are few, so that they grow by no more than `GROWTH`
 GROWTH = 1.2  # largest ratio of neighbouring rows
 CHOSEN = "no first cell was asked for: it follows from the smallest one along the wall"
+_TALLEST = 3000  # rows beyond which the power of the growth ratio would exceed the range of numbers
 STEEPEST = 1.3  # growth beyond which marched grids have larger angles than variational ones
 
 
@@ -45,7 +46,7 @@ def first_cell_around_base(width: float, away: float, chord: float, ni: int, nj:
 
 
 def _height(smallest: float, away: float, nj: int) -> float:
-    gentle = away * (GROWTH - 1.0) / (GROWTH ** (nj - 1) - 1.0)
+    gentle = away * (GROWTH - 1.0) / (GROWTH ** min(nj - 1, _TALLEST) - 1.0)
     return max(PART * smallest, min(gentle, MOST * smallest))
 
 
