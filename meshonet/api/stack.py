@@ -4,9 +4,12 @@ from pathlib import Path
 from typing import Any
 
 from meshonet.formats.stack import stack_of
+from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.stack import Stack, Tip
+from meshonet.solvers.aircraft.request import aircraft_request, check_aircraft_options
+from meshonet.solvers.pipeline.aircraft import make_aircraft
 from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
 from meshonet.solvers.rows.request import check_row_options, row_request
@@ -14,14 +17,18 @@ from meshonet.solvers.stacking.request import stack_request
 
 
 def stack(
-    sections: str | Path | Stack | Row, *, tip: Tip | None = None, surface: bool = False, **parameters: Any
+    sections: str | Path | Stack | Row | Aircraft,
+    *,
+    tip: Tip | None = None,
+    surface: bool = False,
+    **parameters: Any,
 ) -> Grid:
-    """Return the volume grid of a wing, a blade, a duct or a row of blades, from cross-sections.
+    """Return the volume grid of a wing, a blade, a duct, a row of blades or an aircraft, from sections.
 
     Parameters
     ----------
-    sections : str, Path, Stack or Row
-        The stack of sections or the row of blades, or its TOML file.
+    sections : str, Path, Stack, Row or Aircraft
+        The stack of sections, the row of blades or the aircraft, or its TOML file.
     tip : {'round', 'flat', 'open'}, optional
         Shape of the tip of a wing; None is that of the stack.
     surface : bool, optional
@@ -51,7 +58,10 @@ def stack(
     >>> len(stack(wing, around=49, span=9, surface=True).blocks)
     3
     """
-    what = sections if isinstance(sections, Stack | Row) else stack_of(str(sections))
+    what = sections if isinstance(sections, Stack | Row | Aircraft) else stack_of(str(sections))
+    if isinstance(what, Aircraft):
+        check_aircraft_options(tip=tip, surface=surface)
+        return make_aircraft(what, aircraft_request(**parameters)).grid
     if isinstance(what, Row):
         check_row_options(tip=tip, surface=surface)
         return make_row(what, row_request(**parameters)).grid

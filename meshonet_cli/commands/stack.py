@@ -34,7 +34,7 @@ def stack(
         help="File with at least two sections, or - for standard input. Each section of a wing or blade has "
         "an airfoil (a file or naca:2412), a chord, its position z and, where needed, x, y and twist, or "
         "sweep and dihedral. Sections of a duct have an outline instead: circle:RADIUS or a file with a "
-        "closed curve. A row of blades has profiles, hub and shroud instead.",
+        "closed curve. A row of blades has profiles, hub and shroud instead, an aircraft a body and a wing.",
     )],
     files: VolumeFiles,
     run: o.RunOptions,
@@ -98,7 +98,7 @@ def stack(
     allow_invalid: o.AllowInvalid = False,
     threads: o.Threads = None,
 ) -> int:
-    """Make volume grids of wings, ducts and blade rows from cross-sections.
+    """Make volume grids of wings, ducts, blade rows and aircraft from cross-sections.
 
     The grid surrounds a wing or a blade. In a duct it fills the inside, from the first section to the last.
     """

@@ -10,6 +10,7 @@ from meshonet.api.grid import domain_parameters
 from meshonet.formats.path import path_of
 from meshonet.formats.section import read_sections
 from meshonet.formats.stack import stack_of
+from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.revolve import Revolution
 from meshonet.geometry.curves.path import Path
@@ -19,6 +20,8 @@ from meshonet.geometry.quality.criteria import Criteria
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.stack import Stack, Tip
 from meshonet.geometry.shapes.shape import Shape
+from meshonet.solvers.aircraft.request import aircraft_request, check_aircraft_options
+from meshonet.solvers.pipeline.aircraft import make_aircraft
 from meshonet.solvers.pipeline.parameters import grid_request
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.rows import make_row
@@ -55,8 +58,11 @@ def write_stacks(
     return batch.run(BatchTask(partial(_stack, tip=tip, surface=surface), make, nodes=VOLUME_NODES))
 
 
-def _stack(source: str, tip: Tip | None, surface: bool) -> Iterator[Stack | Row]:
+def _stack(source: str, tip: Tip | None, surface: bool) -> Iterator[Stack | Row | Aircraft]:
     what = stack_of(source)
+    if isinstance(what, Aircraft):
+        check_aircraft_options(tip=tip, surface=surface)
+        return iter([what])
     if isinstance(what, Row):
         check_row_options(tip=tip, surface=surface)
         return iter([what])
@@ -64,8 +70,10 @@ def _stack(source: str, tip: Tip | None, surface: bool) -> Iterator[Stack | Row]
 
 
 def _stacked(
-    item: Item[Stack | Row], parameters: Mapping[str, Any], criteria: Criteria
+    item: Item[Stack | Row | Aircraft], parameters: Mapping[str, Any], criteria: Criteria
 ) -> tuple[Grid, Report]:
+    if isinstance(item.what, Aircraft):
+        return reported(item, make_aircraft(item.what, aircraft_request(**parameters)), criteria)
     if isinstance(item.what, Row):
         return reported(item, make_row(item.what, row_request(**parameters)), criteria)
     return reported(item, make_stack(item.what, stack_request(**parameters)), criteria)

@@ -119,3 +119,32 @@ def test_values_that_do_not_fit_get_a_line(
     assert (done.code, done.err.count("\n")) == (2, 1)
     assert problem in done.err
     assert not Path("wing.h5").exists()
+
+
+AIRCRAFT = """kind = "aircraft"
+[[bodies]]
+meridian = [[0, 0], [0.1, 0.3], [0.5, 0.55], [2, 0.6], [5, 0.6], [8, 0.4], [9.6, 0.1], [10, 0]]
+[[wings]]
+on = "fuselage"
+""" + SECTIONS.replace("sections", "wings.sections").replace("z = 0.0", "z = 0.0\nx = 3.5")
+
+
+def test_a_body_with_a_wing_is_made_with_its_names(meshonet: Meshonet, tmp_path: Path) -> None:
+    (tmp_path / "jet.toml").write_text(AIRCRAFT)
+    done = meshonet("stack", "jet.toml", *SMALL, "--far-field", "6", "-o", "jet.cgns", "--json")
+    assert done.code == 0, done.err
+    assert (done.only["folded"], done.only["method"]) == (0, "aircraft")
+    assert "the tip of the wing is flat" in str(done.only["notes"])
+    (grid,) = read_grids("jet.cgns")
+    assert {patch.name for patch in grid.patches} == {"fuselage", "wing", "tip", "symmetry", "farfield"}
+
+
+@pytest.mark.parametrize("words", ["--layers 31", "--cells 5000", "--tip round", "--surface", "--revolve 20"])
+def test_options_of_other_stacks_are_refused_for_a_body_with_a_wing(
+    meshonet: Meshonet, tmp_path: Path, words: str
+) -> None:
+    (tmp_path / "jet.toml").write_text(AIRCRAFT)
+    done = meshonet("stack", "jet.toml", *words.split(), "-o", "jet.cgns")
+    assert done.code == 2
+    assert words.split()[0] in done.err
+    assert not (tmp_path / "jet.cgns").exists()

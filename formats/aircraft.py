@@ -1,0 +1,81 @@
+"""Aircraft in TOML: what ``meshonet stack`` reads where ``kind = "aircraft"``.
+
+::
+
+    kind = "aircraft"
+
+    [[bodies]]                      # a body of revolution about a line parallel to x
+    name = "fuselage"
+    meridian = "fuselage.csv"       # x, r from nose to tail: a file, or a list [[0, 0], [0.1, 0.04], ...]
+    y = 0.0                         # height of its axis
+
+    [[wings]]                       # half of it, z >= 0, from the inside of the body
+    on = "fuselage"
+    file = "wing.toml"              # or [[wings.sections]], as in the file of a wing
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from meshonet.formats.rows.points import point_blocks
+from meshonet.formats.source import Source, open_source, printable
+from meshonet.formats.stack_table import stack_table
+from meshonet.formats.toml_table import Table, toml_table
+from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError, in_place, in_source
+from meshonet.geometry.sections.stack import Stack
+
+
+def read_aircraft(data: Table, source: Source) -> Aircraft:
+    """Return the aircraft that a table of TOML describes, in a `source` beside which its files are.
+
+    Raises InputError: a key that is not known, a value that does not fit, with its place; files that cannot
+    be read; other than one body and one wing.
+    """
+    data.only("kind", "name", "bodies", "wings")
+    folder = source.path.parent if source.path else Path()
+    bodies, wings = data.rows("bodies"), data.rows("wings")
+    for rows, what in ((bodies, "bodies"), (wings, "wings")):
+        if len(rows) > 1:
+            raise rows[1].error("name", f"a second one of {what}", "give one body with one wing")
+    body = _body(bodies[0], folder)
+    on = wings[0].text("on", body.name)
+    if on != body.name:
+        raise wings[0].error("on", f"{printable(on)} is no body", f"use {body.name}")
+    name = data.text("name", source.stem or "aircraft")
+    return Aircraft(body, _wing(wings[0], folder), name)
+
+
+def _body(row: Table, folder: Path) -> Body:
+    row.only("name", "meridian", "y")
+    points = row.data.get("meridian")
+    meridian = _listed(row, points) if isinstance(points, list) else _from_file(row, folder)
+    with in_place(row.place):
+        return Body(meridian, row.number("y", 0.0), row.text("name", "fuselage"))
+
+
+def _listed(row: Table, points: list[object]) -> Floats:
+    pairs = [Table({"meridian": point}, f"{row.place}.meridian[{k}]") for k, point in enumerate(points)]
+    return np.array([pair.pair("meridian", (0.0, 0.0)) for pair in pairs]).reshape(-1, 2)
+
+
+def _from_file(row: Table, folder: Path) -> Floats:
+    source = open_source(str(folder / row.text("meridian")))
+    blocks = point_blocks(source, (2,))
+    if len(blocks) > 1:
+        raise InputError(f"holds {len(blocks)} blocks of points", "give one curve", source=source.name)
+    return blocks[0]
+
+
+def _wing(row: Table, folder: Path) -> Stack:
+    if "file" not in row.data:
+        return stack_table(row, folder, "wing", ("on",))
+    row.only("on", "file")
+    source = open_source(str(folder / row.text("file")))
+    with in_source(source.name):
+        return stack_table(toml_table(source), source.path.parent if source.path else folder, "wing")

@@ -1,0 +1,65 @@
+"""The sections of a wing, blade or duct in a table of TOML (see `meshonet.formats.stack`)."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from meshonet.formats.section_shape import section_shape
+from meshonet.formats.toml_table import Table
+from meshonet.geometry.sections.section import QUARTER, Section
+from meshonet.geometry.sections.stack import BETWEEN, KINDS, TIPS, Stack
+
+_SPACINGS = "tip_spacing", "le_spacing", "te_spacing"
+_STEEPEST = 85.0
+"""Largest sweep and dihedral in degrees; at 90 the next section would be infinitely far away."""
+
+
+def stack_table(data: Table, folder: Path, name: str, more: tuple[str, ...] = ()) -> Stack:
+    """Return the stack of a table, whose files are looked for in a `folder`; it may have `more` keys.
+
+    Raises InputError: as `meshonet.formats.stack.stack_of`.
+    """
+    data.only("kind", "tip", "between", *_SPACINGS, "name", "about", "sections", *more)
+    about = data.pair("about", QUARTER)
+    sections: list[Section] = []
+    for row in data.rows("sections", least=2):
+        sections.append(_section(row, about, sections, folder))
+    return Stack(
+        tuple(sections),
+        kind=data.word("kind", KINDS, "wing"),  # type: ignore[arg-type]
+        tip=data.word("tip", TIPS, "round"),  # type: ignore[arg-type]
+        between=data.word("between", BETWEEN, "linear"),  # type: ignore[arg-type]
+        **{key: data.number(key) for key in _SPACINGS if key in data.data},
+        name=data.text("name", name),
+    )
+
+
+def _section(row: Table, about: tuple[float, float], before: list[Section], folder: Path) -> Section:
+    row.only("airfoil", "outline", "chord", "z", "x", "y", "twist", "about", "sweep", "dihedral")
+    z = row.number("z")
+    if before and not z > before[-1].z:
+        raise row.error("z", f"{z:g} is not behind {before[-1].z:g}", "give sections in order of z")
+    return Section(
+        section_shape(row, folder),
+        row.positive("chord"),
+        z,
+        _along(row, "x", "sweep", z, before),
+        _along(row, "y", "dihedral", z, before),
+        row.number("twist", 0.0),
+        row.pair("about", about),
+    )
+
+
+def _along(row: Table, direct: str, angle: str, z: float, before: list[Section]) -> float:
+    """Return x or y of a section: the given value, or that given by an angle to the previous section."""
+    if angle not in row.data:
+        return row.number(direct, getattr(before[-1], direct) if before else 0.0)
+    if direct in row.data:
+        raise row.error(angle, f"stands beside {direct}", "give one of them")
+    if not before:
+        raise row.error(angle, "there is no section before", f"give {direct}")
+    degrees = row.number(angle)
+    if abs(degrees) > _STEEPEST:
+        raise row.error(angle, f"{degrees:g} degrees", f"use -{_STEEPEST:g} to {_STEEPEST:g}")
+    return float(getattr(before[-1], direct) + (z - before[-1].z) * math.tan(math.radians(degrees)))

@@ -1,0 +1,1 @@
+"""Aircraft: bodies and the wings on them."""

@@ -1,0 +1,122 @@
+"""A body of revolution, such as a fuselage, from its meridian."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.cubic import CubicTable
+from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.elementary import cos, sin
+from meshonet.geometry.errors import InputError
+
+_STEPS = 6
+_FLAT = 1e-6
+"""Least dx/ds at which Newton's method is used: at a blunt nose x does not change along the meridian."""
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A body of revolution about a line parallel to x, in the plane of symmetry z = 0.
+
+    ::
+
+        y                    s: arc length of the meridian, 0 at the nose
+        |   .-------.__      theta: 0 at the keel (-y), pi at the crown (+y); half the body has z >= 0
+        |  (           '>
+        |   '-------'``
+        +----------------- x
+
+    Parameters
+    ----------
+    meridian : array
+        (n, 2) x and radius from nose to tail, on the axis at both ends; x increases.
+    y : float, optional
+        Height of the axis.
+    name : str, optional
+        Of the body, and of its patches.
+
+    Raises
+    ------
+    InputError
+        Fewer than 4 points; x that does not increase; radii that are negative, or not 0 at nose and tail.
+    """
+
+    meridian: Floats
+    y: float = 0.0
+    name: str = "fuselage"
+
+    def __post_init__(self) -> None:
+        points = np.asarray(self.meridian, dtype=np.float64)
+        if points.ndim != 2 or points.shape[1] != 2 or len(points) < 4:
+            raise InputError(f"a meridian of shape {points.shape}", "give 4 or more points x, r")
+        if not np.isfinite(points).all():
+            raise InputError("a point of the meridian is not finite", "check it for NaN or infinity")
+        back = np.flatnonzero(np.diff(points[:, 0]) <= 0.0)
+        if len(back):
+            problem = f"x is {points[back[0] + 1, 0]:g} behind {points[back[0], 0]:g}"
+            raise InputError(problem, "give the meridian from nose to tail", place=f"point {back[0] + 2}")
+        wrong = np.flatnonzero(points[1:-1, 1] <= 0.0)
+        if len(wrong):
+            radius = points[wrong[0] + 1, 1]
+            raise InputError(f"a radius of {radius:g}", "use more than 0", place=f"point {wrong[0] + 2}")
+        if points[0, 1] != 0.0 or points[-1, 1] != 0.0:
+            problem = f"radii of {points[0, 1]:g} and {points[-1, 1]:g} at nose and tail"
+            raise InputError(problem, "close the meridian: radius 0 at its first and last point")
+        object.__setattr__(self, "meridian", points)
+
+    @cached_property
+    def arc(self) -> Floats:
+        """(n,) arc length at the points, as the sum of chords."""
+        step = np.diff(self.meridian, axis=0)
+        return np.concatenate([[0.0], np.cumsum(np.hypot(step[:, 0], step[:, 1]))])
+
+    @cached_property
+    def _spline(self) -> CubicTable:
+        return CubicTable(self.meridian, self.arc)
+
+    @property
+    def length(self) -> float:
+        """Arc length of the meridian."""
+        return float(self.arc[-1])
+
+    @property
+    def extent(self) -> float:
+        """Length along the axis."""
+        return float(np.ptp(self.meridian[:, 0]))
+
+    @property
+    def radius(self) -> float:
+        """The greatest radius."""
+        return float(self.meridian[:, 1].max())
+
+    def meridional(self, s: Floats) -> Floats:
+        """Return x and radius (n, 2) at arc lengths (n,)."""
+        x, r = self._spline(s).T
+        return np.stack([x, np.maximum(r, 0.0)], axis=1)
+
+    def points(self, s: Floats, theta: Floats) -> Floats:
+        """Return points (..., 3) at arc lengths and angles (...)."""
+        s, theta = np.broadcast_arrays(s, theta)
+        x, r = np.moveaxis(self._spline(s.ravel()).reshape(*s.shape, 2), -1, 0)
+        r = np.maximum(r, 0.0)
+        return np.stack([x, self.y - r * cos(theta), r * sin(theta)], axis=-1)
+
+    def arc_at(self, x: Floats) -> Floats:
+        """Return the arc length (n,) at positions x (n,), clipped to the body's."""
+        x = np.clip(x, self.meridian[0, 0], self.meridian[-1, 0])
+        s = monotone_cubic(self.meridian[:, 0], self.arc, x, linear=True)
+        for _ in range(_STEPS):  # Newton's method
+            slope = self._spline.slope(s)[:, 0]
+            s = np.clip(
+                s - (self._spline(s)[:, 0] - x) / np.where(slope > _FLAT, slope, np.inf), 0.0, self.length
+            )
+        return np.asarray(s)
+
+    def outside(self, points: Floats) -> Floats:
+        """Return how far points (n, 3) are from the surface along the radius, negative inside."""
+        r = self._spline(self.arc_at(points[:, 0]))[:, 1]
+        return np.asarray(np.hypot(points[:, 1] - self.y, points[:, 2]) - r)

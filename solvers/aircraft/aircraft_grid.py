@@ -1,0 +1,191 @@
+"""The volume grid around half an aircraft: levels from the body past the tip of the wing to the far field.
+
+On each level the section of the wing is a hole, around which lies a collar; beyond the tip it is filled. So
+the junction of wing and body is no concave edge of a march: lines leave the body along the wing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.blocks.block import Block, face_of
+from meshonet.geometry.blocks.find_connections import find_connections
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
+from meshonet.solvers.aircraft.body_map import BodyMap
+from meshonet.solvers.aircraft.body_plane import LevelPlan, level_patches, planned
+from meshonet.solvers.aircraft.exact_cells import at_height, at_heights
+from meshonet.solvers.aircraft.wing_lines import WingLines
+from meshonet.solvers.blocking.layers.attach import sampled
+from meshonet.solvers.rows.columns import resampled, with_first
+from meshonet.solvers.rows.span_lines import SpanLines, key_heights
+from meshonet.solvers.rows.span_spacing import SAMPLES, line_parts, spaced_cells, two_sided
+from meshonet.solvers.stacking.request import StackRequest
+from meshonet.solvers.stacking.tip import Cap
+
+GROWTH = 1.2
+"""Growth of cells away from walls where none is given."""
+_UNBOUNDED = 1e9
+"""Length of the last cells of lines, which nothing limits but their growth."""
+LEVEL_PATCHES = 7
+"""Patches of a level (`level_patches`)."""
+_FLAT = 1e-13
+"""Distance from the plane of symmetry in lengths of the body, within which nodes are in it."""
+_FINE = 129
+"""Levels of the table by which lines beyond the tip are measured."""
+_PLANNED = (0, 4, 8, 12, 16)
+"""Key levels from which counts are taken."""
+
+
+def aircraft_grid(aircraft: Aircraft, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
+    """Return the grid of half an aircraft, and notes.
+
+    Raises InputError: a wing that does not begin inside the body or does not leave it.
+    """
+    chord = aircraft.wing.chord
+    first, growth = request.height() * chord, request.growth or GROWTH
+    space = BodyMap(aircraft.body, request.far_field * chord + 0.5 * aircraft.body.extent)
+    wing = WingLines.of(aircraft, request.around, request.base)
+    keys = key_heights(SAMPLES)[:, None] + np.zeros(len(wing.roots))
+    sections = space.places(wing.points(keys))
+    sections[0, :, 2] = 0.0
+    scales = _scales(space, sections)
+    plan = planned([(sections[k][:, :2], scales[k]) for k in _PLANNED], aircraft.body.length, first, growth)
+    levels = [_level(space, plan, *each, first) for each in zip(sections, scales, strict=True)]
+    shapes = [patch.shape[:2] for patch in levels[0]]
+    table = np.stack([np.concatenate([patch.reshape(-1, 3) for patch in level]) for level in levels])
+    ring = np.arange(shapes[0][0] * shapes[0][1]).reshape(shapes[0])
+    cells = spaced_cells(wing.length, (first, first), growth, wing.length / (request.span - 1), 8)
+    beside = _along_wing(space, wing, table, ring, cells, first, growth)
+    caps = _cap(space, wing)
+    tip = np.concatenate([beside[-1], *(patch.reshape(-1, 3) for patch in caps)])
+    beyond = _beyond_tip(space, tip, first, growth)
+    shapes += [patch.shape[:2] for patch in caps]
+    flat = () if aircraft.wing.tip == "flat" else ("the tip of the wing is flat",)
+    return _joined(aircraft, space, shapes, beside, beyond), (*wing.notes, *flat)
+
+
+def _scales(space: BodyMap, sections: Floats) -> Floats:
+    """Return the lengths in space (k, 2) of units of s and theta, the means over sections (k, n, 3)."""
+    points = space.points(sections)
+    radius = np.hypot(points[..., 1] - space.body.y, points[..., 2]).mean(axis=1)
+    half = (sections.shape[1] - 1) // 2
+    chord = norms(points[:, 0] - points[:, half])
+    return np.stack([chord / np.abs(sections[:, 0, 0] - sections[:, half, 0]), radius], axis=1)
+
+
+def _level(space: BodyMap, plan: LevelPlan, section: Floats, scale: Floats, first: float) -> list[Floats]:
+    """Return the patches (ni, nj, 3) of s, theta, zeta of the level on which a section (n, 3) lies."""
+    mean = float(section[:, 2].mean())
+    patches = [
+        np.concatenate([patch, np.full((*patch.shape[:2], 1), mean)], axis=-1)
+        for patch in level_patches(plan, section[:, :2], scale)
+    ]
+    ring = patches[0]
+    ring[..., 2] = mean + (section[:, None, 2] - mean) * _fade(ring[..., :2] * scale)
+    for _ in range(2):
+        steps = norms(np.diff(space.points(ring), axis=1))
+        ring = resampled(ring, steps, with_first(steps, np.full(len(steps), first)))
+    ring[:, 0], ring[:, -1], ring[-1] = patches[0][:, 0], patches[0][:, -1], ring[0]
+    patches[0] = ring
+    return patches
+
+
+def _fade(columns: Floats) -> Floats:
+    """Return 1 at the first to 0 at the last of the nodes of columns (n, m, 2 or 3), by arc length."""
+    steps = norms(np.diff(columns, axis=1))
+    arcs = np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
+    return np.asarray(1.0 - arcs / arcs[:, -1:])
+
+
+def _along_wing(
+    space: BodyMap, wing: WingLines, table: Floats, ring: Floats, cells: int, first: float, growth: float
+) -> Floats:
+    """Return places (cells + 1, p, 3) on the levels from body to tip, given those of key levels."""
+    parts = line_parts(space.points(table), (first, first), growth, cells)
+    places = SpanLines.through(table).at(parts)
+    places[0], places[-1] = table[0], table[-1]
+    on_wing = space.places(wing.points(wing.with_first(parts[:, ring[:, 0]], first)), places[:, ring[:, 0]])
+    moved = on_wing - places[:, ring[:, 0]]
+    moved[0] = 0.0
+    places[:, ring] += moved[:, :, None] * _fade(table[0, ring])[..., None]
+    wall, near = ring[:, 0], ring[:, 1]
+    rest = np.setdiff1d(np.arange(places.shape[1]), wall)
+    places[:, near] = at_height(space, places[:, wall], places[:, near], first)
+    places[1, rest] = at_height(space, places[0, rest], places[1, rest], first)
+    places[1, near] = at_heights(space, (places[1, wall], places[0, near]), places[1, near], first)
+    return places
+
+
+def _cap(space: BodyMap, wing: WingLines) -> list[Floats]:
+    """Return the patches (ni, nj, 3) of s, theta, zeta that fill the last section: a ring and a core."""
+    loop = wing.points(np.ones((1, len(wing.roots))))[0]
+    return [space.places(patch) for patch in Cap(bulge=0.0).patches(loop)]
+
+
+def _beyond_tip(space: BodyMap, tip: Floats, first: float, growth: float) -> Floats:
+    """Return places (k, p, 3) on the levels from the tip to the far field, given those at the tip (p, 3)."""
+    table = np.repeat(tip[:, None], _FINE, axis=1)
+    table[..., 2] += np.linspace(0.0, 1.0, _FINE) * (1.0 - tip[:, 2:])
+    steps = norms(np.diff(space.points(table), axis=1))
+    arcs = np.concatenate([np.zeros((len(tip), 1)), np.cumsum(steps, axis=1)], axis=1)
+    lengths = arcs[:, -1]
+    cells = spaced_cells(float(lengths.max()), (first, _UNBOUNDED), growth, _UNBOUNDED, 8)
+    wanted = two_sided(lengths, (first, _UNBOUNDED), growth, cells)
+    places = np.moveaxis(sampled(table, arcs, np.minimum(wanted, lengths[:, None])), 1, 0)
+    places[1] = at_height(space, places[0], places[1], first)
+    return places
+
+
+def _joined(
+    aircraft: Aircraft, space: BodyMap, shapes: Sequence[tuple[int, int]], beside: Floats, beyond: Floats
+) -> Grid:
+    """Return the grid of places (k, p, 3) from the body to the tip, and from there to the far field.
+
+    The first seven of `shapes` are patches of all levels, the others fill the section beyond the tip.
+    """
+    tip = len(beside) - 1
+    low = space.points(beside)
+    high = space.points(beyond)
+    blocks: list[Block] = []
+    start = 0
+    for number, (ni, nj) in enumerate(shapes):
+        columns = slice(start, start + ni * nj)
+        start += ni * nj
+        nodes = high[:, columns]
+        if number < LEVEL_PATCHES:
+            nodes = np.concatenate([low[:-1, columns], nodes])
+        blocks.append(_right_handed(np.moveaxis(nodes.reshape(len(nodes), ni, nj, 3), 0, 2)))
+    for block in blocks:
+        flat = np.abs(block.nodes[..., 2]) < _FLAT * aircraft.body.length
+        block.nodes[..., 2][flat] = 0.0
+    connections = find_connections(blocks)
+    joined = with_equal_nodes(blocks, connections)
+    return Grid(joined, tuple(_patches(joined, tip, aircraft)), connections, aircraft.name)
+
+
+def _right_handed(nodes: Floats) -> Block:
+    """Return the block of nodes (ni, nj, nk, 3), i reversed where it is left-handed."""
+    i, j, k = (
+        nodes[tuple(1 if axis == other else 0 for other in range(3))] - nodes[0, 0, 0] for axis in range(3)
+    )
+    return Block(np.ascontiguousarray(nodes if float((np.cross(i, j) * k).sum()) > 0.0 else nodes[::-1]))
+
+
+def _patches(blocks: tuple[Block, ...], tip: int, aircraft: Aircraft) -> Iterator[Patch]:
+    """Yield the patches: body, wing, tip, far field and plane of symmetry."""
+    for number, block in enumerate(blocks):
+        ni, nj, nk = (count - 1 for count in block.counts)
+        inside = number >= LEVEL_PATCHES
+        yield Patch("tip" if inside else aircraft.body.name, "bottom", 0, ni, (0, nj), number, "wall")
+        yield Patch("farfield", "top", 0, ni, (0, nj), number)
+        if number == 0:
+            yield Patch("wing", "south", 0, ni, (0, tip), number, "wall")
+        for side in ("west", "east", "south", "north"):
+            if not face_of(block.nodes[..., 2], side).any():
+                yield Patch("symmetry", side, 0, ni if side in ("south", "north") else nj, (0, nk), number)

@@ -1,0 +1,140 @@
+"""The space around a body of revolution: the planes through its axis, mapped conformally from a strip.
+
+::
+
+       .-- zeta = 1 --.        s      0 at the nose, the body's length at the tail: the angle of a line in the
+      (    zeta = 0    )              far field, in this unit; lines leave the body at right angles
+     ( nose (____) tail )      theta  angle about the axis, from the keel
+    s = 0            s = L     zeta   0 on the body, 1 in the far field
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.arrays import Floats, cross2
+from meshonet.geometry.curves.cubic import CubicTable
+from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.elementary import arctan2, cos, sin
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.conformal.solve import solve
+
+_LINES, _LEVELS = 513, 97
+"""Nodes of the table along s and zeta."""
+_AROUND = 385
+"""Nodes around the closed meridian of which the conformal grid is made."""
+_FADE = 2
+"""Power of 1 - zeta with which the table is moved onto the body."""
+_NEWTON = 12
+_STEP = 1e-5
+"""Step of differences in s / length and zeta."""
+_COARSE = 8
+"""Every so many lines and levels are compared for a first guess of places."""
+
+
+class BodyMap:
+    """The map from (s, zeta) to (x, r) around a `body`, to a distance `far`."""
+
+    def __init__(self, body: Body, far: float) -> None:
+        self.body = body
+        upper = body.meridian
+        lower = upper[-2:0:-1] * [1.0, -1.0]
+        outline = Outline(np.concatenate([upper, lower]))
+        length = float(np.ptp(upper[:, 0]))
+        sampling = Sampling(_AROUND, _LEVELS, topology="o", far_field=far / length)
+        table = _upper_half(solve([outline.boundary(sampling)])[0].grid.nodes, body)
+        outer = table[:, -1] - [0.5 * float(table[0, -1, 0] + table[-1, -1, 0]), 0.0]
+        turns = body.length * (1.0 - arctan2(outer[:, 1], outer[:, 0]) / math.pi)
+        turns[0], turns[-1] = 0.0, body.length
+        arcs = body.arc_at(table[:, 0, 0])
+        arcs[0], arcs[-1] = 0.0, body.length
+        even = np.linspace(0.0, body.length, _LINES)
+        self.table = CubicTable(table, turns)(even)
+        self._arcs = monotone_cubic(turns, arcs, even)
+
+    def points(self, places: Floats) -> Floats:
+        """Return points (..., 3) at places (..., 3) of s, theta, zeta."""
+        s, theta, zeta = np.moveaxis(places, -1, 0)
+        x, r = np.moveaxis(self.meridional(s.ravel(), zeta.ravel()).reshape(*s.shape, 2), -1, 0)
+        r = np.maximum(r, 0.0)
+        return np.stack([x, self.body.y - r * cos(theta), r * sin(theta)], axis=-1)
+
+    def meridional(self, s: Floats, zeta: Floats) -> Floats:
+        """Return x and r (n, 2) at places s and zeta (n,)."""
+        i, along = _weights(s / self.body.length * (_LINES - 1), _LINES)
+        arcs = sum((along[a] * self._arcs[i + a] for a in range(4)), np.zeros_like(s))
+        arcs = np.clip(arcs, 0.0, self.body.length)
+        at_body = self.body.meridional(arcs) - self._table_at(s, np.zeros_like(s))
+        return self._table_at(s, zeta) + at_body * ((1.0 - zeta) ** _FADE)[:, None]
+
+    def _table_at(self, s: Floats, zeta: Floats) -> Floats:
+        """Return the cubics through four lines and four levels of the table, at places (n,)."""
+        i, along = _weights(s / self.body.length * (_LINES - 1), _LINES)
+        j, across = _weights(zeta * (_LEVELS - 1), _LEVELS)
+        out = np.zeros((len(s), 2))
+        for a in range(4):
+            for b in range(4):
+                out += (along[a] * across[b])[:, None] * self.table[i + a, j + b]
+        return out
+
+    def places(self, points: Floats, near: Floats | None = None) -> Floats:
+        """Return places (..., 3) of s, theta, zeta of points (..., 3), by Newton's method.
+
+        It starts from the places `near` (..., 3), or else from the nearest nodes of the table.
+        """
+        y, z = points[..., 1] - self.body.y, points[..., 2]
+        theta = arctan2(z, -y)
+        wanted = np.stack([points[..., 0], np.hypot(y, z)], axis=-1).reshape(-1, 2)
+        s, zeta = self._nearest(wanted) if near is None else near.reshape(-1, 3)[:, [0, 2]].T
+        for _ in range(_NEWTON):
+            here = self.meridional(s, zeta)
+            ds, dz = _STEP * self.body.length, _STEP
+            by_s = (self.meridional(s + ds, zeta) - self.meridional(s - ds, zeta)) / (2.0 * ds)
+            by_zeta = (self.meridional(s, zeta + dz) - self.meridional(s, zeta - dz)) / (2.0 * dz)
+            off = wanted - here
+            det = cross2(by_s, by_zeta)
+            s = np.clip(s + cross2(off, by_zeta) / det, 0.0, self.body.length)
+            zeta = np.clip(zeta + cross2(by_s, off) / det, 0.0, 1.0)
+        return np.stack([s, theta.ravel(), zeta], axis=-1).reshape(points.shape)
+
+    def _nearest(self, points: Floats) -> tuple[Floats, Floats]:
+        """Return s and zeta (n,) of the nodes of the coarse table that are nearest to points (n, 2)."""
+        coarse = self.table[::_COARSE, ::_COARSE]
+        flat = coarse.reshape(-1, 2)
+        nearest = np.array([int(((flat - point) ** 2).sum(axis=1).argmin()) for point in points])
+        s, zeta = np.divmod(nearest, coarse.shape[1])
+        return s * _COARSE / (_LINES - 1) * self.body.length, zeta * _COARSE / (_LEVELS - 1)
+
+
+def _upper_half(nodes: Floats, body: Body) -> Floats:
+    """Return the lines (n, levels, 2) of a grid around a closed meridian with r >= 0, from nose to tail."""
+    half = (len(nodes) - 1) // 2
+    mirrored = 0.5 * (nodes + nodes[::-1] * [1.0, -1.0])
+    nose = int(mirrored[: half + 1, 0, 0].argmin())
+    if nose == half:
+        upper = mirrored[half:] if mirrored[half + half // 2, 0, 1] > 0.0 else mirrored[half::-1]
+    else:
+        upper = mirrored[: half + 1] if mirrored[half // 2, 0, 1] > 0.0 else mirrored[: half - 1 : -1]
+    upper = upper.copy()
+    upper[[0, -1], :, 1] = 0.0
+    upper[0, 0, 0], upper[-1, 0, 0] = body.meridian[[0, -1], 0]
+    return upper
+
+
+def _weights(place: Floats, count: int) -> tuple[Indices, Floats]:
+    """Return the first of four neighbours (n,) of places in a table, and Lagrange's weights (4, n)."""
+    first = np.clip(np.floor(place).astype(np.intp) - 1, 0, count - 4)
+    f = place - first
+    return first, np.stack(
+        [
+            -(f - 1.0) * (f - 2.0) * (f - 3.0) / 6.0,
+            f * (f - 2.0) * (f - 3.0) / 2.0,
+            -f * (f - 1.0) * (f - 3.0) / 2.0,
+            f * (f - 1.0) * (f - 2.0) / 6.0,
+        ]
+    )

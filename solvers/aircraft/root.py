@@ -1,0 +1,46 @@
+"""Where the lines of a wing along its span leave a body."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sections.stack import Stack
+
+_PLACES = 65
+"""Heights at which a line is compared with the body at a time."""
+_PASSES = 6
+"""Times that the interval around a crossing is divided into `_PLACES` parts."""
+
+
+def root_heights(stack: Stack, unit: Floats, body: Body) -> Floats:
+    """Return the heights z (n,) at which lines along the span of a wing leave a body.
+
+    `unit` (sections, n, 2) are the nodes around the sections, the first of them inside the body.
+
+    Raises InputError: a line that begins outside of the body, or never leaves it.
+    """
+    heights = np.empty(unit.shape[1])
+    for k in range(len(heights)):
+        low, high = float(stack.z[0]), float(stack.z[-1])
+        for _ in range(_PASSES):
+            z = np.linspace(low, high, _PLACES)
+            out = body.outside(stack.lofted(unit[:, k : k + 1], z)[:, 0])
+            if out[0] >= 0.0:
+                raise _error(stack, unit[:, k], low, body, "begins outside of")
+            first = np.flatnonzero(out >= 0.0)
+            if not len(first):
+                raise _error(stack, unit[:, k], high, body, "does not leave")
+            at = int(first[0])
+            low, high = float(z[at - 1]), float(z[at])
+        heights[k] = low + (high - low) * out[at - 1] / (out[at - 1] - out[at])
+    return heights
+
+
+def _error(stack: Stack, unit: Floats, z: float, body: Body, what: str) -> InputError:
+    x, y, z = stack.lofted(unit[:, None], np.array([z]))[0, 0]
+    problem = f"a line of the wing {what} the {body.name} at x={x:.6g}, y={y:.6g}, z={z:.6g}"
+    remedy = "give a first section inside the body, such as in z = 0, and a last one outside"
+    return InputError(problem, remedy, place="wings")

@@ -1,0 +1,67 @@
+"""The lines along the span of a wing on a body, from its root on the body to its tip."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.solvers.aircraft.root import root_heights
+from meshonet.solvers.stacking.section_nodes import GAP, around, unit_nodes
+
+_ROUNDS = 6
+"""Times a part is scaled; lines are nearly straight over a first cell."""
+
+
+@dataclass(frozen=True, eq=False)
+class WingLines:
+    """Lines of a wing along its span.
+
+    Parameters
+    ----------
+    aircraft : what the wing belongs to.
+    unit : (sections, n, 2) nodes around the sections, from the middle of the base over the upper side.
+    roots : (n,) heights z where lines leave the body.
+    notes : what was changed of the sections.
+    """
+
+    aircraft: Aircraft
+    unit: Floats
+    roots: Floats
+    notes: tuple[str, ...]
+
+    @classmethod
+    def of(cls, aircraft: Aircraft, nodes: int, base: float = GAP) -> WingLines:
+        """Return `nodes` lines, of a wing with trailing edges of at least `base` chords.
+
+        Raises InputError: too few nodes, a wing that does not begin in the body or does not leave it.
+        """
+        wing = aircraft.wing
+        plan = around(nodes, gap=base, edge=wing.te_spacing, nose=wing.le_spacing)
+        units, notes = zip(*(unit_nodes(section, plan) for section in wing.sections), strict=True)
+        unit = np.stack(units)
+        roots = root_heights(wing, unit[:, :-1], aircraft.body)
+        return cls(aircraft, unit, np.append(roots, roots[0]), tuple(dict.fromkeys(filter(None, notes))))
+
+    def points(self, parts: Floats) -> Floats:
+        """Return points (k, n, 3) at parts (k, n) of the way along the lines, in z."""
+        wing = self.aircraft.wing
+        z = self.roots + parts * (wing.z[-1] - self.roots)
+        columns = [wing.lofted(self.unit[:, k : k + 1], z[:, k])[:, 0] for k in range(z.shape[1])]
+        return np.stack(columns, axis=1)
+
+    def with_first(self, parts: Floats, first: float) -> Floats:
+        """Return parts (k, n) of the way of which the second are at the distance `first` from the root."""
+        parts = parts.copy()
+        for _ in range(_ROUNDS):
+            root, second = self.points(parts[:2])
+            parts[1] *= first / norms(second - root)
+        return parts
+
+    @property
+    def length(self) -> float:
+        """Mean length of the lines."""
+        ends = self.points(np.array([[0.0], [1.0]]) + np.zeros(len(self.roots)))
+        return float(norms(ends[1] - ends[0]).mean())

@@ -1,0 +1,126 @@
+"""Grids around a body with a wing: matched blocks, exact first cells, nodes on both surfaces."""
+
+import numpy as np
+import pytest
+from aircraft_shapes import aircraft, body
+
+from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import face_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, measure_volumes
+from meshonet.geometry.sections.section import Section
+from meshonet.geometry.sections.stack import Stack
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
+from meshonet.solvers.aircraft.body_map import BodyMap
+from meshonet.solvers.stacking.request import StackRequest
+
+FIRST = 1e-3
+SMALL = StackRequest(around=65, span=9, first_cell=FIRST, far_field=8.0)
+
+
+@pytest.fixture(scope="module")
+def grid() -> Grid:
+    return aircraft_grid(aircraft(y=-0.1), SMALL)[0]
+
+
+def wall(grid: Grid, name: str) -> list[tuple[Floats, Floats]]:
+    """The nodes on a wall and those next to them, of each of its patches."""
+    found = []
+    for patch in grid.patches:
+        if patch.name == name:
+            nodes = grid.blocks[patch.block].nodes
+            if patch.side == "south":
+                nodes = np.moveaxis(nodes, 1, 2)
+                assert patch.across is not None
+                nodes = nodes[:, patch.across[0] : patch.across[1] + 1]
+            found.append((nodes[:, :, 0], nodes[:, :, 1]))
+    return found
+
+
+def test_no_cell_is_folded(grid: Grid) -> None:
+    assert sum(count_folded_solids(block.nodes, BEZIER) for block in grid.blocks) == 0
+    assert measure_volumes(grid)["scaled_jacobian"].min > 0.1
+
+
+@pytest.mark.parametrize("name", ["fuselage", "wing", "tip"])
+def test_first_cells_are_exact_on_every_wall(grid: Grid, name: str) -> None:
+    for nodes, beside in wall(grid, name):
+        assert np.linalg.norm(beside - nodes, axis=-1) == pytest.approx(FIRST * 2.0, rel=1e-9)
+
+
+def test_nodes_lie_on_body_and_wing(grid: Grid) -> None:
+    for nodes, _ in wall(grid, "fuselage"):
+        assert np.abs(body().outside(nodes.reshape(-1, 3))).max() < 1e-9
+    for nodes, _ in wall(grid, "tip"):
+        assert nodes[..., 2] == pytest.approx(5.0, abs=1e-9)
+    (on_wing, _), *_ = wall(grid, "wing")
+    ends = on_wing[:, [0, -1]]
+    part = (on_wing[..., 2] - ends[:, :1, 2]) / (ends[:, 1:, 2] - ends[:, :1, 2])
+    straight = ends[:, :1] + part[..., None] * (ends[:, 1:] - ends[:, :1])
+    assert np.abs(on_wing - straight).max() < 1e-9
+
+
+def test_every_face_is_in_a_patch_or_joined_to_another(grid: Grid) -> None:
+    def faces(ranges: tuple[tuple[int, int], ...]) -> int:
+        return int(np.prod([abs(b - a) for a, b in ranges]))
+
+    cells = [[count - 1 for count in block.counts] for block in grid.blocks]
+    every = sum(2 * (a * b + b * c + c * a) for a, b, c in cells)
+    named = sum(
+        faces(each.range(face_of(grid.blocks[each.block].nodes, each.side).shape[:2]))
+        for each in grid.patches
+    )
+    assert named + sum(2 * faces(each.range) for each in grid.connections) == every
+    for connection in grid.connections:
+        for axis in range(3):
+            own, other = connection.pairs([block.nodes[..., axis] for block in grid.blocks])
+            assert np.array_equal(own, other)
+
+
+def test_the_plane_of_symmetry_is_flat(grid: Grid) -> None:
+    flat = [p for p in grid.patches if p.name == "symmetry"]
+    assert flat
+    for patch in flat:
+        assert not face_of(grid.blocks[patch.block].nodes[..., 2], patch.side).any()
+    assert min(float(block.nodes[..., 2].min()) for block in grid.blocks) == 0.0
+
+
+def test_the_far_field_is_as_far_as_it_should_be(grid: Grid) -> None:
+    for patch in grid.patches:
+        if patch.name == "farfield":
+            away = np.linalg.norm(grid.blocks[patch.block].nodes[:, :, -1] - [5.0, 0.1, 0.0], axis=-1)
+            assert away == pytest.approx(16.0 + 5.0, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("y", "sweep", "section"), [(0.35, 0.0, "0012"), (-0.15, 3.0, "4418"), (0.1, -1.0, "2412")]
+)
+def test_wings_high_low_and_swept_are_made(y: float, sweep: float, section: str) -> None:
+    made, _ = aircraft_grid(aircraft(y, sweep, section), SMALL)
+    assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0
+
+
+@pytest.mark.parametrize(
+    ("z", "span", "words"), [(0.7, 5.0, "begins outside of"), (0.0, 0.4, "does not leave")]
+)
+def test_a_wing_that_does_not_pierce_the_body_is_refused(z: float, span: float, words: str) -> None:
+    wing = Stack((Section(naca("2415"), 2.0, z, x=3.4), Section(naca("2415"), 1.0, z + span, x=3.4)))
+    with pytest.raises(InputError, match=words) as error:
+        aircraft_grid(Aircraft(body(), wing), SMALL)
+    assert "x=" in str(error.value)
+
+
+def test_places_around_a_body_are_those_of_the_points_there() -> None:
+    space = BodyMap(body(), 40.0)
+    draw = np.random.default_rng(0)
+    places = np.stack([draw.uniform(0.5, 9.5, 99), draw.uniform(0.1, 3.0, 99), draw.uniform(0, 0.9, 99)], -1)
+    assert space.places(space.points(places)) == pytest.approx(places, abs=1e-9)
+    on_body = space.points(places * [1.0, 1.0, 0.0])
+    assert np.abs(body().outside(on_body)).max() < 1e-9
+    beside = space.points(places * [1.0, 1.0, 0.0] + [0.0, 0.0, 1e-5]) - on_body
+    along = space.points(places * [1.0, 1.0, 0.0] + [1e-5, 0.0, 0.0]) - on_body
+    cosine = (beside * along).sum(axis=1) / np.linalg.norm(beside, axis=1) / np.linalg.norm(along, axis=1)
+    assert np.abs(cosine[(places[:, 0] > 1) & (places[:, 0] < 9)]).max() < 0.02, "a right angle at the body"
