@@ -29,7 +29,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("train", "Train a neural operator on datasets (needs the extra `train`)."),
     Command("infer", "Make grids by the method that suits the kind of shape."),
     Command("layout", "Split domains into blocks and write the block layout."),
-    Command("stack", "Make volume grids of wings, ducts and blade rows from cross-sections."),
+    Command("stack", "Make volume grids of wings, ducts, blade rows and aircraft from cross-sections."),
     Command("sweep", "Make volume grids of pipes and ducts by sweeping cross-sections along curves."),
     Command("deform", "Deform grids to a changed boundary and keep their boundary layers."),
     Command("quality", "Measure the quality of grids: folded cells, angles, skewness."),

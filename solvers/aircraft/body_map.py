@@ -18,7 +18,7 @@ from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.arrays import Floats, cross2
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.monotone import monotone_cubic
-from meshonet.geometry.elementary import arctan2, cos, sin
+from meshonet.geometry.elementary import arctan2, cos, power, sin
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.sampling import Sampling
@@ -28,7 +28,7 @@ _LINES, _LEVELS = 513, 97
 """Nodes of the table along s and zeta."""
 _AROUND = 385
 """Nodes around the closed meridian of which the conformal grid is made."""
-_FADE = 2
+_FADE = 2.0
 """Power of 1 - zeta with which the table is moved onto the body."""
 _NEWTON = 12
 _STEP = 1e-5
@@ -70,7 +70,7 @@ class BodyMap:
         arcs = sum((along[a] * self._arcs[i + a] for a in range(4)), np.zeros_like(s))
         arcs = np.clip(arcs, 0.0, self.body.length)
         at_body = self.body.meridional(arcs) - self._table_at(s, np.zeros_like(s))
-        return self._table_at(s, zeta) + at_body * ((1.0 - zeta) ** _FADE)[:, None]
+        return self._table_at(s, zeta) + at_body * (power(1.0 - zeta, _FADE))[:, None]
 
     def _table_at(self, s: Floats, zeta: Floats) -> Floats:
         """Return the cubics through four lines and four levels of the table, at places (n,)."""
