@@ -14,13 +14,16 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
 from page import arguments, processor, publish
 
 import meshonet
+from meshonet import layer
 from meshonet.formats.hdf5.write import write_grids
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import MeshonetError
 from meshonet.solvers.elliptic.solve import solve as winslow
@@ -40,6 +43,10 @@ docs/benchmarks/gpu.md` measures these values in less than eight minutes:
   and without `--amp` and `--compile`; the first epochs are not counted;
 - *operators*: grids per second and peak memory of `airfoil-o`, `quad-general` and `hole-o` in batches, with
   65 x 65 and 200 x 200 nodes, from boundaries in memory to nodes in memory;
+- *layers*: grids per second of `meshonet.layer` for batches of sides in the memory of the device, forward,
+  and forward and backward together; peak memory; whether two runs have the same bits; the largest distance
+  from the compiled solver on the CPU, relative to the domain size. The last rows are single grids of up to
+  3200 x 3200 nodes, without gradients;
 - *equality*: the largest distance between the nodes on the GPU and those of the same operator on the CPU in
   double precision. It must be below 1e-10 of the domain size.
 """
@@ -89,6 +96,67 @@ def operator_rows(device: Device, sizes: Sequence[int], count: int) -> Iterator[
             rate = count / (time.perf_counter() - begun)
             verdict = f"{apart:.0e}" if apart <= EQUAL else f"{apart:.0e}: TOO FAR"
             yield f"| `{name}` | {n} x {n} | {count} | {rate:.0f} | {memory} | {verdict} |"
+
+
+def layer_rows(device: Device, batch: int, n: int, large: Sequence[int]) -> Iterator[str]:
+    """Yield the rows of grids as layers: batches of random four-sided domains, and large single grids."""
+    yield "| function | nodes | grids | a second | with gradients | MB | same bits | distance |"
+    yield "| --- | --- | --- | --- | --- | --- | --- | --- |"
+    jobs = [("winslow", n, batch), ("variational", n, min(batch, 256)), *(("winslow", m, 1) for m in large)]
+    for name, m, count in jobs:
+        try:
+            words = " | ".join(layer_words(device, name, shapes_for("quad-general", count, m)))
+        except (MeshonetError, RuntimeError) as error:
+            words = f"{str(error).splitlines()[0]} | - | - | - | -"
+        yield f"| `{name}` | {m} x {m} | {count} | {words} |"
+
+
+def layer_words(device: Device, name: str, boundaries: Sequence[Boundary]) -> Iterator[str]:
+    """Yield rates, memory, equality of two runs and distance from the compiled solver."""
+    function, count = getattr(layer, name), len(boundaries)
+    sides = [
+        torch.tensor(np.stack([getattr(b, side) for b in boundaries]), device=device)
+        for side in ("south", "north", "west", "east")
+    ]
+    nodes, first = timed(device, partial(function, *sides))
+    again, second = timed(device, partial(function, *sides))
+    yield f"{count / min(first, second):.3g}"
+    marks: list[float] = []
+    if count == 1:
+        yield "-"
+        memory = most_memory(device, partial(function, *sides))
+    else:
+        for side in sides:
+            side.requires_grad_()
+        both = lambda: marks.append(timed(device, lambda: function(*sides).square().mean().backward())[1])  # noqa: E731
+        memory = most_memory(device, both)
+        yield f"{count / marks[0]:.3g}"
+    yield memory
+    yield "yes" if torch.equal(nodes, again) else "NO"
+    pairs = zip(boundaries[:4], nodes.cpu().numpy(), strict=False)
+    apart = max(from_compiled(name, boundary, own) for boundary, own in pairs)
+    yield f"{apart:.0e}" if apart <= EQUAL else f"{apart:.0e}: TOO FAR"
+
+
+def timed(device: Device, act: Callable[[], Any]) -> tuple[Any, float]:
+    """Run after the device is idle and until it is idle again; return the result and the seconds."""
+    if device == "cuda":
+        torch.cuda.synchronize()
+    begun = time.perf_counter()
+    result = act()
+    if device == "cuda":
+        torch.cuda.synchronize()
+    return result, time.perf_counter() - begun
+
+
+def from_compiled(name: str, boundary: Boundary, nodes: Floats) -> float:
+    """Return the distance of nodes from those of the converged compiled solver, relative to their extent."""
+    if name == "winslow":
+        exact = winslow(boundary, tol=1e-12, max_cycles=100).grid.nodes
+    else:
+        grid = variational(boundary, tol=1e-8, max_cycles=1000).grid
+        exact = meshonet.optimum_derivative(grid.with_nodes(nodes)).grid.nodes
+    return float(np.abs(exact - nodes).max() / np.ptp(nodes))
 
 
 def datasets(folder: Path, count: int, n: int) -> dict[str, list[str]]:
@@ -143,8 +211,9 @@ def page(device: Device, quick: bool) -> str:
     shapes, epochs = (8, 2) if quick else (260, 12)
     with tempfile.TemporaryDirectory() as folder:
         made = list(operator_rows(device, sizes, count))
+        layers = list(layer_rows(device, *((4, 17, (65,)) if quick else (4096, 65, (801, 3200)))))
         fitted = list(training_rows(device, Path(folder), shapes, n, epochs, quick))
-    parts = "\n".join(["## Operators\n", *made, "\n## Training\n", *fitted])
+    parts = "\n".join(["## Operators\n", *made, "\n## Layers\n", *layers, "\n## Training\n", *fitted])
     return f"{HEAD}\n{machine}, torch {torch.__version__}.\n\n{parts}\n"
 
 

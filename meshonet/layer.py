@@ -15,5 +15,15 @@ to these functions. They need torch (extra ``train``).
 from meshonet.solvers.neural.differentiable import AirfoilGrids, BodyGrids, QuadGrids
 from meshonet.solvers.neural.differentiable.airfoil import conformal
 from meshonet.solvers.neural.differentiable.grids import transfinite, variational, winslow
+from meshonet.solvers.neural.differentiable.in_jax import in_jax
 
-__all__ = ["AirfoilGrids", "BodyGrids", "QuadGrids", "conformal", "transfinite", "variational", "winslow"]
+__all__ = [
+    "AirfoilGrids",
+    "BodyGrids",
+    "QuadGrids",
+    "conformal",
+    "in_jax",
+    "transfinite",
+    "variational",
+    "winslow",
+]

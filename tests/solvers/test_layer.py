@@ -180,3 +180,9 @@ def test_sides_that_bound_no_batch_are_refused(change: Any, said: str) -> None:
     given = sides_of(domains(9, 8, 6))
     with pytest.raises(InputError, match=said):
         layer.winslow(change(given), *given[1:])
+
+
+def test_variational_grids_whose_systems_are_too_large_are_refused() -> None:
+    given = sides_of(domains(601, 601, 1))
+    with pytest.raises(InputError, match=r"the optimum of 601 x 601 nodes needs factors of 56 GB"):
+        layer.variational(*given)

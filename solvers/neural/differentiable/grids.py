@@ -60,7 +60,7 @@ def variational(south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Ten
     Raises
     ------
     InputError
-        As `transfinite`.
+        As `transfinite`, and for more than about 400 x 400 nodes, whose systems need too much memory.
     SolverError
         No grid without folded cells was found for a member of the batch, or it has a coordinate that is
         not finite; the message has its index.

@@ -15,7 +15,7 @@ from torch import Tensor
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.errors import MeshonetError
+from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet.solvers.energy.functional import Weights
 from meshonet.solvers.energy.variational import solve
 from meshonet.solvers.neural.differentiable.block_cholesky import BlockCholesky, storage
@@ -33,6 +33,7 @@ FALL = 1e-4  # part of the decrease that the slope promises which a step has to 
 ROUNDING = 1e-13  # of the functional, relative, by which it may rise
 SHIFTS = 1e-4, 10.0  # first multiple of the Hessian's diagonal, and the factor of the next ones
 SHIFTED = 12  # times at the most
+LARGEST = 2**34  # bytes of the factors of one member
 FACTORS = 2**28, 2**33  # bytes of factors at once, on a CPU and on a GPU
 
 
@@ -40,7 +41,14 @@ class Optimum:
     """The equations of the variational optimum: the gradient of the functional is zero at inner nodes."""
 
     def most(self, nodes: Tensor) -> int:
-        """Return how many members are solved at once, so that their factors fit in the memory."""
+        """Return how many members are solved at once, so that their factors fit in the memory.
+
+        Raises InputError: the factors of a single one are too large.
+        """
+        ni, nj = nodes.shape[2:]
+        if storage(ni, nj) > LARGEST:
+            problem = f"the optimum of {ni} x {nj} nodes needs factors of {storage(ni, nj) / 1e9:.0f} GB"
+            raise InputError(problem, "use fewer nodes, or layer.winslow")
         return FACTORS[nodes.is_cuda] // storage(*nodes.shape[2:])
 
     def solve(self, nodes: Tensor) -> tuple[Tensor, Tensor]:
