@@ -19,8 +19,7 @@ is part of it.
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
 
 TAIL = """
-Folded cells are repaired by `meshonet`, except with `--no-repair`. A corner of the given boundary that opens by more than
-180 degrees folds a cell in every grid, as in one of the shapes with seed 1. Networks that are trained on one family of shapes, such as those of [the paper](paper/index.md), are not among the entries: they answer
+Folded cells are repaired by `meshonet`, except with `--no-repair`. Networks that are trained on one family of shapes, such as those of [the paper](paper/index.md), are not among the entries: they answer
 shapes of their family only.
 
 ## How to enter
