@@ -22,8 +22,9 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of, passage_optimum
-from meshonet.solvers.blocking.cascade.passage_template import template
+from meshonet.solvers.blocking.cascade.cascade import beside_neighbours, scaled
+from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of
+from meshonet.solvers.blocking.cascade.flat_template import flat_template
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs
 from meshonet.solvers.blocking.layers.layer_rows import JOIN, layer_lines
 from meshonet.solvers.blocking.sizes.chords import Chords
@@ -144,21 +145,31 @@ def _middle(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, fl
     """Return the middle section, `early` with nodes at corners of the blade from the start."""
     plane = planes[len(planes) // 2]
     cascade = plane.cascade
-    coarse = passage_optimum(template(cascade.passage, at_corners=early), FIRST, None)
+    coarse = _sized(flat_template(cascade.passage, at_corners=early), FIRST, None)
     chords = Chords.of(coarse)
-    counts, times, metric = counts_of(cascade, chords, cells, None)
+    sizes = beside_neighbours(cascade.flat_metric, cascade)
+    counts, times, metric = counts_of(cascade, sizes, chords, cells, None)
     ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
     counts[ends] = counts[ends].max()
     rows = max(each.cascade.rows_of_layers for each in planes)
-    metric = _joined(plane, float((metric.along / cascade.metric.along).mean()), rows)
-    layout = refine(coarse, counts, chords)
+    metric = _joined(plane, float((metric.along / sizes.along).mean()), rows)
+    layout = _sized(refine(coarse, counts, chords), COARSE, metric)
+    return whole_section(plane, layout, times, rows, metric.largest, longest)
+
+
+def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
+    """Return the blocks beyond the layers where the functional is least, for sizes if given.
+
+    Nodes in which the cut ends are held.
+    """
+    mesh = layout.mesh
     optimum = optimise(
-        layout.mesh, iterations=COARSE, targets=metric.gradual(layout.mesh), tolerance=TOLERANCE,
-        weights=WEIGHTS,
+        mesh, iterations=iterations, held=(mesh.places.loop >= 0) & mesh.tied,
+        targets=metric.gradual(mesh) if metric else None, tolerance=TOLERANCE, weights=WEIGHTS,
     )  # fmt: skip
     if not optimum.valid:
         raise NoValidGridError("cells of a section stay folded")
-    return whole_section(plane, replace(layout, mesh=optimum.mesh), times, rows, metric.largest, longest)
+    return replace(layout, mesh=optimum.mesh)
 
 
 def _joined(plane: SectionPlane, scale: float, rows: int) -> SizeMetric:
@@ -167,7 +178,8 @@ def _joined(plane: SectionPlane, scale: float, rows: int) -> SizeMetric:
     thickness = cascade.ring.thickness
     none = np.full(len(thickness), np.inf)
     arcs = layer_arcs(thickness, cascade.layers.first, none, rows)
-    return replace(cascade.scaled(scale), across=JOIN * (arcs[:, -1] - arcs[:, -2]))
+    sizes = replace(scaled(cascade.flat_metric, scale), across=JOIN * (arcs[:, -1] - arcs[:, -2]))
+    return beside_neighbours(sizes, cascade)
 
 
 def _beyond(layout: Layout, columns: Indices) -> Indices:
@@ -213,25 +225,27 @@ def _carried(
 ) -> tuple[Layout, Floats]:
     """Return a neighbour's layout with layers, inlet and outlet of a section, and u of nodes at the blade.
 
-    Inlet and outlet follow the edges of the blade; between them and the layers displacements are harmonic.
+    Nodes keep their share of the way from inlet to blade, along it, and on to the outlet, and follow the
+    middle line of the blade in theta. Between inlet, outlet and layers the rest of displacements is harmonic.
     """
-    start, ring = before.layout.mesh.nodes, plane.cascade.ring
+    given = before.layout.mesh.nodes
+    shares, ring = before.plane.shares(given), plane.cascade.ring
+    aside = plane.camber(shares) - before.plane.camber(shares)
+    start = np.stack([plane.stations(shares), given[:, 1] + aside], axis=1)
     end, front = start.copy(), plane.front_arcs(places)
     lines, walls = ring.columns(front)
     inner = norms(start[plan.outward] - start[plan.columns[:, -1]])
     rows = plan.columns.shape[1] - 1
     end[plan.columns] = layer_lines(lines, ring.front.at(front), inner, rows, plane.cascade.layers)
-    aside = (plane.edges - before.plane.edges)[:, 1]
-    for own, at, shift in zip(plan.ends, (0.0, plane.map.length), aside, strict=True):
+    for own, at in zip(plan.ends, (0.0, plane.map.length), strict=True):
         end[own, 0] = at
-        end[own, 1] += shift
-    given = np.zeros(len(start), dtype=bool)
-    given[plan.columns] = True
+    held = np.zeros(len(start), dtype=bool)
+    held[plan.columns] = True
     for own in plan.ends:
-        given[own] = True
-    mesh = before.layout.mesh
-    nodes = start + harmonic(mesh, end - start, given)
-    nodes[given] = end[given]
+        held[own] = True
+    mesh = before.layout.mesh.with_nodes(start)
+    nodes = start + harmonic(mesh, end - start, held)
+    nodes[held] = end[held]
     return replace(before.layout, mesh=mesh.with_nodes(nodes)), plane.places_of(walls)
 
 

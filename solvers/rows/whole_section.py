@@ -1,9 +1,10 @@
-"""A section with its layers, and with rows to inlet and outlet, from its blocks in the plane of the map."""
+"""A section with its layers, and with rows to inlet and outlet, from its blocks beyond the layers."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,8 +12,8 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.blocking.cascade.cascade_layout import row_steps, straight_rows
-from meshonet.solvers.blocking.cascade.passage import BLADE, extended, laid_out
-from meshonet.solvers.blocking.cascade.passage_template import cut_of
+from meshonet.solvers.blocking.cascade.flat_template import flat_cut
+from meshonet.solvers.blocking.cascade.passage import BLADE, extended
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.blocking.sizes.refine import multiplied
@@ -25,7 +26,7 @@ _RATIO = 2.0
 def whole_section(
     plane: SectionPlane, layout: Layout, times: int, layers: int, largest: float, longest: Mapping[int, float]
 ) -> Layout:
-    """Return a section of the blocks of a layout in the plane of its map, each `times` as fine.
+    """Return a section of the blocks of a layout beyond its layers, each `times` as fine.
 
     Parameters
     ----------
@@ -35,10 +36,9 @@ def whole_section(
         They have as many cells as these ask for.
     """
     cascade = plane.cascade
-    passage = cascade.passage
-    fine = multiplied(layout, times)
-    flat, cut = laid_out(fine, passage, cut_of(fine))
+    flat = multiplied(layout, times)
     mesh = flat.mesh
+    passage = replace(cascade.passage, domain=mesh.domain)
     inner = heights_inside(flat, BLADE)
     rows = [ring_rows(mesh, BLADE, cascade.ring, layers, cascade.layers, inner)]
     axis = np.array([passage.map.axis.real, passage.map.axis.imag])
@@ -48,7 +48,7 @@ def whole_section(
         count = len(row_steps(first, max(length, longest[number]), largest)) - 1
         steps = _grown(first, length, count)
         rows.append(Rows(number, start[:, None] + steps[:, None] * (way * axis), np.zeros(len(start)), False))
-    return extended(flat, cut, passage, cascade.blade, rows)
+    return extended(flat, flat_cut(flat), passage, cascade.blade, rows)
 
 
 def _grown(first: float, length: float, cells: int) -> Floats:
