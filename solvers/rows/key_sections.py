@@ -24,11 +24,13 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cascade.cascade import beside_neighbours, scaled
 from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of
-from meshonet.solvers.blocking.cascade.flat_template import flat_template
+from meshonet.solvers.blocking.cascade.flat_template import flat_cut, flat_template
+from meshonet.solvers.blocking.cascade.passage import laid_out
+from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs
 from meshonet.solvers.blocking.layers.layer_rows import JOIN, layer_lines
 from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.refine import refine
+from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.rows.columns import layer_columns
@@ -46,6 +48,8 @@ FINE, FROM_NEIGHBOUR = 80, 25
 TOLERANCE = 1e-3
 FLAT, SMOOTH = 0.95, 1e-3
 """Weights w and β of the functional."""
+SLENDER = 2.5
+"""Chord of the middle section in pitches from which on it is optimised in (m', theta) from the start."""
 BEND = 0.3
 """Part of the way to the outlet in which lines bend into the direction of the wake."""
 STEEP, MARGIN = 3.0, 0.93
@@ -108,14 +112,16 @@ def planned(
     `longest` are the greatest lengths of the rows to inlet and outlet, by the number of their loop, `wake` is
     that of the plan. With `opposite` nodes on both sides of the blade are opposite each other.
     """
-    for early in (True, False):
+    plane = planes[len(planes) // 2]
+    flat = plane.slenderness > SLENDER
+    attempts = [(flat, True), (flat, False)] + ([] if flat else [(True, True), (True, False)])
+    for attempt in attempts:
         try:
-            whole = _middle(planes, cells, longest, early)
+            whole = _middle(planes, cells, longest, *attempt)
             break
         except NoValidGridError:
-            if not early:
+            if attempt == attempts[-1]:
                 raise
-    plane = planes[len(planes) // 2]
     columns = layer_columns(whole)
     at = plane.places_of(whole.mesh.places.arc[columns[:, 0]])
     places = at_corners(opposite_places(at) if opposite else at, plane.corners)
@@ -141,20 +147,29 @@ def next_section(plan: SectionPlan, before: KeySection, plane: SectionPlane) -> 
     return _moved(plan, before, plane, plan.places, FROM_NEIGHBOUR)
 
 
-def _middle(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], early: bool) -> Layout:
-    """Return the middle section, `early` with nodes at corners of the blade from the start."""
+def _middle(
+    planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], flat: bool, early: bool
+) -> Layout:
+    """Return the middle section, `early` with nodes at corners of the blade from the start.
+
+    Its blocks are optimised `flat` in (m', theta), otherwise in the plane of the passage's map.
+    """
     plane = planes[len(planes) // 2]
     cascade = plane.cascade
-    coarse = _sized(flat_template(cascade.passage, at_corners=early), FIRST, None)
+    start = (flat_template if flat else template)(cascade.passage, at_corners=early)
+    sizes = beside_neighbours(cascade.flat_metric, cascade) if flat else cascade.metric
+    coarse = _sized(start, FIRST, None)
     chords = Chords.of(coarse)
-    sizes = beside_neighbours(cascade.flat_metric, cascade)
     counts, times, metric = counts_of(cascade, sizes, chords, cells, None)
     ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
     counts[ends] = counts[ends].max()
     rows = max(each.cascade.rows_of_layers for each in planes)
-    metric = _joined(plane, float((metric.along / sizes.along).mean()), rows)
-    layout = _sized(refine(coarse, counts, chords), COARSE, metric)
-    return whole_section(plane, layout, times, rows, metric.largest, longest)
+    scale = float((metric.along / sizes.along).mean())
+    metric = _joined(plane, sizes, scale, rows)
+    fine = multiplied(_sized(refine(coarse, counts, chords), COARSE, metric), times)
+    passage = replace(cascade.passage, domain=fine.mesh.domain) if flat else cascade.passage
+    beyond, cut = (fine, flat_cut(fine)) if flat else laid_out(fine, passage, cut_of(fine))
+    return whole_section(plane, passage, (beyond, cut), rows, metric.largest, longest)
 
 
 def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
@@ -172,14 +187,14 @@ def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout
     return replace(layout, mesh=optimum.mesh)
 
 
-def _joined(plane: SectionPlane, scale: float, rows: int) -> SizeMetric:
-    """Return the sizes of cells of a section, across the front those beyond so many `rows` of layers."""
+def _joined(plane: SectionPlane, sizes: SizeMetric, scale: float, rows: int) -> SizeMetric:
+    """Return `sizes` for cells `scale` times as long, across the front those beyond `rows` of layers."""
     cascade = plane.cascade
     thickness = cascade.ring.thickness
     none = np.full(len(thickness), np.inf)
     arcs = layer_arcs(thickness, cascade.layers.first, none, rows)
-    sizes = replace(scaled(cascade.flat_metric, scale), across=JOIN * (arcs[:, -1] - arcs[:, -2]))
-    return beside_neighbours(sizes, cascade)
+    last = JOIN * (arcs[:, -1] - arcs[:, -2])
+    return replace(scaled(sizes, scale), across=np.tile(last, len(sizes.across) // len(last)))
 
 
 def _beyond(layout: Layout, columns: Indices) -> Indices:

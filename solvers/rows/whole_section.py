@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cascade.cascade_layout import row_steps, straight_rows
-from meshonet.solvers.blocking.cascade.flat_template import flat_cut
-from meshonet.solvers.blocking.cascade.passage import BLADE, extended
+from meshonet.solvers.blocking.cascade.passage import BLADE, Passage, extended
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
-from meshonet.solvers.blocking.sizes.refine import multiplied
 from meshonet.solvers.rows.section_plane import SectionPlane
 
 _BISECTIONS = 60
@@ -24,21 +22,23 @@ _RATIO = 2.0
 
 
 def whole_section(
-    plane: SectionPlane, layout: Layout, times: int, layers: int, largest: float, longest: Mapping[int, float]
-) -> Layout:
-    """Return a section of the blocks of a layout beyond its layers, each `times` as fine.
+    plane: SectionPlane, passage: Passage, beyond: tuple[Layout, Indices], layers: int, largest: float,
+    longest: Mapping[int, float],
+) -> Layout:  # fmt: skip
+    """Return a section of the blocks beyond its layers.
 
     Parameters
     ----------
+    passage : whose loops these blocks have.
+    beyond : their layout in (m', theta), and the nodes of the lower side of its cut.
     layers : how many layers there are.
     largest : size of the largest cells.
     longest : greatest lengths of the rows to inlet and outlet in any section, by the number of their loop.
         They have as many cells as these ask for.
     """
     cascade = plane.cascade
-    flat = multiplied(layout, times)
+    flat, cut = beyond
     mesh = flat.mesh
-    passage = replace(cascade.passage, domain=mesh.domain)
     inner = heights_inside(flat, BLADE)
     rows = [ring_rows(mesh, BLADE, cascade.ring, layers, cascade.layers, inner)]
     axis = np.array([passage.map.axis.real, passage.map.axis.imag])
@@ -48,7 +48,7 @@ def whole_section(
         count = len(row_steps(first, max(length, longest[number]), largest)) - 1
         steps = _grown(first, length, count)
         rows.append(Rows(number, start[:, None] + steps[:, None] * (way * axis), np.zeros(len(start)), False))
-    return extended(flat, flat_cut(flat), passage, cascade.blade, rows)
+    return extended(flat, cut, passage, cascade.blade, rows)
 
 
 def _grown(first: float, length: float, cells: int) -> Floats:
