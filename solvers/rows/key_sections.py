@@ -22,12 +22,15 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of, passage_optimum
-from meshonet.solvers.blocking.cascade.passage_template import template
+from meshonet.solvers.blocking.cascade.cascade import beside_neighbours, scaled
+from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of
+from meshonet.solvers.blocking.cascade.flat_template import flat_cut, flat_template
+from meshonet.solvers.blocking.cascade.passage import laid_out
+from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs
 from meshonet.solvers.blocking.layers.layer_rows import JOIN, layer_lines
 from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.refine import refine
+from meshonet.solvers.blocking.sizes.refine import multiplied, refine
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.rows.columns import layer_columns
@@ -45,6 +48,8 @@ FINE, FROM_NEIGHBOUR = 80, 25
 TOLERANCE = 1e-3
 FLAT, SMOOTH = 0.95, 1e-3
 """Weights w and β of the functional."""
+SLENDER = 2.5
+"""Chord of the middle section in pitches from which on it is optimised in (m', theta) from the start."""
 BEND = 0.3
 """Part of the way to the outlet in which lines bend into the direction of the wake."""
 STEEP, MARGIN = 3.0, 0.93
@@ -107,14 +112,16 @@ def planned(
     `longest` are the greatest lengths of the rows to inlet and outlet, by the number of their loop, `wake` is
     that of the plan. With `opposite` nodes on both sides of the blade are opposite each other.
     """
-    for early in (True, False):
+    plane = planes[len(planes) // 2]
+    flat = plane.slenderness > SLENDER
+    attempts = [(flat, True), (flat, False)] + ([] if flat else [(True, True), (True, False)])
+    for attempt in attempts:
         try:
-            whole = _middle(planes, cells, longest, early)
+            whole = _middle(planes, cells, longest, *attempt)
             break
         except NoValidGridError:
-            if not early:
+            if attempt == attempts[-1]:
                 raise
-    plane = planes[len(planes) // 2]
     columns = layer_columns(whole)
     at = plane.places_of(whole.mesh.places.arc[columns[:, 0]])
     places = at_corners(opposite_places(at) if opposite else at, plane.corners)
@@ -140,34 +147,54 @@ def next_section(plan: SectionPlan, before: KeySection, plane: SectionPlane) -> 
     return _moved(plan, before, plane, plan.places, FROM_NEIGHBOUR)
 
 
-def _middle(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], early: bool) -> Layout:
-    """Return the middle section, `early` with nodes at corners of the blade from the start."""
+def _middle(
+    planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], flat: bool, early: bool
+) -> Layout:
+    """Return the middle section, `early` with nodes at corners of the blade from the start.
+
+    Its blocks are optimised `flat` in (m', theta), otherwise in the plane of the passage's map.
+    """
     plane = planes[len(planes) // 2]
     cascade = plane.cascade
-    coarse = passage_optimum(template(cascade.passage, at_corners=early), FIRST, None)
+    start = (flat_template if flat else template)(cascade.passage, at_corners=early)
+    sizes = beside_neighbours(cascade.flat_metric, cascade) if flat else cascade.metric
+    coarse = _sized(start, FIRST, None)
     chords = Chords.of(coarse)
-    counts, times, metric = counts_of(cascade, chords, cells, None)
+    counts, times, metric = counts_of(cascade, sizes, chords, cells, None)
     ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
     counts[ends] = counts[ends].max()
     rows = max(each.cascade.rows_of_layers for each in planes)
-    metric = _joined(plane, float((metric.along / cascade.metric.along).mean()), rows)
-    layout = refine(coarse, counts, chords)
+    scale = float((metric.along / sizes.along).mean())
+    metric = _joined(plane, sizes, scale, rows)
+    fine = multiplied(_sized(refine(coarse, counts, chords), COARSE, metric), times)
+    passage = replace(cascade.passage, domain=fine.mesh.domain) if flat else cascade.passage
+    beyond, cut = (fine, flat_cut(fine)) if flat else laid_out(fine, passage, cut_of(fine))
+    return whole_section(plane, passage, (beyond, cut), rows, metric.largest, longest)
+
+
+def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
+    """Return the blocks beyond the layers where the functional is least, for sizes if given.
+
+    Nodes in which the cut ends are held.
+    """
+    mesh = layout.mesh
     optimum = optimise(
-        layout.mesh, iterations=COARSE, targets=metric.gradual(layout.mesh), tolerance=TOLERANCE,
-        weights=WEIGHTS,
+        mesh, iterations=iterations, held=(mesh.places.loop >= 0) & mesh.tied,
+        targets=metric.gradual(mesh) if metric else None, tolerance=TOLERANCE, weights=WEIGHTS,
     )  # fmt: skip
     if not optimum.valid:
         raise NoValidGridError("cells of a section stay folded")
-    return whole_section(plane, replace(layout, mesh=optimum.mesh), times, rows, metric.largest, longest)
+    return replace(layout, mesh=optimum.mesh)
 
 
-def _joined(plane: SectionPlane, scale: float, rows: int) -> SizeMetric:
-    """Return the sizes of cells of a section, across the front those beyond so many `rows` of layers."""
+def _joined(plane: SectionPlane, sizes: SizeMetric, scale: float, rows: int) -> SizeMetric:
+    """Return `sizes` for cells `scale` times as long, across the front those beyond `rows` of layers."""
     cascade = plane.cascade
     thickness = cascade.ring.thickness
     none = np.full(len(thickness), np.inf)
     arcs = layer_arcs(thickness, cascade.layers.first, none, rows)
-    return replace(cascade.scaled(scale), across=JOIN * (arcs[:, -1] - arcs[:, -2]))
+    last = JOIN * (arcs[:, -1] - arcs[:, -2])
+    return replace(scaled(sizes, scale), across=np.tile(last, len(sizes.across) // len(last)))
 
 
 def _beyond(layout: Layout, columns: Indices) -> Indices:
@@ -213,25 +240,27 @@ def _carried(
 ) -> tuple[Layout, Floats]:
     """Return a neighbour's layout with layers, inlet and outlet of a section, and u of nodes at the blade.
 
-    Inlet and outlet follow the edges of the blade; between them and the layers displacements are harmonic.
+    Nodes keep their share of the way from inlet to blade, along it, and on to the outlet, and follow the
+    middle line of the blade in theta. Between inlet, outlet and layers the rest of displacements is harmonic.
     """
-    start, ring = before.layout.mesh.nodes, plane.cascade.ring
+    given = before.layout.mesh.nodes
+    shares, ring = before.plane.shares(given), plane.cascade.ring
+    aside = plane.camber(shares) - before.plane.camber(shares)
+    start = np.stack([plane.stations(shares), given[:, 1] + aside], axis=1)
     end, front = start.copy(), plane.front_arcs(places)
     lines, walls = ring.columns(front)
     inner = norms(start[plan.outward] - start[plan.columns[:, -1]])
     rows = plan.columns.shape[1] - 1
     end[plan.columns] = layer_lines(lines, ring.front.at(front), inner, rows, plane.cascade.layers)
-    aside = (plane.edges - before.plane.edges)[:, 1]
-    for own, at, shift in zip(plan.ends, (0.0, plane.map.length), aside, strict=True):
+    for own, at in zip(plan.ends, (0.0, plane.map.length), strict=True):
         end[own, 0] = at
-        end[own, 1] += shift
-    given = np.zeros(len(start), dtype=bool)
-    given[plan.columns] = True
+    held = np.zeros(len(start), dtype=bool)
+    held[plan.columns] = True
     for own in plan.ends:
-        given[own] = True
-    mesh = before.layout.mesh
-    nodes = start + harmonic(mesh, end - start, given)
-    nodes[given] = end[given]
+        held[own] = True
+    mesh = before.layout.mesh.with_nodes(start)
+    nodes = start + harmonic(mesh, end - start, held)
+    nodes[held] = end[held]
     return replace(before.layout, mesh=mesh.with_nodes(nodes)), plane.places_of(walls)
 
 

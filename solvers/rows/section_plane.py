@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats, complex_of
+from meshonet.geometry.arrays import Complexes, Floats, complex_of, norms, pairs_of
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import modulus
@@ -24,6 +24,7 @@ from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 
 _AROUND = 400
 """Points of a section."""
+_SHARES = np.array([-1.0, 0.0, 1.0, 2.0])
 STEEPEST = 45.0
 """Degrees from the axis by which wakes are followed at the most: cells behind the blade are askew by them."""
 _NEAR_EDGE = 0.06  # places before and behind the trailing edge by which the mean line is known there
@@ -84,6 +85,22 @@ class SectionPlane:
         return self.cascade.blade.at(self.wall_arcs(np.array([0.0, 0.5])))
 
     @property
+    def slenderness(self) -> float:
+        """Chord in pitches."""
+        return float(norms(self.edges[1] - self.edges[0]) / self.cascade.pitch[1])
+
+    @property
+    def slenderness(self) -> float:
+        """Chord in pitches."""
+        return float(norms(self.edges[1] - self.edges[0]) / self.cascade.pitch[1])
+
+    @property
+    def aside(self) -> float:
+        """Parts of the chord by which the point opposite on the next blade is aside on its chord."""
+        chord = self.edges[1] - self.edges[0]
+        return float(self.cascade.pitch[1] * chord[1] / (chord**2).sum())
+
+    @property
     def wake(self) -> float:
         """Theta by which the mean line goes on from the trailing edge to the outlet.
 
@@ -129,6 +146,26 @@ class SectionPlane:
         front = np.append(ring.front.curve.knots, ring.front.length)
         along = np.interp(start + np.mod(self.wall_arcs(u) - start, length), walls, front)
         return np.asarray(np.mod(along, ring.front.length))
+
+    def shares(self, points: Floats) -> Floats:
+        """Return shares (n,) of the way at points (n, 2): -1 inlet, 0 and 1 the blade's edges, 2 outlet."""
+        return np.interp(points[:, 0], self._stations, _SHARES)
+
+    def stations(self, shares: Floats) -> Floats:
+        """Return m' (n,) at `shares` (n,) of the way."""
+        return np.interp(shares, _SHARES, self._stations)
+
+    def camber(self, shares: Floats) -> Floats:
+        """Return theta (n,) of the line in the middle between both sides, at `shares` (n,) of the blade."""
+        u = np.linspace(0.0, 0.5, _AROUND)
+        middle = 0.5 * (self._opposite(u) + self._opposite(1.0 - u))
+        part = np.maximum.accumulate(self.shares(pairs_of(middle)))
+        return np.interp(np.clip(shares, 0.0, 1.0), part, middle.imag)
+
+    @property
+    def _stations(self) -> Floats:
+        """M' of inlet, leading edge, trailing edge and outlet."""
+        return np.array([0.0, self.edges[0, 0], self.edges[1, 0], self.map.length])
 
 
 def _with_corners(u: Floats, corners: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""A section with its layers, and with rows to inlet and outlet, from its blocks in the plane of the map."""
+"""A section with its layers, and with rows to inlet and outlet, from its blocks beyond the layers."""
 
 from __future__ import annotations
 
@@ -10,12 +10,11 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cascade.cascade_layout import row_steps, straight_rows
-from meshonet.solvers.blocking.cascade.passage import BLADE, extended, laid_out
-from meshonet.solvers.blocking.cascade.passage_template import cut_of
+from meshonet.solvers.blocking.cascade.passage import BLADE, Passage, extended
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
-from meshonet.solvers.blocking.sizes.refine import multiplied
 from meshonet.solvers.rows.section_plane import SectionPlane
 
 _BISECTIONS = 60
@@ -23,21 +22,22 @@ _RATIO = 2.0
 
 
 def whole_section(
-    plane: SectionPlane, layout: Layout, times: int, layers: int, largest: float, longest: Mapping[int, float]
-) -> Layout:
-    """Return a section of the blocks of a layout in the plane of its map, each `times` as fine.
+    plane: SectionPlane, passage: Passage, beyond: tuple[Layout, Indices], layers: int, largest: float,
+    longest: Mapping[int, float],
+) -> Layout:  # fmt: skip
+    """Return a section of the blocks beyond its layers.
 
     Parameters
     ----------
+    passage : whose loops these blocks have.
+    beyond : their layout in (m', theta), and the nodes of the lower side of its cut.
     layers : how many layers there are.
     largest : size of the largest cells.
     longest : greatest lengths of the rows to inlet and outlet in any section, by the number of their loop.
         They have as many cells as these ask for.
     """
     cascade = plane.cascade
-    passage = cascade.passage
-    fine = multiplied(layout, times)
-    flat, cut = laid_out(fine, passage, cut_of(fine))
+    flat, cut = beyond
     mesh = flat.mesh
     inner = heights_inside(flat, BLADE)
     rows = [ring_rows(mesh, BLADE, cascade.ring, layers, cascade.layers, inner)]

@@ -158,18 +158,17 @@ class Cascade:
     @cached_property
     def metric(self) -> SizeMetric:
         """Cell sizes outside of the layers, in the plane of the conformal map."""
-        sizes = ring_metric(self.ring, self.layers)
+        sizes = self.flat_metric
         to = self.passage.map
         points = to.forward(sizes.points)
         turn = to.derivative(points)
         normals = pairs_of(times(complex_of(sizes.normals), turn) / modulus(turn))
-        largest = abs(self.left) / ACROSS
-        return replace(sizes, points=points, normals=normals, largest=largest, scale=to.stretching)
+        return replace(sizes, points=points, normals=normals, scale=to.stretching)
 
-    def scaled(self, scale: float) -> SizeMetric:
-        """Return cell sizes for cells `scale` times as long along the blade."""
-        metric = self.metric
-        return replace(metric, along=scale * metric.along, largest=metric.largest * scale**0.5)
+    @cached_property
+    def flat_metric(self) -> SizeMetric:
+        """Cell sizes outside of the layers of the blade alone, in its own plane."""
+        return replace(ring_metric(self.ring, self.layers), largest=abs(self.left) / ACROSS)
 
     def check_reach(self, cells: int | None, cell_size: float | None) -> None:
         """Raise InputError where the largest cells are far more than `cells`, or too many of a size."""
@@ -181,6 +180,21 @@ class Cascade:
             length / largest * (abs(self.left) / largest), "cells", f"a passage of length {length:.3g}",
             f"use a shorter {{{long}}}, or " + ("larger cells" if cell_size else "more {cells}"), most=most,
         )  # fmt: skip
+
+
+def scaled(metric: SizeMetric, scale: float) -> SizeMetric:
+    """Return cell sizes for cells `scale` times as long along the blade."""
+    return replace(metric, along=scale * metric.along, largest=metric.largest * scale**0.5)
+
+
+def beside_neighbours(sizes: SizeMetric, cascade: Cascade) -> SizeMetric:
+    """Return sizes that those around one blade and its two neighbours ask for."""
+    shift = pairs_of(np.array([0.0, -cascade.left, cascade.left]))
+    points = (shift[:, None] + sizes.points).reshape(-1, 2)
+    normals, across, along = (
+        np.concatenate([values] * 3) for values in (sizes.normals, sizes.across, sizes.along)
+    )
+    return replace(sizes, points=points, normals=normals, across=across, along=along)
 
 
 def _moved(blade: Loop, curve: Curve, shift: Floats) -> Loop:

@@ -19,7 +19,7 @@ from meshonet.geometry.elementary import log
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.cascade.cascade import COARSEST, Cascade
+from meshonet.solvers.blocking.cascade.cascade import COARSEST, Cascade, scaled
 from meshonet.solvers.blocking.cascade.passage import (
     BLADE,
     INLET,
@@ -102,7 +102,7 @@ def _outside(
         coarse = passage_optimum(template(passage, at_corners=corners == "at first"), FIRST, None)
     with timings.stage("refine"):
         chords = Chords.of(coarse)
-        counts, times, metric = counts_of(cascade, chords, cells, cell_size)
+        counts, times, metric = counts_of(cascade, cascade.metric, chords, cells, cell_size)
         coarse = refine(coarse, counts, chords)
     with timings.stage("optimum"):
         for _ in range(PASSES):
@@ -157,19 +157,22 @@ def row_steps(first: float, length: float, largest: float) -> Floats:
 
 
 def counts_of(
-    cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
+    cascade: Cascade, sizes: SizeMetric, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
-    """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
-    wanted = WantedCounts(chords, cascade.metric)
+    """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow.
+
+    `sizes` are those in the plane of the layout.
+    """
+    wanted = WantedCounts(chords, sizes)
     if cell_size is not None:
-        sizes = np.minimum(cascade.metric.across, cell_size)
-        metric = replace(cascade.metric, across=sizes, along=sizes, largest=cell_size)
+        across = np.minimum(sizes.across, cell_size)
+        metric = replace(sizes, across=across, along=across, largest=cell_size)
         counts = wanted.counts(metric)
     else:
         low, high = math.log(0.05), math.log(COARSEST)
         for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)
-            metric = cascade.scaled(math.exp(middle))
+            metric = scaled(sizes, math.exp(middle))
             counts = wanted.counts(metric)
             total = chords.cells(counts) + _attached_cells(cascade, chords, counts, metric)
             low, high = (middle, high) if total > (cells or 0) else (low, middle)

@@ -128,12 +128,15 @@ def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: S
     count = len(mesh.nodes)
     domain = replace(passage.domain, loops=(wall, *passage.domain.loops[1:]))
     whole = attach(layout, domain, rows)
-    low, high = [cut], [cut + 1]
+    images = np.flatnonzero(mesh.places.partner >= 0)
+    above = np.empty(count, dtype=np.intp)
+    above[mesh.places.partner[images]] = images
+    low, high = [cut], [above[cut]]
     for each in rows:
         order, away = loop_nodes(mesh, each.loop), each.nodes.shape[1] - 1
         if each.loop != BLADE:
             ends = [count + np.arange(away) + away * k for k in (0, len(order) - 1)]
-            if order[0] in cut + 1:
+            if order[0] in images:
                 ends.reverse()
             whole.mesh.places.partner[ends[1]] = ends[0]
             for line, new in zip((low, high), ends, strict=True):

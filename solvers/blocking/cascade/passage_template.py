@@ -37,32 +37,46 @@ ASIDE, AHEAD = 0.45, 0.12
 
 
 _SAME = 1e-9  # distance at which nodes are one
-_FEET = 1e3  # a place that is not used
+FEET = 1e3
+"""Places in the plane G that are not used, at which the nodes on the blade are."""
 
 
 def template(passage: Passage, *, at_corners: bool = True) -> Layout:
     """Return the layout of a passage in the plane of its map; nodes may be moved to the blade's corners."""
     flow = PassageFlow.of(passage.map.zeta(passage.front.curve.points))
+    pieces, angles = template_pieces(flow, passage)
+    nodes, blocks = joined_pieces(pieces, periodic=True)
+    layout = _placed(passage, flow, nodes, blocks, angles)
+    if at_corners:
+        put_at_corners(layout, passage.domain.loops[BLADE])
+    return layout
+
+
+def template_pieces(
+    flow: PassageFlow, passage: Passage, *, longest: float = np.inf, cut: bool = False
+) -> tuple[list[Complexes], list[Floats]]:
+    """Return the twelve blocks in the plane G, those of the ring last, and the angles of these as `_ring`.
+
+    The channel has `longest` cells along it at the most. With `cut` blocks above the cut are moved below the
+    blade, by the period.
+    """
     x = flow.half + AHEAD
     to_axis = np.pi / abs(passage.map.pitch)
     before = max(flow.far[0] - to_axis * passage.inlet, x + AHEAD)
     behind = max(to_axis * passage.outlet - flow.far[1], x + AHEAD)
     columns = (-before, -x, x, behind)
-    along = max(CELLS, round(2.0 * x / LONG))
-    rows = (-ASIDE, ASIDE, 0.5 * np.pi, np.pi - ASIDE)
+    along = int(min(max(CELLS, round(2.0 * x / LONG)), longest))
+    period = np.pi if cut else 0.0
+    rows = ((-ASIDE, ASIDE), (ASIDE, 0.5 * np.pi), (0.5 * np.pi - period, np.pi - ASIDE - period))
     pieces = []
     for i in range(3):
         for j in range(3):
             if (i, j) != (1, 0):
                 u = np.linspace(columns[i], columns[i + 1], (along if i == 1 else CELLS) + 1)[:, None]
-                v = np.linspace(rows[j], rows[j + 1], CELLS + 1)[None, :]
+                v = np.linspace(*rows[j], CELLS + 1)[None, :]
                 pieces.append(np.asarray(u + 1j * v, dtype=np.complex128))
     ring, angles = _ring(flow, x, along)
-    nodes, blocks = _joined(pieces + ring)
-    layout = _placed(passage, flow, nodes, blocks, angles)
-    if at_corners:
-        _put_at_corners(layout, passage.domain.loops[BLADE])
-    return layout
+    return pieces + ring, angles
 
 
 def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], list[Floats]]:
@@ -77,15 +91,15 @@ def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], lis
         outer = arccosh(side / flow.half)
         lines = np.linspace(0.0, 1.0, CELLS + 1) * outer.real[:, None] + 1j * outer.imag[:, None]
         blocks.append(flow.half * cosh(lines))
-        blocks[-1][:, 0] = _FEET * exp(1j * outer.imag)  # away from all others: nodes are told apart
+        blocks[-1][:, 0] = FEET * exp(1j * outer.imag)  # away from all others: nodes are told apart
         angles.append(outer.imag)
     return blocks, angles
 
 
-def _joined(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
+def joined_pieces(pieces: list[Complexes], *, periodic: bool) -> tuple[Complexes, tuple[Indices, ...]]:
     """Return the positions of nodes, and blocks of their numbers.
 
-    Nodes that coincide up to multiples of the period iπ are merged.
+    Nodes that coincide are merged, with `periodic` also those that do up to multiples of the period iπ.
     """
     places = np.concatenate([piece.ravel() for piece in pieces])
     inner = np.zeros(len(places), dtype=bool)
@@ -95,7 +109,8 @@ def _joined(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
     side = np.flatnonzero(~inner)
     own = np.arange(len(places))
     away = places[side, None] - places[side]
-    away -= 1j * np.pi * np.round(away.imag / np.pi) * (modulus(places[side]) < 0.5 * _FEET)
+    if periodic:
+        away -= 1j * np.pi * np.round(away.imag / np.pi) * (modulus(places[side]) < 0.5 * FEET)
     own[side] = side[(modulus(away) < _SAME).argmax(axis=1)]
     kept, number = np.unique(own, return_inverse=True)
     parts = np.split(number.astype(np.intp), ends[1:-1])
@@ -111,10 +126,10 @@ def _placed(
     """
     domain = passage.domain
     front = domain.loops[BLADE]
-    mapped = of_zeta(flow.to_places(np.where(modulus(nodes) < 0.5 * _FEET, nodes, 0.5j * np.pi)))
+    mapped = of_zeta(flow.to_places(np.where(modulus(nodes) < 0.5 * FEET, nodes, 0.5j * np.pi)))
     places = Places.inside(len(nodes))
     feet, angle = np.concatenate([block[:, 0] for block in blocks[-4:]]), np.concatenate(angles)
-    places.loop[feet], places.arc[feet] = BLADE, _arcs(flow, angle, front)
+    places.loop[feet], places.arc[feet] = BLADE, blade_arcs(flow, angle, front)
     for number, columns in (
         (INLET, [block[0] for block in blocks[:3]]),
         (OUTLET, [block[-1] for block in blocks[-7:-4]]),
@@ -128,7 +143,7 @@ def _placed(
     return Layout(QuadMesh(domain, mapped, lattice_quads(blocks), places), blocks)
 
 
-def _put_at_corners(layout: Layout, front: Loop) -> None:
+def put_at_corners(layout: Layout, front: Loop) -> None:
     """Move the nearest node to each corner of the blade or of its layers, in place; no node is used twice."""
     places = layout.mesh.places
     free = places.loop == BLADE
@@ -140,7 +155,7 @@ def _put_at_corners(layout: Layout, front: Loop) -> None:
         layout.mesh.nodes[node] = front.at(np.array([arc]))[0]
 
 
-def _arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
+def blade_arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
     """Return the arc lengths (k,) on the loop of the blade for angles (k,) around the slit."""
     turn = 2.0 * np.pi
     around, knots = flow.around, np.append(front.curve.knots, front.length)

@@ -1,0 +1,69 @@
+"""Passages of rows whose flow turns outwards or inwards: impellers, radial turbines, vaned diffusers."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+import radial_rows
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.rows.row import Row
+from meshonet.solvers.pipeline.rows import make_row
+from meshonet.solvers.rows.request import RowRequest
+
+FIRST = 1e-3
+ROWS = {
+    "impeller": radial_rows.impeller(4, gap=False),
+    "turbine with a gap": radial_rows.turbine(5, gap=True),
+    "diffuser": radial_rows.diffuser(7),
+}
+
+
+@cache
+def made(name: str) -> Grid:
+    return make_row(ROWS[name], RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
+
+
+def nodes_of(grid: Grid, patch: str) -> np.ndarray:
+    return np.concatenate([grid.at(each).reshape(-1, 3) for each in grid.patches if each.name == patch])
+
+
+def from_curve(points: np.ndarray, curve: np.ndarray) -> np.ndarray:
+    """Distances (n,) of points x, y, z from the surface that a curve of x and r describes."""
+    p = np.stack([points[:, 0], np.hypot(points[:, 1], points[:, 2])], axis=1)
+    start, way = curve[:-1], np.diff(curve, axis=0)
+    part = np.clip(((p[:, None] - start) * way).sum(axis=-1) / (way**2).sum(axis=-1), 0.0, 1.0)
+    return np.linalg.norm(start + part[..., None] * way - p[:, None], axis=-1).min(axis=1)
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_cells_are_valid(name: str) -> None:
+    quality = made(name).quality()
+    assert quality.folded == 0
+    assert quality.metrics["scaled_jacobian"].min > 0.05
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_hub_and_shroud_are_the_surfaces_of_their_curves(name: str) -> None:
+    row: Row = ROWS[name]
+    for patch, curve in (("hub", row.hub), ("shroud", row.shroud)):
+        assert from_curve(nodes_of(made(name), patch), curve).max() < 1e-3 * row.chord
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_inlet_and_outlet_are_at_the_ends_of_the_curves(name: str) -> None:
+    row: Row = ROWS[name]
+    for patch, end in (("inlet", 0), ("outlet", -1)):
+        line = np.stack([row.hub[end], row.shroud[end]])
+        assert from_curve(nodes_of(made(name), patch), line).max() < 1e-9 * row.chord
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_first_cells_have_their_height_in_space_at_the_blade(name: str) -> None:
+    grid, wanted = made(name), FIRST * ROWS[name].chord
+    for patch in grid.patches:
+        if patch.name == "blade":
+            axis, end = patch.place
+            rows = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
+            rows = rows if end == 0 else rows[::-1]
+            assert np.linalg.norm(rows[1] - rows[0], axis=-1) == pytest.approx(wanted, rel=1e-9)
