@@ -60,4 +60,7 @@ def read_stack(source: Source) -> Stack | Row | Aircraft:
             return read_row(data, source)
         if kind == "aircraft":
             return read_aircraft(data, source)
+        for key, what in (("blades", "row"), ("bodies", "aircraft")):
+            if "kind" not in data.data and key in data.data:
+                raise data.error("kind", f"is missing, and a wing has no {key}", f'write kind = "{what}"')
         return stack_table(data, source.path.parent if source.path else Path(), source.stem or "stack")
