@@ -90,11 +90,6 @@ class SectionPlane:
         return float(norms(self.edges[1] - self.edges[0]) / self.cascade.pitch[1])
 
     @property
-    def slenderness(self) -> float:
-        """Chord in pitches."""
-        return float(norms(self.edges[1] - self.edges[0]) / self.cascade.pitch[1])
-
-    @property
     def aside(self) -> float:
         """Parts of the chord by which the point opposite on the next blade is aside on its chord."""
         chord = self.edges[1] - self.edges[0]
