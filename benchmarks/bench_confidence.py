@@ -177,11 +177,12 @@ four-sided domains with 65 x 65 nodes, three kinds of bodies with 65 x 33. `mesh
 of 33 x 33 nodes; it is evaluated on arches, on the paper's hexagons and semicircles, and on two of the kinds.
 Its boundary nodes are replaced by the true ones, which folds cells.
 
-The column *low* counts expected errors up to the threshold, whatever the folds; the next one says how many of
-these answers have folded cells. The last column is processor time of one thread.
+The column *error* is the true one, *correlation* that of the ranks of expected and true errors, *ratio* the
+expected over the true one. The column *low* counts expected errors up to the threshold, whatever the folds;
+*folded* says how many of these answers have folded cells, *others* how many of the others. The last
+column is processor time of one thread.
 
-| network | answers | true error, median / worst | rank correlation | expected / true, 5 / 50 / 95 % """
-HEAD += """| low | folded among low | folded among others | ms |
+| network | answers | error, median / worst | correlation | ratio, 5 / 50 / 95 % | low | folded | others | ms |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
 
 TAIL = """

@@ -5,7 +5,6 @@
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar, copy_context
 from typing import TypeVar
@@ -51,6 +50,8 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
     threads = min(thread_count(), len(items))
     if threads < 2:
         return [work(item) for item in items]
+    from concurrent.futures import ThreadPoolExecutor  # takes longer to load than the options of a command
+
     with ThreadPoolExecutor(threads) as pool:
         jobs = [pool.submit(copy_context().run, work, item) for item in items]
         return [job.result() for job in jobs]

@@ -5,14 +5,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.arrays import Floats, distinct, extent_of
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.surface.planes import FLAT, Plane, edges_in
 
 NEARLY_CLOSED = 0.3
 """Vector area over area up to which a surface with holes still counts as one that encloses something."""
 
-SMALL_HOLES = 0.02
-"""The same where planes normal to several axes could close it."""
+_HOLE = 0.1
+"""Extent of open edges, over that of the surface, up to which they are the rim of a hole."""
 
 
 def turned_alike(
@@ -52,31 +53,36 @@ def turned_alike(
     return component, signs, None
 
 
+def closing_axes(nodes: Floats, sides: Indices, planes: Sequence[Plane]) -> list[int]:
+    """Return the axes of the planes that close a surface, whose faces at open edges are `sides` (k, 4).
+
+    One alone where all other open edges are a small hole, as at the end of half a fuselage.
+    """
+    axes = sorted({plane.axis for plane in planes})
+    slack = FLAT * extent_of(nodes)
+    for axis in axes if len(axes) > 1 else ():
+        own = [edges_in(nodes, sides, plane, slack) for plane in planes if plane.axis == axis]
+        others = nodes[sides[~np.any(own, axis=0), :2]].reshape(-1, 3)
+        if extent_of(others) < _HOLE * extent_of(nodes):
+            return [axis]
+    return axes
+
+
 def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | None:
     """Return 1 if consistently oriented `quads` (m, 4) face outwards, -1 if they face inwards.
 
     Open edges in planes normal to an axis of `flat` are closed by these planes. None if the surface does not
-    enclose a volume: more than `NEARLY_CLOSED` of its area faces one way. Planes normal to two axes would
-    close both the inside and the outside of a box corner; there, those of one axis must leave holes of less
-    than `SMALL_HOLES` of the area, as half a fuselage does that is open at its end.
+    enclose a volume: more than `NEARLY_CLOSED` of its area faces one way, or only planes normal to two axes
+    would close it, as they do both the inside and the outside of a box corner.
     """
+    if len(flat) > 1:
+        return None
     a, b, c, d = (nodes[quads[:, k]] for k in range(4))
     area = 0.5 * np.cross(c - a, d - b)
-    arms = 0.25 * (a + b + c + d) - nodes[quads.ravel()].mean(axis=0)
-    most = NEARLY_CLOSED if len(flat) < 2 else SMALL_HOLES
-    signs = {_sign(area, arms, axis, most) for axis in flat or (None,)} - {None}
-    return signs.pop() if len(signs) == 1 else None
-
-
-def _sign(area: Floats, arms: Floats, flat: int | None, most: float) -> int | None:
-    """Return the sign of the volume within faces of vector `area` (m, 3) at `arms` from its centre.
-
-    None if more than `most` of the area, without what faces along the axis `flat`, faces one way.
-    """
-    if flat is not None:
-        area = area.copy()
-        area[:, flat] = 0.0  # planes close what faces along their axis
+    area[:, list(flat)] = 0.0  # planes close what faces along their axis
     total = area.sum(axis=0)
-    if np.sqrt((total**2).sum()) > most * np.sqrt((area**2).sum(axis=1)).sum():
+    if np.sqrt((total**2).sum()) > NEARLY_CLOSED * np.sqrt((area**2).sum(axis=1)).sum():
         return None
-    return -1 if float((area * arms).sum()) < 0.0 else 1
+    centre = nodes[quads.ravel()].mean(axis=0)
+    volume = float((area * (0.25 * (a + b + c + d) - centre)).sum())
+    return -1 if volume < 0.0 else 1

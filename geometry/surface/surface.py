@@ -29,7 +29,7 @@ from meshonet.geometry.surface.checks import (
 )
 from meshonet.geometry.surface.half_edges import ends_of, open_sides, paired, rings
 from meshonet.geometry.surface.merge import merged
-from meshonet.geometry.surface.orient import outward_sign, turned_alike
+from meshonet.geometry.surface.orient import closing_axes, outward_sign, turned_alike
 from meshonet.geometry.surface.planes import Plane, planes_of
 from meshonet.geometry.surface.poles import without_poles
 
@@ -132,9 +132,10 @@ def _turned(
         members = [k for k, c in enumerate(component) if c == part]
         own = np.isin(patch, members)
         mine = np.flatnonzero(twin < 0)
-        flat = planes_of(nodes, open_sides(quads, twin)[own[mine // 4]])
+        opened = open_sides(quads, twin)[own[mine // 4]]
+        flat = planes_of(nodes, opened)
         planes += [plane for plane in flat if plane not in planes]
-        sign = outward_sign(nodes, alike[own], sorted({plane.axis for plane in flat}))
+        sign = outward_sign(nodes, alike[own], closing_axes(nodes, opened, flat))
         if sign is None:
             faces = sum(signs[k] * counts[k] for k in members)
             sign = -1 if faces < 0 else 1

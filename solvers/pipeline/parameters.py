@@ -55,7 +55,7 @@ def grid_request(method: str = "best", *, res: Counts | None = None, **parameter
         try:
             method_of(request)
         except UnknownSettingError as error:
-            error.remedy = meant(error.setting, ("res", *SAMPLED, *REQUESTED)) + error.remedy
+            error.remedy = meant(error.setting, ("res", *SAMPLED, *REQUESTED), _LIKENESS) + error.remedy
             raise
     return request
 
@@ -70,6 +70,8 @@ def sampling_of(res: Counts | None, parameters: dict[str, Any]) -> Sampling:
 
 SAMPLED = tuple(each.name for each in fields(Sampling) if each.name not in (*COUNTED, "viscous"))
 """Parameters of the sampling, without node counts and without fields that follow from first cells."""
+_LIKENESS = 0.75
+"""Least similarity of a suggested name: ``polish`` is a setting of other methods, and not ``poles``."""
 REQUESTED = tuple(
     each.name for each in fields(GridRequest) if each.name not in ("sampling", "method", "settings")
 )

@@ -90,7 +90,7 @@ def test_growth_takes_the_rows_it_needs(meshonet: Meshonet, command: str) -> Non
             "--growth: a growth of 0.2; give the ratio of neighb",
         ),
         (("--wall-spacing", "-1"), "--first-cell: a first cell of -1; give a positive height"),
-        (("--wall-spacing", "x"), "wall-spacing"),
+        (("--wall-spacing", "x"), "--first-cell: 'x' is not a number; use a number, or WALL=NUMBER"),
         (("--wall-spacing", "2"), "--first-cell: a first cell of 2 chords; use 1e-9 to 0.1"),
         (("--wall-spacing", "nan"), "--first-cell: a first cell of nan; give a positive height"),
         (("--constant-layers", "3"), "--constant-layers without a first cell; give --first-cell"),
