@@ -182,7 +182,7 @@ expected over the true one. The column *low* counts expected errors up to the th
 *folded* says how many of these answers have folded cells, *others* how many of the others. The last
 column is processor time of one thread.
 
-| network | answers | error, median / worst | correlation | ratio, 5 / 50 / 95 % | low | folded | others | ms |
+| network | grids | error, median / worst | correlation | ratio, 5 / 50 / 95 % | low | folded | others | ms |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
 
 TAIL = """

@@ -90,12 +90,6 @@ class SectionPlane:
         return float(norms(self.edges[1] - self.edges[0]) / self.cascade.pitch[1])
 
     @property
-    def aside(self) -> float:
-        """Parts of the chord by which the point opposite on the next blade is aside on its chord."""
-        chord = self.edges[1] - self.edges[0]
-        return float(self.cascade.pitch[1] * chord[1] / (chord**2).sum())
-
-    @property
     def wake(self) -> float:
         """Theta by which the mean line goes on from the trailing edge to the outlet.
 
