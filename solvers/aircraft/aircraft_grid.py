@@ -22,7 +22,7 @@ from meshonet.solvers.aircraft.body_plane import LevelPlan, level_patches, plann
 from meshonet.solvers.aircraft.exact_cells import at_height, at_heights
 from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.blocking.layers.attach import sampled
-from meshonet.solvers.rows.columns import resampled, with_first
+from meshonet.solvers.rows.columns import arcs_of, resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines, key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, line_parts, spaced_cells, two_sided
 from meshonet.solvers.stacking.request import StackRequest
@@ -99,7 +99,7 @@ def _level(space: BodyMap, plan: LevelPlan, section: Floats, scale: Floats, firs
 def _fade(columns: Floats) -> Floats:
     """Return 1 at the first to 0 at the last of the nodes of columns (n, m, 2 or 3), by arc length."""
     steps = norms(np.diff(columns, axis=1))
-    arcs = np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
+    arcs = arcs_of(steps)
     return np.asarray(1.0 - arcs / arcs[:, -1:])
 
 
@@ -133,7 +133,7 @@ def _beyond_tip(space: BodyMap, tip: Floats, first: float, growth: float) -> Flo
     table = np.repeat(tip[:, None], _FINE, axis=1)
     table[..., 2] += np.linspace(0.0, 1.0, _FINE) * (1.0 - tip[:, 2:])
     steps = norms(np.diff(space.points(table), axis=1))
-    arcs = np.concatenate([np.zeros((len(tip), 1)), np.cumsum(steps, axis=1)], axis=1)
+    arcs = arcs_of(steps)
     lengths = arcs[:, -1]
     cells = spaced_cells(float(lengths.max()), (first, _UNBOUNDED), growth, _UNBOUNDED, 8)
     wanted = two_sided(lengths, (first, _UNBOUNDED), growth, cells)

@@ -21,6 +21,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.ties import first_least
+from meshonet.solvers.rows.columns import arcs_of
 from meshonet.solvers.rows.span_spacing import two_sided
 
 _EVEN = 0.3
@@ -105,7 +106,7 @@ def collar(root: Floats, outer: Floats, cells: int, first: float, growth: float)
         + outer[:, None] * (u * u)[:, None]
     )
     steps = norms(np.diff(lines, axis=1))
-    arcs = np.concatenate([np.zeros((len(root), 1)), np.cumsum(steps, axis=1)], axis=1)
+    arcs = arcs_of(steps)
     wanted = two_sided(arcs[:, -1], (first, _UNBOUNDED), growth, cells)
     out = np.empty((len(root), cells + 1, 2))
     for k, line in enumerate(lines):

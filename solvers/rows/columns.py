@@ -34,11 +34,12 @@ def respaced_columns(values: Floats, space: Floats, first: float) -> Floats:
 
 def resampled(values: Floats, steps: Floats, new: Floats) -> Floats:
     """Return values (k, m, 2) along lines of `steps` (k, m - 1) at other steps of the same sums."""
-    arcs = _arcs(steps)
-    return sampled(values, arcs, np.minimum(_arcs(new), arcs[:, -1:]))
+    arcs = arcs_of(steps)
+    return sampled(values, arcs, np.minimum(arcs_of(new), arcs[:, -1:]))
 
 
-def _arcs(steps: Floats) -> Floats:
+def arcs_of(steps: Floats) -> Floats:
+    """Return the arc lengths (k, m + 1), from 0, at the nodes of lines of `steps` (k, m)."""
     return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
 
 
