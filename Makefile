@@ -15,7 +15,7 @@ help:
 	@echo 'make same    forty commands as other processors would run them: the same bits everywhere'
 	@echo 'make fuzz    every reader and command against hostile files and options, MINUTES=10 each; make kills: commands stopped at random'
 	@echo 'make sanitize  kernels compiled to notice what they must not do, and the tests that run them'
-	@echo 'make lint    style, types and import contracts'
+	@echo 'make lint    style, types, import contracts and spelling'
 	@echo 'make train   the shipped models again, from random shapes (resumable; about three hours on one core)'
 	@echo 'make paper   the MeshONet paper again: docs/benchmarks/paper (hours, resumable); make paper-quick: minutes, in build'
 	@echo 'make bench   the benchmarks, and their pages in docs/benchmarks'
@@ -119,6 +119,7 @@ lint: $(VENV)/.developing
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md docs examples meshonet_cli meshonet/api
 
 # a minute; after a change of the environment mypy reads everything again, which takes one more
 check: lint
@@ -227,14 +228,13 @@ tutorials: $(VENV)/.developing
 gallery: $(VENV)/.developing
 	$(BIN)/python docs/make_gallery.py
 
-# pages, gallery, references of Python; no network is needed. Spelling first: what is misspelt is named with its line
+# pages, gallery, references of Python; no network is needed
 SITE := build/site
 $(VENV)/.documenting: $(VENV)/.installed
 	$(PIP) --editable '.[docs]'
 	@touch $@
 
 site: $(VENV)/.documenting
-	$(BIN)/codespell README.md CHANGELOG.md CONTRIBUTING.md docs examples meshonet_cli meshonet/api
 	$(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going -q docs $(SITE)
 	@echo '$(SITE)/index.html'
 
