@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, middle
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.elementary import cos
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.notes import Change
+from meshonet.geometry.rows.alike import alike, common_corners
 from meshonet.geometry.rows.channel import Channel
 from meshonet.geometry.rows.profile import BladeProfile
 
@@ -50,6 +51,7 @@ class BladeSurface:
             self.notes = (Change("profiles are given from casing to hub and are taken the other way round"),)
         self.knots = np.array([profile.height for profile in self.profiles])
         self._check()
+        self.profiles = alike(self.profiles)
         self._turns = self._unwrapped()
         self._check_neighbours()
 
@@ -132,11 +134,9 @@ class BladeSurface:
 
     @property
     def corners(self) -> Floats:
-        """Places u (c,) of the corners that all profiles have, such as those of a blunt edge."""
-        found = [profile.corner_places() for profile in self.profiles]
-        if len({len(each) for each in found}) != 1 or not len(found[0]):
-            return np.empty(0)
-        return np.array([middle(column) for column in np.array(found).T])
+        """Places u (c,) of the corners that all profiles have, such as those of a blunt edge, ascending."""
+        found = common_corners(self.profiles)
+        return np.sort(np.mod(found, 1.0))
 
 
 def _extended(lines: CubicTable, place: Floats, low: float, high: float) -> tuple[Floats, Floats]:

@@ -6,6 +6,8 @@ A place on it is u, in parts of the sides' lengths: 0 at the leading edge, over 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from copy import copy
 from functools import cached_property
 
 import numpy as np
@@ -16,11 +18,13 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.rows.channel import Channel
 from meshonet.geometry.rows.profile_points import check_profile, distinct_points
 
 _SAMPLES = 2000  # points of the curve among which the edges are looked for
 _BASE = 0.1  # of the chord: corners that are no farther apart than this, and blunt, have an edge between them
+_ENDS = np.array([0.0, 0.5, 1.0])  # places of the edges
 _SEAM = 4  # points that are taken along beyond the first and the last
 
 
@@ -54,9 +58,70 @@ class BladeProfile:
         check_profile(plane, p)
         if polygon_area(plane) > 0.0:
             plane, h = plane[::-1], h[::-1]
-        self.curve = Curve(np.ascontiguousarray(plane), closed=True)
         self._h = h
-        self.leading, self.trailing = self._edges()
+        self._follow(Curve(np.ascontiguousarray(plane), closed=True))
+
+    def _follow(self, curve: Curve, tips: tuple[int | None, int | None] = (None, None)) -> None:
+        """Take a curve for the profile; `tips` are the numbers of points that are known to be its edges."""
+        self.curve = curve
+        leading, trailing = self._edges()
+        self.leading = leading if tips[0] is None else float(curve.knots[tips[0]])
+        self.trailing = trailing if tips[1] is None else float(curve.knots[tips[1]])
+        self._stops = _ENDS, np.array([0.0, self._sides[0], curve.length])
+
+    def cornered(self, counts: Sequence[int]) -> BladeProfile:
+        """Return the profile with 0, 1 or 2 corners at the leading and the trailing edge.
+
+        They are where it turns most; a single one is the edge itself.
+        """
+        edges, curve = (self.leading, self.trailing), self.curve
+        bend = np.abs(turning(curve.points, closed=True))
+        apart = [np.abs(self._off(curve.corners, edge)) >= self._reach for edge in edges]
+        corners = curve.corner_index[apart[0] & apart[1]].tolist()
+        tips: list[int | None] = []
+        for edge, count in zip(edges, counts, strict=True):
+            near = np.flatnonzero(np.abs(self._off(curve.knots, edge)) < self._reach)
+            most = near[np.argsort(-bend[near], kind="stable")[:count]].tolist()
+            corners += most
+            tips.append(most[0] if count == 1 else None)
+        made = copy(self)
+        made._follow(Curve(curve.points, closed=True, corners=sorted(corners)), (tips[0], tips[1]))
+        return made
+
+    def aligned(self, places: Floats) -> BladeProfile:
+        """Return the profile with its corners at `places` u (c,), each near its own; in between u is even."""
+        made, own = copy(self), self.corner_places()
+        u = np.concatenate([_ENDS, places])
+        way = np.concatenate([self._stops[1], np.interp(own, *self._stops)])
+        _, kept = np.unique(u, return_index=True)
+        made._stops = u[kept], way[kept]
+        return made
+
+    @property
+    def _reach(self) -> float:
+        """Arc length on both sides of an edge in which corners belong to it."""
+        return _BASE * 0.5 * self.curve.length
+
+    def _off(self, arcs: Floats, edge: float) -> Floats:
+        """Return signed distances (n,) along the curve of arc lengths (n,) from an edge."""
+        length = self.curve.length
+        return np.asarray(np.mod(arcs - edge + 0.5 * length, length) - 0.5 * length)
+
+    @property
+    def corner_counts(self) -> tuple[int, int]:
+        """How many corners are at the leading and at the trailing edge."""
+        one, two = (
+            int((np.abs(self._off(self.curve.corners, edge)) < self._reach).sum())
+            for edge in (self.leading, self.trailing)
+        )
+        return one, two
+
+    def sharpness(self, trailing: bool) -> tuple[float, float]:
+        """Return the largest turn at an edge in radians, and what the largest two are of all turns there."""
+        bend = np.abs(turning(self.curve.points, closed=True))
+        edge = self.trailing if trailing else self.leading
+        own = np.sort(bend[np.abs(self._off(self.curve.knots, edge)) < self._reach])
+        return float(own[-1]), float(own[-2:].sum() / own.sum())
 
     def _edges(self) -> tuple[float, float]:
         """Return the arc lengths of leading and trailing edge: the points farthest from each other."""
@@ -85,14 +150,13 @@ class BladeProfile:
 
     def _blunt(self, arc: float) -> float:
         """Return the middle of a base if the curve is cut off there by two corners, otherwise `arc`."""
-        corners, length = self.curve.corners, self.curve.length
-        off = np.mod(corners - arc + 0.5 * length, length) - 0.5 * length
-        near = np.sort(off[np.abs(off) < _BASE * 0.5 * length])
+        off = self._off(self.curve.corners, arc)
+        near = np.sort(off[np.abs(off) < self._reach])
         if len(near) != 2:
             return arc
-        return float(np.mod(arc + 0.5 * (near[0] + near[1]), length))
+        return float(np.mod(arc + 0.5 * (near[0] + near[1]), self.curve.length))
 
-    @cached_property
+    @property
     def _sides(self) -> tuple[float, float]:
         """Lengths of the sides, from the leading to the trailing edge and back."""
         first = float(np.mod(self.trailing - self.leading, self.curve.length))
@@ -109,15 +173,13 @@ class BladeProfile:
 
     def arcs(self, u: Floats) -> Floats:
         """Return arc lengths (n,) of places u (n,), 0 to 1."""
-        first, second = self._sides
-        way = np.where(u <= 0.5, 2.0 * u * first, first + (2.0 * u - 1.0) * second)
-        return np.asarray(np.mod(self.leading + way, self.curve.length))
+        return np.asarray(np.mod(self.leading + np.interp(u, *self._stops), self.curve.length))
 
     def corner_places(self) -> Floats:
-        """Return u (c,) of the corners, ascending."""
-        first, second = self._sides
-        way = np.mod(self.curve.corners - self.leading, self.curve.length)
-        return np.sort(np.where(way <= first, 0.5 * way / first, 0.5 + 0.5 * (way - first) / second))
+        """Return u (c,) of the corners, from -0.25 on, those of the leading edge first."""
+        u, way = self._stops
+        at = np.interp(np.mod(self.curve.corners - self.leading, self.curve.length), way, u)
+        return np.sort(np.mod(at + 0.25, 1.0) - 0.25)
 
     def at(self, u: Floats) -> Floats:
         """Return s, theta, h (n, 3) at places u (n,)."""

@@ -162,5 +162,6 @@ def _with_corners(u: Floats, corners: Floats) -> Floats:
     u = u.copy()
     for corner in corners:
         k = int(np.abs(u - corner).argmin())
-        u[k or int(np.abs(u[1:] - corner).argmin()) + 1] = corner
+        if k or corner != 0.0:
+            u[k or int(np.abs(u[1:] - corner).argmin()) + 1] = corner
     return u

@@ -3,6 +3,7 @@
 import blade_row
 import numpy as np
 import pytest
+import radial_rows
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.rows.blade import clustered
@@ -132,3 +133,17 @@ def test_what_is_no_row_in_python_is_refused(change, words: str) -> None:
     given = {"profiles": blade_row.profiles(), "hub": blade_row.HUB, "shroud": blade_row.SHROUD, "blades": 23}
     with pytest.raises(InputError, match=words):
         Row(**(given | change))
+
+
+@pytest.mark.parametrize("seed", [1, 9, 13, 21, 29])
+def test_corners_of_an_oblique_base_are_at_the_same_places_along_the_span(seed: int) -> None:
+    """Of some profiles of these rows one corner of the base or none stands out from the points around it."""
+    row = radial_rows.turbine(seed)
+    assert len(row.surface.corners) == 2
+    for number, points in enumerate(row.profiles):
+        s, theta, h = row.surface.lines(row.surface.corners)(row.surface.knots[number : number + 1])[0].T
+        x, r = row.channel.at(s, h).T
+        made = np.stack([x, r * np.sin(theta), r * np.cos(theta)], axis=1)
+        away = np.linalg.norm(made[:, None] - points, axis=-1)
+        assert away.min(axis=1).max() < 1e-7 * row.chord
+        assert abs(np.diff(away.argmin(axis=1))[0]) == 1  # the base is one straight step

@@ -16,6 +16,8 @@ ROWS = {
     "impeller": radial_rows.impeller(4, gap=False),
     "turbine with a gap": radial_rows.turbine(5, gap=True),
     "diffuser": radial_rows.diffuser(7),
+    "diffuser with a corner at its nose": radial_rows.diffuser(11),
+    "turbine with an oblique base": radial_rows.turbine(13),
 }
 
 

@@ -1,0 +1,44 @@
+"""Corners of profiles, the same ones along the span.
+
+Whether a turn counts as a corner depends on the points around it, so that profiles of one blade may differ:
+lines of equal places would then jump along the span.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, middle
+from meshonet.geometry.polygon.corners import SHARP
+from meshonet.geometry.rows.profile import BladeProfile
+
+BASE_TURN = 0.7
+"""Of all turns at an edge, from which on the two largest are the corners of a base."""
+
+
+def alike(profiles: Sequence[BladeProfile]) -> list[BladeProfile]:
+    """Return profiles with the same numbers of corners at each edge, and these at the same places."""
+    counts = np.array([profile.corner_counts for profile in profiles])
+    if not (counts == counts[0]).all():
+        same = [_count(profiles, counts[:, k], bool(k)) for k in (0, 1)]
+        profiles = [profile.cornered(same) for profile in profiles]
+    places = common_corners(profiles)
+    return [profile.aligned(places) for profile in profiles] if len(places) else list(profiles)
+
+
+def _count(profiles: Sequence[BladeProfile], found: Floats, trailing: bool) -> int:
+    """Return how many corners an edge has; `found` (p,) are those of each profile."""
+    if (found == found[0]).all():
+        return int(found[0])
+    turn, part = np.array([profile.sharpness(trailing) for profile in profiles]).T
+    return 2 if middle(part) > BASE_TURN else int(middle(turn) > SHARP)
+
+
+def common_corners(profiles: Sequence[BladeProfile]) -> Floats:
+    """Return places u (c,), from -0.25 on, of the corners that profiles have if all have as many."""
+    found = [profile.corner_places() for profile in profiles]
+    if len({len(each) for each in found}) != 1 or not len(found[0]):
+        return np.empty(0)
+    return np.array([middle(column) for column in np.array(found).T])
