@@ -25,6 +25,7 @@ from typing import Any
 ROOT = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT / "tests" / name) for name in ("cli", "formats")] + [str(ROOT / "tests"), str(ROOT)]
 
+import blade_row
 from hostile import mutate
 from test_bad_values import INPUTS, NONSENSE, TAKES_WORDS
 
@@ -47,14 +48,18 @@ FILES = {
         {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 2], [0, 2], [0, 0]],
                                             [[1, 0.8], [1.5, 0.8], [1.5, 1.2], [1, 1.2], [1, 0.8]]]}
     ),
+    **blade_row.texts("tip_gap = 0.05"),
 }  # fmt: skip
 """Files that commands read, good ones."""
+NAMED = {"row.toml": set(blade_row.texts())}
+"""Files that a file names."""
 BASES = (
     *((command, *words) for command, words in INPUTS.items()),
     ("sweep", "circle:0.5", "path.toml", "--cells", "100", "-o", "made.h5"),
     ("infer", "blade.csv", "--pitch", "0,1", "--cells", "500", "-o", "made.vtm"),
     ("infer", "plate.geojson", "--cells", "500", "-o", "made.vtm"),
     ("solve-pde", "step.wkt", "--cells", "500", "-o", "made.vtm"),
+    ("stack", "row.toml", "--cells", "20000", "--first-cell", "0.01", "-o", "made.h5"),
 )
 """What is made worse."""
 WORDS = (
@@ -68,8 +73,9 @@ WORDS = (
 
 def attempt(random: Random, commands: dict[str, list[Any]], base: tuple[str, ...], place: Path) -> list[str]:
     """Write files to a place, most of them good, and return the words of a command there."""
+    read = set(base).union(*(NAMED.get(word, ()) for word in base))
     for name, text in FILES.items():
-        hostile = name in base and random.random() < 0.5
+        hostile = name in read and random.random() < 0.5
         (place / name).write_bytes(mutate(text.encode(), random) if hostile else text.encode())
     shutil.copy(place.parent / "grid.vts", place / "grid.vts")
     words = list(base)

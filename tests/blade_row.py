@@ -30,18 +30,33 @@ def blade_row(tip_gap: float = 0.0, hub_gap: float = 0.0) -> Row:
     return Row(profiles(), HUB, SHROUD, BLADES, tip_gap, hub_gap, "made up")
 
 
-def write_row(folder: Path, more: str = "", *, hub: np.ndarray = HUB) -> Path:
-    """Write the row as a TOML file with its files beside it; return its path."""
-    np.savetxt(folder / "hub.csv", hub, delimiter=",", header="x,r")
-    zero = np.zeros(len(SHROUD))
-    np.savetxt(folder / "shroud.curve", np.stack([SHROUD[:, 0], zero, SHROUD[:, 1]], axis=1))
+def curve(*blocks: np.ndarray) -> str:
+    """Text of blocks of points (n, 3) as TurboGrid writes profiles."""
     text = ""
-    for number, points in enumerate(profiles(), start=1):
+    for number, points in enumerate(blocks, start=1):
         text += f"# Profile {number}\n" + "".join("{:.17g} {:.17g} {:.17g}\n".format(*p) for p in points)
-    (folder / "profile.curve").write_text(text)
-    path = folder / "row.toml"
+    return text
+
+
+def texts(
+    more: str = "", *, hub: np.ndarray = HUB, shroud: np.ndarray = SHROUD, blade: str | None = None
+) -> dict[str, str]:
+    """Texts of the files of the row by name: a TOML file with `more` lines, and the files that it names."""
     lines = ['kind = "row"', f"blades = {BLADES}", 'hub = "hub.csv"', 'shroud = "shroud.curve"']
     if "profiles" not in more and "[[sections]]" not in more:
         lines.append('profiles = "profile.curve"')
-    path.write_text("\n".join([*lines, more]))
-    return path
+    given = {line.split("=")[0] for line in more.split("[[sections]]")[0].splitlines()}
+    lines = [line for line in lines if line.split("=")[0] not in given]
+    return {
+        "row.toml": "\n".join([*lines, more]),
+        "hub.csv": "# x,r\n" + "".join("{:.18e},{:.18e}\n".format(*p) for p in hub),
+        "shroud.curve": "".join("{:.18e} 0 {:.18e}\n".format(*p) for p in shroud),
+        "profile.curve": curve(*profiles()) if blade is None else blade,
+    }
+
+
+def write_row(folder: Path, more: str = "", *, hub: np.ndarray = HUB) -> Path:
+    """Write the row as a TOML file with its files beside it; return its path."""
+    for name, text in texts(more, hub=hub).items():
+        (folder / name).write_text(text)
+    return folder / "row.toml"

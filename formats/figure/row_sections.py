@@ -24,7 +24,9 @@ from meshonet.formats.figure.slices import Cut, cut_where
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.screw import screw_of
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.linear import symmetric_eigen
 
 _POINTS = 200
 """Points of the curves of hub and shroud."""
@@ -37,7 +39,7 @@ _AT_ONCE = 1 << 13
 
 @dataclass(frozen=True, eq=False)
 class RowSections:
-    """The sections of a grid; the axis is that of its periodic sides, x without these.
+    """The sections of a grid about the axis of its periodic sides, or of a ring's shroud without these.
 
     Raises InputError: a grid that is no volume with patches `hub` and `shroud`.
     """
@@ -62,8 +64,18 @@ class RowSections:
         screws = (screw_of(motion) for motion in motions)
         screw = next((each for each in screws if each.angle), None)
         if screw is None:
-            return 2.0 * math.pi, np.zeros(3), np.array([1.0, 0.0, 0.0])
+            return 2.0 * math.pi, *self._axis_of_ring()
         return abs(screw.angle), screw.centre, screw.axis
+
+    def _axis_of_ring(self) -> tuple[Floats, Floats]:
+        """Return a point of the axis and its direction: those around which the shroud is balanced."""
+        parts = [self.grid.at(p).reshape(-1, 3) for p in self.grid.patches if p.name == "shroud"]
+        points = np.concatenate(parts)
+        centre = points.mean(axis=0)
+        moments, axes = symmetric_eigen(product((points - centre).T, points - centre))
+        axis = axes[:, int(np.abs(moments - np.sort(moments)[1]).argmax())]
+        axis = axis * np.sign(axis[int(np.abs(axis).argmax())])
+        return centre - (centre * axis).sum() * axis, axis
 
     @cached_property
     def places(self) -> list[Floats]:

@@ -8,6 +8,7 @@ since edges are looked for.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -26,6 +27,11 @@ def point_blocks(source: Source, columns: tuple[int, ...]) -> list[Floats]:
 
     Raises InputError: a line of another count of numbers, with its place; no block.
     """
+    return [points for points, _ in placed_blocks(source, columns)]
+
+
+def placed_blocks(source: Source, columns: tuple[int, ...]) -> list[tuple[Floats, str]]:
+    """Return the blocks of a file as `point_blocks`, and where each is: ``lines 2 to 161 of a.curve``."""
     with in_source(source.name):
         blocks = table(read_lines(_MARK.sub("", decode(source.text_bytes()))))
         if not blocks:
@@ -33,10 +39,13 @@ def point_blocks(source: Source, columns: tuple[int, ...]) -> list[Floats]:
         if sum(map(len, blocks)) > MOST_POINTS:
             raise InputError(f"{sum(map(len, blocks))} points", f"give at most {MOST_POINTS}")
         count = len(blocks[0][0].values)
-        return [_points(block, count if count in columns else columns[0], columns) for block in blocks]
+        count = count if count in columns else columns[0]
+        name = source.path.name if source.path else source.name
+        ends = [f"lines {block[0].number} to {block[-1].number} of {name}" for block in blocks]
+        return list(zip([_points(block, count, columns) for block in blocks], ends, strict=True))
 
 
-def _points(block: list[Line], count: int, columns: tuple[int, ...]) -> Floats:
+def _points(block: Sequence[Line], count: int, columns: tuple[int, ...]) -> Floats:
     for line in block:
         if len(line.values) != count:
             problem = f"{line.text.strip()[:40]!r} is not {count} numbers"

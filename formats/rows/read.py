@@ -9,7 +9,7 @@
     shroud = [[-5, 25], [9, 24]] # or x, r of points
     tip_gap = 0.0356             # a length, or "1 %" of the span; likewise hub_gap
     inlet = -3.0                 # along the axis, or [[x, r], [x, r]] on hub and shroud; likewise outlet
-    axis = "x"                   # of rotation
+    axis = "x"                   # of rotation, also "-x" and so on, or [dx, dy, dz]; from inlet to outlet
     coordinates = "xyz"          # of profiles; or "xrt": x, r, theta in radians
     unit = "cm"                  # of all lengths: the grid is in metres then
 
@@ -29,19 +29,22 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 
-from meshonet.formats.rows.points import point_blocks
+from meshonet.formats.rows.points import placed_blocks, point_blocks
 from meshonet.formats.section_shape import section_shape
 from meshonet.formats.source import Source, open_source
 from meshonet.formats.toml_table import Table
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.cylinder import on_cylinder
+from meshonet.geometry.rows.frame import AXES, axis_along
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.rows.trim import Plane, trimmed
 from meshonet.geometry.sections.section import QUARTER, Section
@@ -52,8 +55,9 @@ KEYS = (
 )  # fmt: skip
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 """Units of files, in metres."""
-_AXES = {"x": (0, 1, 2), "y": (1, 2, 0), "z": (2, 0, 1)}
-"""Columns that are the axis and the two directions behind it, in turn."""
+_STEEPEST = 89.0
+"""Largest stagger in degrees; at 90 the blades close the channel."""
+_PROFILE = re.compile(r"profile (\d+)")
 _PERCENT = re.compile(r"\s*([0-9.eE+-]+)\s*%\s*")
 
 
@@ -66,9 +70,8 @@ def read_row(data: Table, source: Source) -> Row:
     data.only(*KEYS)
     folder = source.path.parent if source.path else Path()
     scale = UNITS[data.word("unit", tuple(UNITS), "m")]
-    columns = _AXES[data.word("axis", tuple(_AXES), "x")]
-    polar = data.word("coordinates", ("xyz", "xrt"), "xyz") == "xrt"
-    hub, shroud = (_wall(data, key, folder, columns) * scale for key in ("hub", "shroud"))
+    frame = _frame(data)
+    hub, shroud = (_wall(data, key, folder, frame) * scale for key in ("hub", "shroud"))
     planes = [_plane(data, key, scale) for key in ("inlet", "outlet")]
     hub, shroud = (trimmed(points, planes[0], planes[1], wall) for wall, points in enumerate((hub, shroud)))
     if ("profiles" in data.data) == ("sections" in data.data):
@@ -76,59 +79,86 @@ def read_row(data: Table, source: Source) -> Row:
         raise data.error("profiles", problem, "give profiles or [[sections]]")
     notes: tuple[str, ...] = ()
     if "profiles" in data.data:
-        files = _files(data, folder)
-        profiles = [points for file in files for points in point_blocks(file, (3,))]
-        if polar and any(np.ptp(points[:, 2]) > np.pi for points in profiles):
-            most = max(float(np.ptp(points[:, 2])) for points in profiles)
-            raise data.error("coordinates", f"theta of a profile spans {most:.4g}", "give theta in radians")
-        profiles = [scaled * scale for scaled in map(_placed(columns, polar), profiles)] if not polar else [
-            _placed(columns, polar)(points * [scale, scale, 1.0]) for points in profiles
-        ]  # fmt: skip
+        profiles, places = _profiles(data, folder, scale, frame)
     else:
         made = [_section(row, folder) for row in data.rows("sections", least=2)]
         profiles = [points * scale for points, _ in made]
+        places = [f"sections[{k}]" for k in range(len(made))]
         notes = tuple(dict.fromkeys(note for _, own in made for note in own))
     blades = data.number("blades")
     if blades != round(blades):
         raise data.error("blades", f"{blades:g} is no whole number", "count them")
     span = _span(hub, shroud)
-    return Row(
-        tuple(profiles), hub, shroud, int(blades), _gap(data, "tip_gap", span, scale),
-        _gap(data, "hub_gap", span, scale), data.text("name", source.stem or "row"), notes,
-    )  # fmt: skip
+    gaps = _gap(data, "tip_gap", span, scale), _gap(data, "hub_gap", span, scale)
+    with _located(places):
+        return Row(
+            tuple(profiles), hub, shroud, int(blades), *gaps, data.text("name", source.stem or "row"), notes,
+            None if frame == axis_along(AXES["x"]) else frame,
+        )  # fmt: skip
+
+
+@contextmanager
+def _located(places: Sequence[str]) -> Iterator[None]:
+    """Within the ``with`` block, say in errors of a profile where it is given."""
+    try:
+        yield
+    except InputError as error:
+        match = _PROFILE.fullmatch(error.place)
+        if match:
+            error.place += f" ({places[int(match[1]) - 1]})"
+        raise
+
+
+def _frame(data: Table) -> Motion:
+    """Return what turns points of a file so that the axis is along x."""
+    if isinstance(data.data.get("axis"), list):
+        direction = data.vector("axis")
+        if not any(direction):
+            raise data.error("axis", "has no direction", "give [dx, dy, dz]")
+        return axis_along(direction)
+    return axis_along(AXES[data.word("axis", tuple(AXES), "x")])
+
+
+def _profiles(data: Table, folder: Path, scale: float, frame: Motion) -> tuple[list[Floats], list[str]]:
+    """Return the profiles (n, 3) of the files, x, y, z with the axis along x, and where each is given."""
+    polar = data.word("coordinates", ("xyz", "xrt"), "xyz") == "xrt"
+    blocks = [block for file in _files(data, folder) for block in placed_blocks(file, (3,))]
+    profiles = [points for points, _ in blocks]
+    if polar:
+        most = max(float(np.ptp(points[:, 2])) for points in profiles)
+        if most > np.pi:
+            raise data.error("coordinates", f"theta of a profile spans {most:.4g}", "give theta in radians")
+        columns = [points.T for points in profiles]
+        profiles = [np.stack([x, r * sin(theta), r * cos(theta)], axis=1) for x, r, theta in columns]
+    else:
+        profiles = [frame(points) for points in profiles]
+    return [points * scale for points in profiles], [place for _, place in blocks]
 
 
 def _files(data: Table, folder: Path) -> list[Source]:
     names = data.data["profiles"]
-    if isinstance(names, list) and names and all(isinstance(name, str) and name for name in names):
-        return [open_source(str(folder / name)) for name in names]
-    return [open_source(str(folder / data.text("profiles")))]
+    names = names if isinstance(names, list) and names else [names]
+    if not all(isinstance(name, str) and name for name in names):
+        raise data.error("profiles", "are no files", 'name a file, "a.curve", or a list of files')
+    return [open_source(str(folder / name)) for name in names]
 
 
-def _placed(columns: tuple[int, int, int], polar: bool) -> Callable[[Floats], Floats]:
-    """Return what takes points (n, 3) of a file to x, y, z with the axis along x."""
-
-    def turned(points: Floats) -> Floats:
-        if polar:
-            x, r, theta = points.T
-            return np.stack([x, r * sin(theta), r * cos(theta)], axis=1)
-        return np.ascontiguousarray(points[:, columns])
-
-    return turned
-
-
-def _wall(data: Table, key: str, folder: Path, columns: tuple[int, int, int]) -> Floats:
+def _wall(data: Table, key: str, folder: Path, frame: Motion) -> Floats:
     """Return x, r (n, 2) of hub or shroud, a file or a list."""
     if isinstance(data.data.get(key), list):
         return np.array(data.pairs(key, least=2))
-    source = open_source(str(folder / data.text(key)))
+    name = data.data.get(key)
+    if not isinstance(name, str) or not name:
+        problem = "is missing" if name is None else "is no file and no list of points"
+        raise data.error(key, problem, "name a file, or give [[x, r], [x, r]]")
+    source = open_source(str(folder / name))
     blocks = point_blocks(source, (3, 2))
     if len(blocks) > 1 and any(len(block) > 1 for block in blocks[1:]):
         raise InputError(f"holds {len(blocks)} blocks of points", "give one curve", source=source.name)
     points = blocks[0]
     if points.shape[1] == 2:
         return points
-    x, y, z = points[:, columns].T
+    x, y, z = frame(points).T
     return np.stack([x, np.hypot(y, z)], axis=1)
 
 
@@ -178,8 +208,11 @@ def _section(row: Table, folder: Path) -> tuple[Floats, tuple[str, ...]]:
     """Return the profile (n, 3) of an airfoil on a cylinder, and notes."""
     row.only("airfoil", "outline", "chord", "radius", "stagger", "about", "x", "theta")
     section = Section(section_shape(row, folder), row.positive("chord"), row.positive("radius"))
+    stagger = row.number("stagger")
+    if abs(stagger) > _STEEPEST:
+        raise row.error("stagger", f"{stagger:g} degrees", f"use -{_STEEPEST:g} to {_STEEPEST:g}")
     with in_place(row.place):
         return on_cylinder(
-            section, row.pair("about", QUARTER), math.radians(row.number("stagger")), row.number("x", 0.0),
+            section, row.pair("about", QUARTER), math.radians(stagger), row.number("x", 0.0),
             math.radians(row.number("theta", 0.0)),
         )  # fmt: skip

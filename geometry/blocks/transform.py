@@ -20,7 +20,7 @@ import numpy as np
 from meshonet.geometry.arrays import SIDES, Floats, Side
 from meshonet.geometry.blocks.block import Block, part_of
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
@@ -197,6 +197,23 @@ def _normalised_blocks(grid: Grid) -> Grid:
         connections.append(replace(each, transform=motion))
     # both sides of a periodic connection were moved and scaled, and now differ by rounding
     equal = with_equal_nodes(blocks, connections)
+    return replace(grid, blocks=equal, connections=tuple(connections))
+
+
+def rotated(grid: Grid, rotation: Motion) -> Grid:
+    """Return a grid of volumes rotated about the origin, with the motions between its periodic sides."""
+    back = rotation.inverse()
+    blocks = [Block(rotation(block.nodes), finite=True) for block in grid.blocks]
+    connections = []
+    for each in grid.connections:
+        motion = each.transform
+        if motion:
+            start, *ends = rotation(motion(back(np.concatenate([np.zeros((1, 3)), np.eye(3)]))))
+            turn = (np.array(ends) - start).T.tolist() if motion.turn else ()
+            shift = start.tolist() if motion.shift else ()
+            motion = Motion(tuple(shift), tuple(map(tuple, turn)))
+        connections.append(replace(each, transform=motion))
+    equal = with_equal_nodes(blocks, connections)  # periodic sides now differ by rounding
     return replace(grid, blocks=equal, connections=tuple(connections))
 
 

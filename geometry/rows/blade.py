@@ -19,6 +19,9 @@ MOST_EXTENDED = 0.2
 """Part of the span by which a blade is made longer, at the most, to reach hub and casing."""
 _CHECKED = 400  # places around the blade at which profiles are compared
 _FARTHEST = 90.0  # degrees around the axis from one profile to the next: no blade leans as much
+_ORDER = "give profiles from hub to casing, all of one blade"
+_SAME_HEIGHT = 1e-9
+"""Difference of heights, in spans, that is rounding."""
 _NEWTON = 8
 _TOLERANCE = 1e-14
 _HALF_TURN = np.pi
@@ -46,6 +49,7 @@ class BladeSurface:
             with in_place(f"profile {number}"):
                 self.profiles.append(BladeProfile(points, channel))
         self.notes: tuple[str, ...] = ()
+        self._check_distinct()
         if (np.diff([profile.height for profile in self.profiles]) < 0.0).all():
             self.profiles.reverse()
             self.notes = (Change("profiles are given from casing to hub and are taken the other way round"),)
@@ -55,6 +59,12 @@ class BladeSurface:
         self._turns = self._unwrapped()
         self._check_neighbours()
 
+    def _check_distinct(self) -> None:
+        heights = np.array([profile.height for profile in self.profiles])
+        for k in np.flatnonzero(np.abs(np.diff(heights)) <= _SAME_HEIGHT)[:1]:
+            problem = f"is at {100 * heights[k]:.3g} % of the span, as the one before"
+            raise InputError(problem, "give profiles at different heights", place=f"profile {k + 2}")
+
     def _check(self) -> None:
         heights = self.knots
         wrong = np.flatnonzero(np.diff(heights) <= 0.0)
@@ -63,7 +73,7 @@ class BladeSurface:
             problem = (
                 f"is at {100 * heights[k + 1]:.3g} % of the span, behind one at {100 * heights[k]:.3g} %"
             )
-            raise InputError(problem, "give profiles from hub to casing", place=self._place(k + 1))
+            raise InputError(problem, _ORDER, place=self._place(k + 1))
         foot, tip = self.channel.foot, self.channel.tip
         low, high = self.profiles[0].range[1], self.profiles[-1].range[0]
         if low - foot > MOST_EXTENDED:

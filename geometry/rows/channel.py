@@ -20,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, middle, norms
+from meshonet.geometry.arrays import Floats, cross2, middle, norms
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError, in_place
@@ -32,6 +32,8 @@ _PIECES = 512
 _AT_ONCE = 1 << 15
 """Points that are looked up together, so that tables stay in the cache."""
 _NEWTON = 12
+_LEAST_GAP = 1e-6
+"""Narrowest gap over the span: cells of narrower ones vanish in the rounding of radii."""
 _FOOT_STEPS = 6
 _SAME = 1e-13  # of the distance to a wall, relative to the gap
 
@@ -68,25 +70,23 @@ class Channel:
 
     def __init__(self, hub: Floats, casing: Floats, hub_gap: float = 0.0, tip_gap: float = 0.0) -> None:
         s = np.linspace(0.0, 1.0, _PIECES + 1)
-        low, high = (_by_arc(points, s, name) for points, name in ((hub, "hub"), (casing, "casing")))
+        low, high = (_by_arc(points, s, name) for points, name in ((hub, "hub"), (casing, "shroud")))
         for name, points in (("hub", low), ("casing", high)):
             if not points[:, 1].min() > 0.0:
                 raise InputError(f"the {name} reaches the axis, r = {points[:, 1].min():.6g}", "give r > 0")
         self.hub, self.across = CubicTable(low, s), CubicTable(high - low, s)
         widths = norms(high - low)
-        along = np.diff(low, axis=0)[[*range(_PIECES), -1]]
-        left = along[:, 0] * (high - low)[:, 1] - along[:, 1] * (high - low)[:, 0]
+        piece = [*range(_PIECES), _PIECES - 1]
+        left = np.stack([cross2(np.diff(line, axis=0)[piece], high - low) for line in (low, high)])
         if not (left > 0.0).all():
-            k = int(np.argmin(left))
+            k = int(left.min(axis=0).argmin())
             problem = f"hub and casing cross, turn back or lie the wrong way round near x = {low[k, 0]:.6g}"
             remedy = "give both from inlet to outlet, along growing x in an axial machine, the hub inside"
             raise InputError(problem, remedy)
         self._cubics = CubicTable(np.concatenate([low, high - low], axis=1), s).unit_cubics()
         self.span = middle(widths)
         self.length = middle(np.array([norms(np.diff(line, axis=0)).sum() for line in (low, high)]))
-        if not hub_gap + tip_gap < 0.5 * widths.min():
-            problem = f"gaps of {hub_gap + tip_gap:g} in a channel {widths.min():g} wide"
-            raise InputError(problem, "use less than half of the span")
+        self._check_gaps({"tip_gap": tip_gap, "hub_gap": hub_gap}, float(widths.min()))
         self.foot, self.tip = hub_gap / self.span, 1.0 - tip_gap / self.span
         self._levels, parts = [0.0], [np.zeros(_PIECES + 1)]
         if hub_gap > 0.0:
@@ -98,6 +98,17 @@ class Channel:
         self._levels.append(1.0)
         parts.append(np.ones(_PIECES + 1))
         self._parts = [CubicTable(part, s) for part in parts]
+
+    def _check_gaps(self, gaps: dict[str, float], width: float) -> None:
+        for place, gap in gaps.items():
+            if 0.0 < gap < _LEAST_GAP * self.span:
+                problem = f"{gap:g} is less than {_LEAST_GAP:g} of the span of {self.span:.6g}"
+                raise InputError(problem, "use 0 for no gap, or a wider one", place=place)
+        both = sum(gaps.values())
+        if not both < 0.5 * width:
+            problem = f"gaps of {both:g} in a channel {width:g} wide"
+            widest = max(gaps, key=lambda place: gaps[place])
+            raise InputError(problem, "use less than half of the span", place=widest)
 
     def fraction(self, s: Floats, h: Floats) -> Floats:
         """Return the part of the way from hub to casing at height h; arrays of one shape."""

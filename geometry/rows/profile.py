@@ -25,6 +25,7 @@ from meshonet.geometry.rows.profile_points import check_profile, distinct_points
 _SAMPLES = 2000  # points of the curve among which the edges are looked for
 _BASE = 0.1  # of the chord: corners that are no farther apart than this, and blunt, have an edge between them
 _ENDS = np.array([0.0, 0.5, 1.0])  # places of the edges
+_LONGER = "use longer curves of hub and casing, inlet and outlet away from the blade, and one unit for all"
 _SEAM = 4  # points that are taken along beyond the first and the last
 
 
@@ -50,7 +51,7 @@ class BladeProfile:
             k = int(outside[0])
             end = "begin behind" if s[k] < 0.0 else "end before"
             problem = f"hub and casing {end} the blade's point ({p[k, 0]:.6g}, {p[k, 1]:.6g}, {p[k, 2]:.6g})"
-            raise InputError(problem, "give longer curves of hub and casing")
+            raise InputError(problem, _LONGER)
         self.height = float(h.mean())
         self.range = float(h.min()), float(h.max())
         self._map = channel.meridional(self.height)

@@ -48,9 +48,11 @@ def distinct_points(points: Floats) -> Floats:
     Raises InputError: fewer than `LEAST_POINTS` are left.
     """
     p = np.asarray(points, dtype=np.float64)
-    p = apart(p, closed=True) if len(p) else p
+    given = len(p)
+    p = apart(p, closed=True) if given else p
     if len(p) < LEAST_POINTS:
-        raise InputError(f"{len(p)} points", f"give {LEAST_POINTS} or more around the blade")
+        problem = f"{given} points" if len(p) == given else f"{len(p)} different points of {given}"
+        raise InputError(problem, f"give {LEAST_POINTS} or more around the blade, all in one unit")
     return p
 
 
@@ -62,7 +64,7 @@ def check_profile(plane: Floats, points: Floats) -> None:
         problem = (
             f"is open between its first and its last point, {_place(points[0])} and {_place(points[-1])}"
         )
-        raise InputError(problem, "give points all around the blade")
+        raise InputError(problem, "give points all around the blade, with no blank line or text between them")
     if abs(polygon_area(plane)) < _THIN * size * size:
         raise InputError("encloses no area", "give points around the blade, not a line")
     crossing = find_crossing(plane)

@@ -11,6 +11,7 @@ from numbers import Integral, Real
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.blade import BladeSurface
 from meshonet.geometry.rows.channel import Channel
@@ -38,6 +39,8 @@ class Row:
         Of the row.
     notes : tuple of str, optional
         What was changed of the profiles.
+    frame : Motion, optional
+        The rotation from the coordinates of the grid to those of the row; None where these are the same.
 
     Raises
     ------
@@ -53,6 +56,7 @@ class Row:
     hub_gap: float = 0.0
     name: str = "row"
     notes: tuple[str, ...] = ()
+    frame: Motion | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.blades, Integral) or not FEWEST <= self.blades <= MOST:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from meshonet.geometry.blocks.copies import copied
+from meshonet.geometry.blocks.transform import rotated
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import limited_to
@@ -10,6 +14,19 @@ from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import stage
+
+
+@contextmanager
+def _keys_of_ends() -> Iterator[None]:
+    """Name `inlet` and `outlet` of a section as the keys of the row's file, not as options."""
+    try:
+        yield
+    except InputError as error:
+        if error.parameter in ("inlet", "outlet"):
+            error.place, error.parameter = error.parameter, ""
+            error.remedy += " from the blade to the ends of hub and casing"
+        raise
+
 
 _REMEDY = "use more {cells}, or a larger {first_cell}"  # where cells fold
 
@@ -28,9 +45,10 @@ def make_row(row: Row, request: RowRequest | None = None) -> Result:
     with limited_to(request.threads):
         with stage("load", seconds):
             from meshonet.solvers.rows.row_grid import row_grid
-        with stage("grid", seconds):
+        with stage("grid", seconds), _keys_of_ends():
             grid, notes = row_grid(row, request)
             grid = copied(grid, request.copies)
+            grid = grid if row.frame is None else rotated(grid, row.frame.inverse())
         notes = (*row.changes, *notes)
         note = request.height_note(f"on a chord of {row.chord:.6g}", scale=row.chord)
         solution = Solution(grid, "row", notes=(*notes, note) if note else notes)

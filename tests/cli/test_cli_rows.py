@@ -58,4 +58,5 @@ def test_a_hub_that_ends_within_the_blade_is_named(meshonet: Meshonet, tmp_path:
     row = blade_row.write_row(tmp_path, hub=blade_row.HUB[:14])
     done = meshonet("stack", str(row), *SMALL, "-o", "row.cgns")
     assert done.code == 2
-    assert "profile 1: hub and casing end before the blade's point" in done.err
+    where = "row.toml: profile 1 (lines 2 to 161 of profile.curve): "
+    assert where + "hub and casing end before the blade's point" in done.err

@@ -147,7 +147,7 @@ def test_airfoils_on_cylinders_have_chord_and_stagger_and_round_edges(tmp_path: 
         ('profiles = "none.csv"', "none.csv: no such file"),
         ('profiles = "hub.csv"', "hub.csv: line 2: .* is not 3 numbers"),
         (SECTIONS.split("[[sections]]")[0] + "[[sections]]\nradius = 2.0", "sections"),
-        (SECTIONS.replace("radius = 2.5", "radius = 1.9"), "profile 2: .* give profiles from hub"),
+        (SECTIONS.replace("radius = 2.5", "radius = 1.9"), r"profile 2 \(sections.1.\): .* give profiles"),
     ],
 )  # fmt: skip
 def test_what_does_not_fit_is_named_with_its_place(tmp_path: Path, more: str, words: str) -> None:
