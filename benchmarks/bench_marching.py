@@ -155,7 +155,7 @@ def growth_as_marched(surface: Surface, march: VolumeMarch, attempt: int) -> flo
     planes, inside, _ = symmetry_of(surface, march.symmetry, march.distance(surface.size))
     nodes, steps = in_planes(surface, planes, inside), march.steps(surface.size)
     hollows = hollows_of(surface)
-    smoothing = attempts_for(concave=len(hollows.edges) > 0)[attempt - 1]
+    smoothing = attempts_for(concave=len(hollows.edges) > 0, wing=False)[attempt - 1]
     graph = march_graph(surface, planes, inside, hollows.distance, smoothing.splay, smoothing.boost)
     levels = march_levels(surface, graph, nodes, steps, smoothing)
     return worst_growth(np.linalg.norm(np.diff(levels, axis=0), axis=1))

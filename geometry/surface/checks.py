@@ -2,14 +2,18 @@
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, distinct, norms
+from meshonet.geometry.elementary import product
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.surface.half_edges import ends_of
-from meshonet.geometry.surface.merge import near_pairs
+from meshonet.geometry.surface.merge import SLANT, near_pairs
 
 _GAP = 0.2
 """Part of the shorter edge beside it within which another open side is a gap, not another place."""
+
+_ON = 0.05
+"""Distance of a node from an edge, over the length of the edge, within which it lies on the edge."""
 
 _SIDES = ("west", "east", "south", "north")
 
@@ -72,6 +76,31 @@ def check_gaps(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> 
     places = [place_of(nodes, lattices, int(k)) for k in pairs[widest]]
     problem = f"a gap of {apart[widest]:.3g} between sides that nearly match, at {places[0]} and {places[1]}"
     raise InputError(problem, "make the nodes of both sides the same", place=f"{len(near)} nodes")
+
+
+def check_seams(nodes: Floats, lattices: tuple[Indices, ...], edges: Indices) -> None:
+    """Raise InputError if nodes of open `edges` (k, 2) lie in the middle of others: sides of other nodes."""
+    ends = nodes[edges]
+    along = ends[:, 1] - ends[:, 0]
+    length = norms(along)
+    open_nodes = distinct(edges.ravel())
+    place = product(nodes[open_nodes], SLANT)
+    order = np.argsort(place, kind="stable")
+    reach = product(ends, SLANT)
+    first = np.searchsorted(place[order], reach.min(axis=1) - _ON * length)
+    last = np.searchsorted(place[order], reach.max(axis=1) + _ON * length)
+    edge = np.repeat(np.arange(len(edges)), last - first)
+    skipped = np.repeat(first - np.cumsum(last - first) + last - first, last - first)
+    node = open_nodes[order[np.arange(len(edge)) + skipped]]
+    off = nodes[node] - ends[edge, 0]
+    part = (off * along[edge]).sum(axis=1) / length[edge] ** 2
+    away = norms(off - part[:, None] * along[edge])
+    lies = np.flatnonzero((np.abs(part - 0.5) < 0.5 - _GAP) & (away < _ON * length[edge]))
+    if len(lies):
+        at = lies[0]
+        own, other = (place_of(nodes, lattices, int(k)) for k in (node[at], edges[edge[at], 0]))
+        problem = f"sides that meet have other nodes, {len(lies)} in all, the first at {own}, next to {other}"
+        raise InputError(problem, "give both sides the same nodes where they meet")
 
 
 def check_sides(

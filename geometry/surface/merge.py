@@ -12,7 +12,8 @@ from meshonet.geometry.polygon.corners import Indices
 TOLERANCE = 1e-8
 """Distance, over the size of a surface, within which edge nodes are one node."""
 
-_SLANT = np.array([0.5257311, 0.6513887, 0.5470973])  # along no axis, diagonal or face of a regular solid
+SLANT = np.array([0.5257311, 0.6513887, 0.5470973])
+"""Direction along no axis, diagonal or face of a regular solid: distant points seldom coincide along it."""
 
 
 def near_pairs(points: Floats, distance: float) -> Indices:
@@ -20,9 +21,9 @@ def near_pairs(points: Floats, distance: float) -> Indices:
 
     Points are sorted along a slanted line, along which distant points seldom have equal positions.
     """
-    along = product(points, _SLANT)
+    along = product(points, SLANT)
     order = np.argsort(along, kind="stable")
-    along, window = along[order], distance * float(_SLANT.sum()) * (1.0 + 1e-12)
+    along, window = along[order], distance * float(SLANT.sum()) * (1.0 + 1e-12)
     pairs = [np.empty((0, 2), dtype=np.intp)]
     for gap in range(1, len(points)):
         near = np.flatnonzero(along[gap:] - along[:-gap] <= window)

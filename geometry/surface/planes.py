@@ -4,13 +4,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.arrays import Floats, extent_of, norms
+from meshonet.geometry.elementary import arctan2
 from meshonet.geometry.polygon.corners import Indices
 
 FLAT = 1e-6
 """Part of the size of a surface by which nodes may be off a plane of symmetry."""
 FEWEST = 3
 """Least number of open edges in a plane of symmetry."""
+
+SLANT_DEG = 5.0
+"""Largest angle off the normal of a plane of symmetry at which a surface that encloses nothing may end in it.
+
+The mirror image of such a surface continues it smoothly. That of half a body may have an edge in the plane.
+"""
 
 
 @dataclass(frozen=True)
@@ -54,3 +61,16 @@ def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indic
     """Return which (k,) edges of `sides` (k, 4) lie in a plane, to `slack`, while their faces do not."""
     near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
     return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))
+
+
+def slant(nodes: Floats, sides: Indices, plane: Plane) -> float:
+    """Return the mean angle, in degrees, of the faces at open edges in a plane off the plane's normal.
+
+    `sides` are those of `planes_of`.
+    """
+    mine = sides[edges_in(nodes, sides, plane, FLAT * extent_of(nodes))]
+    a, b, c, d = (nodes[mine[:, k]] for k in range(4))
+    normal = np.cross(c - a, d - b)
+    across = np.abs(normal[:, plane.axis])
+    within = norms(np.delete(normal, plane.axis, axis=1))
+    return float(np.degrees(arctan2(across, within)).mean())

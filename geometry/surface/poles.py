@@ -22,7 +22,7 @@ _LEAST = {1: 2, 2: 4, 4: 8}
 class _FanPatch:
     """A patch of a fan, turned (and mirrored) so that its pole is at j = 0 and i runs as in the fan.
 
-    `both` tells that there is a pole at its other end too.
+    `both` is True if there is a pole at its other end too.
     """
 
     patch: int
@@ -78,6 +78,8 @@ def _replaced(patches: list[Floats], fan: list[_FanPatch]) -> tuple[Floats, str]
     limit = min(
         (nodes.shape[1] - 1) // (2 if member.both else 1) for nodes, member in zip(turned, fan, strict=True)
     )
+    if not closed:
+        _check_ends(patches, fan, joined, slack)
     core = core_of(joined, quarters, limit)
     start = 0
     for nodes, member in zip(turned, fan, strict=True):
@@ -91,6 +93,19 @@ def _replaced(patches: list[Floats], fan: list[_FanPatch]) -> tuple[Floats, str]
         core.nodes,
         f"the pole of {whose} at {place} became a core of {a} x {b} cells, patch {len(patches)}",
     )
+
+
+def _check_ends(patches: Sequence[Floats], fan: list[_FanPatch], joined: Floats, slack: float) -> None:
+    """Raise InputError if an outer curve of an open fan is a seam with another patch, whose nodes stay."""
+    members = {member.patch for member in fan}
+    for node in joined[[0, -1], 1]:
+        for number, patch in enumerate(patches):
+            if number not in members and (np.abs(patch - node) <= slack).all(axis=-1).any():
+                x, y, z = joined[0, 0]
+                whose = ", ".join(map(str, sorted(members)))
+                problem = f"the pole of patch {whose} is where a seam with patch {number} ends"
+                remedy = "give the patch a side of several cells there, for example beside a core"
+                raise InputError(problem, remedy, place=f"x={x:.6g}, y={y:.6g}, z={z:.6g}")
 
 
 def _right_angles(fan: Floats) -> int:
@@ -114,17 +129,17 @@ def _next_fan(patches: Sequence[Floats]) -> list[_FanPatch] | None:
     first, last = nodes[0][0], nodes[0][-1]
     while not _same(first, last, slack):
         # forwards from the last curve of the chain, else backwards from its first
-        found = None
+        neighbour: tuple[int, bool, int] | None = None
         for k in (k for k in range(len(fans)) if k not in used):
             for mirrored in (False, True):
                 own = nodes[k][::-1] if mirrored else nodes[k]
-                if found is None and _same(own[0], last, slack):
-                    found, last = (k, mirrored, len(chain)), own[-1]
-                elif found is None and _same(own[-1], first, slack):
-                    found, first = (k, mirrored, 0), own[0]
-        if found is None:
+                if neighbour is None and _same(own[0], last, slack):
+                    neighbour, last = (k, mirrored, len(chain)), own[-1]
+                elif neighbour is None and _same(own[-1], first, slack):
+                    neighbour, first = (k, mirrored, 0), own[0]
+        if neighbour is None:
             break
-        k, mirrored, at = found
+        k, mirrored, at = neighbour
         used.add(k)
         chain.insert(at, _FanPatch(fans[k].patch, fans[k].turns, mirrored, fans[k].both))
     return chain

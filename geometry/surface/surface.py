@@ -20,17 +20,19 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.surface.bases import with_bases
 from meshonet.geometry.surface.checks import (
     check_gaps,
     check_manifold,
     check_quads,
+    check_seams,
     check_sides,
     place_of,
 )
 from meshonet.geometry.surface.half_edges import ends_of, open_sides, paired, rings
 from meshonet.geometry.surface.merge import merged
 from meshonet.geometry.surface.orient import closing_axes, outward_sign, turned_alike
-from meshonet.geometry.surface.planes import Plane, planes_of
+from meshonet.geometry.surface.planes import SLANT_DEG, Plane, planes_of, slant
 from meshonet.geometry.surface.poles import without_poles
 
 
@@ -87,23 +89,29 @@ def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -
     """Return the surface that the patches (ni, nj, 3) of a grid form together.
 
     A pole, a side that is a single point, becomes a core patch with a note, unless `poles` says otherwise.
+    Open trailing edges are closed by base patches, with a note.
 
     Patches that face the other way are reversed along i, with a note. A closed surface, or one that planes
     normal to one axis close, faces outwards; any other faces the way that most of its area does.
 
     Raises InputError with the place: blocks that are not patches; an edge of zero length, or of three
-    quadrilaterals; a node where two sheets touch; sides that nearly match; a surface that is not orientable.
+    quadrilaterals; a node where two sheets touch; sides that nearly match or have other nodes where they
+    meet; an open trailing edge with other numbers of cells across its ends; a surface with one side only.
     """
     if any(block.nodes.ndim != 3 or block.nodes.shape[-1] != 3 for block in grid.blocks):
         problem = "a surface is made of patches (ni, nj, 3), and a block of this grid is none"
         raise InputError(problem, "give patches of a surface in space")
     patches, owners, cores = without_poles([block.nodes for block in grid.blocks], replace=poles == "replace")
+    patches, above, bases = with_bases(patches)
+    owners += [owners[patch] for patch in above]
     nodes, lattices = merged(patches)
     quads = lattice_quads(lattices)
     check_quads(nodes, lattices, quads)
     twin, crowded = paired(quads, len(nodes))
     check_manifold(nodes, lattices, ends_of(quads)[0][crowded])
-    check_gaps(nodes, lattices, open_sides(quads, twin)[:, :2])
+    opened = open_sides(quads, twin)[:, :2]
+    check_seams(nodes, lattices, opened)
+    check_gaps(nodes, lattices, opened)
     lattices, quads, planes, notes = _turned(nodes, lattices, quads, twin)
     twin, _ = paired(quads, len(nodes))
     ring, valence = rings(quads, twin, len(nodes))
@@ -111,7 +119,7 @@ def surface_of(grid: Grid, *, poles: Literal["replace", "refuse"] = "replace") -
     zones = grid.provenance.get("zones") or ()
     named = len(zones) == len(grid.blocks) and all(isinstance(name, str) and name for name in zones)
     names = tuple(zones[owner] if named else "wall" for owner in owners)
-    return Surface(nodes, lattices, names, twin, ring, valence, planes, (*cores, *notes))
+    return Surface(nodes, lattices, names, twin, ring, valence, planes, (*cores, *bases, *notes))
 
 
 def _turned(
@@ -134,18 +142,27 @@ def _turned(
         mine = np.flatnonzero(twin < 0)
         opened = open_sides(quads, twin)[own[mine // 4]]
         flat = planes_of(nodes, opened)
-        planes += [plane for plane in flat if plane not in planes]
-        sign = outward_sign(nodes, alike[own], closing_axes(nodes, opened, flat))
+        axes = closing_axes(nodes, opened, flat)
+        sign = outward_sign(nodes, alike[own], axes)
         if sign is None:
             faces = sum(signs[k] * counts[k] for k in members)
             sign = -1 if faces < 0 else 1
             notes.append("the surface encloses nothing: it is taken to face as its patches do, i x j")
+            slanted = {plane: slant(nodes, opened, plane) for plane in flat}
+            notes += [_slant_note(plane, angle) for plane, angle in slanted.items() if angle > SLANT_DEG]
+            flat = tuple(plane for plane in flat if slanted[plane] <= SLANT_DEG)
+        planes += [plane for plane in flat if plane.axis in axes and plane not in planes]
         final[members] *= sign
     lattices = tuple(k[::-1] if sign < 0 else k for k, sign in zip(lattices, final, strict=True))
     turned = [str(k) for k, sign in enumerate(final) if sign < 0]
     if turned:
         notes.append(_turned_note(turned, len(lattices)))
     return lattices, lattice_quads(lattices), tuple(planes), tuple(notes)
+
+
+def _slant_note(plane: Plane, angle: float) -> str:
+    problem = f"the open edges at {plane} are not in a plane of symmetry"
+    return f"{problem}: the surface meets it at {90.0 - angle:.0f} degrees and encloses nothing"
 
 
 def _turned_note(turned: list[str], count: int) -> str:

@@ -72,7 +72,8 @@ def hyperbolic(
     if boundary.topology == "quad":
         raise InputError(
             f"hyperbolic marching cannot make topology {boundary.topology}",
-            "use it around a body (topology o or c), or another method without a wall spacing",
+            "use it around a body (topology o or c), or from a surface in space with {layers}, or another "
+            "method without a wall spacing",
             parameter="method",
         )
     first = wall_spacing * boundary.chord

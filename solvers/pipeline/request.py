@@ -124,8 +124,8 @@ class Volume(Request):
 
     @property
     def of_surface(self) -> bool:
-        """Whether options that only surfaces have a use for ask for a march from one, be it flat."""
-        return self.method == "hyperbolic" and not OF_SURFACE.isdisjoint(self.chosen)
+        """Whether options that edges in the plane do not take ask for a march from a surface, be it flat."""
+        return self.method == "hyperbolic" and not (OF_SURFACE | {"far_field"}).isdisjoint(self.chosen)
 
 
 @dataclass(frozen=True)

@@ -215,6 +215,22 @@ def wing(
     return [main, ring, core]
 
 
+def open_wing(thick: float = 0.01, *, across: int = 4, tip: bool = True, sweep: float = 0.0) -> list[Floats]:
+    """Half a wing of blunt nose from y = 0 to 2 without a base: upper and lower side, nose, tip."""
+    x, y = np.linspace(0.0, 1.0, 33)[:, None], np.linspace(0.0, 2.0, 25)[None]
+    half = 0.06 * np.sqrt(np.maximum(np.sin(np.pi * x), 0.0)) * (1.0 - x) + 0.5 * thick
+    half[0] = max(0.02, 0.5 * thick)
+    upper, lower = (np.stack(np.broadcast_arrays(x + sweep * y, y, s * half), axis=-1) for s in (1.0, -1.0))
+    nose, end = between(lower[0], upper[0], across), between(lower[:, -1], upper[:, -1], across)
+    return [upper, lower, nose, end] if tip else [upper, lower, nose]
+
+
+def between(first: Floats, last: Floats, cells: int) -> Floats:
+    """Nodes (n, cells + 1, 3) of straight lines between two lines of nodes (n, 3)."""
+    f = np.linspace(0.0, 1.0, cells + 1)[None, :, None]
+    return (1.0 - f) * first[:, None] + f * last[:, None]
+
+
 def _at_places(places: Floats, known: Floats, values: Floats) -> Floats:
     return np.stack([np.interp(places, known, column) for column in values.T], axis=-1)
 
