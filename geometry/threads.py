@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar, copy_context
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from meshonet.geometry.errors import InputError
 
@@ -21,6 +21,8 @@ MANY_VISITS = 16
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
+One = TypeVar("One")
+Other = TypeVar("Other")
 
 _limit: ContextVar[int | None] = ContextVar("threads", default=None)
 
@@ -45,16 +47,35 @@ def threads_for(nodes: int, visits: int = 1) -> int:
 def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made]:
     """Return what `work` returns for each of `items`, several at once if threads are free.
 
-    Worth it where each takes milliseconds, most of them in kernels or NumPy's loops.
+    Worth it where each takes milliseconds, most of them in kernels or NumPy's loops. Each may use its share
+    of the threads in turn.
     """
     threads = min(thread_count(), len(items))
     if threads < 2:
         return [work(item) for item in items]
     from concurrent.futures import ThreadPoolExecutor  # takes longer to load than the options of a command
 
+    share = thread_count() // threads
+
+    def shared(item: Item) -> Made:
+        with limited_to(share):
+            return work(item)
+
     with ThreadPoolExecutor(threads) as pool:
-        jobs = [pool.submit(copy_context().run, work, item) for item in items]
+        jobs = [pool.submit(copy_context().run, shared, item) for item in items]
         return [job.result() for job in jobs]
+
+
+def run_in_threads(jobs: Sequence[Callable[[], None]]) -> None:
+    """Call each of `jobs`, several at once if threads are free (see `in_threads`)."""
+    in_threads(lambda job: job(), jobs)
+
+
+def both(one: Callable[[], One], other: Callable[[], Other]) -> tuple[One, Other]:
+    """Return what both return, called at once if threads are free."""
+    jobs: tuple[Callable[[], Any], ...] = (one, other)
+    first, second = in_threads(lambda job: job(), jobs)
+    return first, second
 
 
 @contextmanager

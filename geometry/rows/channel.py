@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -83,7 +84,6 @@ class Channel:
             problem = f"hub and casing cross, turn back or lie the wrong way round near x = {low[k, 0]:.6g}"
             remedy = "give both from inlet to outlet, along growing x in an axial machine, the hub inside"
             raise InputError(problem, remedy)
-        self._cubics = CubicTable(np.concatenate([low, high - low], axis=1), s).unit_cubics()
         self.span = middle(widths)
         self.length = middle(np.array([norms(np.diff(line, axis=0)).sum() for line in (low, high)]))
         self._check_gaps({"tip_gap": tip_gap, "hub_gap": hub_gap}, float(widths.min()))
@@ -98,6 +98,8 @@ class Channel:
         self._levels.append(1.0)
         parts.append(np.ones(_PIECES + 1))
         self._parts = [CubicTable(part, s) for part in parts]
+        columns = np.concatenate([low, high - low, np.stack(parts, axis=1)], axis=1)
+        self._cubics = np.ascontiguousarray(CubicTable(columns, s).unit_cubics().swapaxes(0, 1))
 
     def _check_gaps(self, gaps: dict[str, float], width: float) -> None:
         for place, gap in gaps.items():
@@ -109,19 +111,6 @@ class Channel:
             problem = f"gaps of {both:g} in a channel {width:g} wide"
             widest = max(gaps, key=lambda place: gaps[place])
             raise InputError(problem, "use less than half of the span", place=widest)
-
-    def fraction(self, s: Floats, h: Floats) -> Floats:
-        """Return the part of the way from hub to casing at height h; arrays of one shape."""
-        out = np.empty(s.shape)
-        zone = np.clip(np.searchsorted(self._levels, h, side="right") - 1, 0, len(self._levels) - 2)
-        for k in range(len(self._levels) - 1):
-            own = zone == k
-            if own.any():
-                below, above = self._levels[k : k + 2]
-                share = (h[own] - below) / (above - below)
-                low, high = (self._part(j, s[own]) for j in (k, k + 1))
-                out[own] = np.where(share == 1.0, high, low + share * (high - low))
-        return out
 
     def _part(self, k: int, s: Floats) -> Floats:
         if k in (0, len(self._levels) - 1):
@@ -135,20 +124,34 @@ class Channel:
 
         def work(start: int) -> None:
             part = slice(start, start + _AT_ONCE)
-            low, way = self._walls(flat[part])
-            out[part] = low + self.fraction(flat[part], height[part])[:, None] * way
+            tables = self._tables(flat[part])
+            out[part] = tables[:, :2] + self._fraction(tables[:, 4:], height[part])[:, None] * tables[:, 2:4]
 
         in_threads(work, range(0, len(flat), _AT_ONCE))
         return out.reshape(*s.shape, 2)
 
-    def _walls(self, s: Floats) -> tuple[Floats, Floats]:
-        """Return points of the hub and the ways to the casing, both (n, 2)."""
+    def _tables(self, s: Floats) -> Floats:
+        """Return points of the hub, the ways to the casing and the parts of these at levels (n, 4 + l)."""
         place = s * _PIECES
         piece = np.clip(place.astype(np.intp), 0, _PIECES - 1)
         t = (place - piece)[:, None]
-        a, b, c, d = self._cubics[:, piece]
-        both = a + t * (b + t * (c + t * d))
-        return both[:, :2], both[:, 2:]
+        cubics = self._cubics.take(piece, axis=0)
+        out = cubics[:, 3] * t
+        for k in (2, 1):
+            out += cubics[:, k]
+            out *= t
+        out += cubics[:, 0]
+        return out
+
+    def _fraction(self, parts: Floats, h: Floats) -> Floats:
+        """Return the part of the way from hub to casing (n,) at heights (n,), from those at levels (n, l)."""
+        out = h
+        for k, (below, above) in enumerate(pairwise(self._levels)):
+            share = (h - below) / (above - below)
+            low, high = (parts[:, j] if 0 < j < len(self._levels) - 1 else float(j > 0) for j in (k, k + 1))
+            value = np.where(share == 1.0, high, low + share * (high - low))
+            out = np.where(h >= below, value, out) if k else value
+        return out
 
     def places(self, points: Floats) -> tuple[Floats, Floats]:
         """Return s and h (...) of points x, r (..., 2); outside of the channel h is below 0 or above 1.

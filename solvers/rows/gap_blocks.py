@@ -39,16 +39,15 @@ class GapBlocks:
 
 
 def gap_blocks(
-    row: Row, made: RowNodes, space: Floats, columns: Indices, lead: int, zone: Zone, levels: tuple[int, int],
-    first: float, growth: float,
+    row: Row, made: RowNodes, around: Indices, lead: int, zone: Zone, levels: tuple[int, int], first: float,
+    growth: float,
 ) -> GapBlocks:  # fmt: skip
     """Return the blocks of a gap.
 
     Parameters
     ----------
-    made, space : nodes of the row, and their positions.
-    columns : (k, m) nodes of the layers from the blade, clockwise; `lead` is the number of that at the
-        leading edge.
+    made : nodes of the row.
+    around : (k,) those of the blade, clockwise; `lead` is the number of that at the leading edge.
     zone, levels : the gap, and the numbers of the levels that bound it.
     first, growth : height of cells inside the outline next to it, and their largest ratio.
 
@@ -56,16 +55,15 @@ def gap_blocks(
     """
     tip = zone.high == 1.0  # the blade is below this gap, otherwise above it
     heights = (zone.low, zone.high) if tip else (zone.high, zone.low)
-    around = columns[:, 0]
     maps: list[MeridionalMap] = []
     outlines: list[Floats] = []
     outside: list[Floats] = []
     for level, height in zip(levels if tip else levels[::-1], heights, strict=True):
         maps.append(row.channel.meridional(height))
-        for nodes, out in ((around, outlines), (columns[:, 1], outside)):
-            s, theta, _ = made.values[level][nodes].T
+        for k, out in enumerate((outlines, outside)):
+            s, theta, _ = made.beside[level, :, k].T
             out.append(np.stack([maps[-1].forward(s), theta], axis=1))
-    radius = float(norms(space[levels[0]][around][:, 1:]).mean())
+    radius = float(norms(made.space[levels[0]][around][:, 1:]).mean())
     fill = filled_outline(outlines[0], outside[0], lead, first / radius, growth)
     planes = [fill.layout.mesh.nodes, _carried(fill, outlines[1])]
     ends = [
@@ -73,7 +71,7 @@ def gap_blocks(
     ]
     low, high = ends if tip else ends[::-1]
     ids = around[fill.outline]
-    given = space[levels[0] : levels[1] + 1][:, ids]
+    given = made.space[levels[0] : levels[1] + 1][:, ids]
     return GapBlocks(fill, ids, _between(row, low, high, zone, given, fill, growth))
 
 

@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.threads import both
 from meshonet.solvers.blocking.cascade.cascade import beside_neighbours, scaled
 from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of
 from meshonet.solvers.blocking.cascade.flat_template import flat_cut, flat_template
@@ -126,12 +128,16 @@ def planned(
     at = plane.places_of(whole.mesh.places.arc[columns[:, 0]])
     places = at_corners(opposite_places(at) if opposite else at, plane.corners)
     growth = plane.cascade.layers.growth
-    even = even_wall_places(planes, places, plane.corners, growth, opposite=opposite)
     m = whole.mesh.nodes[:, 0]
     near = 1e-9 * (m.max() - m.min())
     ends = np.flatnonzero(m <= m.min() + near), np.flatnonzero(m >= m.max() - near)
-    plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, even, wake)
-    section = KeySection(plane, _optimum(plan, whole, FINE, ends_slide=True), at)
+    plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, places, wake)
+
+    def evened() -> Floats:
+        return even_wall_places(planes, places, plane.corners, growth, opposite=opposite)
+
+    optimum, even = both(partial(_optimum, plan, whole, FINE, ends_slide=True), evened)
+    plan, section = replace(plan, places=even), KeySection(plane, optimum, at)
     try:
         return plan, _placed(plan, section)
     except NoValidGridError:  # layers are folded where nodes had to move far

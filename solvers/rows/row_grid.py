@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -23,7 +24,9 @@ from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.layout.to_grid import to_grid
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.row import Row
+from meshonet.geometry.threads import in_threads, run_in_threads
 from meshonet.solvers.rows.gap_blocks import GapBlocks, gap_blocks
 from meshonet.solvers.rows.key_tables import key_tables
 from meshonet.solvers.rows.request import RowRequest
@@ -42,19 +45,18 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     zones = zones_of(row, first, growth, request.cells)
     keys = key_tables(row, first, growth, section_cells(zones, request.cells))
     stacked = StackedRow(row, keys, zones, first, growth)
-    made = stacked.nodes()
-    space = made.space()
+    made, rest = stacked.nodes()
+    gaps: list[GapBlocks | None] = [None] * len(zones)
+
+    def fill(k: int) -> None:
+        around, levels = stacked.columns[:, 0], stacked.bounds[k]
+        gaps[k] = gap_blocks(row, made, around, stacked.leading, zones[k], levels, first, growth)
+
+    fills = [partial(fill, k) for k, zone in enumerate(zones) if zone.gap]
+    run_in_threads([*fills, *rest])
+    space, turn = made.space, turned_by(row.pitch)
     second, partner = stacked.twins
-    turn = turned_by(row.pitch)
     space[:, second] = turn(space[:, partner])
-    gaps: list[GapBlocks | None] = []
-    for zone, levels in zip(zones, stacked.bounds, strict=True):
-        inside = None
-        if zone.gap:
-            inside = gap_blocks(
-                row, made, space, stacked.columns, stacked.leading, zone, levels, first, growth
-            )
-        gaps.append(inside)
     grid = _joined(row, stacked, zones, gaps, space, turn)
     return grid, (*_notes(zones, first), *_more_cells(grid, request.cells))
 
@@ -82,7 +84,7 @@ def _joined(
             nodes = np.concatenate([nodes, inside.space[:, len(inside.outline) :]], axis=1)
         plane = to_grid(layout)
         starts.append(start)
-        blocks += [Block(np.moveaxis(nodes[:, ids], 0, 2), finite=True) for ids in layout.blocks]
+        blocks += in_threads(partial(_block, nodes), layout.blocks)
         patches += [replace(patch, block=patch.block + start) for patch in plane.patches]
         patches += _end_patches(zone, layout, start, whole)
         for each in plane.connections:
@@ -95,6 +97,11 @@ def _joined(
             ends = (below + number, "top", face), (above + number, "bottom", face)
             connections.append(Connection(*ends[0], *ends[1], (1, 2)))  # type: ignore[arg-type]
     return Grid(tuple(blocks), tuple(patches), tuple(connections), row.name)
+
+
+def _block(nodes: Floats, ids: Indices) -> Block:
+    """Return the block of nodes (levels, n, 3) with the numbers `ids` (ni, nj) in each level."""
+    return Block(np.moveaxis(nodes[:, ids], 0, 2), finite=True)
 
 
 def _end_patches(zone: Zone, layout: Layout, start: int, whole: int) -> list[Patch]:

@@ -1,4 +1,4 @@
-"""The nodes of a row in (s, theta, h), level by level along the span, and their places in space.
+"""The nodes of a row, level by level along the span: in space, and next to the blade in (s, theta, h).
 
 theta is atan2(y, z): the directions of s, theta and h are then right-handed.
 """
@@ -11,7 +11,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import cos, sin
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.channel import Channel
 
 
@@ -21,17 +20,13 @@ class RowNodes:
 
     Parameters
     ----------
-    channel : Channel
-        In which they are.
-    values : (levels, n, 3) s, theta and h of each.
+    space : (levels, n, 3) x, y, z.
+    beside : (levels, k, 2, 3) s, theta, h of the nodes of the blade, clockwise around it, and those next to
+        them.
     """
 
-    channel: Channel
-    values: Floats
-
-    def space(self, level: int | slice = slice(None), nodes: Indices | slice = slice(None)) -> Floats:
-        """Return x, y, z (..., 3) of the nodes of levels."""
-        return in_space(self.channel, self.values[level][..., nodes, :])
+    space: Floats
+    beside: Floats
 
 
 def in_space(channel: Channel, values: Floats) -> Floats:

@@ -108,7 +108,7 @@ class SectionPlane:
         """
         one, other = self._opposite(np.array([thickest, 1.0 - thickest]))
         centre = complex(0.5 * (one + other))
-        return replace(self, cascade=replace(self.cascade, near=near, centre=centre))
+        return replace(self, cascade=self.cascade.ending(near, centre))
 
     @property
     def corners(self) -> Floats:

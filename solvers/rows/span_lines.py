@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import cos, product
 from meshonet.geometry.linear import inverse
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.threads import in_threads
 
 _AT_ONCE = 1 << 15
@@ -34,14 +36,16 @@ class SpanLines:
 
         Of a lower `degree` they are those nearest to the values, with half weights at both ends.
         """
-        count = len(values)
-        at_keys = np.stack(_polynomials(2.0 * key_heights(count) - 1.0, count), axis=1)
-        kept = inverse(at_keys)[: count if degree is None else degree + 1]
-        return cls(product(kept, values.reshape(count, -1)).reshape(len(kept), *values.shape[1:]))
+        kept = _fit(len(values))[: len(values) if degree is None else degree + 1]
+        return cls(_times(kept, values))
 
-    def at(self, heights: Floats, columns: slice | Floats | None = None) -> Floats:
-        """Return values (p, m, ...) of all n or some `columns` (m,) at heights (p, m) or (p, 1)."""
-        c = self.coefficients if columns is None else self.coefficients[:, columns]
+    def of(self, columns: slice | Indices) -> SpanLines:
+        """Return some of the functions."""
+        return SpanLines(self.coefficients[:, columns])
+
+    def at(self, heights: Floats) -> Floats:
+        """Return values (p, n, ...) at heights (p, n) or (p, 1)."""
+        c = self.coefficients
         x = (4.0 * heights - 2.0).reshape(*heights.shape, *(1,) * (c.ndim - 2))
         out = np.empty((len(heights), *np.broadcast_shapes(x.shape[1:], c.shape[1:])))
         own = max(1, _AT_ONCE * out.shape[1] // max(out.size, 1))
@@ -53,28 +57,48 @@ class SpanLines:
         in_threads(work, range(0, out.shape[1], own))
         return out
 
-    def slopes_at_keys(self) -> Floats:
-        """Return derivatives (k, n, ...) by the height at `key_heights` (k)."""
-        c = self.coefficients
-        slopes = np.zeros_like(c)
-        for k in range(len(c) - 1, 0, -1):
-            slopes[k - 1] = 2.0 * k * c[k] + (slopes[k + 1] if k + 1 < len(c) else 0.0)
-        slopes[0] *= 0.5
-        return SpanLines(2.0 * slopes)._at_keys()
 
-    def integrals_at_keys(self) -> Floats:
-        """Return integrals (k, n, ...) over the height, from 0, at `key_heights` (k)."""
-        c = self.coefficients
-        sums = np.zeros((len(c) + 1, *c.shape[1:]))
-        for k in range(1, len(c) + 1):
-            before = c[k - 1] * (2.0 if k == 1 else 1.0)
-            sums[k] = (before - (c[k + 1] if k + 1 < len(c) else 0.0)) / (4.0 * k)
-        at_keys = SpanLines(sums)._at_keys(len(c))
-        return at_keys - at_keys[0]
+def slopes_at_keys(values: Floats) -> Floats:
+    """Return derivatives (k, n, ...) by the height of polynomials through `values`, at `key_heights` (k)."""
+    return _times(_slopes(len(values)), values)
 
-    def _at_keys(self, count: int | None = None) -> Floats:
-        heights = key_heights(count or len(self.coefficients))
-        return self.at(heights[:, None])
+
+def integrals_at_keys(values: Floats) -> Floats:
+    """Return integrals (k, n, ...) over the height, from 0, of polynomials through `values` likewise."""
+    return _times(_integrals(len(values)), values)
+
+
+def _times(matrix: Floats, values: Floats) -> Floats:
+    return product(matrix, values.reshape(len(values), -1)).reshape(len(matrix), *values.shape[1:])
+
+
+@cache
+def _fit(count: int) -> Floats:
+    """Return the matrix (count, count) from values at `key_heights` to Chebyshev coefficients."""
+    return inverse(np.stack(_polynomials(2.0 * key_heights(count) - 1.0, count), axis=1))
+
+
+@cache
+def _slopes(count: int) -> Floats:
+    """Return the matrix (count, count) from values at `key_heights` to derivatives there."""
+    c = _fit(count)
+    slopes = np.zeros_like(c)
+    for k in range(count - 1, 0, -1):
+        slopes[k - 1] = 2.0 * k * c[k] + (slopes[k + 1] if k + 1 < count else 0.0)
+    slopes[0] *= 0.5
+    return SpanLines(2.0 * slopes).at(key_heights(count)[:, None])
+
+
+@cache
+def _integrals(count: int) -> Floats:
+    """Return the matrix (count, count) from values at `key_heights` to integrals up to there."""
+    c = _fit(count)
+    sums = np.zeros((count + 1, count))
+    for k in range(1, count + 1):
+        before = c[k - 1] * (2.0 if k == 1 else 1.0)
+        sums[k] = (before - (c[k + 1] if k + 1 < count else 0.0)) / (4.0 * k)
+    at_keys = SpanLines(sums).at(key_heights(count)[:, None])
+    return at_keys - at_keys[0]
 
 
 def _clenshaw(c: Floats, x: Floats, out: Floats) -> None:

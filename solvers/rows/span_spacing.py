@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.elementary import exp, log, power
-from meshonet.solvers.rows.span_lines import SpanLines, key_heights
+from meshonet.solvers.rows.span_lines import SpanLines, integrals_at_keys, key_heights, slopes_at_keys
 
 _POWER = -4.0  # of the mean of what both ends and the middle ask for
 _BISECTIONS = 60
@@ -25,10 +27,11 @@ Ends: TypeAlias = tuple[float, float]
 
 def spaced_cells(length: float, ends: Ends, growth: float, largest: float, least: int) -> int:
     """Return how many cells fill a length, as at its `ends` and growing to `largest`; `least` or more."""
-    for cells in range(max(least, 4), MOST_CELLS):
-        if _sizes(np.array([largest]), ends, growth, cells).sum() >= length:
-            return cells
-    return MOST_CELLS
+
+    def reach(cells: int) -> float:
+        return float(_sizes(np.array([largest]), ends, growth, cells).sum())
+
+    return bisect_left(range(MOST_CELLS), length, max(least, 4), key=reach)
 
 
 def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
@@ -50,45 +53,76 @@ def _sizes(largest: Floats, ends: Ends, growth: float, cells: int) -> Floats:
     return np.asarray(power(both + power(largest, _POWER)[:, None], 1.0 / _POWER))
 
 
+@dataclass(frozen=True, eq=False)
+class Spacing:
+    """Arcs as of `two_sided`, over the lengths of lines, for all lengths in a range.
+
+    Parameters
+    ----------
+    lengths : the shortest and the longest line.
+    table : (cells + 1, m) arcs over lengths at evenly spaced lengths; others lie between.
+    """
+
+    lengths: tuple[float, float]
+    table: Floats
+
+    @classmethod
+    def of(cls, lengths: tuple[float, float], ends: Ends, growth: float, cells: int) -> Spacing:
+        """Return the arcs for cells that grow from both `ends`."""
+        known = np.linspace(*lengths, _LENGTHS if lengths[1] > lengths[0] * (1.0 + 1e-9) else 1)
+        return cls(lengths, (two_sided(known, ends, growth, cells) / known[:, None]).T)
+
+    def at(self, lengths: Floats) -> Floats:
+        """Return arcs over lengths (cells + 1, n) of lines of `lengths` (n,)."""
+        last = self.table.shape[1] - 1
+        if not last:
+            return np.repeat(self.table, len(lengths), axis=1)
+        low, high = self.lengths
+        place = (lengths - low) / (high - low) * last
+        k = np.minimum(place.astype(np.intp), last - 1)
+        share = place - k
+        return np.asarray(self.table[:, k] + share * (self.table[:, k + 1] - self.table[:, k]))
+
+
+@dataclass(frozen=True, eq=False)
+class LineArcs:
+    """Lines by their arc lengths.
+
+    Parameters
+    ----------
+    lengths : (n,) of the lines.
+    ahead : how far the part of the way is ahead of an arc over the length, at that.
+    """
+
+    lengths: Floats
+    ahead: SpanLines
+
+    @classmethod
+    def through(cls, samples: Floats) -> LineArcs:
+        """Return lines through positions (k, n, 3) at `key_heights` (k) of the way."""
+        speed = norms(slopes_at_keys(samples))
+        arcs = integrals_at_keys(speed)
+        lengths, wanted = arcs[-1], key_heights(len(samples))[:, None]
+        behind, slope = SpanLines.through(arcs / lengths - wanted), SpanLines.through(speed / lengths)
+        part = np.repeat(wanted, len(lengths), axis=1)
+        for _ in range(_NEWTON):
+            part -= (part + behind.at(part) - wanted) / slope.at(part)
+            np.clip(part, 0.0, 1.0, out=part)
+        return cls(lengths, SpanLines.through(part - wanted))
+
+    def parts(self, spacing: Spacing) -> Floats:
+        """Return parts (cells + 1, n), 0 to 1, of the way along the lines for a spacing of their arcs."""
+        arcs = spacing.at(self.lengths)
+        parts = np.clip(arcs + self.ahead.at(arcs), 0.0, 1.0)
+        parts[0], parts[-1] = 0.0, 1.0
+        return parts
+
+
 def line_parts(samples: Floats, ends: Ends, growth: float, cells: int) -> Floats:
     """Return parts (cells + 1, n), 0 to 1, of the way along lines, at which cells are as `two_sided`.
 
     `samples` (SAMPLES, n, 3) are positions on the lines at `key_heights` (SAMPLES) of the way.
     """
-    places = key_heights(SAMPLES)
-    speed = _speeds(samples)
-    arcs = _integrals(speed)
-    lengths = arcs[-1]
-    ahead = SpanLines.through(arcs / lengths - places[:, None])  # how far the arc is ahead of the way
-    wanted = _wanted(lengths, ends, growth, cells)
-    part = wanted.copy()
-    slope = SpanLines.through(speed / lengths)
-    for _ in range(_NEWTON):
-        part -= (part + ahead.at(part) - wanted) / slope.at(part)
-        np.clip(part, 0.0, 1.0, out=part)
-    part[0], part[-1] = 0.0, 1.0
-    return part
-
-
-def _wanted(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
-    """Return arcs over lengths (cells + 1, n), between those of a few lengths."""
-    low, high = float(lengths.min()), float(lengths.max())
-    if high <= low * (1.0 + 1e-9):
-        return np.repeat((two_sided(np.array([low]), ends, growth, cells) / low).T, len(lengths), axis=1)
-    known = np.linspace(low, high, _LENGTHS)
-    table = (two_sided(known, ends, growth, cells) / known[:, None]).T
-    place = (lengths - low) / (high - low) * (_LENGTHS - 1)
-    k = np.minimum(place.astype(np.intp), _LENGTHS - 2)
-    share = place - k
-    return np.asarray(table[:, k] + share * (table[:, k + 1] - table[:, k]))
-
-
-def _speeds(samples: Floats) -> Floats:
-    """Return the derivatives (SAMPLES, n) of the arc lengths by the part of the way."""
-    lines = SpanLines.through(samples.reshape(SAMPLES, -1))
-    return norms(lines.slopes_at_keys().reshape(samples.shape))
-
-
-def _integrals(speed: Floats) -> Floats:
-    """Return the integrals (SAMPLES, n) of a function known at `key_heights`, from the first on."""
-    return SpanLines.through(speed).integrals_at_keys()
+    arcs = LineArcs.through(samples)
+    range_ = float(arcs.lengths.min()), float(arcs.lengths.max())
+    return arcs.parts(Spacing.of(range_, ends, growth, cells))

@@ -2,33 +2,33 @@
 
 ::
 
-    key sections --layers exact in space--> polynomials --heights along each line--> (s, theta, h)
-        --nodes of the blade put on it--> --first cells exact at blade, hub, tip and casing--> RowNodes
+    key sections --layers exact in space--> polynomials --in groups of nodes--> RowNodes
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from functools import cached_property, partial
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.row import Row
+from meshonet.geometry.threads import in_threads, run_in_threads
 from meshonet.solvers.rows.columns import respaced_columns
 from meshonet.solvers.rows.key_sections import KeySection
 from meshonet.solvers.rows.key_tables import KeyTables
+from meshonet.solvers.rows.node_group import NodeGroup
 from meshonet.solvers.rows.row_nodes import RowNodes, in_space
-from meshonet.solvers.rows.span_lines import SpanLines, key_heights
-from meshonet.solvers.rows.span_spacing import SAMPLES, line_parts
+from meshonet.solvers.rows.span_lines import SpanLines
+from meshonet.solvers.rows.span_spacing import LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
 
 DEGREE = 5
 """Of polynomials along the span: optima of neighbouring sections differ by noise, and the rest is smooth."""
-_EXACT = 40
-"""Rounds in which first cells are made exact at most."""
-_CLOSE = 1e-13
+_AT_ONCE = 1 << 15
+"""Nodes that are worked out together, so that they stay in the cache."""
 
 
 class StackedRow:
@@ -56,7 +56,7 @@ class StackedRow:
         around = u[0] + np.cumsum(np.concatenate([np.zeros((1, u.shape[1])), steps]), axis=0)
         self.leading = int(np.abs(np.mod(around[0] + 0.5, 1.0) - 0.5).argmin())
         self.around = SpanLines.through(around, DEGREE)
-        self.lines = SpanLines.through(np.stack([self._key(section) for section in keys.sections]), DEGREE)
+        self.lines = SpanLines.through(np.stack(in_threads(self._key, keys.sections)), DEGREE)
 
     def _key(self, section: KeySection) -> Floats:
         """Return s, theta (n, 2) of a key section, its layers exact in space."""
@@ -90,96 +90,54 @@ class StackedRow:
         second = np.flatnonzero(partner >= 0)
         return second, partner[second]
 
-    def nodes(self) -> RowNodes:
-        """Return the nodes of all levels."""
-        heights = self._heights()
-        values = np.concatenate([self.lines.at(heights), heights[..., None]], axis=-1)
-        np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])
-        self._put_on_blade(values)
-        made = RowNodes(self.row.channel, values)
-        self._tie(values)
-        self._exact_off_blade(made, near_ends=False)
-        self._exact_along_span(made, near_blade=False)
-        for _ in range(_EXACT):  # nodes next to two walls
-            off = self._exact_off_blade(made, near_ends=True)
-            self._exact_along_span(made, near_blade=True)
-            if off < _CLOSE:
-                break
-        self._tie(values)
-        return made
+    def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
+        """Return the nodes with those of layers worked out, and what works out others, in any order.
 
-    def _heights(self) -> Floats:
-        """Return heights (levels, n)."""
-        parts: list[Floats] = []
-        for zone in self.zones:
-            at = zone.low + (zone.high - zone.low) * key_heights(SAMPLES)
-            samples = self.lines.at(at[:, None])
-            space = np.stack([self._space(own, h) for own, h in zip(samples, at, strict=True)])
-            part = zone.low + (zone.high - zone.low) * line_parts(space, zone.ends, self.growth, zone.cells)
-            part[0], part[-1] = zone.low, zone.high
-            parts.append(part if not parts else part[1:])
-        heights = np.concatenate(parts)
-        second, first = self.twins
-        heights[:, second] = heights[:, first]
-        return heights
-
-    def _put_on_blade(self, values: Floats) -> None:
-        """Put the first nodes of columns on the blade; the others are moved by less and less."""
-        wall = self.columns[:, 0]
-        heights = values[:, wall, 2]
-        u = np.mod(self.around.at(heights), 1.0)
-        move = self.row.surface.at(u, heights) - values[:, wall, :2]
-        m = self.columns.shape[1]
-        share = (1.0 - (np.arange(m) / (m - 1)) ** 2) ** 2
-        for j in range(m - 1):
-            values[:, self.columns[:, j], :2] += share[j] * move
-
-    def _tie(self, values: Floats) -> None:
-        second, first = self.twins
-        values[:, second] = values[:, first]
-        values[:, second, 1] += self.row.pitch
-
-    def _exact_off_blade(self, made: RowNodes, *, near_ends: bool) -> float:
-        """Make first cells at the blade exact; return by how much the worst was not.
-
-        With `near_ends` only those of the levels next to walls.
+        Those of the second periodic side are left out.
         """
-        levels = self._near_levels if near_ends else np.arange(len(made.values))
-        wall, above = self.columns[:, 0], self.columns[:, 1]
-        values = made.values
-        begin = values[np.ix_(levels, wall)]
-        start = in_space(made.channel, begin)
-        end = values[np.ix_(levels, above)]
-        worst = 0.0
-        for k in range(3):
-            size = norms(in_space(made.channel, end) - start) / self.first
-            if k == 0:
-                worst, factor = float(np.abs(size - 1.0).max()), 1.0 / size
-            end = begin + (end - begin) / size[..., None]
-        m = self.columns.shape[1]
-        if not near_ends:
-            for j in range(2, m - 1):
-                share = (1.0 - (j - 1) / (m - 2)) ** 2
-                own = values[np.ix_(levels, self.columns[:, j])]
-                values[np.ix_(levels, self.columns[:, j])] = (
-                    begin + (own - begin) * (1.0 + share * (factor - 1.0))[..., None]
-                )
-        values[np.ix_(levels, above)] = end
-        return worst
+        groups = self._groups()
+        arcs = in_threads(NodeGroup.arcs, groups)
+        spacings = in_threads(self._spacing, list(zip(self.zones, zip(*arcs, strict=True), strict=True)))
+        count, levels = len(self.layout.mesh.nodes), self.levels[-1] + 1
+        made = RowNodes(np.empty((levels, count, 3)), np.empty((levels, len(self.columns), 2, 3)))
+        jobs: list[Callable[[], None]] = [
+            partial(self._fill, made, *each, spacings) for each in zip(groups, arcs, strict=True)
+        ]
+        layers = sum(bool(group.columns) for group in groups)
+        run_in_threads(jobs[:layers])
+        return made, jobs[layers:]
 
-    @cached_property
-    def _near_levels(self) -> Indices:
-        """Levels next to hub, tip and casing."""
-        levels = self.levels
-        return np.array(sorted({*(k + 1 for k in levels[:-1]), *(k - 1 for k in levels[1:])}))
+    def _spacing(self, lines: tuple[Zone, tuple[LineArcs, ...]]) -> Spacing:
+        """Return the spacing of all lines of a zone."""
+        zone, arcs = lines
+        shortest = min(float(each.lengths.min()) for each in arcs)
+        longest = max(float(each.lengths.max()) for each in arcs)
+        return Spacing.of((shortest, longest), zone.ends, self.growth, zone.cells)
 
-    def _exact_along_span(self, made: RowNodes, *, near_blade: bool) -> None:
-        """Make first cells exact at hub, tip and casing; with `near_blade` only those next to the blade."""
-        nodes = self.columns[:, 1] if near_blade else np.arange(made.values.shape[1])
-        for zone, low, high in zip(self.zones, self.levels[:-1], self.levels[1:], strict=True):
-            for end, level, size in ((low, low + 1, zone.ends[0]), (high, high - 1, zone.ends[1])):
-                begin, own = made.values[end][nodes], made.values[level][nodes]
-                start = in_space(made.channel, begin)
-                for _ in range(3):
-                    own = begin + (own - begin) * (size / norms(in_space(made.channel, own) - start))[:, None]
-                made.values[level][nodes] = own
+    def _groups(self) -> list[NodeGroup]:
+        """Return the groups of all nodes but those of the second periodic side, first those of layers."""
+        count, levels = len(self.layout.mesh.nodes), self.levels[-1] + 1
+        own = max(1, _AT_ONCE // (levels * self.columns.shape[1]))
+        groups = []
+        for start in range(0, len(self.columns), own):
+            part = slice(start, start + own)
+            groups.append(self._group(self.columns[part].ravel(), self.around.of(part)))
+        others = np.ones(count, dtype=bool)
+        others[self.columns] = others[self.twins[0]] = False
+        ids, own = np.flatnonzero(others), max(1, _AT_ONCE // levels)
+        groups += [self._group(ids[start : start + own], None) for start in range(0, len(ids), own)]
+        return groups
+
+    def _group(self, ids: Indices, around: SpanLines | None) -> NodeGroup:
+        return NodeGroup(self.row, self.zones, ids, self.lines.of(ids), around, self.first)
+
+    def _fill(
+        self, made: RowNodes, group: NodeGroup, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]
+    ) -> None:
+        """Work out the nodes of a group."""
+        values = group.values(arcs, spacings)
+        made.space[:, group.ids] = in_space(self.row.channel, values)
+        if group.columns:
+            start = int(np.flatnonzero(self.columns[:, 0] == group.ids[0])[0])
+            own = values.reshape(len(values), group.columns, -1, 3)
+            made.beside[:, start : start + group.columns] = own[:, :, :2]

@@ -16,7 +16,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import folded_cells, measure
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.summary import Quality
-from meshonet.geometry.threads import limited_to, threads_for
+from meshonet.geometry.threads import in_threads, limited_to, thread_count, threads_for
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
 
@@ -140,3 +140,12 @@ def test_quality_works_with_the_threads_that_are_wanted(monkeypatch: pytest.Monk
     assert set(seen) == {5}
     with pytest.raises(InputError, match="0 threads"):
         meshonet.quality(grid, threads=0)
+
+
+@pytest.mark.parametrize(("count", "share"), [(1, 1), (2, 1), (3, 1), (4, 2)])
+def test_work_in_threads_shares_them_with_the_work_inside(count: int, share: int) -> None:
+    def inside(item: int) -> tuple[int, int, list[int]]:
+        return item, thread_count(), in_threads(lambda other: 10 * item + other, [1, 2])
+
+    with limited_to(count):
+        assert in_threads(inside, [4, 5]) == [(4, share, [41, 42]), (5, share, [51, 52])]

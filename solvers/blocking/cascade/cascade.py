@@ -67,6 +67,12 @@ class Cascade:
     near: tuple[float, float] = (NEAR, NEAR)
     centre: complex | None = None
 
+    def ending(self, near: tuple[float, float], centre: complex) -> Cascade:
+        """Return the cascade with another `near` and `centre`, which layers do not depend on."""
+        other = replace(self, near=near, centre=centre)
+        vars(other)["ring"] = self.ring
+        return other
+
     @property
     def opposite(self) -> bool:
         """Whether the pitch points to the next blade on the right of the flow, which is towards larger x."""

@@ -1,0 +1,169 @@
+"""Nodes of a row that are worked out together, from polynomials along the span to places in space.
+
+::
+
+    polynomials --arcs of each line--> heights --(s, theta, h)--> nodes of the blade put on it
+        --> first cells exact at blade, hub, tip and casing --> x, y, z
+
+A group has whole columns of layers or other nodes, so few that they stay in the cache.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.rows.row import Row
+from meshonet.solvers.rows.row_nodes import in_space
+from meshonet.solvers.rows.span_lines import SpanLines, key_heights
+from meshonet.solvers.rows.span_spacing import SAMPLES, LineArcs, Spacing
+from meshonet.solvers.rows.zones import Zone
+
+_IN_GAP = 5
+"""Heights of a gap, which is thin, at which lines are measured."""
+_NEAREST = 3
+"""Rounds in which a first cell along one line is made exact."""
+_EXACT = 12
+"""Rounds in which first cells of nodes next to two walls are made exact at most."""
+_CLOSE = 1e-13
+
+
+@dataclass(frozen=True, eq=False)
+class NodeGroup:
+    """Some nodes of a row.
+
+    Parameters
+    ----------
+    row : the row.
+    zones : of the span, from hub to casing.
+    ids : (m,) the nodes.
+    lines : their s and theta.
+    around : u of the blade at which columns begin; None without columns.
+    first : height of first cells at the blade.
+    """
+
+    row: Row
+    zones: Sequence[Zone]
+    ids: Indices
+    lines: SpanLines
+    around: SpanLines | None
+    first: float
+
+    @property
+    def columns(self) -> int:
+        """Number of columns of layers, which the nodes are in one after the other."""
+        return self.around.coefficients.shape[1] if self.around else 0
+
+    def arcs(self) -> list[LineArcs]:
+        """Return the lines of the nodes in each zone, by their arc lengths."""
+        out = []
+        for zone in self.zones:
+            at = zone.low + (zone.high - zone.low) * key_heights(_IN_GAP if zone.gap else SAMPLES)
+            samples = np.empty((len(at), len(self.ids), 3))
+            samples[..., :2], samples[..., 2] = self.lines.at(at[:, None]), at[:, None]
+            out.append(LineArcs.through(in_space(self.row.channel, samples)))
+        return out
+
+    def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
+        """Return s, theta, h (levels, m, 3) of the nodes, for the spacing in each zone."""
+        heights = self._heights(arcs, spacings)
+        values = np.empty((*heights.shape, 3))
+        values[..., :2], values[..., 2] = self.lines.at(heights), heights
+        np.clip(values[..., 0], 0.0, 1.0, out=values[..., 0])
+        if self.around:
+            own = values.reshape(len(values), self.columns, -1, 3)
+            self._put_on_blade(own, self.around)
+            self._exact_off_blade(own)
+        self._exact_along_span(values)
+        if self.around:
+            self._exact_in_corners(own)
+        return values
+
+    def _heights(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
+        """Return heights (levels, m)."""
+        parts: list[Floats] = []
+        for zone, line, spacing in zip(self.zones, arcs, spacings, strict=True):
+            part = zone.low + (zone.high - zone.low) * line.parts(spacing)
+            part[0], part[-1] = zone.low, zone.high
+            parts.append(part[1:] if parts else part)
+        return np.concatenate(parts)
+
+    def _put_on_blade(self, own: Floats, around: SpanLines) -> None:
+        """Put the first nodes of columns (levels, k, rows, 3) on the blade; others move by less and less."""
+        heights = own[:, :, 0, 2]
+        u = np.mod(around.at(heights), 1.0)
+        move = self.row.surface.at(u, heights) - own[:, :, 0, :2]
+        m = own.shape[2]
+        share = (1.0 - (np.arange(m) / (m - 1)) ** 2) ** 2
+        own[..., :2] += share[:, None] * move[:, :, None]
+
+    def _exact_off_blade(self, own: Floats) -> None:
+        """Make the first cells of columns (levels, k, rows, 3) exact; others follow by less and less."""
+        begin, end = own[:, :, 0], own[:, :, 1]
+        start = in_space(self.row.channel, begin)
+        factor = np.ones(end.shape[:2])
+        for _ in range(_NEAREST):
+            more = self.first / norms(in_space(self.row.channel, end) - start)
+            factor = factor * more
+            end = begin + (end - begin) * more[..., None]
+        m = own.shape[2]
+        share = (1.0 - np.arange(m - 2) / (m - 2)) ** 2
+        scale = 1.0 + share[1:] * (factor[..., None] - 1.0)
+        own[:, :, 2:-1] = begin[:, :, None] + (own[:, :, 2:-1] - begin[:, :, None]) * scale[..., None]
+        own[:, :, 1] = end
+
+    @property
+    def _ends(self) -> tuple[Indices, Indices, Floats]:
+        """Levels that bound zones, the levels next to them, and the heights of the cells between."""
+        walls: list[int] = []
+        beside: list[int] = []
+        sizes: list[float] = []
+        low = 0
+        for zone in self.zones:
+            high = low + zone.cells
+            walls += [low, high]
+            beside += [low + 1, high - 1]
+            sizes += zone.ends
+            low = high
+        return np.array(walls), np.array(beside), np.array(sizes)
+
+    def _exact_along_span(self, values: Floats) -> None:
+        """Make first cells exact at hub, tip and casing."""
+        walls, beside, sizes = self._ends
+        begin, end = values[walls], values[beside]
+        start = in_space(self.row.channel, begin)
+        for _ in range(_NEAREST):
+            more = sizes[:, None] / norms(in_space(self.row.channel, end) - start)
+            end = begin + (end - begin) * more[..., None]
+        values[beside] = end
+
+    def _exact_in_corners(self, own: Floats) -> None:
+        """Make both first cells exact of nodes next to the blade and to hub, tip or casing.
+
+        In each round a node moves along both lines, by what is missing of both lengths if the lines stay
+        straight.
+        """
+        walls, beside, sizes = self._ends
+        begins = own[beside][:, :, 0], own[walls][:, :, 1]
+        starts = [in_space(self.row.channel, begin) for begin in begins]
+        node = own[beside][:, :, 1]
+        for _ in range(_EXACT):
+            at = in_space(self.row.channel, node)
+            one, other = (at - start for start in starts)
+            lengths = norms(one), norms(other)
+            off = self.first - lengths[0], sizes[:, None] - lengths[1]
+            if max(np.abs(off[0]).max() / self.first, (np.abs(off[1]) / sizes[:, None]).max()) < _CLOSE:
+                break
+            cosine = (one * other).sum(axis=-1) / (lengths[0] * lengths[1])
+            rest = 1.0 - cosine * cosine
+            ways = (off[0] - cosine * off[1]) / rest, (off[1] - cosine * off[0]) / rest
+            moves = [
+                (way / length)[..., None] * (node - begin)
+                for way, length, begin in zip(ways, lengths, begins, strict=True)
+            ]
+            node = node + moves[0] + moves[1]
+        own[beside, :, 1] = node
