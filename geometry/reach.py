@@ -4,6 +4,8 @@ from meshonet.geometry.errors import InputError
 
 MOST_CELLS = 20_000_000
 """Cells of a grid where nobody says how many there are to be."""
+MOST_REFINED = 200_000_000
+"""Cells of one block in the plane whose cells are halved: 3 GB of nodes."""
 
 
 def check_reach(

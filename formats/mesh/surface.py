@@ -4,7 +4,8 @@ A single curve is the outline of a domain or a body. Curves inside another curve
 next to each other are separate shapes.
 """
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -53,7 +54,8 @@ class MeshBoundary:
 def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
     """Yield the shapes that the closed curves of `surface` form.
 
-    The nodes of a four-sided domain are kept if opposite sides have equal counts; so are those of a body and
+    The nodes of a four-sided domain are kept if opposite sides have equal counts, without cells if none is of
+    two points; so are those of a body and
     a far field with an O grid between them. Corners come from the cells, or from names that change four
     times; the south side contains the first edge of the file.
 
@@ -77,6 +79,28 @@ def shapes_of(surface: MeshBoundary, name: str) -> Iterator[Shape]:
             yield _with_holes(loops[outer], [loops[k] for k in holes], surface, called)
         else:
             yield _domain(loops[outer], surface, called)
+
+
+def noted(shape: Shape, notes: tuple[str, ...]) -> Shape:
+    """Return a shape with `notes` on what was left out of its file."""
+    if isinstance(shape, Labelled):
+        noted(shape.shape, notes)
+    elif isinstance(shape, Outline | Airfoil):
+        shape.notes = (*notes, *shape.notes)
+    elif isinstance(shape, DomainShape):
+        return shape.noted(*notes)
+    elif isinstance(shape, Boundary):
+        return replace(shape, notes=(*notes, *shape.notes))
+    return shape
+
+
+def left_out(kinds: Iterable[str]) -> tuple[str, ...]:
+    """Return the note on elements of a drawing, of these kinds, that are no curves."""
+    counts = Counter(kinds)
+    if not counts:
+        return ()
+    listed = ", ".join(f"{count} {printable(kind)}" for kind, count in sorted(counts.items()))
+    return (f"of the drawing, elements that are no curves are left out: {listed}",)
 
 
 def _free_edges(cells: list[Indices]) -> Indices:
@@ -172,7 +196,8 @@ def _domain(loop: EdgeLoop, surface: MeshBoundary, name: str) -> Shape:
     begin = max((place for place in corners if place <= first), default=corners[-1])
     loop, corners = loop.begun_at(begin), sorted((place - begin) % count for place in corners)
     counts = np.diff([*corners, len(loop.nodes)])
-    if counts[0] != counts[2] or counts[1] != counts[3]:
+    ends_only = not surface.cells and counts.min() == 1
+    if counts[0] != counts[2] or counts[1] != counts[3] or ends_only:
         a, b, c, d = corners
         outline = _labelled(Outline(points[loop.nodes], name, corners=(a, b, c, d)), [loop], points)
         inside = polygon_shape([_ring(loop, points)], name)

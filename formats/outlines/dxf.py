@@ -1,7 +1,8 @@
 """Outlines from DXF drawings, ``.dxf``, read by ezdxf (extra ``dxf``); names are those of the layers.
 
 Lines, polylines, arcs, circles, ellipses and splines of the model space, also in inserted blocks, are joined
-at coincident ends. Curves are approximated by chords. https://ezdxf.mozman.at
+at coincident ends; other entities are left out, with a note. Curves are approximated by chords.
+https://ezdxf.mozman.at
 """
 
 import io
@@ -11,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.formats.mesh.surface import MOST_EDGES, shapes_of
+from meshonet.formats.mesh.surface import MOST_EDGES, left_out, noted, shapes_of
 from meshonet.formats.outlines.joined import MOST_BYTES, SAG, extent_checked, joined
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
@@ -59,7 +60,8 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         raise InputError(f"has more than {MOST_EDGES} entities", "simplify the drawing")
     if not lines:
         raise InputError("has no curves in its model space", "draw lines, polylines, arcs or splines")
-    yield from shapes_of(joined(lines), source.stem)
+    notes = left_out(kind for kind in (entity.dxftype() for entity in entities) if kind not in _KINDS)
+    yield from (noted(shape, notes) for shape in shapes_of(joined(lines), source.stem))
 
 
 def _lines(curves: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:

@@ -1,8 +1,9 @@
 """Outlines from SVG drawings, ``.svg``; names are the ids of elements, or of the groups that contain them.
 
 Basic shapes and paths of lines, Bezier curves and arcs are joined at coincident ends. Curves are approximated
-by chords. y points downwards in the file and upwards in the result. Clipping, visibility and ``use`` elements
-are ignored. Path data are parsed by fontTools. https://www.w3.org/TR/SVG2/paths.html
+by chords. y points downwards in the file and upwards in the result. Clipping and visibility are ignored;
+text, images and ``use`` elements are left out, with a note. Path data are parsed by fontTools.
+https://www.w3.org/TR/SVG2/paths.html
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from meshonet.formats.mesh.surface import MOST_EDGES, shapes_of
+from meshonet.formats.mesh.surface import MOST_EDGES, left_out, noted, shapes_of
 from meshonet.formats.outlines.joined import MOST_BYTES, SAG, extent_checked, joined
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
@@ -35,6 +36,8 @@ _STEP = re.compile(r"\s*,?\s*(matrix|translate|scale|rotate|skewX|skewY)\s*\(([^
 """One of the transformations in an attribute ``transform``."""
 _GROUPS = ("svg", "g", "a", "switch")
 """Elements whose children are drawn in place."""
+_NO_CURVES = ("foreignObject", "image", "text", "use")
+"""Elements that are drawn and have no path."""
 _MOST_NESTED = 100
 """Largest depth of nested groups."""
 
@@ -162,7 +165,9 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         sag = SAG * extent / max(float(np.hypot(*a.ravel()[:2])) + float(np.hypot(*a.ravel()[2:])), 1e-300)
         pieces = [curve.chords(sag) for curve in line]
         lines.append((name, product(np.concatenate(pieces), a) + shift))
-    yield from shapes_of(joined(lines), source.stem)
+    tags = (str(element.tag).rpartition("}")[2] for element in root.iter())
+    notes = left_out(tag for tag in tags if tag in _NO_CURVES)
+    yield from (noted(shape, notes) for shape in shapes_of(joined(lines), source.stem))
 
 
 def _drawn(

@@ -4,10 +4,10 @@ Columns are separated by commas, semicolons, blanks or tabs. A header line and l
 allowed. A third column is z and is ignored. An open curve is closed by a straight line.
 
 Four blocks are edges in any order and direction if their ends meet; the first is south. If opposite edges
-have equal counts, the points are used as boundary nodes; otherwise the curves are sampled. Two open blocks
-side by side are the walls of a channel, whose ends are joined by straight lines. Any other number of open
-blocks whose ends meet are the sides of a domain; closed blocks among them are holes. A line ``# name`` above
-each block names sides and closed curves.
+have equal counts of three or more points, these are used as boundary nodes; otherwise the curves are sampled.
+Two open blocks side by side are the walls of a channel, whose ends are joined by straight lines. Any other
+number of open blocks whose ends meet are the sides of a domain; closed blocks among them are holes. A line
+``# name`` above each block names sides and closed curves.
 
 A single curve that ends in one trailing edge is taken for an airfoil. Several closed curves are separated by
 blank lines, or each repeats its first point. Curves inside another curve are holes of the domain that it
@@ -20,7 +20,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from meshonet.formats.mesh.surface import shapes_of
+from meshonet.formats.mesh.surface import noted, shapes_of
 from meshonet.formats.outlines.joined import MEET, joined
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.rows import Line, decode, left_out, mostly_rows, read_lines, table
@@ -29,7 +29,6 @@ from meshonet.geometry.domain.nesting import nested
 from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.closed_curve import closed_curve
-from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.edges import DrawnEdge, channel, four_edges
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.polygon_shape import PolygonRing, domain_or_body, polygon_shape
@@ -75,7 +74,7 @@ def parse(text: str, source: str, stem: str = "") -> list[Shape]:
                 return [channel(edges, name, notes)]
         drawn = [(edge.name, edge.points) for edge in _edges(blocks, lines)] if len(blocks) > 1 else []
         if drawn and _are_sides(blocks, named=bool(drawn[0][0])):
-            return [_noted(shape, notes) for shape in shapes_of(joined(drawn), name)]
+            return [noted(shape, notes) for shape in shapes_of(joined(drawn), name)]
         if not rings:
             raise InputError("0 blocks of points", "give closed curves, or four edges divided by blank lines")
         if len(rings) == 1:
@@ -121,15 +120,6 @@ def _are_sides(blocks: list[list[Line]], named: bool) -> bool:
     points = np.array([line.values[:2] for block in blocks for line in block])
     apart = np.hypot(*(np.array(ends)[:, None] - np.array(ends)).transpose(2, 0, 1))
     return bool(((apart <= MEET * extent_of(points)).sum(axis=1) > 1).all())
-
-
-def _noted(shape: Shape, notes: tuple[str, ...]) -> Shape:
-    """Return a shape with `notes` on what was left out of its file."""
-    if not notes:
-        return shape
-    if isinstance(shape, Outline | Airfoil):
-        return _with_notes(shape, notes)
-    return shape.noted(*notes) if isinstance(shape, DomainShape) else shape
 
 
 def _closed(rows: list[Line]) -> bool:

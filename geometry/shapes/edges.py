@@ -65,12 +65,12 @@ def four_edges(
 ) -> Boundary | DomainShape | Outline:
     """Return the domain of four edges, chained end to end from the first, which is south.
 
-    If opposite edges have equal counts, their points are the nodes. Raises InputError: edges that do not
-    meet, or that cross; equal neighbouring points.
+    If opposite edges have equal counts, and none is of two points, their points are the nodes.
+    Raises InputError: edges that do not meet, or that cross; equal neighbouring points.
     """
     chain = _directed(_chained([_checked(edge) for edge in edges]))
     counts = [len(edge.points) for edge in chain]
-    if counts[0] != counts[2] or counts[1] != counts[3]:
+    if counts[0] != counts[2] or counts[1] != counts[3] or min(counts) == 2:  # ends alone are no nodes
         return _sampled(chain, name, notes)
     sides = [chain[0], chain[1], chain[2].reversed(), chain[3].reversed()]
     south, east, north, west = (edge.points for edge in sides)

@@ -29,6 +29,11 @@ class Labelled:
         """Name of the shape in the input."""
         return self.shape.name
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes on the shape."""
+        return getattr(self.shape, "notes", ())
+
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the boundary of the shape; each cell has the name of the edge nearest to its middle."""
         boundary = self.shape.boundary(sampling)

@@ -46,11 +46,11 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     begun, timings = perf_counter(), Timings()
     domain = _checked(shape.domain, request)
     layout = _given(shape, domain, request)
-    cells, size = _wanted(domain, request)
     height = request.heights(shape.unit)
     if request.pitch is not None:
         fine = _passage(domain, request, request.height(shape.unit), timings)
     elif height is None:
+        cells, size = _wanted(domain, request)
         layout = layout or decompose(domain, timings=timings)
         fine = fine_layout(layout, cells=cells, cell_size=size, halved=request.refine, timings=timings)
     else:
@@ -210,16 +210,23 @@ def _checked(domain: Domain, request: BlockRequest) -> Domain:
 
 
 def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | None]:
-    """Return the requested number of cells, or else their edge length."""
-    if request.res is not None:
-        return None, domain.extent / request.res
-    if request.cell_size is not None:
+    """Return the requested number of cells, or else their edge length. Raises InputError: too many cells."""
+    cells = request.cells or (LAYERED_CELLS if request.at_walls else CELLS)
+    size = domain.extent / request.res if request.res is not None else request.cell_size
+    if size is not None:
+        size = min(size, domain.extent)
         least = math.sqrt(domain.area / MOST_CELLS)
-        if request.cell_size < least:
-            problem = f"edges of {request.cell_size:g} are more than {MOST_CELLS} cells"
-            raise InputError(problem, f"use {least:.2g} or more", parameter="cell_size")
-        return None, min(request.cell_size, domain.extent)
-    return request.cells or CELLS, None
+        if size < least:
+            problem = f"edges of {size:.6g} are more than {MOST_CELLS} cells"
+            remedy = f"use {least:.2g} or more"
+            if request.res is not None:
+                remedy = f"use at most {math.floor(domain.extent / least)}"
+            raise InputError(problem, remedy, parameter="cell_size" if request.res is None else "res")
+        cells = math.ceil(domain.area / size**2)
+    if cells * 4**request.refine > MOST_CELLS:
+        made = f"{cells} cells halved {request.refine} times are {cells * 4**request.refine:.3g}"
+        raise InputError(made, f"use fewer: {MOST_CELLS} are the most", parameter="refine")
+    return (cells, None) if size is None else (None, size)
 
 
 def _folded_coarser(grid: Grid, halvings: int) -> list[str]:

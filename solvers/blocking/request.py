@@ -75,11 +75,6 @@ class BlockRequest(FirstCell):
         if not 0 <= self.refine <= MOST_HALVINGS:
             remedy = f"use 0 to {MOST_HALVINGS}"
             raise InputError(f"cells halved {self.refine} times", remedy, parameter="refine")
-        if self.refine and (self.cells or 1) * 4**self.refine > MOST_CELLS:
-            made = (
-                f"{self.cells} cells halved {self.refine} times are {(self.cells or 1) * 4**self.refine:.3g}"
-            )
-            raise InputError(made, f"use fewer: {MOST_CELLS} are the most", parameter="refine")
         for name in ("cell_size", "inlet", "outlet"):
             value = getattr(self, name)
             if value is not None and not 0 < value < math.inf:

@@ -11,6 +11,7 @@ import numpy as np
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import Advice
+from meshonet.geometry.reach import MOST_REFINED, check_reach
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.spacing.sampling import DEFAULT_FAR_FIELD, DEFAULT_NI, DEFAULT_NJ, Sampling
@@ -55,14 +56,26 @@ def sampled(shape: Shape, request: GridRequest) -> Boundary | BaseWake | DomainS
     sampling = request.shape_sampling()
     if keeps_base(shape, request):
         k = 2**request.refine
+        _check_refined(sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ, request.refine)
         return _behind_base(shape, _times(sampling, k) if k > 1 else sampling, request)
     boundary = edges_of(shape, sampling)
     if request.refine:
+        _check_refined(boundary.ni, boundary.nj, request.refine)
         boundary = edges_of(shape, _finer(sampling, shape, boundary, 2**request.refine))
     unit = getattr(shape, "far_field_unit", "")
     if boundary.topology == "quad" or not (unit and request.at_walls):
         return boundary
     return replace(boundary, notes=(*boundary.notes, *_far_field_advice(request, unit)))
+
+
+def _check_refined(ni: int, nj: int, halvings: int) -> None:
+    """Raise InputError if ni x nj nodes whose cells are halved so often are too many."""
+    if halvings:
+        check_reach(
+            (ni - 1.0) * (nj - 1.0) * (1 << 2 * halvings), "cells",
+            f"a grid of {ni}x{nj} nodes, its cells halved {halvings} times,", "use fewer",
+            most=MOST_REFINED, parameter="refine",
+        )  # fmt: skip
 
 
 def keeps_base(shape: Shape, request: GridRequest) -> TypeGuard[Airfoil]:

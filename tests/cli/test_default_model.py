@@ -21,9 +21,16 @@ C = ("naca:2412", "--topology", "c", "--res", "61x21", "-o", "g.vts")
 
 
 @pytest.mark.parametrize(
-    "words", [("--model", "airfoil-o"), ("--model", "quad-general"), ("--model", "base"), ("--polish", "3")]
+    "words",
+    [
+        ("--model", "airfoil-o"),
+        ("--model", "quad-general"),
+        ("--model", "base"),
+        ("--polish", "3"),
+        ("--fallback",),
+    ],
 )
-def test_c_grids_say_that_no_model_makes_them(meshonet: Meshonet, words: tuple[str, str]) -> None:
+def test_c_grids_say_that_no_model_makes_them(meshonet: Meshonet, words: tuple[str, ...]) -> None:
     done = meshonet("infer", *C, *words)
     told = f"{' '.join(words)} is of no use to a c grid: it is marched, no model makes it; drop {words[0]}"
     assert (done.code, done.err) == (2, f"error: naca:2412: {told}\n")

@@ -149,3 +149,32 @@ def duct_csv() -> Path:
     )
     Path("duct.csv").write_text(text)
     return Path("duct.csv")
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (
+            ("naca:0012", "--refine", "8"),
+            "--refine: a grid of 200x100 nodes, its cells halved 8 times, t",
+        ),
+        (("naca:0012", "--topology", "c", "--te", "exact", "--refine", "8"), "times, takes 1.29e+09 cells"),
+        (("domain.geojson", "--refine", "8"), "--refine: 2500 cells halved 8 times are 1.64e+08; use fewer"),
+        (("domain.geojson", "--first-cell", "1e-2", "--refine", "8"), "20000 cells halved 8 times"),
+        (("domain.geojson", "--res", "100", "--refine", "6"), "9600 cells halved 6 times are 3.93e+07"),
+        (
+            ("domain.geojson", "--res", "100000"),
+            "--res: edges of 1e-05 are more than 20000000 cells; use at",
+        ),
+        (("domain.geojson", "--cell-size", "1e-3", "--refine", "3"), "960000 cells halved 3 times"),
+    ],
+)
+def test_cells_are_not_halved_beyond_what_grids_can_have(
+    meshonet: Meshonet, words: tuple[str, ...], told: str
+) -> None:
+    polygon(SQUARE, [(0.4, 0.4), (0.6, 0.4), (0.6, 0.6), (0.4, 0.6)])
+    begun = time.process_time()
+    done = meshonet("infer", *words, "-o", "g.vts")
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert told in done.err
+    assert time.process_time() - begun < 2.0

@@ -70,6 +70,16 @@ def test_four_edges_of_unequal_counts_are_curves_to_sample():
         assert np.hypot(*(b.south - p).T).min() < 0.05
 
 
+def test_edges_of_two_points_are_lines_to_sample():
+    """Their ends alone make no grid: before, it had 2 x 2 nodes."""
+    for south, north in ((SOUTH[[0, -1]], NORTH[[0, -1]]), (SOUTH, NORTH)):
+        ends = [np.array([[2.0, 0.0], [2.0, 1.0]]), np.array([[0.0, 1.0], [0.0, 0.0]])]
+        (shape,) = parse("\n".join(map(lines, (south, ends[0], north, ends[1]))), "four.csv")
+        boundary = shape.boundary(Sampling(ni=21, nj=11))
+        assert (boundary.ni, boundary.nj) == (21, 11)
+        np.testing.assert_allclose(boundary.east, np.stack([np.full(11, 2.0), np.linspace(0, 1, 11)], 1))
+
+
 def test_four_edges_can_be_sampled_anew():
     (shape,) = parse("\n".join(lines(edge) for edge in (SOUTH, EAST, NORTH, WEST)), "four.csv")
     assert shape.boundary(Sampling(ni=33, nj=17)).ni == 33

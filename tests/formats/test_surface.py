@@ -158,6 +158,8 @@ def test_a_drawing_of_lines_arcs_and_polylines_is_a_named_domain(tmp_path: Path)
     space.add_lwpolyline([(3, 0), (3, 0.4), (3, 1)], dxfattribs={"layer": "outlet"})
     space.add_spline([(3, 1), (2, 1.2), (1, 1.1), (0, 1)], dxfattribs={"layer": "roof"})
     space.add_text("a duct")
+    space.add_mtext("not to scale")
+    space.add_text("section A")
     document.saveas(tmp_path / "duct.dxf")
     (result,) = read_shapes(str(tmp_path / "duct.dxf"))
     boundary = result.boundary(Sampling(81, 81))
@@ -166,6 +168,7 @@ def test_a_drawing_of_lines_arcs_and_polylines_is_a_named_domain(tmp_path: Path)
     nodes = getattr(boundary, floor)
     assert nodes[:, 1].max() == pytest.approx(0.5, abs=2e-3)
     assert np.ptp(nodes[:, 0]) == pytest.approx(3, abs=1e-6)
+    assert result.notes == ("of the drawing, elements that are no curves are left out: 1 MTEXT, 2 TEXT",)
 
 
 def test_circles_one_in_the_other_are_a_body_in_a_far_field(tmp_path: Path) -> None:

@@ -72,6 +72,7 @@ def test_names_are_ids_of_elements_or_groups_and_y_points_upwards() -> None:
     patches = {patch.name: patch.side for patch in shape.boundary(Sampling(ni=9, nj=5)).patches}
     assert set(patches) == {"walls", "outlet", "inlet"}
     assert (patches["inlet"], patches["outlet"]) == ("west", "east")
+    assert shape.notes == ("of the drawing, elements that are no curves are left out: 1 text",)
 
 
 def test_maps_of_groups_are_applied_from_the_inside_out() -> None:

@@ -19,12 +19,12 @@ from meshonet.geometry.elementary import log
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.cascade.cascade import COARSEST, Cascade, scaled
+from meshonet.solvers.blocking.cascade.cascade import COARSEST, Cascade, beside_neighbours, scaled
+from meshonet.solvers.blocking.cascade.flat_template import flat_template, turned_back, upright
 from meshonet.solvers.blocking.cascade.passage import (
     BLADE,
     INLET,
     OUTLET,
-    Passage,
     extended,
     laid_out,
     turned_round,
@@ -44,6 +44,10 @@ MOST_OPTIMISED = 4000
 """Largest number of cells that are optimised directly; finer grids are splines through these."""
 CORNERS = ("at first", "later", "nowhere")
 """When nodes are moved to the corners of the blade, in the order of attempts."""
+SLENDER = 4.0
+"""Axial chord in pitches from which on blocks are not optimised in the plane of the map but in that of the
+blade: inlet and outlet shrink in the map with the exponential of it.
+"""
 LEAST = 4
 """Smallest number of cells along the side of an optimised block."""
 FIRST, ITERATIONS, PASSES = 150, 120, 2  # iterations of the template and of each sized optimum; their number
@@ -70,19 +74,21 @@ def cascade_layout(
     cascade.check_reach(cells, cell_size)
     with timings.stage("layers"):
         passage = cascade.passage
-    for attempt in CORNERS:
+    slender = cascade.chord > SLENDER * abs(cascade.left)
+    attempts = [(flat, corners) for flat in ([True] if slender else [False, True]) for corners in CORNERS]
+    for flat, corners in attempts:
         try:
-            coarse, times, metric = _outside(cascade, passage, attempt, cells, cell_size, timings)
+            coarse, times, metric = _outside(cascade, flat, corners, cells, cell_size, timings)
             break
         except NoValidGridError:
-            if attempt == CORNERS[-1]:
+            if (flat, corners) == attempts[-1]:
                 raise
     with timings.stage("refine"):
         fine = multiplied(coarse, times)
-        flat, cut = laid_out(fine, passage, cut_of(fine))
+        own, cut = turned_back(fine, passage) if flat else laid_out(fine, passage, cut_of(fine))
     with timings.stage("layers"):
-        rows = _rows(cascade, flat, metric)
-        whole = extended(flat, cut, passage, cascade.blade, rows)
+        rows = _rows(cascade, own, metric)
+        whole = extended(own, cut, passage, cascade.blade, rows)
         whole = evened(whole, cascade.layers)
     if smallest_corner(whole.mesh) <= 0.0:
         raise NoValidGridError("cells of the passage are folded")
@@ -90,19 +96,26 @@ def cascade_layout(
 
 
 def _outside(
-    cascade: Cascade, passage: Passage, corners: str, cells: int | None, cell_size: float | None,
+    cascade: Cascade, flat: bool, corners: str, cells: int | None, cell_size: float | None,
     timings: Timings,
 ) -> tuple[Layout, int, SizeMetric]:  # fmt: skip
-    """Return the coarse layout outside the layers, how much finer it is to be, and sizes of cells."""
+    """Return the coarse layout outside the layers, how much finer it is to be, and sizes of cells.
+
+    It is in the plane of the passage's map, or `flat` in that of the blade, turned upright.
+    """
+    passage, sizes = cascade.passage, cascade.metric
+    if flat:
+        passage, sizes = upright(passage, beside_neighbours(cascade.flat_metric, cascade))
     if corners == "nowhere":
         blade, *ends = passage.domain.loops
         smooth = replace(blade, corners=(), names=blade.names[:1])
         passage = replace(passage, domain=replace(passage.domain, loops=(smooth, *ends)))
     with timings.stage("first optimum"):
-        coarse = passage_optimum(template(passage, at_corners=corners == "at first"), FIRST, None)
+        start = (flat_template if flat else template)(passage, at_corners=corners == "at first")
+        coarse = passage_optimum(start, FIRST, None)
     with timings.stage("refine"):
         chords = Chords.of(coarse)
-        counts, times, metric = counts_of(cascade, cascade.metric, chords, cells, cell_size)
+        counts, times, metric = counts_of(cascade, sizes, chords, cells, cell_size)
         coarse = refine(coarse, counts, chords)
     with timings.stage("optimum"):
         for _ in range(PASSES):
@@ -111,9 +124,15 @@ def _outside(
 
 
 def passage_optimum(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
-    """Return the layout of a passage with its nodes where the functional is least, for sizes if given."""
-    targets = metric.gradual(layout.mesh) if metric else None
-    optimum = optimise(layout.mesh, iterations=iterations, targets=targets, weights=WEIGHTS)
+    """Return the layout of a passage with its nodes where the functional is least, for sizes if given.
+
+    Nodes in which a cut ends are held.
+    """
+    mesh = layout.mesh
+    optimum = optimise(
+        mesh, iterations=iterations, held=(mesh.places.loop >= 0) & mesh.tied,
+        targets=metric.gradual(mesh) if metric else None, weights=WEIGHTS,
+    )  # fmt: skip
     if not optimum.valid:
         raise NoValidGridError("cells of the passage stay folded")
     return replace(layout, mesh=optimum.mesh)

@@ -19,7 +19,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, pairs_of
+from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
@@ -30,6 +31,7 @@ from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cascade.passage import BLADE, INLET, OUTLET, Passage
 from meshonet.solvers.blocking.cascade.passage_flow import PassageFlow
+from meshonet.solvers.blocking.cascade.passage_map import PassageMap
 from meshonet.solvers.blocking.cascade.passage_template import (
     FEET,
     blade_arcs,
@@ -37,10 +39,39 @@ from meshonet.solvers.blocking.cascade.passage_template import (
     put_at_corners,
     template_pieces,
 )
+from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 
 LONGEST = 72
 """Most cells along the channel."""
 _SAME = 1e-9  # of the potential
+
+
+def upright(passage: Passage, sizes: SizeMetric) -> tuple[Passage, SizeMetric]:
+    """Return a passage and the sizes in its plane, turned so that the pitch points along y."""
+    back = np.conj(passage.map.axis)
+    turned = PassageMap(1j * abs(passage.map.pitch), complex(times(passage.map.centre, back)))
+    points = _turned(passage.front.curve.points, back)
+    front = replace(passage.front, curve=Curve(points, closed=True, corners=passage.front.curve.corner_index))
+    domain = replace(passage.domain, loops=(front, *passage.domain.loops[1:]))
+    sizes = replace(sizes, points=_turned(sizes.points, back), normals=_turned(sizes.normals, back))
+    return replace(passage, front=front, map=turned, domain=domain), sizes
+
+
+def turned_back(layout: Layout, passage: Passage) -> tuple[Layout, Indices]:
+    """Return a layout of `upright` in the passage's own plane, and the nodes of the lower side of its cut."""
+    mesh = layout.mesh
+    nodes, arcs = _turned(mesh.nodes, passage.map.axis), mesh.places.arc.copy()
+    on, images = np.flatnonzero(mesh.places.loop == BLADE), np.flatnonzero(mesh.places.partner >= 0)
+    arcs[on] = replace(passage, domain=mesh.domain).front_arcs(arcs[on])
+    nodes[on] = passage.front.at(arcs[on])
+    nodes[images] = nodes[mesh.places.partner[images]] + passage.pitch
+    turned = replace(mesh, nodes=nodes, places=replace(mesh.places, arc=arcs))
+    return replace(layout, mesh=turned), flat_cut(layout)
+
+
+def _turned(points: Floats, way: complex) -> Floats:
+    """Return points (n, 2) turned as a unit vector `way` is turned from the axis of abscissas."""
+    return pairs_of(times(complex_of(points), way))
 
 
 def flat_passage(passage: Passage, inlet: float, outlet: float) -> Passage:

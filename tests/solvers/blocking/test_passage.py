@@ -77,6 +77,25 @@ def test_a_deep_channel_between_impulse_blades():
     assert deviations(layout.mesh).mean() < 5.0
 
 
+@pytest.mark.parametrize("pitch", [(0.0, 0.14), (0.0, -0.2), (0.1, 0.2), (0.1, -0.2)])
+@pytest.mark.parametrize("layers", [None, LayerSettings(1e-4)])
+def test_blades_may_be_many_pitches_long(pitch, layers):
+    """Inlet and outlet would be 1e-13 wide in the plane of the passage's map."""
+    layout = cascade_layout(
+        Cascade(blade(0.0, camber=0.02, thickness=0.08), pitch, settings=layers), cells=6000
+    )
+    grid = to_grid(layout)
+    sides = periodic_nodes(grid)
+    moved = sides["periodic1"] + np.array(pitch)
+    np.testing.assert_array_equal(moved[np.lexsort(moved.T[::-1])], sides["periodic2"])
+    assert sum(count_folded(block.nodes) for block in grid.blocks) == 0
+    assert layout.cells == pytest.approx(6000, rel=0.2)
+    assert deviations(layout.mesh).mean() < 7.0
+    on = layout.mesh.places.loop == 1
+    wall = layout.mesh.domain.loops[1].at(layout.mesh.places.arc[on])
+    np.testing.assert_allclose(layout.mesh.nodes[on], wall, atol=1e-9)
+
+
 @pytest.mark.parametrize("unit", [1e-3, 1e3])
 def test_any_unit_makes_the_same_grid(unit):
     one = cascade_layout(Cascade(blade(30.0), (0.0, 1.0)), cells=1000)
