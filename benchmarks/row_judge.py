@@ -6,20 +6,18 @@ its blade.
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from space_judge import first_errors, growth_ratios, judged_cells
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.rows.row import Row
 
 Floats = NDArray[np.float64]
-_CHUNK = 60_000  # cells that are judged together
 _PICKED = 120  # nodes of the blade whose distance is measured
-_SPLITS = 4  # subdivisions of cells whose coefficients leave the sign of the Jacobian open
 WALLS = ("blade", "tip", "foot", "hub", "shroud")
 
 
@@ -60,123 +58,20 @@ def judge(grid: Grid, row: Row, first: float, *, blade: bool = True) -> Judged:
     Without `blade` the distance from its surface is left out, which takes longest.
     """
     blocks = [np.asarray(block.nodes) for block in grid.blocks]
-    parts = [_cells(block) for block in blocks]
+    parts = [judged_cells(block) for block in blocks]
     scaled, angle = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     folded, opened, bezier = (sum(part[k] for part in parts) for k in (2, 3, 4))
     return Judged(
         sum(int(np.prod(block.shape[:3])) for block in blocks), len(scaled), folded, opened, bezier, scaled,
-        angle, _first(grid, blocks, row, first), _growth(grid, blocks), _periodic(grid),
-        _off_blade(grid, row) if blade else math.nan,
+        angle, first_errors(grid, blocks, WALLS, _heights(row, first)), growth_ratios(grid, blocks),
+        _periodic(grid), _off_blade(grid, row) if blade else math.nan,
     )  # fmt: skip
 
 
-def _cells(nodes: Floats) -> tuple[Floats, Floats, int, int, int]:
-    """Return scaled Jacobians and largest angles of cells, and how many are folded by each test."""
-    corner = np.stack(
-        [
-            nodes[a : a + nodes.shape[0] - 1, b : b + nodes.shape[1] - 1, c : c + nodes.shape[2] - 1]
-            for a, b, c in itertools.product((0, 1), repeat=3)
-        ],
-        axis=3,
-    ).reshape(-1, 2, 2, 2, 3)
-    scaled, angle = np.empty(len(corner)), np.empty(len(corner))
-    folded = opened = bezier = 0
-    for start in range(0, len(corner), _CHUNK):
-        own = slice(start, start + _CHUNK)
-        part = corner[own]
-        scaled[own], angle[own], least = _corners(part)
-        folded += int((least <= 0.0).sum())
-        maybe = part[(_coefficients(part) <= 0.0).any(axis=1)]
-        opened += len(maybe)
-        bezier += sum(not _positive(cell, _SPLITS) for cell in maybe)
-    return scaled, angle, folded, opened, bezier
-
-
-def _corners(cells: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return least scaled Jacobian, largest angle and least Jacobian (n,) of cells (n, 2, 2, 2, 3)."""
-    scaled, least = np.full(len(cells), np.inf), np.full(len(cells), np.inf)
-    cosine = np.full(len(cells), np.inf)
-    for a, b, c in itertools.product((0, 1), repeat=3):
-        here = cells[:, a, b, c]
-        u, v, w = cells[:, 1 - a, b, c] - here, cells[:, a, 1 - b, c] - here, cells[:, a, b, 1 - c] - here
-        lengths = [np.sqrt((e * e).sum(axis=1)) for e in (u, v, w)]
-        volume = (np.cross(u, v) * w).sum(axis=1) * (-1.0) ** (a + b + c)
-        least = np.minimum(least, volume)
-        scaled = np.minimum(scaled, volume / (lengths[0] * lengths[1] * lengths[2]))
-        for (e, le), (f, lf) in itertools.combinations(zip((u, v, w), lengths, strict=True), 2):
-            cosine = np.minimum(cosine, (e * f).sum(axis=1) / (le * lf))
-    return scaled, np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))), least
-
-
-def _coefficients(cells: Floats) -> Floats:
-    """Return the 27 Bezier coefficients (n, 27) of the Jacobians of trilinear cells (n, 2, 2, 2, 3)."""
-    u, v, w = cells[:, 1] - cells[:, 0], cells[:, :, 1] - cells[:, :, 0], cells[..., 1, :] - cells[..., 0, :]
-    total = np.zeros((len(cells), 3, 3, 3))
-    two = tuple(itertools.product((0, 1), repeat=2))
-    for (b, c), (a, d) in itertools.product(two, two):
-        cross = np.cross(u[:, b, c], v[:, a, d])
-        for e, f in two:
-            total[:, a + e, b + f, c + d] += (cross * w[:, e, f]).sum(axis=1)
-    binomial = np.array([1.0, 2.0, 1.0])
-    weight = binomial[:, None, None] * binomial[:, None] * binomial
-    return (total / weight).reshape(len(cells), 27)
-
-
-def _positive(cell: Floats, splits: int) -> bool:
-    """Return whether the Jacobian of a cell (2, 2, 2, 3) is shown to be positive by subdivision."""
-    if (_coefficients(cell[None]) > 0.0).all():
-        return True
-    if not splits or _corners(cell[None])[2][0] <= 0.0:
-        return False
-    fine = cell
-    for axis in range(3):
-        low, high = np.take(fine, range(fine.shape[axis] - 1), axis), np.take(fine, [-1], axis)
-        middle = 0.5 * (low + np.take(fine, range(1, fine.shape[axis]), axis))
-        fine = np.concatenate([low, middle, high], axis=axis)
-    halves = itertools.product((0, 1), repeat=3)
-    return all(_positive(fine[a : a + 2, b : b + 2, c : c + 2], splits - 1) for a, b, c in halves)
-
-
-def _first(grid: Grid, blocks: list[Floats], row: Row, first: float) -> dict[str, float]:
-    """Return for each wall by how much first cells differ from the height that they are to have."""
+def _heights(row: Row, first: float) -> Floats:
+    """Return the heights that first cells may have: in gaps narrower than 17 of them they are lower."""
     gaps = [gap for gap in (row.tip_gap, row.hub_gap) if gap > 0.0]
-    heights = np.array([first, *(gap / 17.0 for gap in gaps if gap / 17.0 < first)])
-    worst: dict[str, float] = {}
-    for patch in grid.outer_patches():
-        if patch.name in WALLS:
-            axis, end = patch.place
-            rows = np.moveaxis(blocks[patch.block], axis, 0)
-            rows = rows if end == 0 else rows[::-1]
-            away = np.linalg.norm(rows[1] - rows[0], axis=-1)
-            across = patch.across or (0, away.shape[1] - 1)
-            own = away[patch.start : patch.stop + 1, across[0] : across[1] + 1]
-            off = min(float(np.abs(own / height - 1.0).max()) for height in heights)
-            worst[patch.name] = max(worst.get(patch.name, 0.0), off)
-    return worst
-
-
-def _growth(grid: Grid, blocks: list[Floats]) -> dict[str, Floats]:
-    """Return ratios of consecutive edges: along i and j in the blocks, along the span, and across sides."""
-    ratios: dict[str, list[Floats]] = {"i": [], "j": [], "span": [], "sides": [], "periodic": []}
-    for nodes in blocks:
-        for axis, name in enumerate(("i", "j", "span")):
-            steps = np.linalg.norm(np.diff(nodes, axis=axis), axis=-1)
-            steps = np.moveaxis(steps, axis, 0)
-            ratios[name].append((steps[1:] / steps[:-1]).ravel())
-
-    def edges(block: int, side: str) -> Floats:
-        nodes = blocks[block]
-        axis = {"west": 0, "east": 0, "south": 1, "north": 1, "bottom": 2, "top": 2}[side]
-        rows = np.moveaxis(nodes, axis, 0)
-        one, two = (0, 1) if side in ("west", "south", "bottom") else (-1, -2)
-        return np.linalg.norm(rows[two] - rows[one], axis=-1)[..., None]
-
-    for each in grid.connections:
-        one, other = replace(each, transform=None).nodes(edges)
-        name = "span" if each.side in ("bottom", "top") else "periodic" if each.transform else "sides"
-        ratios[name].append((other / one).ravel())
-    out = {name: np.concatenate(values) if values else np.empty(0) for name, values in ratios.items()}
-    return {name: np.maximum(values, 1.0 / values) for name, values in out.items()}
+    return np.array([first, *(gap / 17.0 for gap in gaps if gap / 17.0 < first)])
 
 
 def _periodic(grid: Grid) -> float:
@@ -239,25 +134,3 @@ def _away(row: Row, h: float, u: Floats, point: Floats, theta: float) -> Floats:
     turned = angle + 2.0 * math.pi * np.round((theta - angle) / (2.0 * math.pi))
     place = np.stack([x_r[:, 0], x_r[:, 1] * np.sin(turned), x_r[:, 1] * np.cos(turned)], axis=1)
     return np.linalg.norm(place - point, axis=1)
-
-
-def worst_growth(grid: Grid, count: int = 10) -> list[str]:
-    """Return where growth inside blocks is largest: ratio, block, line, node; for a look at a grid."""
-    lines = []
-    for number, block in enumerate(grid.blocks):
-        nodes = np.asarray(block.nodes)
-        for axis in range(3):
-            steps = np.linalg.norm(np.diff(nodes, axis=axis), axis=-1)
-            steps = np.moveaxis(steps, axis, 0)
-            ratio = steps[1:] / steps[:-1]
-            ratio = np.maximum(ratio, 1.0 / ratio)
-            at = np.unravel_index(int(ratio.argmax()), ratio.shape)
-            many = float((ratio > 1.25).mean())
-            lines.append(
-                (
-                    float(ratio.max()),
-                    f"block {number} {nodes.shape[:3]} along {'ijk'[axis]}: "
-                    f"{ratio.max():.2f} at {tuple(map(int, at))}, {100 * many:.2f} % over 1.25",
-                )
-            )
-    return [text for _, text in sorted(lines, reverse=True)[:count]]

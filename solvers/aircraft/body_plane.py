@@ -16,17 +16,18 @@ All in (s, theta); collars are made in lengths in space, as units of s and theta
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.elementary import arctan2, cos, sin
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.tanh_law import TanhLaw
 from meshonet.geometry.surface.pole_core import PoleCore, core_of
-from meshonet.solvers.aircraft.collar import Rectangle, collar, corner_nodes, outer_loop
-from meshonet.solvers.rows.span_spacing import spaced_cells, two_sided
+from meshonet.solvers.aircraft.collar import Rectangle, collar, corner_nodes, lengths, outer_cells, outer_loop
+from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
 
 MARGIN = 0.28
 """Distance of a collar's outer rectangle from the section, in chords."""
@@ -38,10 +39,12 @@ _FEWEST = 6
 """Least number of cells between a collar and the plane of symmetry."""
 _POLE_CELL = 0.5
 """Cells at nose and tail over those beside the collar."""
-_LONGEST = 3.0
-"""Largest cells between a collar and nose or tail, over those beside the collar."""
+_AHEAD = 1.2
+"""Largest outermost cell of a collar, over that of cells which grow by a constant ratio."""
+_EVEN = 1.15
+"""Largest ratio of neighbouring outermost cells of a collar."""
 _WIDEST = 1.25
-"""Growth of cells from a collar to keel and crown, by which these are counted."""
+"""Growth of cells from a collar to nose, tail, keel and crown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +58,7 @@ class LevelPlan:
     rows : cells across a collar.
     low, top : cells from keel and crown to a collar.
     first, growth : height of the cells at the wing, and their growth.
-    fans : s (n,) and theta (m,) of the lines of nose and tail on the body, from the poles.
-    cores : what replaces their poles, in the plane of polar coordinates s, theta.
+    ends : nose and tail.
     """
 
     length: float
@@ -67,41 +69,159 @@ class LevelPlan:
     top: int
     first: float
     growth: float
-    fans: tuple[tuple[Floats, Floats], ...] = ()
-    cores: tuple[PoleCore, ...] = ()
+    ends: tuple[_End, ...] = ()
 
 
 def planned(sections: list[tuple[Floats, Floats]], length: float, first: float, growth: float) -> LevelPlan:
     """Return the counts for sections from the root on: (n, 2) s and theta, (2,) lengths of their units."""
     root, scale = sections[0]
     edge, nose = corner_nodes(root * scale, rectangle(root, length, scale), _CORNER)
-    rows, low, top = 0, _FEWEST, _FEWEST
-    half = (len(root) - 1) // 2
+    plan = LevelPlan(length, edge, nose, 4, _FEWEST, _FEWEST, first, growth)
     for section, scales in sections:
         plane = section * scales
         box = rectangle(section, length, scales)
-        outer = outer_loop(plane, box, (edge, nose))
-        size = (box.back - box.front) / (half - edge - nose)
-        margin = float(np.median(norms(outer - plane)))
-        rows = max(rows, spaced_cells(margin, (first, 1e9), growth, 2.0 * size, 4))
-        low = max(low, spaced_cells(box.low, (1e9, size), _WIDEST, box.low / _FEWEST, _FEWEST))
-        top = max(top, spaced_cells(np.pi * float(scales[1]) - box.high, (size, 1e9), _WIDEST, 1e9, _FEWEST))
-    plan = LevelPlan(length, edge, nose, rows, low, top, first, growth)
-    box = rectangle(root, length, scale)
-    across = _across(plan, root * scale, box, scale)
-    size = (box.back - box.front) / (half - edge - nose) / float(scale[0])
-    fans, cores = [], []
-    for far, theta in zip(_ways(box, length, scale), across, strict=True):
-        ends = _POLE_CELL * size, size
-        cells = spaced_cells(far, ends, _WIDEST, _LONGEST * size, _FEWEST)
-        s = two_sided(np.array([far]), ends, _WIDEST, cells)[0]
-        s[-1] = far
+        away = float(lengths(plane, outer_loop(plane, box, (edge, nose))).max())
+        last = min(outer_cells(box, (edge, nose)))
+        plan = replace(plan, rows=max(plan.rows, smooth_cells(away, (first, last), growth, 4)))
+    levels = [_Level.of(plan, section, scales) for section, scales in sections]
+    low, top = (
+        max(smooth_cells(level.bands[k], (level.last[1 + k], None), _WIDEST, _FEWEST) for level in levels)
+        for k in (0, 1)
+    )
+    plan = replace(plan, low=low, top=top)
+    ends = tuple(
+        _End.of([(level.ways[k], level.ends[k]) for level in levels], 2 * corner + low + top)
+        for k, corner in enumerate((nose, edge))
+    )
+    return replace(plan, ends=ends)
+
+
+@dataclass(frozen=True, eq=False)
+class _End:
+    """Nose or tail: what all levels have in common there.
+
+    Parameters
+    ----------
+    theta : (n,) angles of the lines out of the pole.
+    core : what replaces the pole, in the plane of polar coordinates s, theta.
+    at, step : s where the core's rows end, and its last step there.
+    cells : number of cells from there to the collar.
+    """
+
+    theta: Floats
+    core: PoleCore
+    at: float
+    step: float
+    cells: int
+
+    @classmethod
+    def of(cls, levels: list[tuple[float, float]], lines: int) -> _End:
+        """Return the end for ways from the pole to the collar, and cells there, of some levels."""
+        way, last = levels[0]
+        theta = np.linspace(0.0, np.pi, lines + 1)
+        pole = _POLE_CELL * last
+        count = smooth_cells(way, (pole, last), _WIDEST, 2 * _FEWEST)
+        s = smooth_arcs(np.array([way]), (pole, last), count)[0]
         polar = np.stack(
             [s * cos(theta)[:, None], s * sin(theta)[:, None], np.zeros((len(theta), len(s)))], axis=-1
         )
-        fans.append((s, theta))
-        cores.append(core_of(polar, 2, max((len(s) - 1) // 2, 3)))
-    return LevelPlan(length, edge, nose, rows, low, top, first, growth, tuple(fans), tuple(cores))
+        core = core_of(polar, 2, max(count // 2, 3))
+        at, step = float(s[core.at]), float(s[core.at + 1] - s[core.at])
+        cells = max(smooth_cells(far - at, (step, size), _WIDEST, _FEWEST) for far, size in levels)
+        return cls(theta, core, at, step, cells)
+
+    def patches(self, far: float, last: float, theta: Floats) -> tuple[Floats, Floats]:
+        """Return rows and core (., ., 2) in s from the pole and theta, out to `far` with `theta` there."""
+        arcs = self.at + smooth_arcs(np.array([far - self.at]), (self.step, last), self.cells)[0]
+        t = (arcs - arcs[0]) / (arcs[-1] - arcs[0])
+        arcs[-1] = far
+        lines = _lattice_with(arcs, self.theta, theta, t * t * (3.0 - 2.0 * t))
+        rows = _polar(self.core.rows[:-1, :, :2]).swapaxes(0, 1)
+        rows[0, :, 1], rows[-1, :, 1] = 0.0, np.pi
+        return np.concatenate([rows, lines], axis=1), _polar(self.core.nodes[..., :2])
+
+
+@dataclass(frozen=True, eq=False)
+class _Level:
+    """One level: its collar, and the sizes of cells around it.
+
+    Parameters
+    ----------
+    plan, box, scale : counts, the rectangle, lengths in space of units of s and theta.
+    ring : (n, rows + 1, 2) the collar, in lengths in space.
+    last : lengths in space of its outermost cells at the front, below, above and at the back.
+    """
+
+    plan: LevelPlan
+    box: Rectangle
+    scale: Floats
+    ring: Floats
+    last: tuple[float, float, float, float]
+
+    @classmethod
+    def of(cls, plan: LevelPlan, section: Floats, scale: Floats) -> _Level:
+        """Return the level of a section (n, 2)."""
+        plane = section * scale
+        box = rectangle(section, plan.length, scale)
+        edge, nose, half = plan.edge, plan.nose, (len(plane) - 1) // 2
+        outer = outer_loop(plane, box, (edge, nose))
+        behind, before = outer_cells(box, (edge, nose))
+        share = np.abs(np.arange(len(plane)) - half) / half
+        last = before + (behind - before) * share
+        for way, side, cells in (
+            (box.low, slice(half + nose, -edge), plan.low),
+            (np.pi * float(scale[1]) - box.high, slice(edge, half - nose + 1), plan.top),
+        ):  # the band there may be short
+            last[side] = np.minimum(
+                last[side], way * (1.0 - 1.0 / _WIDEST) / (1.0 - math.pow(_WIDEST, -cells))
+            )
+        grown = smooth_arcs(lengths(plane, outer), (plan.first, None), plan.rows)
+        last = _graded(np.minimum(last, _AHEAD * (grown[:, -1] - grown[:, -2])))
+        ring = collar(plane, outer, plan.rows, plan.first, last)
+        step = norms(ring[:, -1] - ring[:, -2])
+        parts = (
+            step[half - nose + 1 : half + nose], step[half + nose : -edge - 1],
+            step[edge + 1 : half - nose + 1], np.concatenate([step[:edge], step[-edge:]]),
+        )  # fmt: skip
+        return cls(plan, box, scale, ring, tuple(float(np.median(part)) for part in parts))  # type: ignore[arg-type]
+
+    @property
+    def ways(self) -> tuple[float, float]:
+        """Lengths in s from the nose, and from the tail, to the rectangle."""
+        unit = float(self.scale[0])
+        return self.box.front / unit, self.plan.length - self.box.back / unit
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Lengths in s of the cells of nose and tail beside the rectangle."""
+        return self.last[0] / float(self.scale[0]), self.last[3] / float(self.scale[0])
+
+    @property
+    def bands(self) -> tuple[float, float]:
+        """Lengths in space from the rectangle to keel and crown."""
+        return self.box.low, np.pi * float(self.scale[1]) - self.box.high
+
+    @cached_property
+    def low_and_top(self) -> tuple[Floats, Floats]:
+        """Theta of the lines from the keel to the rectangle, and from there to the crown."""
+        out = []
+        for cells, way, step in zip((self.plan.low, self.plan.top), self.bands, self.last[1:3], strict=True):
+            out.append(smooth_arcs(np.array([way]), (step, None), cells)[0])
+        rho = float(self.scale[1])
+        low, top = (self.box.low - out[0][::-1]) / rho, (self.box.high + out[1]) / rho
+        low[0], top[-1] = 0.0, np.pi
+        return low, top
+
+    @property
+    def across(self) -> tuple[Floats, Floats]:
+        """Theta of the lines of nose and tail, from keel to crown."""
+        outer, half, rho = self.ring[:, -1, 1], (len(self.ring) - 1) // 2, float(self.scale[1])
+        edge, nose = self.plan.edge, self.plan.nose
+        low, top = self.low_and_top
+        front = outer[half + nose : half - nose - 1 : -1] / rho
+        back = np.concatenate([outer[2 * half - edge : 2 * half], outer[: edge + 1]]) / rho
+        ahead, behind = (np.concatenate([low, side[1:-1], top]) for side in (front, back))
+        return ahead, behind
 
 
 def level_patches(plan: LevelPlan, section: Floats, scale: Floats) -> list[Floats]:
@@ -110,27 +230,15 @@ def level_patches(plan: LevelPlan, section: Floats, scale: Floats) -> list[Float
     Collar, top, low, rows and core of the nose, rows and core of the tail. `scale` (2,) are the lengths in
     space of units of s and theta at the section.
     """
-    plane = section * scale
-    box = rectangle(section, plan.length, scale)
-    outer = outer_loop(plane, box, (plan.edge, plan.nose))
-    ring = collar(plane, outer, plan.rows, plan.first, plan.growth) / scale
-    half = (len(plane) - 1) // 2
-    low, top = _bands(plan, outer, box, scale)
+    level = _Level.of(plan, section, scale)
+    ring, half = level.ring / scale, (len(section) - 1) // 2
+    low, top = level.low_and_top
     upper = ring[plan.edge : half - plan.nose + 1, -1, 0]
     lower = ring[half + plan.nose : 2 * half - plan.edge + 1, -1, 0]
     patches = [ring, _lattice(upper, top), _lattice(lower, low)]
-    across = _across(plan, plane, box, scale)
-    for k, (far, theta) in enumerate(zip(_ways(box, plan.length, scale), across, strict=True)):
-        (s, theta_root), core = plan.fans[k], plan.cores[k]
-        t = np.clip((np.arange(len(s)) - core.at) / (len(s) - 1 - core.at), 0.0, 1.0)
-        weight = t * t * (3.0 - 2.0 * t)
-        lines = _lattice_with(s + weight * (far - s[-1]), theta_root, theta, weight)
-        rows = _polar(core.rows[:-1, :, :2]).swapaxes(0, 1)
-        rows[0, :, 1], rows[-1, :, 1] = 0.0, np.pi
-        for patch in (np.concatenate([rows, lines[:, core.at :]], axis=1), _polar(core.nodes[..., :2])):
-            if k:
-                patch = patch * [-1.0, 1.0] + [plan.length, 0.0]
-            patches.append(patch)
+    for k, end in enumerate(plan.ends):
+        for patch in end.patches(level.ways[k], level.ends[k], level.across[k]):
+            patches.append(patch * [-1.0, 1.0] + [plan.length, 0.0] if k else patch)
     return patches
 
 
@@ -153,39 +261,12 @@ def rectangle(section: Floats, length: float, scale: Floats) -> Rectangle:
     )
 
 
-def _ways(box: Rectangle, length: float, scale: Floats) -> tuple[float, float]:
-    """Return s from the nose, and from the tail, to a rectangle."""
-    return box.front / float(scale[0]), length - box.back / float(scale[0])
-
-
-def _bands(plan: LevelPlan, outer: Floats, box: Rectangle, scale: Floats) -> tuple[Floats, Floats]:
-    """Return theta of the lines from the keel to the rectangle, and from there to the crown."""
-    half, rho = (len(outer) - 1) // 2, float(scale[1])
-    size = (box.back - box.front) / (half - plan.edge - plan.nose)
-    out = []
-    for cells, way in ((plan.low, box.low), (plan.top, np.pi * rho - box.high)):
-        step = min(size, way / cells)
-        law = TanhLaw.fitted(cells, step / way, _last(step, way, cells))
-        out.append(way * law(np.linspace(0.0, 1.0, cells + 1)))
-    low, top = (box.low - out[0][::-1]) / rho, (box.high + out[1]) / rho
-    low[0], top[-1] = 0.0, np.pi
-    return low, top
-
-
-def _last(first: float, length: float, cells: int) -> float:
-    """Return the last of cells that grow evenly from the first over a length, over this length."""
-    even = length / cells
-    return min(even * even / first, 0.5 * length) / length
-
-
-def _across(plan: LevelPlan, plane: Floats, box: Rectangle, scale: Floats) -> tuple[Floats, Floats]:
-    """Return theta of the lines of nose and tail, from keel to crown."""
-    outer = outer_loop(plane, box, (plan.edge, plan.nose))
-    half, rho = (len(outer) - 1) // 2, float(scale[1])
-    low, top = _bands(plan, outer, box, scale)
-    front = outer[half + plan.nose : half - plan.nose - 1 : -1, 1] / rho
-    back = np.concatenate([outer[2 * half - plan.edge : 2 * half, 1], outer[: plan.edge + 1, 1]]) / rho
-    return tuple(np.concatenate([low, side[1:-1], top]) for side in (front, back))  # type: ignore[return-value]
+def _graded(sizes: Floats) -> Floats:
+    """Return sizes (n,) around a closed loop, made smaller until neighbours differ little."""
+    for _ in range(len(sizes)):
+        least = _EVEN * np.minimum(np.roll(sizes[:-1], 1), np.roll(sizes[:-1], -1))
+        sizes = np.minimum(sizes, np.append(least, least[:1]))
+    return sizes
 
 
 def _lattice(s: Floats, theta: Floats) -> Floats:

@@ -14,7 +14,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -22,16 +21,14 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.rows.columns import arcs_of
-from meshonet.solvers.rows.span_spacing import two_sided
+from meshonet.solvers.rows.span_spacing import smooth_arcs
 
-_EVEN = 0.3
-"""Part of the sides of the rectangle that is divided evenly, not as the root is."""
+_SHORTEST = 0.35
+"""Least cells on the short sides of the rectangle, over the mean cell of a long side."""
 _NORMAL = 0.12
 """Part of a line's length over which it keeps the direction of the root's normal."""
 _SMOOTHED = 6
 """Sweeps by which normals are smoothed around the root."""
-_UNBOUNDED = 1e9
-"""Length of the last cells of lines, which nothing limits but their growth."""
 _FINE = 33
 """Places on a line by which its length is measured."""
 
@@ -49,10 +46,15 @@ class Rectangle:
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
     """Return how many nodes from the middles of trailing edge and nose lines end at corners of the rectangle.
 
-    There the normals of the root point best at the corners, so that lines are bent least.
+    There the normals of the root point best at the corners, so that lines are bent least, among those with
+    which cells on neighbouring sides of the rectangle have similar lengths.
     """
     normals, half = _normals(root), (len(root) - 1) // 2
     tried = np.arange(fewest, half // 3 + 1)
+    short = 0.5 * (box.high - box.low) / tried  # cells on the short sides
+    long = (box.back - box.front) / (half - 2 * tried)
+    even = np.flatnonzero((short <= long) & (short >= _SHORTEST * long))
+    tried = tried[even] if len(even) else tried[np.abs(short / long - 1.0).argmin()][None]
 
     def best(middle: int, s: float) -> int:
         worth = np.zeros(len(tried))
@@ -65,6 +67,12 @@ def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
     return best(0, box.back), best(half, box.front)
 
 
+def outer_cells(box: Rectangle, corners: tuple[int, int]) -> tuple[float, float]:
+    """Return the lengths of cells on the sides of a rectangle behind the edge and before the nose."""
+    edge, nose = corners
+    return (box.high - box.low) / (2 * edge), (box.high - box.low) / (2 * nose)
+
+
 def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats:
     """Return the nodes (n, 2) on a rectangle where lines from the nodes of a root (n, 2) end.
 
@@ -72,30 +80,48 @@ def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats
     are those of `corner_nodes`.
     """
     half = (len(root) - 1) // 2
-    low, high = np.array([box.back, box.low]), np.array([box.back, box.high])
     edge, nose = corners
-    stops = [0, edge, half - nose, half + nose, 2 * half - edge, 2 * half]
+    behind, before = outer_cells(box, corners)
+    length = np.array([box.back - box.front])
+    side = smooth_arcs(length, (behind, before), half - edge - nose)[0]
     middle = 0.5 * (box.low + box.high)
-    ends = [
-        (np.array([box.back, middle]), high),
-        (high, np.array([box.front, box.high])),
-        (np.array([box.front, box.high]), np.array([box.front, box.low])),
-        (np.array([box.front, box.low]), low),
-        (low, np.array([box.back, middle])),
-    ]
-    out = np.empty_like(root)
-    for (start, stop), (begin, end) in zip(pairwise(stops), ends, strict=True):
-        step = np.diff(root[start : stop + 1], axis=0)
-        arc = np.concatenate([[0.0], np.cumsum(np.hypot(step[:, 0], step[:, 1]))])
-        even = np.linspace(0.0, 1.0, len(arc))
-        upright = begin[0] == end[0]
-        place = even if upright else (1.0 - _EVEN) * arc / arc[-1] + _EVEN * even
-        out[start : stop + 1] = begin + place[:, None] * (end - begin)
+    up, down = np.linspace(middle, box.high, edge + 1), np.linspace(box.high, middle, nose + 1)
+    top = np.stack([box.back - side, np.full(len(side), box.high)], axis=1)
+    out = np.concatenate(
+        [
+            np.stack([np.full(edge, box.back), up[:-1]], axis=1),
+            top,
+            np.stack([np.full(nose, box.front), down[1:]], axis=1),
+        ]
+    )
+    lower = out[-2::-1] * [1.0, -1.0] + [0.0, box.low + box.high]
+    out = np.concatenate([out, lower])
+    out[edge], out[half - nose] = (box.back, box.high), (box.front, box.high)
+    out[-1 - edge], out[half + nose] = (box.back, box.low), (box.front, box.low)
+    out[half - nose : half + nose + 1, 0] = box.front
+    out[edge : half - nose + 1, 1], out[half + nose : len(out) - edge, 1] = box.high, box.low
     return out
 
 
-def collar(root: Floats, outer: Floats, cells: int, first: float, growth: float) -> Floats:
-    """Return nodes (n, cells + 1, 2) between closed loops (n, 2), with first cells of a given length."""
+def collar(root: Floats, outer: Floats, rows: int, first: float, last: Floats) -> Floats:
+    """Return nodes (n, rows + 1, 2) between closed loops (n, 2), with first cells `first` and `last` (n,)."""
+    arcs, lines = _lines(root, outer)
+    wanted = smooth_arcs(arcs[:, -1], (first, last), rows)
+    out = np.empty((len(root), rows + 1, 2))
+    for k, line in enumerate(lines):
+        out[k] = cubic_spline(line, arcs[k], wanted[k])
+    out[:, 0], out[:, -1] = root, outer
+    out[-1] = out[0]
+    return out
+
+
+def lengths(root: Floats, outer: Floats) -> Floats:
+    """Return the lengths (n,) of the lines of a collar."""
+    return _lines(root, outer)[0][:, -1]
+
+
+def _lines(root: Floats, outer: Floats) -> tuple[Floats, Floats]:
+    """Return arc lengths (n, m) and points (n, m, 2) of the lines of a collar."""
     normals = _normals(root)
     away = np.hypot(*(outer - root).T)[:, None]
     u = np.linspace(0.0, 1.0, _FINE)
@@ -105,15 +131,7 @@ def collar(root: Floats, outer: Floats, cells: int, first: float, growth: float)
         + middle[:, None] * (2.0 * u * (1.0 - u))[:, None]
         + outer[:, None] * (u * u)[:, None]
     )
-    steps = norms(np.diff(lines, axis=1))
-    arcs = arcs_of(steps)
-    wanted = two_sided(arcs[:, -1], (first, _UNBOUNDED), growth, cells)
-    out = np.empty((len(root), cells + 1, 2))
-    for k, line in enumerate(lines):
-        out[k] = cubic_spline(line, arcs[k], wanted[k])
-    out[:, 0], out[:, -1] = root, outer
-    out[-1] = out[0]
-    return out
+    return arcs_of(norms(np.diff(lines, axis=1))), lines
 
 
 def _normals(loop: Floats) -> Floats:

@@ -11,6 +11,8 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.solvers.aircraft.root import root_heights
 from meshonet.solvers.stacking.section_nodes import GAP, around, unit_nodes
 
+_BASE = 2
+"""Cells across a base."""
 _ROUNDS = 6
 """Times a part is scaled; lines are nearly straight over a first cell."""
 
@@ -39,7 +41,7 @@ class WingLines:
         Raises InputError: too few nodes, a wing that does not begin in the body or does not leave it.
         """
         wing = aircraft.wing
-        plan = around(nodes, gap=base, edge=wing.te_spacing, nose=wing.le_spacing)
+        plan = around(nodes, gap=base, base=_BASE, edge=wing.te_spacing, nose=wing.le_spacing)
         units, notes = zip(*(unit_nodes(section, plan) for section in wing.sections), strict=True)
         unit = np.stack(units)
         roots = root_heights(wing, unit[:, :-1], aircraft.body)

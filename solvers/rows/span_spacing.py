@@ -18,6 +18,7 @@ _LENGTHS = 33  # of lines for which nodes are spaced; others lie between
 SAMPLES = 17
 """Heights at which positions along a line have to be known."""
 _NEWTON = 4
+_MOST_BENT = 60.0  # of the logarithm of sizes, at which cells in the middle are a million times larger
 MOST_CELLS = 1000
 
 
@@ -44,6 +45,41 @@ def two_sided(lengths: Floats, ends: Ends, growth: float, cells: int) -> Floats:
     sizes = _sizes(exp(0.5 * (low + high)), ends, growth, cells)
     sizes *= (lengths / sizes.sum(axis=1))[:, None]
     return np.concatenate([np.zeros((len(lengths), 1)), np.cumsum(sizes, axis=1)], axis=1)
+
+
+def smooth_arcs(lengths: Floats, ends: tuple[Floats | float, Floats | float | None], cells: int) -> Floats:
+    """Return arcs (n, cells + 1) on lines of `lengths` (n,), of cells whose sizes change evenly.
+
+    The logarithm of the sizes is a parabola between those at both `ends`, each for all lines or (n,), or
+    linear where the last is None and follows.
+    """
+    t = np.linspace(0.0, 1.0, cells)
+    first, last = (None if end is None else np.broadcast_to(end, lengths.shape)[:, None] for end in ends)
+    straight, bump = log(first) + 0.0 * t, t
+    if last is not None:
+        straight, bump = straight + (log(last) - log(first)) * t, t * (1.0 - t)
+    low, high = (np.full((len(lengths), 1), way * _MOST_BENT) for way in (-1.0, 1.0))
+    for _ in range(_BISECTIONS):
+        bend = 0.5 * (low + high)
+        less = exp(straight + bend * bump).sum(axis=1) < lengths
+        low, high = np.where(less[:, None], bend, low), np.where(less[:, None], high, bend)
+    sizes = exp(straight + low * bump)
+    sizes *= (lengths / sizes.sum(axis=1))[:, None]
+    arcs = np.concatenate([np.zeros((len(lengths), 1)), np.cumsum(sizes, axis=1)], axis=1)
+    arcs[:, -1] = lengths
+    return arcs
+
+
+def smooth_cells(length: float, ends: tuple[float, float | None], growth: float, least: int) -> int:
+    """Return the least number of cells from `least` on that grow from both ends by `growth` at most.
+
+    Cells are those of `smooth_arcs`.
+    """
+    for cells in range(max(least, 4), MOST_CELLS):
+        steps = np.diff(smooth_arcs(np.array([length]), ends, cells)[0])
+        if steps[1] <= growth * steps[0] and (ends[1] is None or steps[-2] <= growth * steps[-1]):
+            return cells
+    return MOST_CELLS
 
 
 def _sizes(largest: Floats, ends: Ends, growth: float, cells: int) -> Floats:

@@ -1,0 +1,87 @@
+"""Random bodies with a wing of real sections, by seed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.formats.registry import read_shapes
+from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.aircraft.body import Body
+from meshonet.geometry.errors import MeshonetError
+from meshonet.geometry.sections.section import Section
+from meshonet.geometry.sections.stack import Stack
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+
+Floats = NDArray[np.float64]
+RADIUS, LENGTH, SPAN = 0.06, 1.1, 0.5
+THIN, THICK = 0.1, 0.2
+"""Thinnest and thickest of sections that are drawn."""
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnAircraft:
+    """A random aircraft, its first cells in chords of the wing's root, and what it was drawn with."""
+
+    aircraft: Aircraft
+    first: float
+    words: str
+
+
+def sections(folder: Path) -> list[Airfoil]:
+    """Return the airfoils of a folder that are 10 to 20 % thick."""
+    found = []
+    for path in sorted(folder.glob("*.dat")):
+        try:
+            (shape,) = read_shapes(str(path))
+        except MeshonetError:
+            continue
+        if isinstance(shape, Airfoil):
+            wide, thick = np.ptp(shape.curve.points, axis=0)
+            if THIN <= thick / wide <= THICK:
+                found.append(shape)
+    return found
+
+
+def drawn_aircraft(airfoils: list[Airfoil], seed: int, count: int) -> list[DrawnAircraft]:
+    """Return random aircraft.
+
+    The wing is half a body radius below to half above the axis; its taper is 0.3 to 0.7, its sweep 0 to 30
+    degrees, its dihedral 0 to 5, its twist -3 to 0; its span is 8 body radii, its chord 2.5 to 4; first cells
+    are 1e-5 to 1e-3 chords.
+    """
+    generator = np.random.default_rng(seed)
+    return [_drawn(airfoils, generator, number) for number in range(count)]
+
+
+def _drawn(airfoils: list[Airfoil], generator: np.random.Generator, number: int) -> DrawnAircraft:
+    airfoil = airfoils[int(generator.integers(len(airfoils)))]
+    chord, taper = generator.uniform(2.5, 4.0) * RADIUS, generator.uniform(0.3, 0.7)
+    sweep, dihedral = generator.uniform(0.0, 30.0), generator.uniform(0.0, 5.0)
+    y, x = generator.uniform(-0.5, 0.5) * RADIUS, generator.uniform(0.3, 0.45)
+    twist, first = generator.uniform(-3.0, 0.0), 10.0 ** generator.uniform(-5.0, -3.0)
+    behind, above = (SPAN * math.tan(math.radians(angle)) for angle in (sweep, dihedral))
+    root = Section(airfoil, chord, 0.0, x, y)
+    tip = Section(airfoil, chord * taper, SPAN, x + behind, y + above, twist)
+    nose, tail = generator.uniform(0.15, 0.3), generator.uniform(0.25, 0.4)
+    words = (
+        f"{number}: {airfoil.name or '?'}, chord {chord / RADIUS:.2f} radii, taper {taper:.2f}, "
+        f"sweep {sweep:.0f}, dihedral {dihedral:.1f}, y {y / RADIUS:+.2f} radii, first cell {first:.1e}"
+    )
+    return DrawnAircraft(Aircraft(Body(_meridian(nose, tail)), Stack((root, tip), tip="flat")), first, words)
+
+
+def _meridian(nose: float, tail: float) -> Floats:
+    """Return x and radius (n, 2) of a fuselage: half an ellipse, a cylinder, a slender blunt tail."""
+    x = 0.5 * LENGTH * (1.0 - np.cos(np.linspace(0.0, np.pi, 400)))
+    ahead = np.clip(1.0 - x / nose, 0.0, 1.0)
+    behind = np.clip((x - (LENGTH - tail)) / tail, 0.0, 1.0)
+    blunt = 0.35 * np.sqrt(1.0 - behind)
+    closing = (1.0 - behind**4) * (1.0 - behind**1.8) + behind**4 * blunt
+    radius = RADIUS * np.minimum(np.sqrt(1.0 - ahead**2), np.where(behind > 0.0, closing, 1.0))
+    radius[[0, -1]] = 0.0
+    return np.stack([x, radius], axis=1)
