@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from meshonet.geometry.blocks.grid import Grid
@@ -11,9 +12,11 @@ from meshonet.geometry.quality.compare import Difference, compare
 from meshonet.geometry.quality.figure import Figure
 from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import Gate, Judgement, beyond
+from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.periodic import periods
 from meshonet.geometry.quality.profiles import CheckResult, ProfileReport, profile_report
+from meshonet.geometry.quality.wall_cells import Flow, YPlus, skewness_at, y_plus_at
 from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet.geometry.summary import Quality
 
@@ -21,6 +24,8 @@ COMPARED = (
     "relative_l2", "near_wall", "max", "boundary", "folded_other", "max_angle_ratio", "mean_angle_ratio",
 )  # fmt: skip
 """Figures of a comparison; gates may name them."""
+Y_PLUS = "y_plus"
+"""Greatest y+ of all walls, where a flow is given; gates may name it."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,8 @@ class QualityReport:
         The verdicts of profiles.
     comparison : Comparison, optional
         The comparison with a reference grid.
+    flow : Flow, optional
+        The flow for which y+ of the walls is reported.
     """
 
     grid: Grid
@@ -71,6 +78,17 @@ class QualityReport:
     figures: Figures
     profile: ProfileReport | None = None
     comparison: Comparison | None = None
+    flow: Flow | None = None
+
+    @cached_property
+    def y_plus(self) -> dict[str, YPlus]:
+        """Y+ at each wall, by name; none without a flow."""
+        return y_plus_at(self.grid, self.figures.walls, self.flow) if self.flow else {}
+
+    @cached_property
+    def wall_skewness(self) -> dict[str, Extreme]:
+        """Skewness of the cells at each wall of a volume, by name."""
+        return skewness_at(self.grid, self.figures.walls) if self.grid.form == "volume" else {}
 
     def __repr__(self) -> str:
         angle = self.quality["max_angle"].max if "max_angle" in self.quality.metrics else None
@@ -107,9 +125,16 @@ class QualityReport:
         return [(gate, figure, beyond(figure.value, gate.compare, gate.limit)) for gate, figure in pairs]
 
     def _compared(self) -> dict[str, Figure]:
-        """Return the figures of the comparison by name."""
+        """Return the figures of the comparison and the greatest y+ by name."""
         values = self.comparison.figures() if self.comparison else {}
+        values |= {Y_PLUS: max(each.max for each in self.y_plus.values())} if self.y_plus else {}
         return {name: Figure(value) for name, value in values.items()}
+
+    def _at_wall(self, name: str) -> dict[str, Any]:
+        """Return y+ and skewness of the cells at a wall as a dict that JSON can hold."""
+        facts: dict[str, Any] = {Y_PLUS: vars(self.y_plus[name])} if name in self.y_plus else {}
+        skewness = self.wall_skewness.get(name)
+        return facts | ({"skewness": extreme_dict(skewness)} if skewness else {})
 
     def as_dict(self) -> dict[str, Any]:
         """Return the report as a dict that JSON can hold."""
@@ -123,7 +148,7 @@ class QualityReport:
             **_folded(self.quality),
             "worst_cells": [_given(cell) for cell in self.worst],
             "quality": quality_dict(self.quality),
-            "walls": [_wall(row) for row in self.figures.wall_rows],
+            "walls": [_wall(row) | self._at_wall(row.name) for row in self.figures.wall_rows],
         }
         along = {"xi": growth.xi, "eta": growth.eta} | growth.families()
         if rows := periods(grid):
@@ -139,9 +164,11 @@ class QualityReport:
 
 
 def quality_report(
-    grid: Grid, profile: str | Sequence[str] = (), reference: Grid | None = None
+    grid: Grid, profile: str | Sequence[str] = (), reference: Grid | None = None, flow: Flow | None = None
 ) -> QualityReport:
     """Measure `grid`, judge it by profiles of `PROFILES` and compare it with a `reference` of the same size.
+
+    With a `flow` the report has y+ of the walls.
 
     Raises InputError: no such profile, a reference of another size.
     """
@@ -155,6 +182,7 @@ def quality_report(
         figures,
         profile_report(figures, *profiles) if profiles else None,
         None if reference is None else _comparison(grid, quality, reference),
+        flow,
     )
 
 

@@ -12,12 +12,13 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.gates import parse_gates
 from meshonet.geometry.quality.report import QualityReport, quality_report
+from meshonet.geometry.quality.wall_cells import Flow
 from meshonet.geometry.threads import limited_to
 
 
 def quality(
     grid: Grid | str | Path, *, profile: str | Sequence[str] = (), compare: Grid | str | Path | None = None,
-    threads: int | None = None,
+    reynolds: float | None = None, length: float | None = None, threads: int | None = None,
 ) -> QualityReport:  # fmt: skip
     """Measure the quality of a grid: folded cells, angles, skewness, walls, growth.
 
@@ -29,6 +30,11 @@ def quality(
         Profiles of thresholds: ``openfoam``, ``pointwise``, ``verdict``, ``viscous``.
     compare : Grid, str or Path, optional
         Reference grid of the same size, or a file with one.
+    reynolds : float, optional
+        Reynolds number for which y+ of the first cells at each wall is reported, as of a turbulent flat
+        plate.
+    length : float, optional
+        Reference length of `reynolds`, in the unit of the grid; None is 1.
     threads : int, optional
         Number of threads, which does not change the result; None: one per core.
 
@@ -42,7 +48,7 @@ def quality(
     ------
     InputError
         A file that cannot be read or has several grids; a reference of another size; an unknown profile; a
-        number of threads below 1.
+        Reynolds number, length or number of threads out of its range.
 
     Examples
     --------
@@ -55,7 +61,8 @@ def quality(
     grid = single_grid(grid)
     reference = None if compare is None else single_grid(compare)
     with limited_to(threads):
-        return quality_report(grid, profile, reference)
+        flow = None if reynolds is None else Flow(reynolds, 1.0 if length is None else length)
+        return quality_report(grid, profile, reference, flow)
 
 
 def quality_page(

@@ -10,6 +10,7 @@ EXAMPLES = (
     "meshonet quality grid.vts --profile openfoam",
     "meshonet quality grid.vts --profile openfoam --html report.html",
     "meshonet quality grid.vts --per-cell metrics.vts",
+    "meshonet quality grid.vts --reynolds 6e6 --fail-on 'y_plus>300'",
     "meshonet quality grid.vts --compare other.vts",
     "meshonet quality grids/*.vts --compare grid.vts --summary --fail-on 'relative_l2>0.01'",
 )
@@ -46,6 +47,15 @@ def quality(
         "all grids with a single reference; several references are matched by name if they have names, else "
         "by order. [default: auto]",
     )] = None,
+    reynolds: Annotated[float | None, _check(
+        "--reynolds", metavar="RE",
+        help="Reynolds number for which y+ of the first cells at each wall is reported, as of a turbulent "
+        "flat plate. --fail-on 'y_plus>2' then refers to the largest of all walls.",
+    )] = None,
+    length: Annotated[float | None, _check(
+        "--length", metavar="L",
+        help="Reference length of --reynolds, in the unit of the grid. [default: 1]",
+    )] = None,
     summary: Annotated[bool, _output(
         "--summary", help="Print one table for all grids, with one row per grid; with --json one object.",
     )] = False,
@@ -53,15 +63,18 @@ def quality(
     threads: o.Threads = None,
 ) -> int:
     """Measure the quality of grids: folded cells, angles, skewness."""
-    from meshonet.geometry.quality.report import COMPARED
+    from meshonet.geometry.quality.report import COMPARED, Y_PLUS
     from meshonet.geometry.threads import limited_to
     from meshonet_cli.tasks.qualities import measure_grids
 
     o.only_with("compare", compare is not None, pair=pair)
+    o.only_with("reynolds", reynolds is not None, length=length)
+    names = (*(COMPARED if compare else ()), *((Y_PLUS,) if reynolds else ()))
     with limited_to(threads):
         return measure_grids(
             run.inputs(grid, grids=True), run.session(),
-            fmt=from_format, criteria=gates.criteria(COMPARED if compare else ()), compare=compare,
+            fmt=from_format, criteria=gates.criteria(names), compare=compare,
             pairing=pair or "auto", summary=summary, plot=plot, html=html, per_cell=per_cell,
+            reynolds=reynolds, length=length,
         )
 # fmt: on

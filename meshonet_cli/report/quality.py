@@ -1,5 +1,6 @@
 """Report of the quality of a grid."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +15,7 @@ from meshonet.geometry.quality.periodic import Period, periods
 from meshonet.geometry.quality.profiles import CheckResult, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
 from meshonet.geometry.quality.verdicts import named, verdict_word
+from meshonet.geometry.quality.wall_cells import Flow, YPlus
 from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet.geometry.summary import Quality
 from meshonet_cli.report.timed import Timed
@@ -60,6 +62,10 @@ class Measured(Timed):
             rows.append(lines_table(report.figures.blocks))
         if report.figures.wall_rows and (report.profile or many or grid.form == "plane"):
             rows.append(walls_table(report.figures.wall_rows))
+        if report.wall_skewness:
+            rows.append(skewness_table(report.wall_skewness))
+        if report.flow and report.y_plus:
+            rows.append(y_plus_table(report.flow, report.y_plus))
         rows += [_period_line(row) for row in periods(grid)]
         if report.profile or not many:
             rows.append(growth_table(report.figures))
@@ -164,6 +170,21 @@ def walls_table(rows: tuple[WallRow, ...]) -> str:
             growth = ["", figure(row.growth.mean), figure(row.growth.max), ""]
             table.append([f"{row.name}: growth of lines", *growth])
     return aligned(table)
+
+
+def skewness_table(skewness: Mapping[str, Extreme]) -> str:
+    """Return the skewness of the cells at each wall as a table."""
+    rows = [["skewness at the walls", "mean", "p99", "max", f"at {_PLACES[4]}"]]
+    for name, row in skewness.items():
+        rows.append([name, figure(row.mean), _figure(row.p99), figure(row.max), _place(row.at)])
+    return aligned(rows)
+
+
+def y_plus_table(flow: Flow, y_plus: Mapping[str, YPlus]) -> str:
+    """Return y+ at each wall as a table."""
+    rows = [[f"y+ at Re {flow.reynolds:g} on {flow.length:g}", "min", "median", "max"]]
+    rows += [[name, figure(row.min), figure(row.median), figure(row.max)] for name, row in y_plus.items()]
+    return aligned(rows)
 
 
 def growth_table(figures: Figures) -> str:

@@ -26,11 +26,13 @@ def measure_grids(
     inputs: Inputs, session: Session, *, fmt: str | None = None, criteria: Criteria = Criteria(),
     compare: str | None = None, pairing: Pairing = "auto", summary: bool = False,
     plot: str | None = None, html: str | None = None, per_cell: str | None = None,
+    reynolds: float | None = None, length: float | None = None,
 ) -> int:  # fmt: skip
     """Measure every grid of `inputs`, print the reports and return the exit code.
 
     `compare` is a file of reference grids, which are matched by `pairing`. `summary` prints one table for all
-    grids. `plot`, `per_cell` and `html` are files for pictures, metrics and the report.
+    grids. `plot`, `per_cell` and `html` are files for pictures, metrics and the report. The Reynolds
+    number and its length are those for y+.
     """
     gates = criteria.gates
     session.summary = summary
@@ -51,7 +53,9 @@ def measure_grids(
                 with stage("compare", seconds):
                     reference = references.match(item.name)
             with stage("quality", seconds):
-                report = quality(item.what, profile=criteria.profiles, compare=reference).under(gates)
+                report = quality(
+                    item.what, profile=criteria.profiles, compare=reference, reynolds=reynolds, length=length
+                ).under(gates)
                 judgement = report.judgement(gates)
             measured = Measured(item, report, judgement, judged=bool(criteria))
             measured.seconds |= seconds

@@ -212,6 +212,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--per-cell": ("grid.h5", "OPTION cells.vts", "files"),
         "--html": ("grid.h5", "OPTION report.html", "files"),
         "--compare": ("grid.h5", "OPTION smooth.h5", "out"),
+        "--reynolds": ("grid.h5", "OPTION 1e6", "out"),
+        "--length": ("grid.h5 --reynolds 1e6", "OPTION 2", "out"),
         "--pair": ("bc.h5 --compare cb.h5 --summary", "OPTION order", "out"),
         "--summary": ("grid.h5 smooth.h5", "OPTION", "out"),
         "--threads": ("grid.h5", "OPTION 0", "code"),

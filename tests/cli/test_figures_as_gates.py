@@ -9,7 +9,7 @@ from command_line import Meshonet
 from meshonet.geometry.quality.figure import COUNTS, FIGURES
 from meshonet.geometry.quality.metrics import ALL_NAMES
 from meshonet.geometry.quality.profiles import PROFILES
-from meshonet.geometry.quality.report import COMPARED
+from meshonet.geometry.quality.report import COMPARED, Y_PLUS
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "quality.md"
 
@@ -129,4 +129,21 @@ def test_a_surface_has_no_faces_to_gate(meshonet: Meshonet) -> None:
 def test_the_page_on_quality_lists_every_name_that_can_be_gated() -> None:
     section = PAGE.read_text(encoding="utf-8").split("## Gates")[1].split("\n## ")[0]
     listed = set(re.findall(r"`(\w+)`", section))
-    assert {*COUNTS, *ALL_NAMES, *FIGURES, *COMPARED} <= listed
+    assert {*COUNTS, *ALL_NAMES, *FIGURES, *COMPARED, Y_PLUS} <= listed
+
+
+def test_a_gate_on_y_plus_refers_to_the_flow(meshonet: Meshonet) -> None:
+    words = "infer", "naca:0012", "--res", "81x33", "--first-cell", "1e-4", "-o", "g.h5", "-q"
+    assert meshonet(*words).code == 0
+    flow = "--reynolds", "1e6", "--length", "2"
+    (wall,) = meshonet("quality", "g.h5", *flow, "--json").only["walls"]
+    most = wall["y_plus"]["max"]
+    for limit, code in ((0.99 * most, 1), (1.01 * most, 0)):
+        assert meshonet("quality", "g.h5", *flow, "-q", "--fail-on", f"y_plus>{limit}").code == code
+    done = meshonet("quality", "g.h5", *flow)
+    assert "y+ at Re 1e+06 on 2" in done.out
+    done = meshonet("quality", "g.h5", "--fail-on", "y_plus>1")
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert "y_plus" in done.err
+    done = meshonet("quality", "g.h5", "--length", "2")
+    assert (done.code, "give --reynolds as well" in done.err) == (2, True)

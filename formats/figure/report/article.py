@@ -111,7 +111,14 @@ def _walls(report: QualityReport) -> str:
         [html.escape(row.name), *(f"{v:.4g}" for v in (row.height.min, row.height.mean, row.height.max))]
         for row in report.figures.wall_rows
     ]
-    return _table(["first cell at", "min", "mean", "max"], rows) if rows else ""
+    table = _table(["first cell at", "min", "mean", "max"], rows) if rows else ""
+    if not (report.flow and report.y_plus):
+        return table
+    heading = f"y+ at Re {report.flow.reynolds:g} on {report.flow.length:g}"
+    y_plus = [
+        [html.escape(name), *(f"{v:.4g}" for v in vars(row).values())] for name, row in report.y_plus.items()
+    ]
+    return table + _table([heading, "min", "median", "max"], y_plus)
 
 
 def _metrics(report: QualityReport) -> str:
