@@ -8,11 +8,8 @@ from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.stack import Stack, Tip
-from meshonet.solvers.aircraft.request import aircraft_request, check_aircraft_options
-from meshonet.solvers.pipeline.aircraft import make_aircraft
-from meshonet.solvers.pipeline.rows import make_row
-from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
-from meshonet.solvers.rows.request import check_row_options, row_request
+from meshonet.solvers.pipeline.stacked import make_stacked, with_tip
+from meshonet.solvers.pipeline.stacks import stack_surface
 from meshonet.solvers.stacking.request import stack_request
 
 
@@ -59,12 +56,7 @@ def stack(
     3
     """
     what = sections if isinstance(sections, Stack | Row | Aircraft) else stack_of(str(sections))
-    if isinstance(what, Aircraft):
-        check_aircraft_options(tip=tip, surface=surface)
-        return make_aircraft(what, aircraft_request(**parameters)).grid
-    if isinstance(what, Row):
-        check_row_options(tip=tip, surface=surface)
-        return make_row(what, row_request(**parameters)).grid
-    what = what.with_tip(tip)
-    request = stack_request(**parameters)
-    return stack_surface(what, request)[0] if surface else make_stack(what, request).grid
+    what = with_tip(what, tip, surface=surface)
+    if surface and isinstance(what, Stack):
+        return stack_surface(what, stack_request(**parameters))[0]
+    return make_stacked(what, **parameters).grid

@@ -10,24 +10,19 @@ from meshonet.api.grid import domain_parameters
 from meshonet.formats.path import path_of
 from meshonet.formats.section import read_sections
 from meshonet.formats.stack import stack_of
-from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.revolve import Revolution
 from meshonet.geometry.curves.path import Path
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.notes import change_facts
 from meshonet.geometry.quality.criteria import Criteria
-from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.stack import Stack, Tip
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.solvers.aircraft.request import aircraft_request, check_aircraft_options
-from meshonet.solvers.pipeline.aircraft import make_aircraft
 from meshonet.solvers.pipeline.parameters import grid_request
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.rows import make_row
-from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
+from meshonet.solvers.pipeline.stacked import Sections, make_stacked, with_tip
+from meshonet.solvers.pipeline.stacks import stack_surface
 from meshonet.solvers.pipeline.sweeps import make_sweep
-from meshonet.solvers.rows.request import check_row_options, row_request
 from meshonet.solvers.stacking.request import StackRequest, stack_request
 from meshonet.solvers.stages import stage
 from meshonet.solvers.sweeping.sweep import Sweep
@@ -58,25 +53,12 @@ def write_stacks(
     return batch.run(BatchTask(partial(_stack, tip=tip, surface=surface), make, nodes=VOLUME_NODES))
 
 
-def _stack(source: str, tip: Tip | None, surface: bool) -> Iterator[Stack | Row | Aircraft]:
-    what = stack_of(source)
-    if isinstance(what, Aircraft):
-        check_aircraft_options(tip=tip, surface=surface)
-        return iter([what])
-    if isinstance(what, Row):
-        check_row_options(tip=tip, surface=surface)
-        return iter([what])
-    return iter([what.with_tip(tip)])
+def _stack(source: str, tip: Tip | None, surface: bool) -> Iterator[Sections]:
+    return iter([with_tip(stack_of(source), tip, surface=surface)])
 
 
-def _stacked(
-    item: Item[Stack | Row | Aircraft], parameters: Mapping[str, Any], criteria: Criteria
-) -> tuple[Grid, Report]:
-    if isinstance(item.what, Aircraft):
-        return reported(item, make_aircraft(item.what, aircraft_request(**parameters)), criteria)
-    if isinstance(item.what, Row):
-        return reported(item, make_row(item.what, row_request(**parameters)), criteria)
-    return reported(item, make_stack(item.what, stack_request(**parameters)), criteria)
+def _stacked(item: Item[Sections], parameters: Mapping[str, Any], criteria: Criteria) -> tuple[Grid, Report]:
+    return reported(item, make_stacked(item.what, **parameters), criteria)
 
 
 def _surface(item: Item[Stack], request: StackRequest) -> tuple[Grid, Delivered]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from meshonet.geometry.errors import InputError
+from meshonet.solvers.keywords import refuse_given
 from meshonet.solvers.stacking.request import StackRequest, stack_request
 
 _OTHERS = ("layers", "revolve", "axis", "cells", "copies")
@@ -16,12 +16,5 @@ def aircraft_request(**parameters: Any) -> StackRequest:
 
     Raises InputError: as `stack_request`, or a parameter that an aircraft has no use for.
     """
-    check_aircraft_options(**{name: name in parameters for name in _OTHERS})
+    refuse_given("an aircraft", {name: name in parameters for name in _OTHERS})
     return stack_request(**parameters)
-
-
-def check_aircraft_options(**given: object) -> None:
-    """Raise InputError for the first of the options, by name, that is given: neither None nor False."""
-    for name, value in given.items():
-        if value is not None and value is not False:
-            raise InputError(f"an aircraft has no {{{name}}}", f"leave {{{name}}} out")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.first_cell import FirstCell
 from meshonet.geometry.spacing.growth import check_growth
+from meshonet.solvers.keywords import request_from
 
 DEFAULT_FIRST_CELL, DEFAULT_GROWTH, DEFAULT_CELLS = 1e-3, 1.2, 500_000
 FEWEST_CELLS, MOST_CELLS = 20_000, 200_000_000
@@ -79,17 +80,4 @@ def row_request(**parameters: Any) -> RowRequest:
 
     Raises InputError: as `RowRequest`, or a parameter that it does not have.
     """
-    if "wall_spacing" in parameters:
-        parameters["first_cell"] = parameters.pop("wall_spacing")
-    known = [each.name for each in fields(RowRequest)]
-    for name in parameters:
-        if name not in known:
-            raise InputError(f"a row has no {{{name}}}", f"leave {{{name}}} out")
-    return RowRequest(**parameters)
-
-
-def check_row_options(*, tip: str | None, surface: bool) -> None:
-    """Raise InputError for options of other stacks that are given: a `tip`, `surface`."""
-    for name, given in (("tip", tip is not None), ("surface", surface)):
-        if given:
-            raise InputError(f"a row has no {{{name}}}", f"leave {{{name}}} out")
+    return request_from(RowRequest, "a row", parameters)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 from meshonet.geometry.blocks.revolve import AxisLine, Revolution, revolution
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.first_cell import FirstCell
 from meshonet.geometry.spacing.growth import check_growth
+from meshonet.solvers.keywords import request_from
 from meshonet.solvers.stacking.section_nodes import GAP
 from meshonet.solvers.stacking.wing_surface import DEFAULT_AROUND, DEFAULT_SPAN, WingSurface
 
@@ -108,10 +109,4 @@ def stack_request(**parameters: Any) -> StackRequest:
     ``wall_spacing`` is another name of ``first_cell``. Raises InputError: as `StackRequest`, or an unknown
     parameter.
     """
-    if "wall_spacing" in parameters:
-        parameters["first_cell"] = parameters.pop("wall_spacing")
-    known = [each.name for each in fields(StackRequest)]
-    for name in parameters:
-        if name not in known:
-            raise InputError(f"a stack has no {{{name}}}", f"leave {{{name}}} out")
-    return StackRequest(**parameters)
+    return request_from(StackRequest, "a stack", parameters)

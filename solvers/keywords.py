@@ -1,0 +1,30 @@
+"""Requests from keyword parameters, and parameters that a kind of grid has no use for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any, TypeVar
+
+from meshonet.geometry.errors import InputError
+
+Request = TypeVar("Request")
+
+
+def request_from(kind: type[Request], what: str, parameters: Mapping[str, Any]) -> Request:
+    """Return a request, a dataclass, with the parameters; ``wall_spacing`` is another name of ``first_cell``.
+
+    `what` is what errors call the grid, such as ``a row``. Raises InputError: as `kind`, or a parameter that
+    it does not have.
+    """
+    named = {"first_cell" if name == "wall_spacing" else name: each for name, each in parameters.items()}
+    known = {each.name for each in fields(kind)}  # type: ignore[arg-type]
+    refuse_given(what, {name: True for name in named if name not in known})
+    return kind(**named)
+
+
+def refuse_given(what: str, options: Mapping[str, object]) -> None:
+    """Raise InputError for the first of the options, by name, that is given: neither None nor False."""
+    for name, value in options.items():
+        if value is not None and value is not False:
+            raise InputError(f"{what} has no {{{name}}}", f"leave {{{name}}} out")

@@ -1,0 +1,45 @@
+"""Which grid sections become: around a wing or blade, in a duct or a blade row, around an aircraft."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.rows.row import Row
+from meshonet.geometry.sections.stack import Stack, Tip
+from meshonet.solvers.aircraft.request import aircraft_request
+from meshonet.solvers.keywords import refuse_given
+from meshonet.solvers.pipeline.aircraft import make_aircraft
+from meshonet.solvers.pipeline.result import Result
+from meshonet.solvers.pipeline.rows import make_row
+from meshonet.solvers.pipeline.stacks import make_stack
+from meshonet.solvers.rows.request import row_request
+from meshonet.solvers.stacking.request import stack_request
+
+Sections: TypeAlias = Stack | Row | Aircraft
+"""What `meshonet stack` takes."""
+
+
+def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Sections:
+    """Return what is given, a stack with a tip of this shape if it is not None.
+
+    Raises InputError: a tip, or a `surface` instead of a volume, of a row or an aircraft, which have neither.
+    """
+    if isinstance(what, Stack):
+        return what.with_tip(tip)
+    name = "a row" if isinstance(what, Row) else "an aircraft"
+    refuse_given(name, {"tip": tip, "surface": surface})
+    return what
+
+
+def make_stacked(what: Sections, **parameters: Any) -> Result:
+    """Return the volume grid of what is given, measured; the parameters are those of its kind.
+
+    Raises InputError: a parameter that this kind does not have, or as `make_stack`, `make_row` and
+    `make_aircraft`; NoValidGridError: as these.
+    """
+    if isinstance(what, Aircraft):
+        return make_aircraft(what, aircraft_request(**parameters))
+    if isinstance(what, Row):
+        return make_row(what, row_request(**parameters))
+    return make_stack(what, stack_request(**parameters))
