@@ -33,13 +33,15 @@ _POINTS = 200
 _STEP = 8
 """Points of a curve from one of its rough points to the next."""
 _NEWTON = 8
+_BALANCED = 1e-6
+"""Relative difference of the moments of inertia of a ring's nodes across its axis, at most."""
 _AT_ONCE = 1 << 13
 """Nodes that are looked up together."""
 
 
 @dataclass(frozen=True, eq=False)
 class RowSections:
-    """The sections of a grid about the axis of its periodic sides, or of a ring's shroud without these.
+    """The sections of a grid about the axis of its periodic sides, of a ring, or else x.
 
     Raises InputError: a grid that is no volume with patches `hub` and `shroud`.
     """
@@ -68,12 +70,15 @@ class RowSections:
         return abs(screw.angle), screw.centre, screw.axis
 
     def _axis_of_ring(self) -> tuple[Floats, Floats]:
-        """Return a point of the axis and its direction: those around which the shroud is balanced."""
+        """Return a point of the axis and its direction: around it a ring's shroud is balanced, else x."""
         parts = [self.grid.at(p).reshape(-1, 3) for p in self.grid.patches if p.name == "shroud"]
         points = np.concatenate(parts)
         centre = points.mean(axis=0)
         moments, axes = symmetric_eigen(product((points - centre).T, points - centre))
-        axis = axes[:, int(np.abs(moments - np.sort(moments)[1]).argmax())]
+        gaps = np.diff(moments)
+        if gaps.min() > _BALANCED * moments[-1]:  # part of a ring
+            return np.zeros(3), np.array([1.0, 0.0, 0.0])
+        axis = axes[:, 0 if gaps[0] > gaps[1] else 2]
         axis = axis * np.sign(axis[int(np.abs(axis).argmax())])
         return centre - (centre * axis).sum() * axis, axis
 
@@ -147,7 +152,12 @@ class RowSections:
             mean * np.stack([np.interp(along, knots, m), nodes[..., 2]], axis=-1)
             for nodes, (_, along) in zip(self.places, self._spans, strict=True)
         ]
-        made = cut_where([part - span for part, _ in self._spans], flat, values)
+        cuts = []
+        for number, ((part, _), plane) in enumerate(zip(self._spans, flat, strict=True)):
+            own = values[number] if values else None
+            quads = _between_lines(part - span, plane, own)
+            cuts.append(quads or cut_where([part - span], [plane], None if own is None else [own]))
+        made = _together(cuts)
         if not len(made.polygons):
             raise InputError(f"no cell is at {span:g} of the span", "use 0 to 1", parameter="span")
         return made
@@ -164,8 +174,32 @@ class RowSections:
             cut_where([each - middle - k * self.pitch for each in theta], flat, values)
             for k in range(math.ceil(first), math.floor(last) + 1)
         ]
-        shown = [each.values for each in cuts if each.values is not None]
-        return Cut(np.concatenate([each.polygons for each in cuts]), np.concatenate(shown) if shown else None)
+        return _together(cuts)
+
+
+def _together(cuts: list[Cut]) -> Cut:
+    shown = [each.values for each in cuts if each.values is not None]
+    return Cut(np.concatenate([each.polygons for each in cuts]), np.concatenate(shown) if shown else None)
+
+
+def _between_lines(distance: Floats, plane: Floats, values: Floats | None) -> Cut | None:
+    """Return the quadrilaterals between the points where the lines along k of a block cross a surface.
+
+    None where a line does not, or more than once. Polygons of cells would have another edge wherever the
+    surface passes from one layer of cells to the next.
+    """
+    if distance[..., 0].mean() > distance[..., -1].mean():
+        distance = -distance
+    crossed = (distance[..., :-1] <= 0.0) & (distance[..., 1:] > 0.0)
+    if not (crossed.sum(axis=-1) == 1).all():
+        return None
+    k = crossed.argmax(axis=-1)[..., None]
+    low, high = (np.take_along_axis(distance, each, axis=-1) for each in (k, k + 1))
+    below, above = (np.take_along_axis(plane, each[..., None], axis=2)[:, :, 0] for each in (k, k + 1))
+    points = below + (low / (low - high)) * (above - below)
+    corners = points[:-1, :-1], points[1:, :-1], points[1:, 1:], *9 * [points[:-1, 1:]]
+    shown = None if values is None else np.take_along_axis(values, k[:-1, :-1], axis=2).ravel()
+    return Cut(np.stack(corners, axis=2).reshape(-1, len(corners), 2), shown)
 
 
 def _nearest(points: Floats, cloud: Floats) -> Floats:

@@ -175,7 +175,8 @@ def _sections_figure(
     for ax, box, each, label in zip(axes, boxes, cuts, labels, strict=True):
         _draw_polygons(ax, box, each, colouring, limits)
         ax.set(xlim=box[:2], ylim=box[2:])
-        note(ax, f"{label}   {names[0]} to the right, {names[1]} upwards".strip())
+        directions = f"{names[0]} to the right, {names[1]} upwards"
+        note(ax, f"{label}   {names[0]}, {names[1]}" if label and ax is axes[0] else label or directions)
     _finish(axes[0], bar, grid, colouring, limits)
     return figure
 

@@ -82,7 +82,7 @@ class Channel:
         if not (left > 0.0).all():
             k = int(left.min(axis=0).argmin())
             problem = f"hub and casing cross, turn back or lie the wrong way round near x = {low[k, 0]:.6g}"
-            remedy = "give both from inlet to outlet, along growing x in an axial machine, the hub inside"
+            remedy = "check the axis, and give both from inlet to outlet, the hub inside"
             raise InputError(problem, remedy)
         self.span = middle(widths)
         self.length = middle(np.array([norms(np.diff(line, axis=0)).sum() for line in (low, high)]))

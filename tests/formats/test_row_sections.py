@@ -86,6 +86,22 @@ def test_the_blade_is_missing_from_sections_below_the_gap_alone() -> None:
         assert whole - area(sections.at(span, None)) == pytest.approx(missing, abs=0.15 * blade)
 
 
+def test_a_span_between_layers_of_cells_has_the_lines_of_a_layer_alone() -> None:
+    grid = annulus(slope=0.1)
+    nodes = grid.nodes.copy()
+    span = (nodes[..., 1] ** 2 + nodes[..., 2] ** 2) ** 0.5 / (1.0 + 0.1 * nodes[..., 0]) - INNER
+    nodes[..., 1:] *= (1.0 + 0.05 * np.sin(9.0 * nodes[..., 0]) * span * (OUTER - INNER - span))[..., None]
+    bent = Grid((Block(nodes),), grid.patches)
+    along, around = nodes.shape[0] - 1, nodes.shape[2] - 1
+    moved = Grid((Block(np.moveaxis(nodes, 1, 2)),), tuple(
+        Patch(name, side, 0, 30, kind="wall") for name, side in (("hub", "bottom"), ("shroud", "top"))
+    ))  # fmt: skip
+    assert len(RowSections(bent).at(0.4, None).polygons) > along * around
+    made = RowSections(moved).at(0.4, None)
+    assert len(made.polygons) == along * around
+    assert area(made) == pytest.approx(area(RowSections(bent).at(0.4, None)), rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
