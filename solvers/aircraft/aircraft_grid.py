@@ -20,6 +20,7 @@ from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.body_plane import LevelPlan, level_patches, planned
 from meshonet.solvers.aircraft.exact_cells import at_height, at_heights
+from meshonet.solvers.aircraft.wall_normals import off_body, off_wing
 from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.blocking.layers.attach import sampled
 from meshonet.solvers.rows.columns import arcs_of, resampled, with_first
@@ -36,6 +37,8 @@ LEVEL_PATCHES = 7
 """Patches of a level (`level_patches`)."""
 _FLAT = 1e-13
 """Distance from the plane of symmetry in lengths of the body, within which nodes are in it."""
+_ABOVE = 1e-3
+"""Step in zeta of the point by which the normal of the body is known."""
 _FINE = 129
 """Levels of the table by which lines beyond the tip are measured."""
 _PLANNED = (0, 4, 8, 12, 16)
@@ -67,7 +70,18 @@ def aircraft_grid(aircraft: Aircraft, request: StackRequest) -> tuple[Grid, tupl
     beyond = _beyond_tip(space, tip, first, growth)
     shapes += [patch.shape[:2] for patch in caps]
     flat = () if aircraft.wing.tip == "flat" else ("the tip of the wing is flat",)
-    return _joined(aircraft, space, shapes, beside, beyond), (*wing.notes, *flat)
+    normal = at_height(space, beside[0], beside[0] + [0.0, 0.0, _ABOVE], first)
+    low = _flat(space.points(beside), aircraft)
+    low = off_body(low, space.points(normal), ring, first)
+    low = off_wing(low, ring, first)
+    high = _flat(space.points(beyond), aircraft)
+    return _joined(aircraft, shapes, low, high), (*wing.notes, *flat)
+
+
+def _flat(points: Floats, aircraft: Aircraft) -> Floats:
+    """Return points (..., 3), those next to the plane of symmetry in it."""
+    points[np.abs(points[..., 2]) < _FLAT * aircraft.body.length, 2] = 0.0
+    return points
 
 
 def _scales(space: BodyMap, sections: Floats) -> Floats:
@@ -142,16 +156,12 @@ def _beyond_tip(space: BodyMap, tip: Floats, first: float, growth: float) -> Flo
     return places
 
 
-def _joined(
-    aircraft: Aircraft, space: BodyMap, shapes: Sequence[tuple[int, int]], beside: Floats, beyond: Floats
-) -> Grid:
-    """Return the grid of places (k, p, 3) from the body to the tip, and from there to the far field.
+def _joined(aircraft: Aircraft, shapes: Sequence[tuple[int, int]], low: Floats, high: Floats) -> Grid:
+    """Return the grid of points (k, p, 3) from the body to the tip, and from there to the far field.
 
     The first seven of `shapes` are patches of all levels, the others fill the section beyond the tip.
     """
-    tip = len(beside) - 1
-    low = space.points(beside)
-    high = space.points(beyond)
+    tip = len(low) - 1
     blocks: list[Block] = []
     start = 0
     for number, (ni, nj) in enumerate(shapes):
@@ -161,9 +171,6 @@ def _joined(
         if number < LEVEL_PATCHES:
             nodes = np.concatenate([low[:-1, columns], nodes])
         blocks.append(_right_handed(np.moveaxis(nodes.reshape(len(nodes), ni, nj, 3), 0, 2)))
-    for block in blocks:
-        flat = np.abs(block.nodes[..., 2]) < _FLAT * aircraft.body.length
-        block.nodes[..., 2][flat] = 0.0
     connections = find_connections(blocks)
     joined = with_equal_nodes(blocks, connections)
     return Grid(joined, tuple(_patches(joined, tip, aircraft)), connections, aircraft.name)

@@ -27,8 +27,8 @@ _SHORTEST = 0.35
 """Least cells on the short sides of the rectangle, over the mean cell of a long side."""
 _NORMAL = 0.12
 """Part of a line's length over which it keeps the direction of the root's normal."""
-_SMOOTHED = 6
-"""Sweeps by which normals are smoothed around the root."""
+_SMOOTHED = 0
+"""Further sweeps by which normals are smoothed around the root."""
 _FINE = 33
 """Places on a line by which its length is measured."""
 

@@ -124,3 +124,26 @@ def test_places_around_a_body_are_those_of_the_points_there() -> None:
     along = space.points(places * [1.0, 1.0, 0.0] + [1e-5, 0.0, 0.0]) - on_body
     cosine = (beside * along).sum(axis=1) / np.linalg.norm(beside, axis=1) / np.linalg.norm(along, axis=1)
     assert np.abs(cosine[(places[:, 0] > 1) & (places[:, 0] < 9)]).max() < 0.02, "a right angle at the body"
+
+
+@pytest.mark.parametrize("name", ["fuselage", "wing"])
+def test_lines_leave_the_walls_at_right_angles_away_from_the_junction(grid: Grid, name: str) -> None:
+    """The wing lies low on the body and is swept: lines along it are 20 degrees and more off the normal."""
+    angles = []
+    for nodes, beside in wall(grid, name):
+        i, j = (np.gradient(nodes, axis=axis) for axis in (0, 1))
+        cosine = (np.cross(i, j) * (beside - nodes)).sum(axis=-1)
+        cosine /= np.linalg.norm(np.cross(i, j), axis=-1) * np.linalg.norm(beside - nodes, axis=-1)
+        inner = np.degrees(np.arccos(np.clip(np.abs(cosine), -1.0, 1.0)))[2:-2, 2:-2]
+        angles.append(inner.ravel())
+    assert np.percentile(np.concatenate(angles), 90) < 15.0
+
+
+def test_cells_grow_little_along_lines(grid: Grid) -> None:
+    ratios = []
+    for block in grid.blocks[:7]:
+        for axis in (0, 1):
+            steps = np.moveaxis(np.linalg.norm(np.diff(block.nodes, axis=axis), axis=-1), axis, 0)
+            ratios.append((steps[1:] / steps[:-1]).ravel())
+    growth = np.concatenate(ratios)
+    assert (np.maximum(growth, 1.0 / growth) <= 1.3).mean() > 0.97

@@ -1,0 +1,75 @@
+"""Lines that leave body and wing at right angles, and come back to where they were away from the walls.
+
+::
+
+    wing |  :  :   :       A line at the distance a from another wall is moved over about half of a: beside
+         | :  :   :        the junction it has to follow that wall, further away it turns to the normal.
+    -----+---------- body
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.elementary import exp
+from meshonet.solvers.rows.columns import arcs_of
+
+_WAY = 0.6
+"""Length over which a line is moved, over its distance from another wall."""
+
+
+def off_body(points: Floats, normal: Floats, ring: Floats, first: float) -> Floats:
+    """Return points (k, p, 3) of lines from a body, row k = 0, whose first cells, `first` high, are normal.
+
+    `normal` (p, 3) are points at the height `first` above the body, `ring` (n, m) the columns of the collar
+    from the wing outwards.
+    """
+    turned = (normal - points[1]) / first
+    turned[points[0, :, 2] == 0.0, 2] = 0.0
+    apart = arcs_of(norms(np.diff(points[0, ring], axis=1)))
+    most = float(apart[:, -1].min())
+    beside = np.full(points.shape[1], most)
+    beside[ring] = np.minimum(apart, most)
+    beside[ring[:, :2]] = 0.0
+    out = points + turned * _moved(points, beside)[..., None]
+    at = beside > 0.0
+    out[1, at] = _at(points[0, at], out[1, at], first)
+    return out
+
+
+def off_wing(points: Floats, ring: Floats, first: float) -> Floats:
+    """Return points (k, p, 3), with lines of the collar `ring` (n, m) at right angles to the wing's span."""
+    lines = np.moveaxis(points[:, ring], 2, 0)  # (m, k, n, 3), from the wing outwards
+    wall, away = lines[0], (lines[1] - lines[0]) / first
+    span = np.gradient(wall, axis=0)
+    span /= norms(span)[..., None]
+    square = away - (away * span).sum(axis=-1)[..., None] * span
+    turned = square / norms(square)[..., None] - away
+    arcs = arcs_of(norms(np.diff(wall, axis=0)).T).T
+    beside = np.minimum(arcs, arcs[-1] - arcs)
+    beside[[0, 1, -2, -1]] = 0.0
+    shape = lines.shape
+    flat = lines.reshape(shape[0], -1, 3)
+    most = norms(np.diff(flat, axis=0)).sum(axis=0)
+    moved = flat + turned.reshape(-1, 3) * _moved(flat, np.minimum(beside.ravel(), most))[..., None]
+    at = beside.ravel() > 0.0
+    moved[1, at] = _at(flat[0, at], moved[1, at], first)
+    out = points.copy()
+    out[:, ring] = np.moveaxis(moved.reshape(shape), 0, 2)
+    out[:, ring[-1]] = out[:, ring[0]]
+    return out
+
+
+def _moved(lines: Floats, beside: Floats) -> Floats:
+    """Return how far nodes of lines (k, p, 3) move by a unit of turn, given distances (p,) beside them."""
+    arcs = arcs_of(norms(np.diff(lines, axis=0)).T).T
+    way = np.where(beside > 0.0, _WAY * beside, 1.0)
+    fade = 1.0 - arcs / arcs[-1]
+    return np.where(beside > 0.0, arcs * exp(-arcs / way) * fade * fade, 0.0)
+
+
+def _at(wall: Floats, beside: Floats, first: float) -> Floats:
+    """Return points (n, 3) towards `beside` at the distance `first` from a wall."""
+    away = beside - wall
+    return wall + away * (first / norms(away))[:, None]
