@@ -152,6 +152,13 @@ def _surfaces(read: Callable[[Source], Iterator[Grid]], source: Source) -> Itera
         return iter(list(read(source)))
 
 
+def is_cad(text: str, fmt: str | None = None) -> bool:
+    """Return whether a path or ``-`` has faces of a CAD file, which become patches."""
+    if is_designation(text):
+        return False
+    return format_of(source_of(text), fmt).name in ("step", "brep")
+
+
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     """Return an iterator over the grids of a path or of ``-``; like `read_shapes` it continues after errors.
 

@@ -134,6 +134,15 @@ _FORMATS: tuple[Format, ...] = (
         sniff=partial(begins, rb"\s*0\s+SECTION\s|AutoCAD Binary DXF"), many=True,
     ),
     _format(
+        "step", ".step .stp", "STEP, faces become patches of a surface (needs the extra cad)", "",
+        read_shapes=later("meshonet.formats.cad.read:read_step"), sniff=partial(begins, rb"\s*ISO-10303-21"),
+    ),
+    _format(
+        "brep", ".brep .brp", "B-rep of Open Cascade, as STEP", "",
+        read_shapes=later("meshonet.formats.cad.read:read_brep"),
+        sniff=partial(begins, rb"\s*(DBRep_DrawableShape|CASCADE Topology)"),
+    ),
+    _format(
         "wkt", ".wkt", "outlines as well-known text", "", sniff=partial(begins, _WKT), many=True,
         read_shapes=later("meshonet.formats.outlines.vector:read_wkt"),
     ),

@@ -15,6 +15,7 @@ from meshonet.geometry.threads import cores, thread_count
 
 ADDS = {
     "train": "training of models, gradients, GPUs: meshonet train, infer --device",
+    "cad": "STEP and B-rep files as surfaces",
     "dxf": "DXF drawings as domains",
     "pyvista": "grid.to_pyvista()",
     "smooth": "smoothing splines through points of airfoils: --smooth",

@@ -54,7 +54,10 @@ def sample_boundary(
         help="Store M boundary nodes of each shape as sensors, in the dataset sensors of the .h5 file.",
     )] = None,
 ) -> int:
-    """Place nodes on the four edges of a boundary."""
+    """Place nodes on the four edges of a boundary.
+
+    Faces of STEP and B-rep files become patches of a surface, from which a volume can be marched.
+    """
     from meshonet.geometry.errors import InputError
     from meshonet.geometry.families.draw import draws
     from meshonet_cli.batch.drawn import DrawnInputs

@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
-from meshonet.formats.registry import format_for_output, read_shapes
+from meshonet.formats.registry import format_for_output, is_cad, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.cad.model import CadModel
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.draw import Draw
 from meshonet.geometry.shapes.shape import Shape, edges_of
@@ -28,9 +30,15 @@ def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = Non
     Raises InputError: a format that cannot store sensors, or several boundaries.
     """
     files = batch.files
+    drawn = isinstance(batch.inputs, DrawnInputs)
+    if not drawn and is_cad(batch.inputs.first(), files.from_format):
+        if sensors is not None:
+            raise InputError("patches have no sensors", "drop {sensors}", parameter="sensors")
+        return batch.run(
+            BatchTask(partial(read_shapes, fmt=files.from_format), each(_patched, sampling=sampling))
+        )
     if sensors is not None and format_for_output(files.output, files.to_format, "boundaries").name != "hdf5":
         raise InputError("only HDF5 keeps sensors", "write an .h5 file", parameter="sensors")
-    drawn = isinstance(batch.inputs, DrawnInputs)
     read: Any = itself if drawn else partial(read_shapes, fmt=files.from_format)
     make = each(_sampled, sampling=sampling, sensors=sensors)
     return batch.run(BatchTask(read, make, "boundaries", nodes=EDGE_NODES))
@@ -39,6 +47,17 @@ def write_boundaries(batch: Batch, sampling: Sampling, sensors: int | None = Non
 def itself(member: Draw) -> Iterator[Draw]:
     """Yield a member of a family, which is its own content."""
     return iter([member])
+
+
+def _patched(item: Item[Shape], sampling: Sampling) -> tuple[Grid, Delivered]:
+    from meshonet.solvers.cad.patches import patches_on
+
+    if not isinstance(item.what, CadModel):
+        raise InputError("is no CAD file, and the first input is one", "sample it by a command of its own")
+    solution = patches_on(item.what, sampling)
+    report = delivered(item, solution.grid, {}, "patches of a surface", notes=solution.notes)
+    report.seconds |= solution.seconds
+    return solution.grid, report
 
 
 def _sampled(item: Item[Shape], sampling: Sampling, sensors: int | None) -> tuple[Boundary, Delivered]:

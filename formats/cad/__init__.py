@@ -1,0 +1,1 @@
+"""CAD files, STEP and B-rep, read by Open Cascade (extra ``cad``)."""

@@ -1,0 +1,120 @@
+"""Faces of STEP and B-rep files, read by Open Cascade (https://dev.opencascade.org)."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from meshonet.formats.source import Source
+from meshonet.geometry.cad.model import CadModel
+from meshonet.geometry.errors import InputError
+
+_MOST_BYTES = 1 << 28
+"""Largest CAD file in bytes; reading takes some 10 times as much memory."""
+_MILLIMETRES = {
+    "millimetre": 1.0, "centimetre": 10.0, "metre": 1000.0, "inch": 25.4, "foot": 304.8, "micrometre": 1e-3,
+}  # fmt: skip
+"""Units of length as STEP files name them."""
+_SEWN = 1e-6
+"""Distance over the size of a file within which edges of separate faces are joined."""
+
+
+def read_step(source: Source) -> Iterator[CadModel]:
+    """Yield the model of all faces of a STEP file.
+
+    Raises InputError: Open Cascade is not installed; no STEP file; a file without faces.
+    """
+    yield _model(source, _step_shape, "STEP")
+
+
+def read_brep(source: Source) -> Iterator[CadModel]:
+    """Yield the model of all faces of a B-rep file of Open Cascade; errors as `read_step`."""
+    yield _model(source, _brep_shape, "B-rep")
+
+
+def _model(source: Source, read: Callable[[str], tuple[Any, ...]], kind: str) -> CadModel:
+    try:
+        from OCP.Message import Message
+    except ImportError:
+        problem = "needs the package cadquery-ocp-novtk"
+        raise InputError(problem, "install it: pip install 'meshonet[cad]'") from None
+    from meshonet.formats.cad.topology import model_of
+
+    if source.size > _MOST_BYTES:
+        raise InputError(f"{source.size >> 20} MB are too much for a CAD file", "give one below 256 MB")
+    messenger = Message.DefaultMessenger_s()
+    for printer in list(messenger.Printers()):  # it writes to standard output, where reports go
+        messenger.RemovePrinter(printer)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "part")
+        path.write_bytes(source.read_bytes())
+        notes: list[str] = []
+        try:
+            shape, *notes = read(str(path))
+        except Exception:  # whatever a damaged file makes of it
+            shape = None
+    if shape is None or shape.IsNull():
+        raise InputError(f"is no {kind} file that can be read", f"export it again as {kind}")
+    shape, *sewn = _sewn(shape)
+    return model_of(shape, source.stem, (*notes, *sewn))
+
+
+def _step_shape(path: str) -> tuple[Any, ...]:
+    """Return the shape of a STEP file in the unit of the file, None if there is none, and a note or none."""
+    from OCP.IFSelect import IFSelect_RetDone
+    from OCP.STEPControl import STEPControl_Reader
+
+    reader = STEPControl_Reader()
+    if reader.ReadFile(path) != IFSelect_RetDone:
+        return (None,)
+    units = _units(reader)
+    known = len(units) == 1 and units[0] in _MILLIMETRES
+    if known:
+        reader.SetSystemLengthUnit(_MILLIMETRES[units[0]])
+    shape = reader.OneShape() if reader.TransferRoots() else None
+    which = "several units of length" if len(units) > 1 else "an unknown unit of length"
+    return (shape,) if known else (shape, f"the file has {which}: coordinates are in millimetres")
+
+
+def _units(reader: Any) -> list[str]:
+    from OCP.collections import Sequence_TCollection_AsciiString as Names
+
+    names, *others = Names(), Names(), Names()
+    reader.FileUnits(names, *others)
+    return sorted({names.Value(k).ToCString().lower() for k in range(1, names.Length() + 1)})
+
+
+def _brep_shape(path: str) -> tuple[Any, ...]:
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepTools import BRepTools
+    from OCP.TopoDS import TopoDS_Shape
+
+    shape = TopoDS_Shape()
+    return (shape if BRepTools.Read_s(shape, path, BRep_Builder()) else None,)
+
+
+def _sewn(shape: Any) -> tuple[Any, ...]:
+    """Return a shape whose separate faces share their edges, and a note if they did not."""
+    from OCP.Bnd import Bnd_Box
+    from OCP.BRepBndLib import BRepBndLib
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
+
+    from meshonet.formats.cad.topology import open_edges
+
+    free = open_edges(shape)
+    if not free:
+        return (shape,)
+    box = Bnd_Box()
+    BRepBndLib.Add_s(shape, box)
+    low, high = box.CornerMin(), box.CornerMax()
+    size = max(high.X() - low.X(), high.Y() - low.Y(), high.Z() - low.Z())
+    sewing = BRepBuilderAPI_Sewing(_SEWN * size)
+    sewing.Add(shape)
+    sewing.Perform()
+    joined = sewing.SewedShape()
+    left = open_edges(joined)
+    if joined.IsNull() or left >= free:
+        return (shape,)
+    return joined, f"{free - left} edges of separate faces were joined; {left} edges are open"

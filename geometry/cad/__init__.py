@@ -1,0 +1,1 @@
+"""Surfaces of CAD files: faces bounded by curves, as the solvers of patches take them."""

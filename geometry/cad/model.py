@@ -1,0 +1,105 @@
+"""Faces of a CAD file and the curves that bound them, independent of the library that reads the file.
+
+::
+
+      vertex 3 <--- edge 2 ---- vertex 2      A face has one loop of edges, counter-clockwise as seen from
+         |                         ^          outside. An edge belongs to two faces, to one at an open end,
+      edge 3        face        edge 1        or twice to one that closes on itself (a cylinder). An edge
+         v                         |          without length is a pole, as at the end of a sphere.
+      vertex 0 ---- edge 0 ---> vertex 1
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.sampling import Sampling
+
+Curve: TypeAlias = Callable[[Floats], Floats]
+"""Points (n, 2 or 3) at parameters (n,) from 0 to 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class CadEdge:
+    """A curve between two vertices.
+
+    Parameters
+    ----------
+    ends : numbers of its first and last vertex, the same for a closed curve or a pole.
+    points : its points (n, 3) at parameters (n,) from 0 to 1; None for a pole.
+    """
+
+    ends: tuple[int, int]
+    points: Curve | None
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeUse:
+    """An edge in the loop of a face.
+
+    Parameters
+    ----------
+    edge : number of the edge.
+    forward : whether the loop goes along it from its first vertex.
+    trace : coordinates (n, 2) on the face at parameters (n,) of the edge.
+    """
+
+    edge: int
+    forward: bool
+    trace: Curve
+
+
+@dataclass(frozen=True, eq=False)
+class CadFace:
+    """A face with the loop around it.
+
+    Parameters
+    ----------
+    uses : edges of the outer loop, in order, counter-clockwise in the coordinates on the face.
+    points : points (n, 3) of the surface at coordinates (n, 2).
+    inside_out : whether the product of the derivatives points inwards.
+    holes : number of other loops.
+    """
+
+    uses: tuple[EdgeUse, ...]
+    points: Callable[[Floats], Floats]
+    inside_out: bool
+    holes: int
+
+
+@dataclass(frozen=True, eq=False)
+class CadModel:
+    """All faces of a CAD file; a `meshonet.geometry.shapes.shape.Shape` that has no four edges.
+
+    Parameters
+    ----------
+    vertices : (n, 3) their positions, in the unit of the file.
+    edges, faces : in the order of the file.
+    name : of the file.
+    notes : sentences on what was changed when the file was read.
+    """
+
+    vertices: Floats
+    edges: tuple[CadEdge, ...]
+    faces: tuple[CadFace, ...]
+    name: str = ""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def size(self) -> float:
+        """Longest extent of the edges along an axis."""
+        part = np.linspace(0.0, 1.0, 33)
+        curves = [edge.points(part) for edge in self.edges if edge.points is not None]
+        return extent_of(np.concatenate([self.vertices, *curves]))
+
+    def boundary(self, sampling: Sampling) -> Boundary:  # noqa: ARG002 - as all shapes have it
+        """Raise InputError: the faces of a CAD file have no four edges in the plane."""
+        problem = "is a CAD file, and its faces are not a boundary in the plane"
+        raise InputError(problem, "make patches first: meshonet sample-boundary FILE -o surface.xyz")

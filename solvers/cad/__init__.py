@@ -1,0 +1,1 @@
+"""Patches of structured nodes on the faces of CAD files."""

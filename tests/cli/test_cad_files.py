@@ -1,0 +1,48 @@
+"""`meshonet sample-boundary` of CAD files (extra ``cad``)."""
+
+from pathlib import Path
+
+import pytest
+from command_line import Meshonet
+
+pytest.importorskip("OCP")
+
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeSphere
+from OCP.BRepTools import BRepTools
+
+
+@pytest.fixture(autouse=True)
+def _files(meshonet: Meshonet) -> None:
+    BRepTools.Write_s(BRepPrimAPI_MakeSphere(1.0).Shape(), "ball.brep")
+    BRepTools.Write_s(BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Shape(), "box.brep")
+
+
+def test_a_ball_becomes_a_surface_and_a_volume(meshonet: Meshonet) -> None:
+    done = meshonet("sample-boundary", "ball.brep", "--res", "16", "-o", "ball.xyz", "--json")
+    assert (done.code, done.only["blocks"]) == (0, 1)
+    options = ["--method", "hyperbolic", "--first-cell", "1e-2", "--layers", "20", "--far-field", "3"]
+    done = meshonet("solve-pde", "ball.xyz", *options, "-o", "ball.cgns")
+    assert done.code == 0
+    assert "became a core" in done.err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--te-spacing", "0.1"], "--te-spacing is of no use to CAD files"),
+        (["--res", "20x30"], "give one number"),
+        (["--spacing", "tanh"], "use curvature, uniform or cosine"),
+        (["--sensors", "5"], "patches have no sensors"),
+    ],
+)
+def test_options_without_use_are_refused(options: list[str], message: str, meshonet: Meshonet) -> None:
+    done = meshonet("sample-boundary", "box.brep", *options, "-o", "box.xyz")
+    assert done.code == 2
+    assert message in done.err
+    assert not Path("box.xyz").exists()
+
+
+def test_other_commands_say_what_to_do_with_a_cad_file(meshonet: Meshonet) -> None:
+    done = meshonet("infer", "box.brep", "-o", "box.vts")
+    assert done.code == 2
+    assert "make patches first: meshonet sample-boundary" in done.err
