@@ -145,6 +145,7 @@ def all_inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (tmp_path / name).write_text("\n".join(f"{x:.8f} {y:.8f}" for x, y in loop) + "\n")
     cubed_sphere().write(tmp_path / "wing.xyz")
     half_sphere().write(tmp_path / "m6.fmt")
+    write_step(tmp_path / "wing.step")
     for name in ("duct.xyz", "box.xyz", "wing.cgns"):
         Grid((Block(box()),)).write(tmp_path / name)
     for page in GUIDES:
@@ -155,6 +156,18 @@ def all_inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name in ("grid.vts", "predicted.h5", "solved.h5"):
         run(f"meshonet tfi ellipse.csv --res 41x21 -o {name}", tmp_path)
     return tmp_path
+
+
+def write_step(path: Path) -> None:
+    """Write a ball as a STEP file where Open Cascade is installed."""
+    if importlib.util.find_spec("OCP") is None:
+        return
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere
+    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
+
+    writer = STEPControl_Writer()
+    writer.Transfer(BRepPrimAPI_MakeSphere(1.0).Shape(), STEPControl_AsIs)
+    writer.Write(str(path))
 
 
 def domains(folder: Path) -> dict[str, Any]:
@@ -180,6 +193,8 @@ def run(line: str, folder: Path) -> None:
 
 @pytest.mark.parametrize("page", [page for page in GUIDES if commands(page)], ids=path_of)
 def test_the_commands_of_a_page_run_in_their_order(page: Path, inputs: Path) -> None:
+    if any(".step" in line for line in commands(page)):
+        pytest.importorskip("OCP")
     for line in commands(page):
         run(line, inputs)
 
@@ -198,6 +213,8 @@ def test_the_python_of_a_page_runs(page: Path, inputs: Path) -> None:
     text = "\n".join(blocks(page, "python"))
     if "import torch" in text:
         pytest.importorskip("torch")
+    if ".step" in text:
+        pytest.importorskip("OCP")
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
     words = [sys.executable, "-c", text]
     done = subprocess.run(words, cwd=inputs, env=environment, capture_output=True, text=True, timeout=120)
