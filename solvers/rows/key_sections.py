@@ -24,34 +24,18 @@ from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.threads import both
-from meshonet.solvers.blocking.cascade.cascade import beside_neighbours, scaled
-from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of
-from meshonet.solvers.blocking.cascade.flat_template import flat_cut, flat_template
-from meshonet.solvers.blocking.cascade.passage import laid_out
-from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
-from meshonet.solvers.blocking.layers.layer_law import layer_arcs
-from meshonet.solvers.blocking.layers.layer_rows import JOIN, layer_lines
-from meshonet.solvers.blocking.sizes.chords import Chords
-from meshonet.solvers.blocking.sizes.refine import multiplied, refine
-from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+from meshonet.solvers.blocking.layers.layer_rows import layer_lines
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.rows.columns import layer_columns
 from meshonet.solvers.rows.harmonic import harmonic
+from meshonet.solvers.rows.middle_section import LOWER, TOLERANCE, UPPER, middle_section
 from meshonet.solvers.rows.opposite import at_corners, opposite_places
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.wall_places import even_wall_places
-from meshonet.solvers.rows.whole_section import whole_section
 
-TRAILING, LEADING = 9, 11
-"""Numbers of the template's blocks around the edges of the blade."""
-COARSE = 300
-"""Iterations of the first optimum of the middle section."""
 FINE, FROM_NEIGHBOUR = 80, 25
-TOLERANCE = 1e-3
 FLAT, SMOOTH = 0.95, 1e-3
 """Weights w and β of the functional."""
-SLENDER = 2.5
-"""Chord of the middle section in pitches from which on it is optimised in (m', theta) from the start."""
 BEND = 0.3
 """Part of the way to the outlet in which lines bend into the direction of the wake."""
 STEEP, MARGIN = 3.0, 0.93
@@ -115,26 +99,18 @@ def planned(
     that of the plan. With `opposite` nodes on both sides of the blade are opposite each other.
     """
     plane = planes[len(planes) // 2]
-    flat = plane.slenderness > SLENDER
-    attempts = [(flat, True), (flat, False)] + ([] if flat else [(True, True), (True, False)])
-    for attempt in attempts:
-        try:
-            whole = _middle(planes, cells, longest, *attempt)
-            break
-        except NoValidGridError:
-            if attempt == attempts[-1]:
-                raise
-    columns = layer_columns(whole)
+    whole = middle_section(planes, cells, longest)
+    columns, growth = layer_columns(whole), plane.cascade.layers.growth
     at = plane.places_of(whole.mesh.places.arc[columns[:, 0]])
     places = at_corners(opposite_places(at) if opposite else at, plane.corners)
-    growth = plane.cascade.layers.growth
+    pairs = _pairs(whole, columns)
     m = whole.mesh.nodes[:, 0]
     near = 1e-9 * (m.max() - m.min())
     ends = np.flatnonzero(m <= m.min() + near), np.flatnonzero(m >= m.max() - near)
     plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, places, wake)
 
     def evened() -> Floats:
-        return even_wall_places(planes, places, plane.corners, growth, opposite=opposite)
+        return even_wall_places(planes, places, plane.corners, growth, pairs, opposite=opposite)
 
     optimum, even = both(partial(_optimum, plan, whole, FINE, ends_slide=True), evened)
     plan, section = replace(plan, places=even), KeySection(plane, optimum, at)
@@ -153,56 +129,6 @@ def next_section(plan: SectionPlan, before: KeySection, plane: SectionPlane) -> 
     return _moved(plan, before, plane, plan.places, FROM_NEIGHBOUR)
 
 
-def _middle(
-    planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], flat: bool, early: bool
-) -> Layout:
-    """Return the middle section, `early` with nodes at corners of the blade from the start.
-
-    Its blocks are optimised `flat` in (m', theta), otherwise in the plane of the passage's map.
-    """
-    plane = planes[len(planes) // 2]
-    cascade = plane.cascade
-    start = (flat_template if flat else template)(cascade.passage, at_corners=early)
-    sizes = beside_neighbours(cascade.flat_metric, cascade) if flat else cascade.metric
-    coarse = _sized(start, FIRST, None)
-    chords = Chords.of(coarse)
-    counts, times, metric = counts_of(cascade, sizes, chords, cells, None)
-    ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
-    counts[ends] = counts[ends].max()
-    rows = max(each.cascade.rows_of_layers for each in planes)
-    scale = float((metric.along / sizes.along).mean())
-    metric = _joined(plane, sizes, scale, rows)
-    fine = multiplied(_sized(refine(coarse, counts, chords), COARSE, metric), times)
-    passage = replace(cascade.passage, domain=fine.mesh.domain) if flat else cascade.passage
-    beyond, cut = (fine, flat_cut(fine)) if flat else laid_out(fine, passage, cut_of(fine))
-    return whole_section(plane, passage, (beyond, cut), rows, metric.largest, longest)
-
-
-def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
-    """Return the blocks beyond the layers where the functional is least, for sizes if given.
-
-    Nodes in which the cut ends are held.
-    """
-    mesh = layout.mesh
-    optimum = optimise(
-        mesh, iterations=iterations, held=(mesh.places.loop >= 0) & mesh.tied,
-        targets=metric.gradual(mesh) if metric else None, tolerance=TOLERANCE, weights=WEIGHTS,
-    )  # fmt: skip
-    if not optimum.valid:
-        raise NoValidGridError("cells of a section stay folded")
-    return replace(layout, mesh=optimum.mesh)
-
-
-def _joined(plane: SectionPlane, sizes: SizeMetric, scale: float, rows: int) -> SizeMetric:
-    """Return `sizes` for cells `scale` times as long, across the front those beyond `rows` of layers."""
-    cascade = plane.cascade
-    thickness = cascade.ring.thickness
-    none = np.full(len(thickness), np.inf)
-    arcs = layer_arcs(thickness, cascade.layers.first, none, rows)
-    last = JOIN * (arcs[:, -1] - arcs[:, -2])
-    return replace(scaled(sizes, scale), across=np.tile(last, len(sizes.across) // len(last)))
-
-
 def _beyond(layout: Layout, columns: Indices) -> Indices:
     """Return the nodes (k,) that follow the last ones of columns (k, m)."""
     front = columns[:, -1]
@@ -215,6 +141,13 @@ def _beyond(layout: Layout, columns: Indices) -> Indices:
         leaving = (number[ends[:, 0]] >= 0) & ~inside[ends[:, 1]]
         out[number[ends[leaving, 0]]] = ends[leaving, 1]
     return out
+
+
+def _pairs(layout: Layout, columns: Indices) -> Indices:
+    """Return numbers (p, 2) of columns on the upper side, and of those across the channel from them."""
+    number = np.full(len(layout.mesh.nodes), -1)
+    number[columns[:, -1]] = np.arange(len(columns))
+    return np.stack([number[layout.blocks[UPPER][:, 0]], number[layout.blocks[LOWER][::-1, 0]]], axis=1)
 
 
 def _placed(plan: SectionPlan, section: KeySection) -> KeySection:

@@ -6,27 +6,33 @@ They do so at the wall and along the front of the layers, in all key sections.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.solvers.blocking.layers.even_line import Bools, Measures, evened_places
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.layers.even_line import NO_LINKS, Bools, Measures, PlaceLinks, evened_places
+from meshonet.solvers.rows.across import ChannelLines
 from meshonet.solvers.rows.section_plane import SectionPlane
 
 MARGIN = 0.93
 """Of the logarithm of the largest growth, to which steps are limited: nodes move a little later on."""
+SHEAR = 10.0
+"""Square root of the weight of tangents by which lines across the channel come to lean."""
 _TIMES = 4  # evened again while this changes much
 _SAME = 1e-9
 
 
 def even_wall_places(
-    planes: Sequence[SectionPlane], places: Floats, corners: Floats, growth: float, *, opposite: bool
-) -> Floats:
+    planes: Sequence[SectionPlane], places: Floats, corners: Floats, growth: float, pairs: Indices, *,
+    opposite: bool,
+) -> Floats:  # fmt: skip
     """Return places u (k,) of nodes clockwise around the blade near the given ones, with even steps.
 
-    Those at `corners` (c,) stay. With `opposite` the places of both sides are opposite each other, and stay
-    so.
+    Those at `corners` (c,) stay. `pairs` (p, 2) are nodes on the upper side and the lower side of the next
+    blade that lines across the channel join, which are not to lean more than they do. With `opposite` the
+    places of both sides are opposite each other, and stay so; `pairs` do not count then.
     """
     limit = MARGIN * math.log(growth)
     lead = int(np.abs(np.mod(places + 0.5, 1.0) - 0.5).argmin())
@@ -42,7 +48,10 @@ def even_wall_places(
     else:
         fixed = _fixed(u, corners)
         fixed[0] = True
-        u = _evened(u, fixed, _measures(planes), limit, closed=True)
+        across, given, pairs = ChannelLines.of(planes), u, np.mod(pairs - lead, len(u))
+        u = _evened(
+            u, fixed, _measures(planes), limit, lambda at: across.links(at, given, pairs, SHEAR), closed=True
+        )
     return np.mod(np.roll(u, lead), 1.0)
 
 
@@ -53,9 +62,12 @@ def _fixed(u: Floats, corners: Floats) -> Bools:
     return np.asarray((np.abs(off) < _SAME).any(axis=1))
 
 
-def _evened(u: Floats, fixed: Bools, measures: Measures, limit: float, *, closed: bool) -> Floats:
+def _evened(
+    u: Floats, fixed: Bools, measures: Measures, limit: float,
+    links: Callable[[Floats], PlaceLinks] = lambda _: NO_LINKS, *, closed: bool,
+) -> Floats:  # fmt: skip
     for _ in range(_TIMES):
-        before, u = u, evened_places(u, fixed, measures, limit, closed)
+        before, u = u, evened_places(u, fixed, measures, limit, closed, links(u))
         if np.abs(u - before).max() < _SAME:
             break
     return u

@@ -4,7 +4,7 @@ A measure increases along the curve, for example its arc length, or that of a wa
 positions of the nodes and ρ the logarithms of the ratios of neighbouring steps of each measure. The nodes
 minimise::
 
-    E = the term of `growth_limit` in ρ + σ Σ (t - t0)² / s²
+    E = the term of `growth_limit` in ρ + σ Σ (t - t0)² / s² + Σ (links)²
 
 t0 are the initial positions, s the steps there.
 """
@@ -24,7 +24,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.layers.attach import loop_nodes
 from meshonet.solvers.blocking.layers.growth_limit import EXCESS, MOST_WEIGHT, RISE, GrowthLimit, damped
-from meshonet.solvers.least_squares import NormalEquations
+from meshonet.solvers.least_squares import NormalEquations, Residuals
 
 MOVE = 1e-2
 """σ."""
@@ -72,13 +72,38 @@ class Measures:
         return self.values[:, -1:] - self.values[:, :1]
 
 
-def evened_places(places: Floats, fixed: Bools, measures: Measures, limit: float, closed: bool) -> Floats:
+@dataclass(frozen=True, eq=False)
+class PlaceLinks:
+    """Sums of two places each that should be 0.
+
+    Parameters
+    ----------
+    pairs : (p, 2) numbers of the places.
+    factors : (p, 2) with which they are multiplied.
+    rest : (p,) what is added.
+    """
+
+    pairs: Indices
+    factors: Floats
+    rest: Floats
+
+    def values(self, places: Floats) -> Floats:
+        """Return the sums (p,)."""
+        return np.asarray((self.factors * places[self.pairs]).sum(axis=1) + self.rest)
+
+
+NO_LINKS = PlaceLinks(np.empty((0, 2), dtype=np.intp), np.empty((0, 2)), np.empty(0))
+
+
+def evened_places(
+    places: Floats, fixed: Bools, measures: Measures, limit: float, closed: bool, links: PlaceLinks = NO_LINKS
+) -> Floats:
     """Return places (n,) near the given ascending ones whose neighbouring steps differ by a limited ratio.
 
     Places that are `fixed` (n,) do not change. `limit` is the logarithm of the ratio; if it cannot be kept,
     it is exceeded as little as possible. On a closed curve the last step leads to the first place.
     """
-    line = _Line.of(places, fixed, measures, closed)
+    line = _Line.of(places, fixed, measures, closed, links)
     new = places
     for _ in range(TRIES):
         if fixed.all() or not line.exceeded(places, limit):
@@ -145,9 +170,10 @@ class _Line:
     """(r, 3) numbers of places, of the two steps of each ratio."""
     stiffness: Floats
     """(f,) σ / s²."""
+    links: PlaceLinks
 
     @classmethod
-    def of(cls, places: Floats, fixed: Bools, measures: Measures, closed: bool) -> _Line:
+    def of(cls, places: Floats, fixed: Bools, measures: Measures, closed: bool, links: PlaceLinks) -> _Line:
         n = len(places)
         first = np.arange(n if closed else n - 2)
         triples = (first[:, None] + np.arange(3)) % n
@@ -156,14 +182,15 @@ class _Line:
         if not closed:
             around[[0, -1]] = 2.0 * places[0] - places[1], 2.0 * places[-1] - places[-2]
         step = np.diff(around)
-        return cls(measures, closed, free, triples, (MOVE / (step[1:] * step[:-1]))[free])
+        return cls(measures, closed, free, triples, (MOVE / (step[1:] * step[:-1]))[free], links)
 
     @cached_property
     def equations(self) -> NormalEquations:
         """Those of the places that move; most lines are even, and need none."""
         unknown = np.full(self.triples.max() + 1, -1, dtype=np.intp)
         unknown[self.free] = np.arange(len(self.free))
-        return NormalEquations(len(self.free), [unknown[self.triples]] * len(self.measures.values))
+        kinds = [unknown[self.triples]] * len(self.measures.values)
+        return NormalEquations(len(self.free), [*kinds, unknown[self.links.pairs]])
 
     def _steps(self, places: Floats) -> tuple[Floats, Floats]:
         """Return the steps (k, r + 1 or n) of each measure, and the derivatives (k, n) of the measures."""
@@ -203,7 +230,8 @@ class _Line:
             value = sum(
                 term.values(each, weight).sum() for term, each in zip(terms, self.growth(moved), strict=True)
             )
-            return np.array([value + (self.stiffness * (at - start) ** 2).sum()])
+            linked = (self.links.values(moved) ** 2).sum()
+            return np.array([value + (self.stiffness * (at - start) ** 2).sum() + linked])
 
         part = np.zeros(len(self.free), dtype=np.intp)
         for _ in range(STEPS):
@@ -213,6 +241,8 @@ class _Line:
                 term.residuals(growth, self._derivatives(each, rise), weight)
                 for term, growth, each, rise in zip(terms, self.growth(places), steps, slope, strict=True)
             ]
+            tied = self.links.values(places)
+            residuals.append(Residuals(self.links.factors, np.ones(len(tied)), tied))
             pull = self.stiffness * (places[self.free] - start)
             step = self.equations.step(residuals, self.stiffness, pull)
             places[self.free] += damped(values, places[self.free], step, part)

@@ -42,7 +42,7 @@ def from_curve(points: np.ndarray, curve: np.ndarray) -> np.ndarray:
 def test_cells_are_valid(name: str) -> None:
     quality = made(name).quality()
     assert quality.folded == 0
-    assert quality.metrics["scaled_jacobian"].min > 0.05
+    assert quality.metrics["scaled_jacobian"].min > (0.08 if ROWS[name].tip_gap else 0.2)
 
 
 @pytest.mark.parametrize("name", ROWS)

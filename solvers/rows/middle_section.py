@@ -1,0 +1,99 @@
+"""The middle section of a row, with which the others begin: its template, counts and optimum."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.layout.layout import Layout
+from meshonet.solvers.blocking.cascade.cascade import beside_neighbours, scaled
+from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of
+from meshonet.solvers.blocking.cascade.flat_template import flat_cut, flat_template
+from meshonet.solvers.blocking.cascade.passage import laid_out
+from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
+from meshonet.solvers.blocking.layers.layer_law import layer_arcs
+from meshonet.solvers.blocking.layers.layer_rows import JOIN
+from meshonet.solvers.blocking.sizes.chords import Chords
+from meshonet.solvers.blocking.sizes.refine import multiplied, refine
+from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
+from meshonet.solvers.energy.quads import optimise
+from meshonet.solvers.rows.section_plane import SectionPlane
+from meshonet.solvers.rows.whole_section import whole_section
+
+UPPER, TRAILING, LOWER, LEADING = range(8, 12)
+"""Numbers of the template's blocks around the blade."""
+COARSE = 300
+"""Iterations of the first optimum."""
+TOLERANCE = 1e-3
+SLENDER = 2.5
+"""Chord of the middle section in pitches from which on it is optimised in (m', theta) from the start."""
+
+
+def middle_section(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float]) -> Layout:
+    """Return the middle one of sections, of about so many `cells`, with its layers and rows.
+
+    `longest` are the greatest lengths of the rows to inlet and outlet in any section, by the number of their
+    loop. Raises NoValidGridError: folds.
+    """
+    flat = planes[len(planes) // 2].slenderness > SLENDER
+    attempts = [(flat, True), (flat, False)] + ([] if flat else [(True, True), (True, False)])
+    for attempt in attempts:
+        try:
+            return _made(planes, cells, longest, *attempt)
+        except NoValidGridError:
+            if attempt == attempts[-1]:
+                raise
+    raise AssertionError
+
+
+def _made(
+    planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], flat: bool, early: bool
+) -> Layout:
+    """Return the middle section, `early` with nodes at corners of the blade from the start.
+
+    Its blocks are optimised `flat` in (m', theta), otherwise in the plane of the passage's map.
+    """
+    plane = planes[len(planes) // 2]
+    cascade = plane.cascade
+    start = (flat_template if flat else template)(cascade.passage, at_corners=early)
+    sizes = beside_neighbours(cascade.flat_metric, cascade) if flat else cascade.metric
+    coarse = _sized(start, FIRST, None)
+    chords = Chords.of(coarse)
+    counts, times, metric = counts_of(cascade, sizes, chords, cells, None)
+    ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
+    counts[ends] = counts[ends].max()
+    rows = max(each.cascade.rows_of_layers for each in planes)
+    scale = float((metric.along / sizes.along).mean())
+    metric = _joined(plane, sizes, scale, rows)
+    fine = multiplied(_sized(refine(coarse, counts, chords), COARSE, metric), times)
+    passage = replace(cascade.passage, domain=fine.mesh.domain) if flat else cascade.passage
+    beyond, cut = (fine, flat_cut(fine)) if flat else laid_out(fine, passage, cut_of(fine))
+    return whole_section(plane, passage, (beyond, cut), rows, metric.largest, longest)
+
+
+def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
+    """Return the blocks beyond the layers where the functional is least, for sizes if given.
+
+    Nodes in which the cut ends are held.
+    """
+    mesh = layout.mesh
+    optimum = optimise(
+        mesh, iterations=iterations, held=(mesh.places.loop >= 0) & mesh.tied,
+        targets=metric.gradual(mesh) if metric else None, tolerance=TOLERANCE, weights=WEIGHTS,
+    )  # fmt: skip
+    if not optimum.valid:
+        raise NoValidGridError("cells of a section stay folded")
+    return replace(layout, mesh=optimum.mesh)
+
+
+def _joined(plane: SectionPlane, sizes: SizeMetric, scale: float, rows: int) -> SizeMetric:
+    """Return `sizes` for cells `scale` times as long, across the front those beyond `rows` of layers."""
+    cascade = plane.cascade
+    thickness = cascade.ring.thickness
+    none = np.full(len(thickness), np.inf)
+    arcs = layer_arcs(thickness, cascade.layers.first, none, rows)
+    last = JOIN * (arcs[:, -1] - arcs[:, -2])
+    return replace(scaled(sizes, scale), across=np.tile(last, len(sizes.across) // len(last)))
