@@ -153,10 +153,10 @@ def _surfaces(read: Callable[[Source], Iterator[Grid]], source: Source) -> Itera
 
 
 def is_cad(text: str, fmt: str | None = None) -> bool:
-    """Return whether a path or ``-`` has faces of a CAD file, which become patches."""
-    if is_designation(text):
+    """Return whether a path is a CAD file, whose faces become patches; of ``-`` only the format says so."""
+    if is_designation(text) or (text == "-" and fmt is None):  # a stream is read once
         return False
-    return format_of(source_of(text), fmt).name in ("step", "brep")
+    return (format_named(fmt) if fmt else format_of(source_of(text))).name in ("step", "brep")
 
 
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from command_line import Meshonet
+from command_line import Meshonet, Process
 
 pytest.importorskip("OCP")
 
@@ -46,3 +46,19 @@ def test_other_commands_say_what_to_do_with_a_cad_file(meshonet: Meshonet) -> No
     done = meshonet("infer", "box.brep", "-o", "box.vts")
     assert done.code == 2
     assert "make patches first: meshonet sample-boundary" in done.err
+
+
+def test_files_of_one_run_are_of_one_kind(meshonet: Meshonet) -> None:
+    done = meshonet("sample-boundary", "box.brep", "naca:0012", "-o", "{stem}.vtm")
+    assert "is no CAD file, and the first input is one" in done.err
+    assert done.code == 2
+    assert not Path("naca0012.vtm").exists()
+
+
+def test_a_stream_is_read_once_and_is_a_cad_file_if_its_format_is(process: Process, tmp_path: Path) -> None:
+    BRepTools.Write_s(BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Shape(), str(tmp_path / "box.brep"))
+    data = (tmp_path / "box.brep").read_bytes()
+    words = ["sample-boundary", "-", "--res", "20", "-o"]
+    assert process(*words, "box.xyz", "--from", "brep", input=data).returncode == 0
+    assert process(*words, "edges.h5", input=b"1 0\n0 0\n0 1\n1 1\n1 0\n").returncode == 0
+    assert {path.name for path in tmp_path.iterdir()} >= {"box.xyz", "edges.h5"}
