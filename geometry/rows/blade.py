@@ -13,7 +13,9 @@ from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.notes import Change
 from meshonet.geometry.rows.alike import alike, common_corners
 from meshonet.geometry.rows.channel import Channel
+from meshonet.geometry.rows.edges import LEAST_EDGE
 from meshonet.geometry.rows.profile import BladeProfile
+from meshonet.geometry.rows.thick_edge import pointed, thick_edged
 
 MOST_EXTENDED = 0.2
 """Part of the span by which a blade is made longer, at the most, to reach hub and casing."""
@@ -49,10 +51,18 @@ class BladeSurface:
             with in_place(f"profile {number}"):
                 self.profiles.append(BladeProfile(points, channel))
         self.notes: tuple[str, ...] = ()
+        count = sum(map(pointed, self.profiles))
+        if count:
+            self.profiles = [thick_edged(each) if pointed(each) else each for each in self.profiles]
+            what = f"trailing edges of {count} of {len(self.profiles)} profiles, which are points, are"
+            self.notes = (Change(f"{what} opened to {LEAST_EDGE:g} chords and rounded"),)
+        self._reversed = False
         self._check_distinct()
         if (np.diff([profile.height for profile in self.profiles]) < 0.0).all():
             self.profiles.reverse()
-            self.notes = (Change("profiles are given from casing to hub and are taken the other way round"),)
+            self._reversed = True
+            note = Change("profiles are given from casing to hub and are taken the other way round")
+            self.notes = (*self.notes, note)
         self.knots = np.array([profile.height for profile in self.profiles])
         self._check()
         self.profiles = alike(self.profiles)
@@ -86,7 +96,7 @@ class BladeSurface:
 
     def _place(self, k: int) -> str:
         """Return the place of a profile, by its number as given."""
-        return f"profile {len(self.profiles) - k if self.notes else k + 1}"
+        return f"profile {len(self.profiles) - k if self._reversed else k + 1}"
 
     def _check_neighbours(self) -> None:
         """Raise InputError for a profile that crosses the one before, or lies far from it around the axis."""

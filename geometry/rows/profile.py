@@ -59,7 +59,7 @@ class BladeProfile:
         check_profile(plane, p)
         if polygon_area(plane) > 0.0:
             plane, h = plane[::-1], h[::-1]
-        self._h = h
+        self.heights = h
         self._follow(Curve(np.ascontiguousarray(plane), closed=True))
 
     def _follow(self, curve: Curve, tips: tuple[int | None, int | None] = (None, None)) -> None:
@@ -108,6 +108,14 @@ class BladeProfile:
         length = self.curve.length
         return np.asarray(np.mod(arcs - edge + 0.5 * length, length) - 0.5 * length)
 
+    def reshaped(self, plane: Floats, heights: Floats) -> BladeProfile:
+        """Return the profile with other points (n, 2) m' and theta, and their heights (n,)."""
+        made = copy(self)
+        made.__dict__ = {k: v for k, v in vars(self).items() if k not in ("thickness", "_heights")}
+        made.heights = heights
+        made._follow(Curve(np.ascontiguousarray(plane), closed=True))
+        return made
+
     @property
     def corner_counts(self) -> tuple[int, int]:
         """How many corners are at the leading and at the trailing edge."""
@@ -144,7 +152,7 @@ class BladeProfile:
         before, here, after = away[k - 1], away[k], away[(k + 1) % len(away)]
         bend = before - 2.0 * here + after
         shift = 0.5 * (before - after) / bend if bend < 0.0 else 0.0
-        near = np.abs(self.curve.corners - arcs[k])
+        near = np.abs(self._off(self.curve.corners, float(arcs[k])))
         if len(near) and near.min() < 1.5 * arcs[1]:  # a corner is the farthest point itself
             return float(self.curve.corners[int(near.argmin())])
         return float(arcs[k] + shift * arcs[1])
@@ -191,6 +199,6 @@ class BladeProfile:
     @cached_property
     def _heights(self) -> CubicTable:
         """Heights by arc length, over the seam."""
-        around = np.arange(-_SEAM, len(self._h) + _SEAM)
-        turns, number = np.divmod(around, len(self._h))
-        return CubicTable(self._h[number], self.curve.knots[number] + turns * self.curve.length)
+        around = np.arange(-_SEAM, len(self.heights) + _SEAM)
+        turns, number = np.divmod(around, len(self.heights))
+        return CubicTable(self.heights[number], self.curve.knots[number] + turns * self.curve.length)

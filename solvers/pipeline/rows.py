@@ -17,14 +17,16 @@ from meshonet.solvers.stages import stage
 
 
 @contextmanager
-def _keys_of_ends() -> Iterator[None]:
-    """Name `inlet` and `outlet` of a section as the keys of the row's file, not as options."""
+def _in_terms_of_rows() -> Iterator[None]:
+    """Name `inlet` and `outlet` of a section as the keys of the row's file, and coordinates of its plane."""
     try:
         yield
     except InputError as error:
         if error.parameter in ("inlet", "outlet"):
             error.place, error.parameter = error.parameter, ""
             error.remedy += " from the blade to the ends of hub and casing"
+        if error.place.startswith("blade, ("):
+            error.place = error.place.replace("blade, ", "blade at (m', theta) = ")
         raise
 
 
@@ -45,7 +47,7 @@ def make_row(row: Row, request: RowRequest | None = None) -> Result:
     with limited_to(request.threads):
         with stage("load", seconds):
             from meshonet.solvers.rows.row_grid import row_grid
-        with stage("grid", seconds), _keys_of_ends():
+        with stage("grid", seconds), _in_terms_of_rows():
             grid, notes = row_grid(row, request)
             grid = copied(grid, request.copies)
             grid = grid if row.frame is None else rotated(grid, row.frame.inverse())

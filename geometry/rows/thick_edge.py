@@ -1,0 +1,74 @@
+"""Trailing edges of profiles that end in a point: opened and rounded, so that layers go around them.
+
+::
+
+    given   ----------___          made   ------------___
+                         ``--> .                          `)   a base 1 % of the chord thick, rounded;
+            ----------''                  ------------'''      points move in proportion to their
+                                                               distance from the leading edge
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.rows.edges import LEAST_EDGE
+from meshonet.geometry.rows.profile import BladeProfile
+
+_CAP = np.linspace(0.0, 1.0, 33)[1:-1, None]
+"""Places of points on the round end."""
+_BEFORE = 0.02
+"""Chords before the edge from which the directions of the sides there are taken."""
+_POINTED = 2.7
+"""Least turn in radians at a point, of a wedge of 25 degrees; at a base the two corners share half a turn."""
+_SAME = 1e-9
+_SIGNS = 1.0, -1.0  # of the sides' distances from the chord: profiles are clockwise
+
+
+def pointed(profile: BladeProfile) -> bool:
+    """Return whether the trailing edge of a profile is a point."""
+    return profile.corner_counts[1] == 1 and profile.sharpness(True)[0] > _POINTED
+
+
+def thick_edged(profile: BladeProfile) -> BladeProfile:
+    """Return a profile, whose trailing edge is a point, with a round one, `LEAST_EDGE` chords thick."""
+    curve, length = profile.curve, profile.curve.length
+    lead, trail = curve.at(np.mod([profile.leading, profile.trailing], length))
+    chord = trail - lead
+    size = float(norms(chord))
+    normal = np.array([-chord[1], chord[0]])
+
+    def moved(points: Floats, sign: float) -> Floats:
+        along = np.clip(((points - lead) * chord).sum(axis=1) / size**2, 0.0, None)
+        return points + sign * 0.5 * LEAST_EDGE * along[:, None] * normal
+
+    way = np.mod(curve.knots - profile.leading, length)
+    end = float(np.mod(profile.trailing - profile.leading, length))
+    order = np.argsort(way, kind="stable")
+    way, points, heights = way[order], curve.points[order], profile.heights[order]
+    masks = way < end - _SAME * length, way > end + _SAME * length
+    sides = [moved(points[mask], sign) for mask, sign in zip(masks, _SIGNS, strict=True)]
+    corners = [moved(trail[None], sign) for sign in _SIGNS]
+    back = np.mod(profile.trailing + _BEFORE * size * np.array([-1.0, 1.0]), length)
+    before = [moved(point[None], sign) for point, sign in zip(curve.at(back), _SIGNS, strict=True)]
+    cap = _round_end(*corners, *before)
+    half = len(_CAP) // 2
+    level = np.full(len(_CAP) + 2, np.interp(end, way, heights))
+    plane = cap[half:], corners[1], sides[1], sides[0], corners[0], cap[:half]
+    levels = level[half + 1 :], heights[masks[1]], heights[masks[0]], level[: half + 1]
+    return profile.reshaped(np.concatenate(plane), np.concatenate(levels))
+
+
+def _round_end(one: Floats, other: Floats, before: Floats, beside: Floats) -> Floats:
+    """Return points (n, 2) of a cubic between the ends of two sides (1, 2), in their directions there.
+
+    It reaches about half of the distance of the ends beyond them.
+    """
+    reach = 2.0 / 3.0 * float(norms(other - one)[0])
+    first = one + reach * (one - before) / norms(one - before)
+    last = other + reach * (other - beside) / norms(other - beside)
+    t = _CAP
+    return np.asarray(
+        (1 - t) ** 3 * one + 3 * (1 - t) ** 2 * t * first + 3 * (1 - t) * t**2 * last + t**3 * other
+    )
