@@ -68,7 +68,6 @@ def _round_end(one: Floats, other: Floats, before: Floats, beside: Floats) -> Fl
     reach = 2.0 / 3.0 * float(norms(other - one)[0])
     first = one + reach * (one - before) / norms(one - before)
     last = other + reach * (other - beside) / norms(other - beside)
-    t = _CAP
-    return np.asarray(
-        (1 - t) ** 3 * one + 3 * (1 - t) ** 2 * t * first + 3 * (1 - t) * t**2 * last + t**3 * other
-    )
+    t, back = _CAP, 1.0 - _CAP
+    ends, inner = back * back * back * one + t * t * t * other, back * first + t * last
+    return np.asarray(ends + 3.0 * back * t * inner)
