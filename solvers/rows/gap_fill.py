@@ -37,7 +37,7 @@ _POWER = 6.0  # how fast the core's lines gather towards its ends
 _BISECTIONS = 50
 _ROUND = 0.4  # of the width of an edge behind it, at which it ends
 _FEWER = 0.8
-FLAT, SMOOTH, STEEP, MARGIN = 0.95, 1e-3, 0.3, 0.93
+FLAT, SMOOTH, STEEP, MARGIN = 0.95, 1e-3, 0.7, 0.93
 """Weights of the functional, as in `key_sections`."""
 
 

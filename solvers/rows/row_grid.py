@@ -43,7 +43,7 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     """
     first, growth = request.height() * row.chord, request.ratio
     zones = zones_of(row, first, growth, request.cells)
-    keys = key_tables(row, first, growth, section_cells(zones, request.cells))
+    keys = key_tables(row, first, growth, section_cells(zones, request.cells, growth))
     stacked = StackedRow(row, keys, zones, first, growth)
     made, rest = stacked.nodes()
     gaps: list[GapBlocks | None] = [None] * len(zones)

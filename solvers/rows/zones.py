@@ -11,7 +11,11 @@ from meshonet.solvers.rows.span_spacing import Ends, spaced_cells
 
 PARTS, PARTS_CELLS = 42.0, 800_000
 """Cells along the span away from walls, if all of it were divided like that, of a row of so many cells."""
-_FEWEST = 1500  # cells of a section
+_NEEDED, _FEWEST, _ENOUGH = 640.0, 1500, 7000
+"""Fewest cells of a section, times the logarithm of the growth, within these bounds.
+
+With fewer, cells at the edges of blades are too small for those between to grow as slowly.
+"""
 _LONGER = 1.15  # than across the gap lines may be, which lean
 GAP_ROWS = 17
 """Fewest cells across a gap."""
@@ -36,9 +40,10 @@ class Zone:
     gap: bool
 
 
-def section_cells(zones: Sequence[Zone], cells: int) -> int:
-    """Return how many cells a section has where the row has about `cells` in all."""
-    return max(_FEWEST, cells // sum(zone.cells for zone in zones))
+def section_cells(zones: Sequence[Zone], cells: int, growth: float) -> int:
+    """Return how many cells a section has where the row has about `cells` in all, or what growth needs."""
+    needed = min(max(round(_NEEDED / math.log(growth)), _FEWEST), _ENOUGH)
+    return max(needed, cells // sum(zone.cells for zone in zones))
 
 
 def zones_of(row: Row, first: float, growth: float, cells: int) -> list[Zone]:
