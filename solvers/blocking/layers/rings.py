@@ -23,7 +23,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, steps_of_means
 from meshonet.solvers.blocking.layers.even_line import FINER, SLACK, Measures
 from meshonet.solvers.blocking.layers.marched import GAP_PART, fitted
 from meshonet.solvers.blocking.layers.wall_columns import nearest_arc, wall_columns
@@ -125,9 +125,14 @@ def march_ring(
         (nearest_arc(arcs, total - arcs[0], loop.length) - np.arange(len(arcs))) % len(arcs) for total in sums
     ]
     room = GAP_PART * wall_gaps(domain, loop, arcs)
-    for total, to in zip(sums, images, strict=True):
-        step = (total - arcs[to] - arcs) / loop.length
-        arcs = arcs + 0.5 * loop.length * (step - np.round(step))
+    steps = steps_of_means(own)
+    for each in steps:
+        moves = np.zeros(len(arcs))
+        for k in each:
+            move = (sums[k] - arcs[images[k]] - arcs) / loop.length
+            moves += move - np.round(move)
+        arcs = arcs + loop.length / (len(each) + 1) * moves
+    for to in (*images, *images):  # turns are two images
         room = np.minimum(room, room[to])
     if own:
         arcs = _at_corners(loop, arcs)
@@ -141,8 +146,8 @@ def march_ring(
         ATTEMPTS,
         place=lambda k: place(loop, arcs[k]),
     )
-    for mirror, to in zip(own, images, strict=True):
-        levels = 0.5 * (levels + mirror.images(levels[to]))
+    for each in steps:
+        levels = sum((own[k].images(levels[images[k]]) for k in each), start=levels) / (len(each) + 1)
     if own:
         levels[:, 0] = loop.at(arcs)
     return _ring(loop, arcs, levels)

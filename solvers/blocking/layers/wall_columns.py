@@ -41,7 +41,7 @@ def wall_columns(loop: Loop, largest: float, sums: Sequence[float] = ()) -> Floa
     counts = [
         multiple * max(2, round((last - first) / multiple)) for first, last in zip(firsts, lasts, strict=True)
     ]
-    for total in sums:  # stretches between corners have as many columns as their images
+    for total in (*sums, *sums):  # stretches between corners have as many columns as their images
         for k, end in enumerate(ends.tolist()):
             image = nearest_arc(starts, total - end, loop.length)
             counts[max(k, image)] = counts[min(k, image)]

@@ -23,6 +23,12 @@ def stadium(count=40):
     return np.concatenate([half, -half])
 
 
+def around(count, distance, start=0.0):
+    """Return holes at a distance from the origin, the first in a direction in degrees."""
+    angles = np.radians(start + 360.0 / count * np.arange(count))
+    return holes(*zip(distance * np.cos(angles), distance * np.sin(angles), strict=True), count=60)
+
+
 ALL = (0, 90, 45, 135)
 SYMMETRIC = {
     # name: polygons, a point on all mirrors, and the directions of these in degrees
@@ -67,9 +73,18 @@ SYMMETRIC = {
         (0,),
     ),
     "wing": ([box(-3, 5, -3, 3), WING], (0, 0), (0,)),
-    "hexagon": (SHAPES["hexagon"], (0, 0), (0, 90)),
-    "triangle": (SHAPES["triangle"], (0.5, 0), (90,)),
-    "star": (SHAPES["star"], (0, 0), (0,)),
+    "hexagon": (SHAPES["hexagon"], (0, 0), (0, 30, 60, 90, 120, 150)),
+    "hexagon in a hexagon": ([circle(0, 0, 1, 6), circle(0, 0, 0.4, 6)], (0, 0), (0, 30, 60, 90, 120, 150)),
+    "hexagon with six holes": (
+        [circle(0, 0, 2, 6), *around(6, 1.1, 30)],
+        (0, 0),
+        (0, 30, 60, 90, 120, 150),
+    ),
+    "triangle": ([polygon(0, 0, 1, 0, 0.5, 0.8)], (0.5, 0), (90,)),
+    "equal triangle": ([circle(0, 0, 1, 3)], (0, 0), (0, 60, 120)),
+    "disc with three holes": ([circle(0, 0, 2, 120), *around(3, 1.0)], (0, 0), (0, 60, 120)),
+    "disc with five holes": ([circle(0, 0, 2, 120), *around(5, 1.2)], (0, 0), (0, 36, 72, 108, 144)),
+    "star": (SHAPES["star"], (0, 0), (0, 36, 72, 108, 144)),
 }
 
 

@@ -75,8 +75,8 @@ def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
     return trial.with_places(nodes, Places(loop, arc, cells, trial.places.partner))
 
 
-def is_conforming(mesh: QuadMesh) -> bool:
-    """Return whether quads are a mesh of the domain, with interior valences within `VALENCES`."""
+def is_conforming(mesh: QuadMesh, many: int = 0) -> bool:
+    """Return whether quads are a mesh of the domain, `VALENCES` or up to `many` of them at inner nodes."""
     inside = mesh.valence[~mesh.wall_nodes]
-    few, many = VALENCES
+    few, many = VALENCES[0], max(VALENCES[1], many)
     return conforms(mesh) and bool(((inside >= few) & (inside <= many)).all())

@@ -6,7 +6,8 @@ corner. The number of cells there follows from the angle in each half, and is ev
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -29,8 +30,11 @@ _SHARPEST = 52.5
 
 
 @dataclass(frozen=True, eq=False)
-class _Stretch:
-    """Half of a loop of the whole: its arc lengths (n,), rising from mirror to mirror, and their points."""
+class LoopPart:
+    """Part of a loop of the whole: its arc lengths (n,), rising from mirror to mirror, and their points.
+
+    The number of the loop is -1 for the centre, which is on none.
+    """
 
     loop: int
     arcs: Floats
@@ -51,7 +55,7 @@ class Half:
     whole: Domain
     mirror: Mirror
     domain: Domain
-    stretches: tuple[_Stretch, ...]
+    stretches: tuple[LoopPart, ...]
     holes: tuple[int, ...]
 
 
@@ -68,13 +72,22 @@ def spans_between(loop: Loop) -> list[Span]:
 
 def left_half(domain: Domain, mirror: Mirror) -> Half:
     """Return the half of a domain on the left of a mirror. Raises BlockingError: it cuts a sharp corner."""
-    outer, *others = (
-        _stretch(loop, k, mirror) for k, loop in enumerate(domain.loops) if mirror.loops[k] == k
-    )
+    outer, *others = (_half(loop, k, mirror) for k, loop in enumerate(domain.loops) if mirror.loops[k] == k)
     begin, end = (mirror.ahead_and_left(outer.points[k])[0] for k in (0, -1))
     way = 1.0 if begin > end else -1.0  # from the end of the outer half back to where it begins
     others.sort(key=lambda stretch: way * float(mirror.ahead_and_left(stretch.points[0])[0]))
     row = (outer, *others)
+    loop = joined(row)
+    left = [mirror.ahead_and_left(loop.curve.points[0])[1] > 0.0 for loop in domain.loops]
+    holes = tuple(k for k in np.flatnonzero(left).tolist() if mirror.loops[k] != k)
+    return Half(domain, mirror, Domain((loop, *(domain.loops[k] for k in holes)), domain.name), row, holes)
+
+
+def joined(row: Sequence[LoopPart]) -> Loop:
+    """Return the loop along stretches and straight lines between them.
+
+    Raises BlockingError: a sharp corner at an end of one.
+    """
     counts = [len(stretch.points) for stretch in row]
     first = np.cumsum([0, *counts[:-1]])
     corners = np.concatenate([k + stretch.corners for k, stretch in zip(first, row, strict=True)])
@@ -83,20 +96,26 @@ def left_half(domain: Domain, mirror: Mirror) -> Half:
     straight = np.concatenate([stretch.straight for stretch in row])
     curve = Curve(points, closed=True, corners=breaks, straight=straight)
     loop = Loop(curve, tuple(corners.tolist()), ("half",))
-    ends = np.isin(corners, [first, first + counts - 1])
+    on_wall = np.array([stretch.loop >= 0 for stretch in row])
+    ends = np.isin(corners, [first[on_wall], (first + counts - 1)[on_wall]])
     if (loop.corner_angles[ends] < _SHARPEST).any():
         raise BlockingError("a mirror through a sharp corner")
-    left = [mirror.ahead_and_left(loop.curve.points[0])[1] > 0.0 for loop in domain.loops]
-    holes = tuple(k for k in np.flatnonzero(left).tolist() if mirror.loops[k] != k)
-    return Half(domain, mirror, Domain((loop, *(domain.loops[k] for k in holes)), domain.name), row, holes)
+    return loop
 
 
-def _stretch(loop: Loop, number: int, mirror: Mirror) -> _Stretch:
+def _half(loop: Loop, number: int, mirror: Mirror) -> LoopPart:
     """Return the left half of a loop that crosses the mirror line."""
-    half, near = 0.5 * loop.length, _NEAR * loop.length
-    begin = 0.5 * mirror.sums[number]
+    half, begin = 0.5 * loop.length, 0.5 * mirror.sums[number]
     if mirror.ahead_and_left(loop.at(begin + 0.5 * half))[1] < 0.0:
         begin += half
+    return stretch_of(loop, number, begin, half, (mirror, mirror))
+
+
+def stretch_of(
+    loop: Loop, number: int, begin: float, half: float, mirrors: tuple[Mirror, Mirror]
+) -> LoopPart:
+    """Return the stretch of a loop from an arc length on, of a length; it begins and ends on mirrors."""
+    near = _NEAR * loop.length
     knots = np.append(loop.curve.knots, loop.length)
     along, corners, breaks = (
         np.concatenate([[0.0], inner[(inner > near) & (inner < half - near)], [half]])
@@ -113,15 +132,16 @@ def _stretch(loop: Loop, number: int, mirror: Mirror) -> _Stretch:
     middles = np.mod(begin + 0.5 * (along[1:] + along[:-1]), loop.length)
     straight = straight[np.searchsorted(knots, middles, side="right") - 1]
     points = loop.at(begin + along)
-    points[[0, -1]] = 0.5 * (points[[0, -1]] + mirror.images(points[[0, -1]]))
+    for end, mirror in zip((0, -1), mirrors, strict=True):
+        points[end] = 0.5 * (points[end] + mirror.images(points[end]))
     corners, breaks = (np.searchsorted(along, arcs - near) for arcs in (corners, breaks))
-    return _Stretch(number, begin + along, points, corners, breaks, np.append(straight, True))
+    return LoopPart(number, begin + along, points, corners, breaks, np.append(straight, True))
 
 
 def both_halves(mesh: QuadMesh, half: Half) -> QuadMesh:
     """Return the mesh of the whole domain from that of its left half and the mirror image."""
     whole, mirror = half.whole, half.mirror
-    loop, arc, on_mirror = _places(mesh, half)
+    loop, arc, on_mirror = places_in_whole(mesh, half.stretches, half.holes)
     nodes = mesh.nodes.copy()
     nodes[on_mirror] = 0.5 * (nodes[on_mirror] + mirror.images(nodes[on_mirror]))
     added = np.flatnonzero(~on_mirror)
@@ -130,35 +150,50 @@ def both_halves(mesh: QuadMesh, half: Half) -> QuadMesh:
     on = loop[added] >= 0
     arc = np.append(arc, np.where(on, mirror.sums[loop[added]] - arc[added], 0.0))
     loop = np.append(loop, np.where(on, mirror.loops[loop[added]], -1))
-    places = Places.inside(len(loop))
-    places.loop[:] = loop
     points = np.concatenate([nodes, mirror.images(nodes[added])])
+    quads = np.concatenate([mesh.quads, to[mesh.quads[:, ::-1]]])
+    return on_loops(
+        QuadMesh(whole, points, quads, replace(Places.inside(len(loop)), loop=loop, arc=arc)), on_mirror
+    )
+
+
+def on_loops(mesh: QuadMesh, on_mirror: NDArray[np.bool_]) -> QuadMesh:
+    """Return a mesh of copies of a part with its wall nodes on the loops of its domain, some at corners.
+
+    The first nodes of it may lie `on_mirror` (k,): a corner there has as many cells as meet in it, if it was
+    to have an odd number.
+    """
+    whole, points, places = mesh.domain, mesh.nodes.copy(), mesh.places
+    loop, arc, cells = places.loop, places.arc.copy(), np.zeros_like(places.cells)
     for number, each in enumerate(whole.loops):
         walls = np.flatnonzero(loop == number)
         arcs = np.mod(arc[walls], each.length)
-        for corner, cells in zip(each.corner_arcs, each.corner_cells, strict=True):
+        for corner, wanted in zip(each.corner_arcs, each.corner_cells, strict=True):
             off = np.abs(np.mod(arcs - corner + 0.5 * each.length, each.length) - 0.5 * each.length)
             at = off.argmin()
-            arcs[at], places.cells[walls[at]] = corner, cells
-        places.arc[walls], points[walls] = arcs, each.at(arcs)
-    quads = np.concatenate([mesh.quads, to[mesh.quads[:, ::-1]]])
-    odd = np.flatnonzero(on_mirror & (places.cells[: len(nodes)] % 2 == 1))
-    places.cells[odd] = np.bincount(quads.ravel(), minlength=len(loop))[odd]
-    return QuadMesh(whole, points, quads, places)
+            arcs[at], cells[walls[at]] = corner, wanted
+        arc[walls], points[walls] = arcs, each.at(arcs)
+    odd = np.flatnonzero(on_mirror & (cells[: len(on_mirror)] % 2 == 1))
+    cells[odd] = np.bincount(mesh.quads.ravel(), minlength=len(loop))[odd]
+    return QuadMesh(whole, points, mesh.quads, replace(places, arc=arc, cells=cells))
 
 
-def _places(mesh: QuadMesh, half: Half) -> tuple[Indices, Floats, NDArray[np.bool_]]:
-    """Return loop and arc length in the whole of the nodes of a half, and which lie on the mirror."""
-    old, outer = mesh.places, half.domain.loops[0]
+def places_in_whole(
+    mesh: QuadMesh, stretches: Sequence[LoopPart], holes: Sequence[int]
+) -> tuple[Indices, Floats, NDArray[np.bool_]]:
+    """Return loop and arc length in the whole of the nodes of a part, and which lie on a mirror."""
+    old, outer = mesh.places, mesh.domain.loops[0]
     loop, arc = np.full(len(old.loop), -1, dtype=np.intp), np.zeros(len(old.loop))
     on_mirror, near, first = old.loop == 0, _NEAR * outer.length, 0
-    for stretch in half.stretches:
+    for stretch in stretches:
         knots = outer.curve.knots[first : first + len(stretch.arcs)]
         first += len(knots)
+        if stretch.loop < 0:
+            continue
         on = (old.loop == 0) & (old.arc >= knots[0] - near) & (old.arc <= knots[-1] + near)
         loop[on], arc[on] = stretch.loop, np.interp(old.arc[on], knots, stretch.arcs)
         on_mirror &= ~on | (old.arc <= knots[0] + near) | (old.arc >= knots[-1] - near)
-    for number, hole in enumerate(half.holes, start=1):
+    for number, hole in enumerate(holes, start=1):
         on = old.loop == number
         loop[on], arc[on] = hole, old.arc[on]
     return loop, arc, on_mirror

@@ -10,7 +10,12 @@ from meshonet.geometry.arrays import distinct, norms
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import nearest_points
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirrors_of
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import (
+    Mirror,
+    at_right_angles,
+    every_mirror_of,
+    steps_of_means,
+)
 
 Images = Sequence[tuple[Mirror, Indices]]
 """Mirrors, and the node (n,) that each node of a mesh becomes in them."""
@@ -20,7 +25,7 @@ SOME = 100
 
 def images_of(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> Images:
     """Return the images of nodes in those mirrors of its domain, of all by default, that its quads have."""
-    mirrors = mirrors_of(mesh.domain) if mirrors is None else mirrors
+    mirrors = every_mirror_of(mesh.domain) if mirrors is None else mirrors
     if (mesh.places.partner >= 0).any():
         return []
     images = []
@@ -39,8 +44,21 @@ def node_images(mesh: QuadMesh, mirrors: Sequence[Mirror] | None = None) -> list
 
 
 def agree(images: Images) -> bool:
-    """Return whether images in the first two mirrors, at right angles, are the same in either order."""
-    return len(images) < 2 or np.array_equal(images[0][1][images[1][1]], images[1][1][images[0][1]])
+    """Return whether images of images are what turns by twice the angle between their mirrors make of nodes.
+
+    In the first two mirrors, if they are at right angles, they are the same in either order.
+    """
+    if len(images) < 2:
+        return True
+    (_, one), (_, other) = images[:2]
+    if at_right_angles([mirror for mirror, _ in images]):
+        return np.array_equal(one[other], other[one])
+    turn = now = other[one]  # mirrors by their angles: each turns by as much more
+    for _, to in images[1:]:
+        if not np.array_equal(to[one], now):
+            return False
+        now = turn[now]
+    return np.array_equal(now, np.arange(len(now)))
 
 
 def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
@@ -49,17 +67,31 @@ def made_symmetric(mesh: QuadMesh, images: Images | None = None) -> QuadMesh:
     Corners stay. A ring with an odd number of quads around is symmetric to the first mirror only.
     """
     images = images_of(mesh) if images is None else images
-    for mirror, to in images if agree(images) else images[:1]:
-        places, nodes = mesh.places, 0.5 * (mesh.nodes + mirror.images(mesh.nodes[to]))
-        arc, fixed = places.arc.copy(), places.cells > 0
-        for number, loop in enumerate(mesh.domain.loops):
-            on = np.flatnonzero((places.loop == number) & ~fixed)
-            step = mirror.sums[mirror.loops[number]] - places.arc[to[on]] - arc[on]
-            arc[on] = np.mod(arc[on] + 0.5 * (step - loop.length * np.round(step / loop.length)), loop.length)
-            nodes[on] = loop.at(arc[on])
-        nodes[fixed] = mesh.nodes[fixed]
-        mesh = mesh.with_nodes(nodes, arc)
+    if not agree(images):
+        images = images[:1]
+    for step in steps_of_means([mirror for mirror, _ in images]):
+        mesh = _mean(mesh, [images[k] for k in step])
     return mesh
+
+
+def _mean(mesh: QuadMesh, images: Images) -> QuadMesh:
+    """Return the mesh with nodes at the means of themselves and their images."""
+    places, part = mesh.places, 1.0 / (len(images) + 1)
+    nodes, moves = mesh.nodes.copy(), np.zeros(len(mesh.nodes))
+    for mirror, to in images:
+        nodes += mirror.images(mesh.nodes[to])
+        for number, loop in enumerate(mesh.domain.loops):
+            on = np.flatnonzero(places.loop == number)
+            step = mirror.sums[mirror.loops[number]] - places.arc[to[on]] - places.arc[on]
+            moves[on] += step - loop.length * np.round(step / loop.length)
+    nodes *= part
+    arc, fixed = places.arc.copy(), places.cells > 0
+    for number, loop in enumerate(mesh.domain.loops):
+        on = np.flatnonzero((places.loop == number) & ~fixed)
+        arc[on] = np.mod(arc[on] + part * moves[on], loop.length)
+        nodes[on] = loop.at(arc[on])
+    nodes[fixed] = mesh.nodes[fixed]
+    return mesh.with_nodes(nodes, arc)
 
 
 def _image(mesh: QuadMesh, mirror: Mirror) -> Indices | None:

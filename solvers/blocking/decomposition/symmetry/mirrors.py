@@ -8,7 +8,7 @@ known exactly for any curve.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -24,6 +24,8 @@ SAME = 1e-7
 meant to be symmetric deviate by up to 1e-12, others by more than 1e-4."""
 MOST = 64
 """Directions looked at closely: a circle has as many as points, of which the first will do."""
+MOST_MIRRORS = 8
+"""More are those of a circle, or nearly; each takes as many cells around the centre."""
 _ROOT = math.sqrt(2.0)  # length of the sum of two unit vectors at right angles
 _STEPS = 8  # of Newton's method towards a place on a curve, from the nearest of two places an interval
 
@@ -50,6 +52,29 @@ class Mirror:
 
 
 @lru_cache(maxsize=64)
+def every_mirror_of(domain: Domain) -> tuple[Mirror, ...]:
+    """Return three or more mirrors with equal angles between, by their angles, or those of `mirrors_of`.
+
+    They are taken if they are more, and up to `MOST_MIRRORS`.
+    """
+    some = mirrors_of(domain)
+    if not some or len(_directions(domain, *_centroids(domain))) > 2 * MOST_MIRRORS + 1:
+        return some
+    along, across = some[0].along, np.array([-some[0].along[1], some[0].along[0]])
+    for count in range(MOST_MIRRORS, max(len(some), 2), -1):
+        found = [some[0]]
+        for k in range(1, count):
+            angle = math.pi * k / count
+            mirror = mirror_about(domain, some[0].centre, math.cos(angle) * along + math.sin(angle) * across)
+            if mirror is None:
+                break
+            found.append(mirror)
+        if len(found) == count:
+            return tuple(found)
+    return some
+
+
+@lru_cache(maxsize=64)
 def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
     """Return two mirrors of a domain at right angles if there are such, else one, or none.
 
@@ -67,6 +92,23 @@ def mirrors_of(domain: Domain) -> tuple[Mirror, ...]:
         if any(found):
             return tuple(mirror for mirror in found if mirror)
     return ()
+
+
+def at_right_angles(mirrors: Sequence[Mirror]) -> bool:
+    """Return whether the first two of some mirrors are at right angles; others are halfway between."""
+    return abs(float((mirrors[0].along * mirrors[1].along).sum())) < SAME
+
+
+def steps_of_means(mirrors: Sequence[Mirror]) -> list[range]:
+    """Return which mirrors to take means over, step after step, for what is symmetric to all of them.
+
+    A step is the mean of what there is and its images. Those of mirrors at right angles follow each other.
+    Else the images of what is symmetric to the first one are what turns make of it, and one mean is over all.
+    """
+    count = len(mirrors)
+    if count < 2 or at_right_angles(mirrors):
+        return [range(k, k + 1) for k in range(count)]
+    return [range(1), range(1, count)]
 
 
 def mirror_about(domain: Domain, centre: Floats, along: Floats) -> Mirror | None:

@@ -2,7 +2,8 @@
 
 Three ways: nodes at the means of themselves and their images, where the quads are symmetric; where only the
 blocks are, the same with equal counts of cells; and the blocks of a half, or of a quarter, and their images.
-Where lengths of edges are prescribed, a fourth one is the blocks for edges that are all alike.
+Where lengths of edges are prescribed, a fourth one is the blocks for edges that are all alike. Of three or
+more mirrors that are not at right angles it is the blocks of a sector, turned around the centre.
 """
 
 from __future__ import annotations
@@ -26,13 +27,21 @@ from meshonet.solvers.blocking.decomposition.errors import BlockingError
 from meshonet.solvers.blocking.decomposition.quads.padding import Span, wrong_count
 from meshonet.solvers.blocking.decomposition.symmetry.halves import both_halves, left_half, spans_between
 from meshonet.solvers.blocking.decomposition.symmetry.images import Images, agree, images_of, made_symmetric
-from meshonet.solvers.blocking.decomposition.symmetry.mirrors import Mirror, mirror_about, mirrors_of
+from meshonet.solvers.blocking.decomposition.symmetry.mirrors import (
+    Mirror,
+    every_mirror_of,
+    mirror_about,
+    mirrors_of,
+)
+from meshonet.solvers.blocking.decomposition.symmetry.sectors import all_sectors, sector_of
 from meshonet.solvers.blocking.sizes.chords import Chords
 from meshonet.solvers.blocking.sizes.refine import refine
 from meshonet.solvers.energy.quad_problem import smallest_jacobian
 
 WORTH = 1.0
 """What symmetry may cost, in degrees of mean deviation: blocks stay as found where it costs more."""
+AT_CENTRE = 6
+"""Quads around the centre of three or more mirrors, at the most, or as many as mirrors."""
 EVEN = 4
 """Cells along the sides of all blocks when their images are looked for."""
 FindPart = Callable[[Domain, int, Sequence[Span]], QuadMesh]
@@ -42,16 +51,22 @@ Optimised = Callable[[QuadMesh], QuadMesh]
 
 def symmetric_blocks(
     blocks: BaseComplex, find: FindPart, optimised: Optimised, score: Callable[[BaseComplex], float],
-    unsized: Callable[[], QuadMesh] | None = None,
+    unsized: Callable[[], QuadMesh] | None = None, worth: float = WORTH,
 ) -> BaseComplex:  # fmt: skip
     """Return symmetric blocks of the domain of some blocks; these where there are none about as good.
 
-    With two mirrors at right angles they are symmetric to both if that can be, else to the first that can be,
-    and to the two mirrors between if the same blocks can be. Those of a part have to be better, and no more,
-    than the blocks as found if these are symmetric already. Where lengths of edges are prescribed, `unsized`
-    makes the mesh of blocks for edges that are all alike, which are taken if no others are symmetric.
+    With three or more mirrors through a centre they are symmetric to all if that can be: as found, or in
+    sectors. With two mirrors at right angles they are symmetric to both if that can be, else to the first
+    that can be, and to the two mirrors between if the same blocks can be. Those of a part have to be better,
+    and no more, than the blocks as found if these are symmetric already. Where lengths of edges are
+    prescribed, `unsized` makes the mesh of blocks for edges that are all alike, which are taken if no others
+    are symmetric.
     """
-    mesh, every = blocks.mesh, mirrors_of(blocks.mesh.domain)
+    mesh, every, mirrors = blocks.mesh, mirrors_of(blocks.mesh.domain), every_mirror_of(blocks.mesh.domain)
+    if len(mirrors) > len(every):
+        trial = _of_sectors(blocks, mirrors, find, optimised, score)
+        if trial is not None:
+            return trial
     mirrors = every[:2]
     irregular = wrong_count(mesh).any() or (mesh.irregular & ~mesh.wall_nodes).any()
     for group in [mirrors, mirrors[:1], mirrors[1:]][: (0, 1, 3)[len(mirrors)]]:
@@ -62,7 +77,7 @@ def symmetric_blocks(
             partial(_recounted, blocks, group, optimised, unsized is None),
             *([unsized] if unsized else []),
         ]
-        best, least = None, score(blocks) + WORTH
+        best, least = None, score(blocks) + worth
         for number, way in enumerate(ways):
             if best is not None and (number >= 2 or not irregular):
                 break
@@ -74,10 +89,37 @@ def symmetric_blocks(
             continue
         if group == mirrors and len(images_of(best.mesh)) < len(every):
             trial = _trial(partial(_recounted, best, every, optimised, unsized is None), every, optimised)
-            if trial is not None and less(score(trial), score(blocks) + WORTH):
+            if trial is not None and less(score(trial), score(blocks) + worth):
                 best = trial
         return best
     return blocks
+
+
+def _of_sectors(
+    blocks: BaseComplex, mirrors: tuple[Mirror, ...], find: FindPart, optimised: Optimised,
+    score: Callable[[BaseComplex], float],
+) -> BaseComplex | None:  # fmt: skip
+    """Return the best blocks that are symmetric to all of three or more mirrors, if they are worth it."""
+    best, least = None, score(blocks) + WORTH
+    ways: list[Callable[[], QuadMesh]] = [
+        lambda: blocks.mesh,
+        *(partial(_of_sector, blocks, mirrors, k, find, optimised, score) for k in (0, 1)),
+    ]
+    for way in ways:
+        trial = _trial(way, mirrors, optimised)
+        if trial is not None and less(score(trial), least):
+            best, least = trial, score(trial)
+    return best
+
+
+def _of_sector(
+    blocks: BaseComplex, mirrors: tuple[Mirror, ...], start: int, find: FindPart, optimised: Optimised,
+    score: Callable[[BaseComplex], float],
+) -> QuadMesh:  # fmt: skip
+    """Return the mesh of a sector, from a mirror on, and its turned copies."""
+    sector = sector_of(blocks.mesh.domain, mirrors, start)
+    found = base_complex(find(sector.domain, len(mirrors), spans_between(sector.domain.loops[0])))
+    return all_sectors(symmetric_blocks(found, find, optimised, score, worth=np.inf).mesh, sector)
 
 
 def _trial(
@@ -86,7 +128,8 @@ def _trial(
     """Return the blocks of a mesh, optimised with its nodes symmetric; None where that cannot be."""
     try:
         mesh, images = _symmetric(optimised(_symmetric(way(), mirrors)[0]), mirrors)
-        if not is_conforming(mesh) or smallest_jacobian(mesh.nodes, mesh.quads) <= 0.0:
+        at_centre = max(len(mirrors), AT_CENTRE) if len(mirrors) > 2 else 0
+        if not is_conforming(mesh, at_centre) or smallest_jacobian(mesh.nodes, mesh.quads) <= 0.0:
             return None
         return cut_on_mirrors(mesh, images)
     except (SolverError, InputError):
