@@ -10,7 +10,7 @@ EXAMPLES = (
     "meshonet quality grid.vts --profile openfoam",
     "meshonet quality grid.vts --profile openfoam --html report.html",
     "meshonet quality grid.vts --per-cell metrics.vts",
-    "meshonet quality grid.vts --reynolds 6e6 --fail-on 'y_plus>300'",
+    "meshonet quality grid.vts --reynolds 6e6 --length 1",
     "meshonet quality grid.vts --compare other.vts",
     "meshonet quality grids/*.vts --compare grid.vts --summary --fail-on 'relative_l2>0.01'",
 )
