@@ -9,11 +9,9 @@ import numpy as np
 
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
-from meshonet.solvers.blocking.cascade.cascade import beside_neighbours, scaled
+from meshonet.solvers.blocking.cascade.cascade import scaled
 from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of
-from meshonet.solvers.blocking.cascade.flat_template import flat_cut, flat_template
-from meshonet.solvers.blocking.cascade.passage import laid_out
-from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
+from meshonet.solvers.blocking.cascade.passage_template import template
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs
 from meshonet.solvers.blocking.layers.layer_rows import JOIN
 from meshonet.solvers.blocking.sizes.chords import Chords
@@ -28,8 +26,6 @@ UPPER, TRAILING, LOWER, LEADING = range(8, 12)
 COARSE = 300
 """Iterations of the first optimum."""
 TOLERANCE = 1e-3
-SLENDER = 2.5
-"""Chord of the middle section in pitches from which on it is optimised in (m', theta) from the start."""
 
 
 def middle_section(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float]) -> Layout:
@@ -38,40 +34,28 @@ def middle_section(planes: Sequence[SectionPlane], cells: int, longest: Mapping[
     `longest` are the greatest lengths of the rows to inlet and outlet in any section, by the number of their
     loop. Raises NoValidGridError: folds.
     """
-    flat = planes[len(planes) // 2].slenderness > SLENDER
-    attempts = [(flat, True), (flat, False)] + ([] if flat else [(True, True), (True, False)])
-    for attempt in attempts:
-        try:
-            return _made(planes, cells, longest, *attempt)
-        except NoValidGridError:
-            if attempt == attempts[-1]:
-                raise
-    raise AssertionError
+    try:
+        return _made(planes, cells, longest, early=True)
+    except NoValidGridError:
+        return _made(planes, cells, longest, early=False)
 
 
 def _made(
-    planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], flat: bool, early: bool
+    planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], *, early: bool
 ) -> Layout:
-    """Return the middle section, `early` with nodes at corners of the blade from the start.
-
-    Its blocks are optimised `flat` in (m', theta), otherwise in the plane of the passage's map.
-    """
+    """Return the middle section, `early` with nodes at corners of the blade from the start."""
     plane = planes[len(planes) // 2]
     cascade = plane.cascade
-    start = (flat_template if flat else template)(cascade.passage, at_corners=early)
-    sizes = beside_neighbours(cascade.flat_metric, cascade) if flat else cascade.metric
-    coarse = _sized(start, FIRST, None)
+    coarse = _sized(template(cascade.passage, at_corners=early), FIRST, None)
     chords = Chords.of(coarse)
-    counts, times, metric = counts_of(cascade, sizes, chords, cells, None)
+    counts, times, metric = counts_of(cascade, chords, cells, None)
     ends = [chords.chord[chords.sides[block, 0]] for block in (TRAILING, LEADING)]
     counts[ends] = counts[ends].max()
     rows = max(each.cascade.rows_of_layers for each in planes)
-    scale = float((metric.along / sizes.along).mean())
-    metric = _joined(plane, sizes, scale, rows)
+    scale = float((metric.along / cascade.metric.along).mean())
+    metric = _joined(plane, scale, rows)
     fine = multiplied(_sized(refine(coarse, counts, chords), COARSE, metric), times)
-    passage = replace(cascade.passage, domain=fine.mesh.domain) if flat else cascade.passage
-    beyond, cut = (fine, flat_cut(fine)) if flat else laid_out(fine, passage, cut_of(fine))
-    return whole_section(plane, passage, (beyond, cut), rows, metric.largest, longest)
+    return whole_section(plane, fine, rows, metric.largest, longest)
 
 
 def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
@@ -89,10 +73,10 @@ def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout
     return replace(layout, mesh=optimum.mesh)
 
 
-def _joined(plane: SectionPlane, sizes: SizeMetric, scale: float, rows: int) -> SizeMetric:
-    """Return `sizes` for cells `scale` times as long, across the front those beyond `rows` of layers."""
+def _joined(plane: SectionPlane, scale: float, rows: int) -> SizeMetric:
+    """Return the sizes for cells `scale` times as long, across the front those beyond `rows` of layers."""
     cascade = plane.cascade
-    thickness = cascade.ring.thickness
+    sizes, thickness = cascade.metric, cascade.ring.thickness
     none = np.full(len(thickness), np.inf)
     arcs = layer_arcs(thickness, cascade.layers.first, none, rows)
     last = JOIN * (arcs[:, -1] - arcs[:, -2])

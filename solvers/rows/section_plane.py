@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats, complex_of, norms, pairs_of
+from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.elementary import modulus
@@ -83,11 +83,6 @@ class SectionPlane:
     def edges(self) -> Floats:
         """(m', theta) (2, 2) of the leading and the trailing edge."""
         return self.cascade.blade.at(self.wall_arcs(np.array([0.0, 0.5])))
-
-    @property
-    def slenderness(self) -> float:
-        """Chord in pitches."""
-        return float(norms(self.edges[1] - self.edges[0]) / self.cascade.pitch[1])
 
     @property
     def wake(self) -> float:

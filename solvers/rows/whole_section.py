@@ -10,9 +10,9 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import log
 from meshonet.geometry.layout.layout import Layout
-from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cascade.cascade_layout import row_steps, straight_rows
-from meshonet.solvers.blocking.cascade.passage import BLADE, Passage, extended
+from meshonet.solvers.blocking.cascade.passage import BLADE, extended
+from meshonet.solvers.blocking.cascade.passage_template import cut_of
 from meshonet.solvers.blocking.layers.attach import Rows, loop_nodes
 from meshonet.solvers.blocking.layers.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.rows.section_plane import SectionPlane
@@ -22,33 +22,36 @@ _RATIO = 2.0
 
 
 def whole_section(
-    plane: SectionPlane, passage: Passage, beyond: tuple[Layout, Indices], layers: int, largest: float,
-    longest: Mapping[int, float],
+    plane: SectionPlane, beyond: Layout, layers: int, largest: float, longest: Mapping[int, float]
 ) -> Layout:  # fmt: skip
     """Return a section of the blocks beyond its layers.
 
     Parameters
     ----------
-    passage : whose loops these blocks have.
-    beyond : their layout in (m', theta), and the nodes of the lower side of its cut.
+    beyond : layout of these blocks in (m', theta).
     layers : how many layers there are.
     largest : size of the largest cells.
     longest : greatest lengths of the rows to inlet and outlet in any section, by the number of their loop.
         They have as many cells as these ask for.
     """
     cascade = plane.cascade
-    flat, cut = beyond
-    mesh = flat.mesh
-    inner = heights_inside(flat, BLADE)
+    mesh = beyond.mesh
+    inner = heights_inside(beyond, BLADE)
     rows = [ring_rows(mesh, BLADE, cascade.ring, layers, cascade.layers, inner)]
-    axis = np.array([passage.map.axis.real, passage.map.axis.imag])
     for number, length, way in straight_rows(cascade):
         start = mesh.nodes[loop_nodes(mesh, number)]
-        first = math.exp(log(heights_inside(flat, number)).mean())
+        first = math.exp(log(heights_inside(beyond, number)).mean())
         count = len(row_steps(first, max(length, longest[number]), largest)) - 1
         steps = _grown(first, length, count)
-        rows.append(Rows(number, start[:, None] + steps[:, None] * (way * axis), np.zeros(len(start)), False))
-    return extended(flat, cut, passage, cascade.blade, rows)
+        rows.append(
+            Rows(
+                number,
+                start[:, None] + steps[:, None] * (way * cascade.passage.axis),
+                np.zeros(len(start)),
+                False,
+            )
+        )
+    return extended(beyond, cut_of(beyond), cascade.passage, cascade.blade, rows)
 
 
 def _grown(first: float, length: float, cells: int) -> Floats:

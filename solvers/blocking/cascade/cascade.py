@@ -13,7 +13,7 @@ from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.elementary import modulus, times
+from meshonet.geometry.elementary import times
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.reach import MOST_CELLS, check_reach
 from meshonet.geometry.shapes.assembly import far_loop
@@ -55,7 +55,7 @@ class Cascade:
     name : name of the blade.
     near : distances upstream and downstream of the blade, in pitches, at which straight rows begin, if
         inlet and outlet are that far away.
-    centre : centre of the map of the passage, inside the blade; the default is a point far from its surface.
+    centre : origin of axial distances, inside the blade; the default is a point far from its surface.
     """
 
     blade: Loop
@@ -163,18 +163,14 @@ class Cascade:
 
     @cached_property
     def metric(self) -> SizeMetric:
-        """Cell sizes outside of the layers, in the plane of the conformal map."""
-        sizes = self.flat_metric
-        to = self.passage.map
-        points = to.forward(sizes.points)
-        turn = to.derivative(points)
-        normals = pairs_of(times(complex_of(sizes.normals), turn) / modulus(turn))
-        return replace(sizes, points=points, normals=normals, scale=to.stretching)
-
-    @cached_property
-    def flat_metric(self) -> SizeMetric:
-        """Cell sizes outside of the layers of the blade alone, in its own plane."""
-        return replace(ring_metric(self.ring, self.layers), largest=abs(self.left) / ACROSS)
+        """Cell sizes outside of the layers of the blade and of its neighbours."""
+        sizes = replace(ring_metric(self.ring, self.layers), largest=abs(self.left) / ACROSS)
+        shift = pairs_of(np.array([0.0, -self.left, self.left]))
+        points = (shift[:, None] + sizes.points).reshape(-1, 2)
+        normals, across, along = (
+            np.concatenate([values] * 3) for values in (sizes.normals, sizes.across, sizes.along)
+        )
+        return replace(sizes, points=points, normals=normals, across=across, along=along)
 
     def check_reach(self, cells: int | None, cell_size: float | None) -> None:
         """Raise InputError where the largest cells are far more than `cells`, or too many of a size."""
@@ -191,16 +187,6 @@ class Cascade:
 def scaled(metric: SizeMetric, scale: float) -> SizeMetric:
     """Return cell sizes for cells `scale` times as long along the blade."""
     return replace(metric, along=scale * metric.along, largest=metric.largest * scale**0.5)
-
-
-def beside_neighbours(sizes: SizeMetric, cascade: Cascade) -> SizeMetric:
-    """Return sizes that those around one blade and its two neighbours ask for."""
-    shift = pairs_of(np.array([0.0, -cascade.left, cascade.left]))
-    points = (shift[:, None] + sizes.points).reshape(-1, 2)
-    normals, across, along = (
-        np.concatenate([values] * 3) for values in (sizes.normals, sizes.across, sizes.along)
-    )
-    return replace(sizes, points=points, normals=normals, across=across, along=along)
 
 
 def _moved(blade: Loop, curve: Curve, shift: Floats) -> Loop:

@@ -19,14 +19,13 @@ from meshonet.geometry.elementary import log
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.cascade.cascade import COARSEST, Cascade, beside_neighbours, scaled
-from meshonet.solvers.blocking.cascade.flat_template import flat_template, turned_back, upright
+from meshonet.solvers.blocking.cascade.cascade import COARSEST, Cascade, scaled
 from meshonet.solvers.blocking.cascade.passage import (
     BLADE,
     INLET,
     OUTLET,
+    Passage,
     extended,
-    laid_out,
     turned_round,
 )
 from meshonet.solvers.blocking.cascade.passage_template import cut_of, template
@@ -44,10 +43,6 @@ MOST_OPTIMISED = 4000
 """Largest number of cells that are optimised directly; finer grids are splines through these."""
 CORNERS = ("at first", "later", "nowhere")
 """When nodes are moved to the corners of the blade, in the order of attempts."""
-SLENDER = 4.0
-"""Axial chord in pitches from which on blocks are not optimised in the plane of the map but in that of the
-blade: inlet and outlet shrink in the map with the exponential of it.
-"""
 LEAST = 4
 """Smallest number of cells along the side of an optimised block."""
 FIRST, ITERATIONS, PASSES = 150, 120, 2  # iterations of the template and of each sized optimum; their number
@@ -74,21 +69,18 @@ def cascade_layout(
     cascade.check_reach(cells, cell_size)
     with timings.stage("layers"):
         passage = cascade.passage
-    slender = cascade.chord > SLENDER * abs(cascade.left)
-    attempts = [(flat, corners) for flat in ([True] if slender else [False, True]) for corners in CORNERS]
-    for flat, corners in attempts:
+    for attempt in CORNERS:
         try:
-            coarse, times, metric = _outside(cascade, flat, corners, cells, cell_size, timings)
+            coarse, times, metric = _outside(cascade, passage, attempt, cells, cell_size, timings)
             break
         except NoValidGridError:
-            if (flat, corners) == attempts[-1]:
+            if attempt == CORNERS[-1]:
                 raise
     with timings.stage("refine"):
         fine = multiplied(coarse, times)
-        own, cut = turned_back(fine, passage) if flat else laid_out(fine, passage, cut_of(fine))
     with timings.stage("layers"):
-        rows = _rows(cascade, own, metric)
-        whole = extended(own, cut, passage, cascade.blade, rows)
+        rows = _rows(cascade, fine, metric)
+        whole = extended(fine, cut_of(fine), passage, cascade.blade, rows)
         whole = evened(whole, cascade.layers)
     if smallest_corner(whole.mesh) <= 0.0:
         raise NoValidGridError("cells of the passage are folded")
@@ -96,26 +88,18 @@ def cascade_layout(
 
 
 def _outside(
-    cascade: Cascade, flat: bool, corners: str, cells: int | None, cell_size: float | None,
+    cascade: Cascade, passage: Passage, corners: str, cells: int | None, cell_size: float | None,
     timings: Timings,
 ) -> tuple[Layout, int, SizeMetric]:  # fmt: skip
-    """Return the coarse layout outside the layers, how much finer it is to be, and sizes of cells.
-
-    It is in the plane of the passage's map, or `flat` in that of the blade, turned upright.
-    """
-    passage, sizes = cascade.passage, cascade.metric
-    if flat:
-        passage, sizes = upright(passage, beside_neighbours(cascade.flat_metric, cascade))
+    """Return the coarse layout outside the layers, how much finer it is to be, and sizes of cells."""
     if corners == "nowhere":
-        blade, *ends = passage.domain.loops
-        smooth = replace(blade, corners=(), names=blade.names[:1])
-        passage = replace(passage, domain=replace(passage.domain, loops=(smooth, *ends)))
+        front = passage.front
+        passage = replace(passage, front=replace(front, corners=(), names=front.names[:1]))
     with timings.stage("first optimum"):
-        start = (flat_template if flat else template)(passage, at_corners=corners == "at first")
-        coarse = passage_optimum(start, FIRST, None)
+        coarse = passage_optimum(template(passage, at_corners=corners == "at first"), FIRST, None)
     with timings.stage("refine"):
         chords = Chords.of(coarse)
-        counts, times, metric = counts_of(cascade, sizes, chords, cells, cell_size)
+        counts, times, metric = counts_of(cascade, chords, cells, cell_size)
         coarse = refine(coarse, counts, chords)
     with timings.stage("optimum"):
         for _ in range(PASSES):
@@ -143,12 +127,11 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
     mesh, passage = layout.mesh, cascade.passage
     inner = heights_inside(layout, BLADE)
     rows = [ring_rows(mesh, BLADE, cascade.ring, cascade.rows_of_layers, cascade.layers, inner)]
-    axis = np.array([passage.map.axis.real, passage.map.axis.imag])
     for number, length, way in straight_rows(cascade):
         if length > 0.0:
             start = mesh.nodes[loop_nodes(mesh, number)]
             steps = row_steps(math.exp(log(heights_inside(layout, number)).mean()), length, metric.largest)
-            nodes = start[:, None] + steps[:, None] * (way * axis)
+            nodes = start[:, None] + steps[:, None] * (way * passage.axis)
             rows.append(Rows(number, nodes, np.zeros(len(start)), False))
     return rows
 
@@ -156,7 +139,7 @@ def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
 def straight_rows(cascade: Cascade) -> list[tuple[int, float, float]]:
     """Return loop, length and direction of the rows to inlet and outlet."""
     passage = cascade.passage
-    axial = passage.map.axial(passage.front.curve.points)
+    axial = passage.axial(passage.front.curve.points)
     before = cascade.ends[0] - float(axial.min() - passage.inlet)
     behind = cascade.ends[1] - float(passage.outlet - axial.max())
     some = 1e-6 * abs(cascade.left)
@@ -176,12 +159,10 @@ def row_steps(first: float, length: float, largest: float) -> Floats:
 
 
 def counts_of(
-    cascade: Cascade, sizes: SizeMetric, chords: Chords, cells: int | None, cell_size: float | None
+    cascade: Cascade, chords: Chords, cells: int | None, cell_size: float | None
 ) -> tuple[Indices, int, SizeMetric]:
-    """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow.
-
-    `sizes` are those in the plane of the layout.
-    """
+    """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
+    sizes = cascade.metric
     wanted = WantedCounts(chords, sizes)
     if cell_size is not None:
         across = np.minimum(sizes.across, cell_size)

@@ -1,9 +1,12 @@
-"""The passage of a cascade: the plane of its conformal map, in which blocks are optimised, and the way back.
+"""The passage of a cascade beyond the layers of its blade, and its blocks with layers and rows to its ends.
 
 ::
 
-    blade (or the front of its layers), pitch --map--> a domain with two holes, and blocks in it
-    layout --cut, moved next to the blade--> with layers of the blade, and rows to inlet and outlet
+    inlet ----------------- cut ------------------ outlet
+      |         .-----------------------.            |        nodes of the upper side of the cut
+      |        (          blade          )           |        are those of the lower side, moved
+      |         '-----------------------'            |        by the pitch
+    inlet ----------------- cut ------------------ outlet
 """
 
 from __future__ import annotations
@@ -13,24 +16,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Complexes, Floats, complex_of, pairs_of
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.periodic import Periodic
-from meshonet.geometry.elementary import product
+from meshonet.geometry.elementary import product, times
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.cascade.passage_map import PassageMap, inner_point
-from meshonet.solvers.blocking.cascade.unwrap import unwrap
 from meshonet.solvers.blocking.layers.attach import Rows, attach, loop_nodes
 
 BLADE, INLET, OUTLET = 0, 1, 2
-"""Numbers of the loops of a passage in the plane of its map."""
+"""Numbers of the loops of a passage whose blocks end at the layers."""
 NEAR = 0.3
 """Distance in pitches, upstream and downstream of a blade, at which blocks end and straight rows start."""
-_ROUND = 96  # points of the circles that inlet and outlet are in the plane of the map
 STRETCH_NAMES = ("periodic1", "outlet", "periodic2", "inlet")
+_SMALL = 1e-12  # width of a blade below which a chord of it is no inside
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,83 +41,114 @@ class Passage:
     Parameters
     ----------
     front : the blade, or the front of its layers, with the passage on its left.
-    map : conformal map to a plane in which the passage is an ordinary domain.
-    domain : this domain, with the loops front, inlet, outlet.
-    inlet, outlet : axial distances from the centre of the map at which blocks end.
+    period : displacement from a blade to the next, on the left of the flow.
+    centre : origin of axial distances, inside the blade.
+    inlet, outlet : axial distances at which blocks end.
+    name : name of the blade.
     """
 
     front: Loop
-    map: PassageMap
-    domain: Domain
+    period: complex
+    centre: complex
     inlet: float
     outlet: float
+    name: str = ""
 
     @classmethod
     def around(
-        cls, front: Loop, pitch: complex, inlet: float, outlet: float, name: str = "",
+        cls, front: Loop, period: complex, inlet: float, outlet: float, name: str = "",
         near: tuple[float, float] = (NEAR, NEAR), centre: complex | None = None,
     ) -> Passage:  # fmt: skip
-        """Return the passage around a closed front; `pitch` points to the next blade, left of the flow.
+        """Return the passage around a closed front.
 
         `inlet` and `outlet` are the largest distances from the front at which blocks end, `near` their usual
-        distances in pitches; `centre` is that of the map.
+        distances in pitches; the default of `centre` is a point far from the front.
         """
         points = front.curve.points
-        passage = PassageMap(pitch, inner_point(points) if centre is None else centre)
+        centre = inner_point(points) if centre is None else centre
+        passage = cls(front, period, centre, 0.0, 0.0, name)
         axial = passage.axial(points)
-        before, behind = min(near[0] * abs(pitch), inlet), min(near[1] * abs(pitch), outlet)
-        first, last = float(axial.min()) - before, float(axial.max()) + behind
-        blade = Loop.of_polygon(passage.forward(points), front.corners, front.names)
-        ends = [
-            Loop.of_polygon(passage.line(distance, _ROUND), (), (side,))
-            for distance, side in ((first, "inlet"), (last, "outlet"))
-        ]
-        return cls(front, passage, Domain((blade, *ends), name), first, last)
+        before, behind = min(near[0] * abs(period), inlet), min(near[1] * abs(period), outlet)
+        return replace(passage, inlet=float(axial.min()) - before, outlet=float(axial.max()) + behind)
 
     @property
     def pitch(self) -> Floats:
         """(2,) displacement from a blade to the next."""
-        return np.array([self.map.pitch.real, self.map.pitch.imag])
+        return np.array([self.period.real, self.period.imag])
 
-    def line_arcs(self, number: int, places: Floats) -> Floats:
-        """Return the arc lengths (n,), on the circle of inlet or outlet, of `places` (n, 2) near it."""
-        circle = self.domain.loops[number].curve
-        along = self.map.along(self.map.back(np.concatenate([circle.points[:1], places])))
-        share = np.mod((along[1:] - along[0]) * (1.0 if number == OUTLET else -1.0), 1.0)
-        count = len(circle.points)
-        knots = np.append(circle.knots, circle.length)
-        return np.asarray(np.interp(share * count, np.arange(count + 1.0), knots) % circle.length)
+    @property
+    def axis(self) -> Floats:
+        """(2,) unit vector from inlet to outlet, perpendicular to the pitch."""
+        return np.array([self.period.imag, -self.period.real]) / abs(self.period)
 
-    def front_arcs(self, arcs: Floats) -> Floats:
-        """Return the arc lengths (n,) on the front for those of its image in the plane of the map."""
-        loop = self.domain.loops[BLADE]
-        here = np.append(loop.curve.knots, loop.length)
-        there = np.append(self.front.curve.knots, self.front.length)
-        return np.asarray(np.interp(np.mod(arcs, loop.length), here, there))
+    def axial(self, points: Floats) -> Floats:
+        """Return the axial distances (n,) of points (n, 2) from the centre."""
+        return product(points - pairs_of(np.array(self.centre)), self.axis)
+
+    def along(self, points: Floats) -> Floats:
+        """Return the distances (n,) of points (n, 2) from the centre along the pitch, in pitches."""
+        return np.asarray(((complex_of(points) - self.centre) / self.period).real)
+
+    def at(self, axial: Sequence[float], along: Sequence[float]) -> Floats:
+        """Return the points (n, 2) at axial distances (n,) from the centre and distances in pitches (n,)."""
+        centre = pairs_of(np.array(self.centre))
+        return centre + np.array(axial)[:, None] * self.axis + np.array(along)[:, None] * self.pitch
+
+    def zeta(self, points: Floats) -> Complexes:
+        """Return ζ (n,) of points (n, 2), in which the pitch is iπ and the axis is real."""
+        return np.asarray(times(1j * np.pi, (complex_of(points) - self.centre)) / self.period)
+
+    def of_zeta(self, zeta: Complexes) -> Floats:
+        """Return the points (n, 2) at ζ (n,)."""
+        return pairs_of(self.centre + times(zeta, self.period) / (1j * np.pi))
+
+    def domain(self, inlet: float, outlet: float) -> Domain:
+        """Return the domain of the blocks, with the loops front, inlet, outlet, and one around them.
+
+        Those of inlet and outlet are rectangles before and behind the passage, which have the blade in
+        between; their first sides are inlet, from `inlet` against the pitch, and outlet, along the pitch to
+        `outlet`. Both are distances from the centre in pitches.
+        """
+        pitch = abs(self.period)
+        x, far = (self.inlet, self.outlet), (self.inlet - pitch, self.outlet + pitch)
+        before = self.at([x[0], x[0], far[0], far[0]], [inlet, inlet - 1.0, inlet - 1.0, inlet])
+        behind = self.at([x[1], x[1], far[1], far[1]], [outlet - 1.0, outlet, outlet, outlet - 1.0])
+        around = self.at([far[0], far[1], far[1], far[0]], [0.0, 0.0, 1.0, 1.0])
+        rectangles = [
+            Loop.of_polygon(points, (0, 1, 2, 3), (name,))
+            for points, name in ((before, "inlet"), (behind, "outlet"), (around, ""))
+        ]
+        shift = (self.period.real, self.period.imag)
+        periodic = Periodic((0.0, 0.0), (0.0, 0.0), shift)
+        return Domain((self.front, *rectangles), self.name, periodic=(periodic,))
 
 
-def laid_out(layout: Layout, passage: Passage, cut: Indices) -> tuple[Layout, Indices]:
-    """Return the layout in the plane of the blade, cut along its nodes `cut` (k,).
+def inner_point(polygon: Floats) -> complex:
+    """Return the point of a lattice inside a polygon (n, 2) that is farthest from the polygon."""
+    low, high = polygon.min(axis=0), polygon.max(axis=0)
+    best, most = complex(*polygon.mean(axis=0)), -1.0
+    for rows in (40, 160, 640):
+        x = np.linspace(low[0], high[0], rows + 2)[1:-1]
+        for value in x:
+            y = _crossings(polygon, value)
+            if len(y) < 2:
+                continue
+            for a, b in zip(y[::2], y[1::2], strict=False):
+                middle = np.array([value, 0.5 * (a + b)])
+                room = float(np.hypot(*(polygon - middle).T).min())
+                if room > most and b - a > _SMALL:
+                    best, most = complex(*middle), room
+        if most > 0:
+            break
+    return best
 
-    Its loops are those of the map's plane: the front, and lines at inlet and outlet. Also returned are the
-    nodes (k,) of the lower side of the cut; the image of each has the next number.
-    """
-    flat, lower = unwrap(layout, passage.map, cut)
-    nodes, places, pitch = flat.mesh.nodes, flat.mesh.places, passage.pitch
-    on = np.flatnonzero(places.loop == BLADE)
-    arcs = passage.front_arcs(places.arc[on])
-    exact = passage.front.at(arcs)
-    nodes -= np.round(passage.map.along(nodes[on]) - passage.map.along(exact)).mean() * pitch
-    nodes[on], places.arc[on] = exact, arcs
-    axis = np.array([passage.map.axis.real, passage.map.axis.imag])
-    for loop, distance in ((INLET, passage.inlet), (OUTLET, passage.outlet)):
-        on = np.flatnonzero(places.loop == loop)
-        nodes[on] += (distance - passage.map.axial(nodes[on]))[:, None] * axis
-        side = passage.map.along(nodes[on])
-        # the passage is on the left of each loop: down at the inlet, up at the outlet
-        places.arc[on] = side.max() - side if loop == INLET else side - side.min()
-    nodes[lower + 1] = nodes[lower] + pitch
-    return flat, lower
+
+def _crossings(polygon: Floats, x: float) -> Floats:
+    """Return the ordinates, ascending, at which a closed polygon crosses the line of an abscissa."""
+    a, b = polygon, np.roll(polygon, -1, axis=0)
+    across = (a[:, 0] > x) != (b[:, 0] > x)
+    a, b = a[across], b[across]
+    return np.sort(a[:, 1] + (x - a[:, 0]) / (b[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1]))
 
 
 def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: Sequence[Rows]) -> Layout:
@@ -126,7 +158,7 @@ def extended(layout: Layout, cut: Indices, passage: Passage, wall: Loop, rows: S
     """
     mesh = layout.mesh
     count = len(mesh.nodes)
-    domain = replace(passage.domain, loops=(wall, *passage.domain.loops[1:]))
+    domain = replace(mesh.domain, loops=(wall, *mesh.domain.loops[1:]))
     whole = attach(layout, domain, rows)
     images = np.flatnonzero(mesh.places.partner >= 0)
     above = np.empty(count, dtype=np.intp)
@@ -170,7 +202,7 @@ def _closed(layout: Layout, passage: Passage, lower: Indices, upper: Indices) ->
     knots = outer.curve.knots[corners]
     shift = (float(pitch[0]), float(pitch[1]))
     periodic = Periodic((float(knots[0]), float(knots[1])), (float(knots[2]), float(knots[3])), shift)
-    domain = Domain((outer, mesh.domain.loops[BLADE]), passage.domain.name, periodic=(periodic,))
+    domain = Domain((outer, mesh.domain.loops[BLADE]), passage.name, periodic=(periodic,))
     moved = replace(places, loop=loop, arc=arc, cells=cells)
     return Layout(QuadMesh(domain, nodes, mesh.quads, moved), layout.blocks, layout.layers)
 

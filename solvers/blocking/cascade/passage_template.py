@@ -1,6 +1,7 @@
 r"""Blocks of a cascade's passage: a ring around the blade, the channel, and rows to inlet and outlet.
 
-In the plane G of a `PassageFlow`, where the blade is a slit, all blocks except the ring are rectangles::
+In the plane G of a `PassageFlow`, where the blade is a slit, all blocks except the ring are rectangles, here
+with those above the cut where they are before they are moved down by the period::
 
     iπ - e  +----------+=====================+----------+     = the ring's outer side
             |          |       channel       |          |
@@ -26,48 +27,79 @@ from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cascade.passage import BLADE, INLET, OUTLET, Passage
 from meshonet.solvers.blocking.cascade.passage_flow import PassageFlow
-from meshonet.solvers.blocking.cascade.passage_map import of_zeta
 
 CELLS = 6
 """Number of cells across the ring, and smallest number along each side of a block."""
 LONG = np.pi / 12.0
 """Length of cells along the channel in the plane G."""
+LONGEST = 72
+"""Most cells along the channel."""
 ASIDE, AHEAD = 0.45, 0.12
 """Distances of the ring's outer side from the slit, beside it and at its ends; the period is π."""
 
-
-_SAME = 1e-9  # distance at which nodes are one
+_SAME = 1e-9  # distance in the plane G at which nodes are one
 FEET = 1e3
 """Places in the plane G that are not used, at which the nodes on the blade are."""
 
 
 def template(passage: Passage, *, at_corners: bool = True) -> Layout:
-    """Return the layout of a passage in the plane of its map; nodes may be moved to the blade's corners."""
-    flow = PassageFlow.of(passage.map.zeta(passage.front.curve.points))
+    """Return the layout of a passage; nodes may be moved to the blade's corners."""
+    flow = PassageFlow.of(passage.zeta(passage.front.curve.points))
     pieces, angles = template_pieces(flow, passage)
-    nodes, blocks = joined_pieces(pieces, periodic=True)
-    layout = _placed(passage, flow, nodes, blocks, angles)
+    potential, blocks = joined_pieces(pieces)
+    off_blade = modulus(potential) < 0.5 * FEET
+    nodes = passage.of_zeta(flow.to_places(np.where(off_blade, potential, 0.5j * np.pi)))
+    ends = [
+        np.unique(np.concatenate([block[k] for block in own]))
+        for k, own in ((0, blocks[:3]), (-1, blocks[5:8]))
+    ]
+    # far from blades streamlines are straight: where they are, and how far up each is
+    up = [potential[own].imag / np.pi for own in ends]
+    tops = [
+        float((passage.along(nodes[own]) - share).mean()) + 0.5 for own, share in zip(ends, up, strict=True)
+    ]
+    domain = passage.domain(*tops)
+    places = Places.inside(len(nodes))
+    feet, angle = np.concatenate([block[:, 0] for block in blocks[-4:]]), np.concatenate(angles)
+    places.loop[feet], places.arc[feet] = BLADE, blade_arcs(flow, angle, passage.front)
+    for number, own, share in zip((INLET, OUTLET), ends, up, strict=True):
+        places.loop[own] = number
+        places.arc[own] = abs(passage.period) * np.clip(
+            0.5 + (share if number == OUTLET else -share), 0.0, 1.0
+        )
+    for number in (BLADE, INLET, OUTLET):
+        own = np.flatnonzero(places.loop == number)
+        nodes[own] = domain.loops[number].at(places.arc[own])
+    _tie(places, potential)
+    images = np.flatnonzero(places.partner >= 0)
+    nodes[images] = nodes[places.partner[images]] + passage.pitch
+    layout = Layout(QuadMesh(domain, nodes, lattice_quads(blocks), places), blocks)
     if at_corners:
-        put_at_corners(layout, passage.domain.loops[BLADE])
+        put_at_corners(layout, passage.front)
     return layout
 
 
-def template_pieces(
-    flow: PassageFlow, passage: Passage, *, longest: float = np.inf, cut: bool = False
-) -> tuple[list[Complexes], list[Floats]]:
+def _tie(places: Places, potential: Complexes) -> None:
+    """Make the nodes of the lower side of the cut the partners of those of the upper side, in place."""
+    sides = []
+    for end in (0.5 * np.pi, -0.5 * np.pi):
+        own = np.flatnonzero((np.abs(potential.imag - end) < _SAME) & (places.loop != BLADE))
+        sides.append(own[np.argsort(potential[own].real, kind="stable")])
+    places.partner[sides[0]] = sides[1]
+
+
+def template_pieces(flow: PassageFlow, passage: Passage) -> tuple[list[Complexes], list[Floats]]:
     """Return the twelve blocks in the plane G, those of the ring last, and the angles of these as `_ring`.
 
-    The channel has `longest` cells along it at the most. With `cut` blocks above the cut are moved below the
-    blade, by the period.
+    Blocks above the cut are below the blade, a period further down.
     """
     x = flow.half + AHEAD
-    to_axis = np.pi / abs(passage.map.pitch)
+    to_axis = np.pi / abs(passage.period)
     before = max(flow.far[0] - to_axis * passage.inlet, x + AHEAD)
     behind = max(to_axis * passage.outlet - flow.far[1], x + AHEAD)
     columns = (-before, -x, x, behind)
-    along = int(min(max(CELLS, round(2.0 * x / LONG)), longest))
-    period = np.pi if cut else 0.0
-    rows = ((-ASIDE, ASIDE), (ASIDE, 0.5 * np.pi), (0.5 * np.pi - period, np.pi - ASIDE - period))
+    along = int(min(max(CELLS, round(2.0 * x / LONG)), LONGEST))
+    rows = ((-ASIDE, ASIDE), (ASIDE, 0.5 * np.pi), (-0.5 * np.pi, -ASIDE))
     pieces = []
     for i in range(3):
         for j in range(3):
@@ -96,11 +128,8 @@ def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], lis
     return blocks, angles
 
 
-def joined_pieces(pieces: list[Complexes], *, periodic: bool) -> tuple[Complexes, tuple[Indices, ...]]:
-    """Return the positions of nodes, and blocks of their numbers.
-
-    Nodes that coincide are merged, with `periodic` also those that do up to multiples of the period iπ.
-    """
+def joined_pieces(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
+    """Return the positions of nodes, and blocks of their numbers; nodes that coincide are one."""
     places = np.concatenate([piece.ravel() for piece in pieces])
     inner = np.zeros(len(places), dtype=bool)
     ends = np.cumsum([0, *(piece.size for piece in pieces)])
@@ -109,38 +138,10 @@ def joined_pieces(pieces: list[Complexes], *, periodic: bool) -> tuple[Complexes
     side = np.flatnonzero(~inner)
     own = np.arange(len(places))
     away = places[side, None] - places[side]
-    if periodic:
-        away -= 1j * np.pi * np.round(away.imag / np.pi) * (modulus(places[side]) < 0.5 * FEET)
     own[side] = side[(modulus(away) < _SAME).argmax(axis=1)]
     kept, number = np.unique(own, return_inverse=True)
     parts = np.split(number.astype(np.intp), ends[1:-1])
     return places[kept], tuple(part.reshape(piece.shape) for part, piece in zip(parts, pieces, strict=True))
-
-
-def _placed(
-    passage: Passage, flow: PassageFlow, nodes: Complexes, blocks: tuple[Indices, ...], angles: list[Floats]
-) -> Layout:
-    """Return the layout with `nodes` mapped to the plane of the map, and wall nodes on its loops.
-
-    Those of the blade are at `angles` around the slit, for each block of the ring.
-    """
-    domain = passage.domain
-    front = domain.loops[BLADE]
-    mapped = of_zeta(flow.to_places(np.where(modulus(nodes) < 0.5 * FEET, nodes, 0.5j * np.pi)))
-    places = Places.inside(len(nodes))
-    feet, angle = np.concatenate([block[:, 0] for block in blocks[-4:]]), np.concatenate(angles)
-    places.loop[feet], places.arc[feet] = BLADE, blade_arcs(flow, angle, front)
-    for number, columns in (
-        (INLET, [block[0] for block in blocks[:3]]),
-        (OUTLET, [block[-1] for block in blocks[-7:-4]]),
-    ):
-        on = np.unique(np.concatenate(columns))
-        places.loop[on] = number
-        places.arc[on] = passage.line_arcs(number, mapped[on])
-    for number, loop in enumerate(domain.loops):
-        on = places.loop == number
-        mapped[on] = loop.at(places.arc[on])
-    return Layout(QuadMesh(domain, mapped, lattice_quads(blocks), places), blocks)
 
 
 def put_at_corners(layout: Layout, front: Loop) -> None:
@@ -169,5 +170,5 @@ def blade_arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
 
 
 def cut_of(layout: Layout) -> Indices:
-    """Return the nodes (k,) of the cut of a layout with the template's blocks, starting at the inlet."""
-    return np.concatenate([layout.blocks[1][:, -1], layout.blocks[3][1:, -1], layout.blocks[6][1:, -1]])
+    """Return the nodes (k,) of the lower side of the cut of a layout with these blocks, from the inlet on."""
+    return np.concatenate([layout.blocks[2][:, 0], layout.blocks[4][1:, 0], layout.blocks[7][1:, 0]])

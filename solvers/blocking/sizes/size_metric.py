@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -30,13 +30,11 @@ class Near:
     point : (p, m) nearest point of each of p parts to each edge.
     distance : (p, m) distance to this point.
     square : (p, m) squared cosine of the angle between edge and normal.
-    scale : (m,) scale of the conformal map at the edge.
     """
 
     point: Indices
     distance: Floats
     square: Floats
-    scale: Floats
 
     def length(self, sizes: SizeMetric) -> Floats:
         """Return the target lengths (m,) of the edges, the smallest of all parts, for other sizes."""
@@ -44,7 +42,7 @@ class Near:
         high = np.minimum(sizes.across[self.point] + rise, sizes.largest)
         wide = np.minimum(sizes.along[self.point] + rise, sizes.largest)
         most = np.sqrt(self.square / high**2 + (1.0 - self.square) / wide**2).max(axis=0)
-        return np.asarray(self.scale / most)
+        return np.asarray(1.0 / most)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,9 +58,6 @@ class SizeMetric:
     across, along : (n,) lengths of edges in the direction of the normal and perpendicular to it.
     largest : length of edges far from all points.
     grading : growth of lengths with the distance.
-    scale : of a conformal map, the factor by which (n,) edges at places (n, 2) of its plane are longer.
-        Lengths and distances above are those before the map; places, points and directions are those after
-        it.
     starts : indices of the points at which parts start: walls with their own sizes. An edge gets the smallest
         of their lengths, so that sizes change gradually from one wall to the next.
     """
@@ -73,7 +68,6 @@ class SizeMetric:
     along: Floats
     largest: float
     grading: float = GRADING
-    scale: Callable[[Floats], Floats] | None = None
     starts: tuple[int, ...] = (0,)
 
     @classmethod
@@ -88,7 +82,6 @@ class SizeMetric:
             np.concatenate([each.along for each in metrics]),
             min(each.largest for each in metrics),
             first.grading,
-            first.scale,
             tuple(starts.tolist()),
         )
 
@@ -99,7 +92,6 @@ class SizeMetric:
     def near(self, places: Floats, directions: Floats) -> Near:
         """Return what `length` needs at `places` (m, 2) in `directions` (m, 2) independently of the sizes."""
         places = np.ascontiguousarray(places)
-        scale = np.ones(len(places)) if self.scale is None else self.scale(places)
         size = np.maximum(np.hypot(directions[:, 0], directions[:, 1]), 1e-300)
         shape = len(self.starts), len(places)
         point, away, square = np.empty(shape, dtype=np.intp), np.empty(shape), np.empty(shape)
@@ -107,11 +99,9 @@ class SizeMetric:
             k, squares = nearest_points(places, self.points[start:stop])
             k += start
             distance = np.sqrt(squares)
-            if self.scale is not None:
-                distance = distance / np.sqrt(scale * self.scale(self.points)[k])
             cosine = np.abs((directions * self.normals[k]).sum(axis=1)) / size
             point[part], away[part], square[part] = k, distance, cosine**2
-        return Near(point, away, square, scale)
+        return Near(point, away, square)
 
     def edges(self, mesh: QuadMesh) -> Floats:
         """Return the target lengths (e,) of the edges of a mesh at their present positions."""

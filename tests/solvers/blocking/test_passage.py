@@ -11,8 +11,8 @@ from meshonet.geometry.quality.blocks import block_figures
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.blocking.cascade.cascade import Cascade
 from meshonet.solvers.blocking.cascade.cascade_layout import cascade_layout
+from meshonet.solvers.blocking.cascade.passage import Passage
 from meshonet.solvers.blocking.cascade.passage_flow import PassageFlow
-from meshonet.solvers.blocking.cascade.passage_map import PassageMap
 from meshonet.solvers.blocking.decomposition.collapse.score import deviations
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 
@@ -164,10 +164,10 @@ def test_flow_past_a_flat_plate_along_it_is_the_plate_itself():
     assert PassageFlow.of(points).half == pytest.approx(1.0, rel=5e-3)
 
 
-def test_the_map_of_a_passage_has_its_period_and_its_inverse():
-    to = PassageMap(0.2 + 1.1j, 0.1 + 0.05j)
-    z = np.random.default_rng(1).uniform(-0.4, 0.4, (50, 2)) + np.array([1.0, 0.0])
-    np.testing.assert_allclose(to.forward(z), to.forward(z + np.array([0.2, 1.1])), atol=1e-12)
-    back = to.back(to.forward(z))
-    shifts = np.round(to.along(z) - to.along(back))
-    np.testing.assert_allclose(back + shifts[:, None] * np.array([0.2, 1.1]), z, atol=1e-10)
+def test_places_in_a_passage_are_axial_distances_and_pitches():
+    passage = Passage(blade(0.0), 0.2 + 1.1j, 0.1 + 0.05j, -1.0, 1.0)
+    points = passage.at([-0.3, 0.7], [0.25, -0.5])
+    np.testing.assert_allclose(passage.axial(points), [-0.3, 0.7], atol=1e-14)
+    np.testing.assert_allclose(passage.along(points), [0.25, -0.5], atol=1e-14)
+    np.testing.assert_allclose(passage.of_zeta(passage.zeta(points)), points, atol=1e-14)
+    assert passage.axis @ passage.pitch == pytest.approx(0.0, abs=1e-14)
