@@ -40,9 +40,7 @@ def middle_section(planes: Sequence[SectionPlane], cells: int, longest: Mapping[
         return _made(planes, cells, longest, early=False)
 
 
-def _made(
-    planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], *, early: bool
-) -> Layout:
+def _made(planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], *, early: bool) -> Layout:
     """Return the middle section, `early` with nodes at corners of the blade from the start."""
     plane = planes[len(planes) // 2]
     cascade = plane.cascade
