@@ -210,6 +210,7 @@ bench: $(VENV)/.developing
 	$(BIN)/python benchmarks/bench_volumes.py --page docs/benchmarks/volumes.md
 	$(if $(FILES),$(BIN)/python benchmarks/bench_engines.py --airfoils $(FILES) --page docs/benchmarks/engines.md)
 	$(if $(FILES),$(BIN)/python benchmarks/bench_wings.py --airfoils $(FILES) --page docs/benchmarks/wings.md)
+	$(if $(FILES),$(BIN)/python benchmarks/bench_aircraft.py --airfoils $(FILES) --page docs/benchmarks/aircraft.md)
 	$(if $(ROW),$(BIN)/python benchmarks/bench_rows.py --row $(ROW) --airfoils $(FILES) --page docs/benchmarks/rows.md)
 
 docs: text pictures

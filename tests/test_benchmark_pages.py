@@ -20,6 +20,7 @@ SCRIPTS = {
     "marching-surfaces": "marching",
     "wings": "wings",
     "rows": "rows",
+    "aircraft": "aircraft",
     "volumes": "volumes",
     "engines": "engines",
     "threads": "threads",

@@ -33,7 +33,8 @@ def stack(
     **parameters
         Fields of `meshonet.StackRequest`, such as ``around``, ``span``, ``first_cell``, ``y_plus``,
         ``reynolds``, ``layers``, ``growth``, ``far_field``; for a row those
-        of `meshonet.RowRequest`: ``first_cell``, ``y_plus``, ``reynolds``, ``growth``, ``cells``.
+        of `meshonet.RowRequest`: ``first_cell``, ``y_plus``, ``reynolds``, ``growth``, ``cells``;
+        an aircraft takes ``cells`` too, in place of ``around``.
 
     Returns
     -------

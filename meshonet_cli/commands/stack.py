@@ -52,7 +52,9 @@ def stack(
         "blades are opened to this height. [default: 0.005]",
     )] = None,
     cells: Annotated[int | None, _sampling(
-        "--cells", metavar="N", help="Approximate number of cells of a blade row. [default: 500000]",
+        "--cells", metavar="N",
+        help="Approximate number of cells of a blade row, or around an aircraft instead of --around. "
+        "[default: 500000 in a blade row]",
     )] = None,
     copies: Annotated[int | None, _sampling(
         "--copies", metavar="K", min=1,

@@ -18,19 +18,18 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.solvers.aircraft.body_map import BodyMap
-from meshonet.solvers.aircraft.body_plane import LevelPlan, level_patches, planned
+from meshonet.solvers.aircraft.body_plane import LevelPlan, level_patches
 from meshonet.solvers.aircraft.exact_cells import at_height, at_heights
+from meshonet.solvers.aircraft.plan import GROWTH, plan_of
+from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.aircraft.wall_normals import off_body, off_wing
 from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.blocking.layers.attach import sampled
 from meshonet.solvers.rows.columns import arcs_of, resampled, with_first
-from meshonet.solvers.rows.span_lines import SpanLines, key_heights
-from meshonet.solvers.rows.span_spacing import SAMPLES, line_parts, spaced_cells, two_sided
-from meshonet.solvers.stacking.request import StackRequest
+from meshonet.solvers.rows.span_lines import SpanLines
+from meshonet.solvers.rows.span_spacing import line_parts, spaced_cells, two_sided
 from meshonet.solvers.stacking.tip import Cap
 
-GROWTH = 1.2
-"""Growth of cells away from walls where none is given."""
 _UNBOUNDED = 1e9
 """Length of the last cells of lines, which nothing limits but their growth."""
 LEVEL_PATCHES = 7
@@ -41,11 +40,9 @@ _ABOVE = 1e-3
 """Step in zeta of the point by which the normal of the body is known."""
 _FINE = 129
 """Levels of the table by which lines beyond the tip are measured."""
-_PLANNED = (0, 4, 8, 12, 16)
-"""Key levels from which counts are taken."""
 
 
-def aircraft_grid(aircraft: Aircraft, request: StackRequest) -> tuple[Grid, tuple[str, ...]]:
+def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, tuple[str, ...]]:
     """Return the grid of half an aircraft, and notes.
 
     Raises InputError: a wing that does not begin inside the body or does not leave it.
@@ -53,18 +50,13 @@ def aircraft_grid(aircraft: Aircraft, request: StackRequest) -> tuple[Grid, tupl
     chord = aircraft.wing.chord
     first, growth = request.height() * chord, request.growth or GROWTH
     space = BodyMap(aircraft.body, request.far_field * chord + 0.5 * aircraft.body.extent)
-    wing = WingLines.of(aircraft, request.around, request.base)
-    keys = key_heights(SAMPLES)[:, None] + np.zeros(len(wing.roots))
-    sections = space.places(wing.points(keys))
-    sections[0, :, 2] = 0.0
-    scales = _scales(space, sections)
-    plan = planned([(sections[k][:, :2], scales[k]) for k in _PLANNED], aircraft.body.length, first, growth)
-    levels = [_level(space, plan, *each, first) for each in zip(sections, scales, strict=True)]
+    plan, notes = plan_of(aircraft, request, space)
+    wing, sections, scales = plan.wing, plan.sections, plan.scales
+    levels = [_level(space, plan.levels, *each, first) for each in zip(sections, scales, strict=True)]
     shapes = [patch.shape[:2] for patch in levels[0]]
     table = np.stack([np.concatenate([patch.reshape(-1, 3) for patch in level]) for level in levels])
     ring = np.arange(shapes[0][0] * shapes[0][1]).reshape(shapes[0])
-    cells = spaced_cells(wing.length, (first, first), growth, wing.length / (request.span - 1), 8)
-    beside = _along_wing(space, wing, table, ring, cells, first, growth)
+    beside = _along_wing(space, wing, table, ring, plan.span, first, growth)
     caps = _cap(space, wing)
     tip = np.concatenate([beside[-1], *(patch.reshape(-1, 3) for patch in caps)])
     beyond = _beyond_tip(space, tip, first, growth)
@@ -75,22 +67,13 @@ def aircraft_grid(aircraft: Aircraft, request: StackRequest) -> tuple[Grid, tupl
     low = off_body(low, space.points(normal), ring, first)
     low = off_wing(low, ring, first)
     high = _flat(space.points(beyond), aircraft)
-    return _joined(aircraft, shapes, low, high), (*wing.notes, *flat)
+    return _joined(aircraft, shapes, low, high), (*notes, *flat)
 
 
 def _flat(points: Floats, aircraft: Aircraft) -> Floats:
     """Return points (..., 3), those next to the plane of symmetry in it."""
     points[np.abs(points[..., 2]) < _FLAT * aircraft.body.length, 2] = 0.0
     return points
-
-
-def _scales(space: BodyMap, sections: Floats) -> Floats:
-    """Return the lengths in space (k, 2) of units of s and theta, the means over sections (k, n, 3)."""
-    points = space.points(sections)
-    radius = np.hypot(points[..., 1] - space.body.y, points[..., 2]).mean(axis=1)
-    half = (sections.shape[1] - 1) // 2
-    chord = norms(points[:, 0] - points[:, half])
-    return np.stack([chord / np.abs(sections[:, 0, 0] - sections[:, half, 0]), radius], axis=1)
 
 
 def _level(space: BodyMap, plan: LevelPlan, section: Floats, scale: Floats, first: float) -> list[Floats]:

@@ -7,7 +7,7 @@ from meshonet.solvers.aircraft.body_map import BodyMap
 
 _ROUNDS = 6
 """Times a place is scaled along its line; the map is nearly linear over a first cell."""
-_CORNER_ROUNDS = 60
+_CORNER_ROUNDS = 200
 """Times a place beside two walls is scaled from each of them, in turn."""
 
 

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.threads import limited_to
-from meshonet.solvers.aircraft.request import aircraft_request
+from meshonet.solvers.aircraft.request import AircraftRequest, aircraft_request
 from meshonet.solvers.pipeline.result import Result, judged
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.stacking.request import StackRequest
 from meshonet.solvers.stages import stage
 
 _REMEDY = "use more nodes {around}, or a larger {first_cell}"  # where cells fold
 
 
-def make_aircraft(aircraft: Aircraft, request: StackRequest | None = None) -> Result:
+def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) -> Result:
     """Return the grid around half an aircraft, measured.
 
     Raises InputError: a wing that does not begin in the body or does not leave it; NoValidGridError: cells

@@ -139,7 +139,10 @@ def test_a_body_with_a_wing_is_made_with_its_names(meshonet: Meshonet, tmp_path:
     assert {patch.name for patch in grid.patches} == {"fuselage", "wing", "tip", "symmetry", "farfield"}
 
 
-@pytest.mark.parametrize("words", ["--layers 31", "--cells 5000", "--tip round", "--surface", "--revolve 20"])
+@pytest.mark.parametrize(
+    "words",
+    ["--layers 31", "--copies 2", "--cells 5000 --around 65", "--tip round", "--surface", "--revolve 20"],
+)
 def test_options_of_other_stacks_are_refused_for_a_body_with_a_wing(
     meshonet: Meshonet, tmp_path: Path, words: str
 ) -> None:

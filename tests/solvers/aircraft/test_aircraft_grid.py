@@ -15,10 +15,10 @@ from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
 from meshonet.solvers.aircraft.body_map import BodyMap
-from meshonet.solvers.stacking.request import StackRequest
+from meshonet.solvers.aircraft.request import AircraftRequest, aircraft_request
 
 FIRST = 1e-3
-SMALL = StackRequest(around=65, span=9, first_cell=FIRST, far_field=8.0)
+SMALL = AircraftRequest(around=65, span=9, first_cell=FIRST, far_field=8.0)
 
 
 @pytest.fixture(scope="module")
@@ -147,3 +147,24 @@ def test_cells_grow_little_along_lines(grid: Grid) -> None:
             ratios.append((steps[1:] / steps[:-1]).ravel())
     growth = np.concatenate(ratios)
     assert (np.maximum(growth, 1.0 / growth) <= 1.3).mean() > 0.97
+
+
+def test_there_are_about_as_many_cells_as_wanted() -> None:
+    request = aircraft_request(cells=400_000, span=9, first_cell=1e-2, far_field=8.0)
+    made, _ = aircraft_grid(aircraft(), request)
+    cells = sum(int(np.prod([count - 1 for count in block.counts])) for block in made.blocks)
+    assert cells == pytest.approx(400_000, rel=0.2)
+
+
+def test_layers_that_need_more_cells_are_named_in_a_note() -> None:
+    _, notes = aircraft_grid(aircraft(), aircraft_request(cells=20_000, span=9, first_cell=1e-2))
+    assert any("layers need about" in note for note in notes)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [({"cells": 1}, "1 cells"), ({"cells": 500_000, "around": 65}, "both"), ({"layers": 9}, "has no")],
+)
+def test_options_that_do_not_fit_are_refused(options: dict[str, int], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        aircraft_request(**options)
