@@ -28,7 +28,7 @@ from meshonet.solvers.blocking.layers.layer_rows import layer_lines
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.rows.columns import layer_columns
 from meshonet.solvers.rows.harmonic import harmonic
-from meshonet.solvers.rows.middle_section import LOWER, TOLERANCE, UPPER, middle_section
+from meshonet.solvers.rows.middle_section import LOWER, TOLERANCE, UPPER, folded_section, middle_section
 from meshonet.solvers.rows.opposite import at_corners, opposite_places
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.wall_places import even_wall_places
@@ -112,7 +112,7 @@ def planned(
     def evened() -> Floats:
         return even_wall_places(planes, places, plane.corners, growth, pairs, opposite=opposite)
 
-    optimum, even = both(partial(_optimum, plan, whole, FINE, ends_slide=True), evened)
+    optimum, even = both(partial(_optimum, plan, plane, whole, FINE, ends_slide=True), evened)
     plan, section = replace(plan, places=even), KeySection(plane, optimum, at)
     try:
         return plan, _placed(plan, section)
@@ -171,7 +171,7 @@ def _moved(
 ) -> KeySection:  # fmt: skip
     """Return a section with nodes around the blade at `places` (k,), from its neighbour's."""
     layout, own = _carried(plan, before, plane, places)
-    return KeySection(plane, _optimum(plan, layout, iterations), own)
+    return KeySection(plane, _optimum(plan, plane, layout, iterations), own)
 
 
 def _carried(
@@ -203,7 +203,9 @@ def _carried(
     return replace(before.layout, mesh=mesh.with_nodes(nodes)), plane.places_of(walls)
 
 
-def _optimum(plan: SectionPlan, layout: Layout, iterations: int, *, ends_slide: bool = False) -> Layout:
+def _optimum(
+    plan: SectionPlan, plane: SectionPlane, layout: Layout, iterations: int, *, ends_slide: bool = False
+) -> Layout:
     """Return the layout with nodes beyond the layers where the functional is least."""
     held = np.zeros(len(layout.mesh.nodes), dtype=bool)
     held[plan.columns] = True
@@ -215,5 +217,5 @@ def _optimum(plan: SectionPlan, layout: Layout, iterations: int, *, ends_slide: 
         growth=(STEEP, MARGIN * math.log(plan.growth)),
     )  # fmt: skip
     if not optimum.valid:
-        raise NoValidGridError("cells of a section stay folded")
+        raise folded_section(plane, optimum.mesh)
     return replace(layout, mesh=optimum.mesh)

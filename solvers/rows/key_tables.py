@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads
 from meshonet.solvers.blocking.cascade.passage import INLET, NEAR, OUTLET
@@ -59,7 +60,8 @@ def _planes(row: Row, first: float, growth: float) -> list[SectionPlane]:
 
     def plane_at(height: float) -> SectionPlane:
         plane = SectionPlane.of(row, height, first, growth)
-        _ = plane.room  # marches the layers
+        with _of_section(height):
+            _ = plane.room  # marches the layers
         return plane
 
     planes = in_threads(plane_at, key_heights(KEYS).tolist())
@@ -67,6 +69,17 @@ def _planes(row: Row, first: float, growth: float) -> list[SectionPlane]:
     half = KEYS // 2
     planes[half] = planes[half].ending((before, behind), planes[half].thickest)
     return planes
+
+
+@contextmanager
+def _of_section(height: float) -> Iterator[None]:
+    """Say of input errors with a place in (m', theta) in which section that is."""
+    try:
+        yield
+    except InputError as error:
+        if error.place:
+            error.place = f"section at {100.0 * height:.3g} % of the span, in m' and theta: {error.place}"
+        raise
 
 
 def _longest(planes: Sequence[SectionPlane]) -> dict[int, float]:

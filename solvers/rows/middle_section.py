@@ -9,9 +9,11 @@ import numpy as np
 
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.cascade.cascade import scaled
 from meshonet.solvers.blocking.cascade.cascade_layout import FIRST, WEIGHTS, counts_of
 from meshonet.solvers.blocking.cascade.passage_template import template
+from meshonet.solvers.blocking.layers.finished import smallest_corners
 from meshonet.solvers.blocking.layers.layer_law import layer_arcs
 from meshonet.solvers.blocking.layers.layer_rows import JOIN
 from meshonet.solvers.blocking.sizes.chords import Chords
@@ -23,6 +25,7 @@ from meshonet.solvers.rows.whole_section import whole_section
 
 UPPER, TRAILING, LOWER, LEADING = range(8, 12)
 """Numbers of the template's blocks around the blade."""
+REMEDY = "use more {cells}, a larger {first_cell}, or profiles nearer to each other there"
 COARSE = 300
 """Iterations of the first optimum."""
 TOLERANCE = 1e-3
@@ -67,8 +70,15 @@ def _sized(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout
         targets=metric.gradual(mesh) if metric else None, tolerance=TOLERANCE, weights=WEIGHTS,
     )  # fmt: skip
     if not optimum.valid:
-        raise NoValidGridError("cells of a section stay folded")
+        raise NoValidGridError(f"cells of the section in the middle of the span stay folded; {REMEDY}")
     return replace(layout, mesh=optimum.mesh)
+
+
+def folded_section(plane: SectionPlane, mesh: QuadMesh) -> NoValidGridError:
+    """Return the error for a section whose mesh is folded, with the place of its worst cell."""
+    worst = int(smallest_corners(mesh).argmin())
+    place = plane.place(mesh.nodes[mesh.quads[worst]].mean(axis=0))
+    return NoValidGridError(f"cells stay folded in the {place}; {REMEDY}")
 
 
 def _joined(plane: SectionPlane, scale: float, rows: int) -> SizeMetric:

@@ -27,6 +27,7 @@ _AROUND = 400
 _SHARES = np.array([-1.0, 0.0, 1.0, 2.0])
 STEEPEST = 45.0
 """Degrees from the axis by which wakes are followed at the most: cells behind the blade are askew by them."""
+_AT_EDGE = 0.1  # of the way along the blade, before and behind an edge
 _NEAR_EDGE = 0.06  # places before and behind the trailing edge by which the mean line is known there
 
 
@@ -130,6 +131,16 @@ class SectionPlane:
         front = np.append(ring.front.curve.knots, ring.front.length)
         along = np.interp(start + np.mod(self.wall_arcs(u) - start, length), walls, front)
         return np.asarray(np.mod(along, ring.front.length))
+
+    def place(self, point: Floats) -> str:
+        """Return where a point (2,) is, for messages: part of the span, and where along the blade."""
+        share = float(self.shares(point[None])[0])
+        along = f"between the blades, {100.0 * share:.0f} % of the way along them"
+        if share < _AT_EDGE:
+            along = "at the leading edge" if share > -_AT_EDGE else "before the blades"
+        elif share > 1.0 - _AT_EDGE:
+            along = "at the trailing edge" if share < 1.0 + _AT_EDGE else "behind the blades"
+        return f"section at {100.0 * self.height:.3g} % of the span, {along}"
 
     def shares(self, points: Floats) -> Floats:
         """Return shares (n,) of the way at points (n, 2): -1 inlet, 0 and 1 the blade's edges, 2 outlet."""

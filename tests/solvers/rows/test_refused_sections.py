@@ -1,0 +1,38 @@
+"""Refusals of rows say at which part of the span, and where along the blade."""
+
+import blade_row
+import numpy as np
+import pytest
+import radial_rows
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
+from meshonet.solvers.pipeline.rows import make_row
+from meshonet.solvers.rows.middle_section import folded_section
+from meshonet.solvers.rows.request import RowRequest
+from meshonet.solvers.rows.section_plane import SectionPlane
+
+
+@pytest.mark.parametrize(
+    ("share", "words"),
+    [
+        (-0.5, "before the blades"),
+        (0.05, "at the leading edge"),
+        (0.4, "between the blades, 40 % of the way along them"),
+        (0.95, "at the trailing edge"),
+        (1.5, "behind the blades"),
+    ],
+)
+def test_a_folded_section_is_refused_with_the_place_of_its_worst_cell(share: float, words: str) -> None:
+    plane = SectionPlane.of(blade_row.blade_row(), 0.25, 1e-3, 1.2)
+    centre = np.array([plane.stations(np.array([share]))[0], 0.3])
+    square = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    nodes = np.concatenate([square, centre + 1e-3 * square[::-1]])  # the second cell is turned over
+    quads = np.arange(8).reshape(2, 4)
+    error = folded_section(plane, QuadMesh(None, nodes, quads, Places.inside(8)))
+    assert str(error).startswith(f"cells stay folded in the section at 25 % of the span, {words}; use more")
+
+
+def test_layers_that_fold_at_a_profile_are_refused_with_its_part_of_the_span() -> None:
+    with pytest.raises(InputError, match=r"section at .* % of the span, in m' and theta: blade, \("):
+        make_row(radial_rows.pump(22), RowRequest(threads=1))
