@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -17,6 +19,8 @@ _MILLIMETRES = {
     "millimetre": 1.0, "centimetre": 10.0, "metre": 1000.0, "inch": 25.4, "foot": 304.8, "micrometre": 1e-3,
 }  # fmt: skip
 """Units of length as STEP files name them."""
+SECONDS, _BYTES_PER_SECOND = 60.0, 1e5
+"""Time limit of reading a file: seconds, and bytes in each further one."""
 _SEWN = 1e-6
 """Distance over the size of a file within which edges of separate faces are joined."""
 
@@ -52,13 +56,26 @@ def _model(source: Source, read: Callable[[str], tuple[Any, ...]], kind: str) ->
         path.write_bytes(source.read_bytes())
         notes: list[str] = []
         try:
-            shape, *notes = read(str(path))
+            shape, *notes = read(str(path)) if _is_readable(path, kind) else (None,)
         except Exception:  # whatever a damaged file makes of it
             shape = None
     if shape is None or shape.IsNull():
         raise InputError(f"is no {kind} file that can be read", f"export it again as {kind}")
     shape, *sewn = _sewn(shape)
     return model_of(shape, source.stem, (*notes, *sewn))
+
+
+def _is_readable(path: Path, kind: str) -> bool:
+    """Return whether Open Cascade reads a file, tried in a process of its own.
+
+    Of damaged files it may never return, or end the process.
+    """
+    command = [sys.executable, "-m", __name__, kind, str(path)]
+    seconds = SECONDS + path.stat().st_size / _BYTES_PER_SECOND
+    try:
+        return subprocess.run(command, timeout=seconds, capture_output=True, check=False).returncode == 0  # noqa: S603 - this module
+    except subprocess.TimeoutExpired:
+        return False
 
 
 def _step_shape(path: str) -> tuple[Any, ...]:
@@ -118,3 +135,8 @@ def _sewn(shape: Any) -> tuple[Any, ...]:
     if joined.IsNull() or left >= free:
         return (shape,)
     return joined, f"{free - left} edges of separate faces were joined; {left} edges are open"
+
+
+if __name__ == "__main__":
+    with_kind, at = sys.argv[1:]
+    sys.exit({"STEP": _step_shape, "B-rep": _brep_shape}[with_kind](at)[0] is None)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from meshonet.formats.cad import read
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
@@ -33,6 +34,7 @@ from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeTorus,
     BRepPrimAPI_MakeWedge,
 )
+from OCP.BRepTools import BRepTools
 from OCP.collections import Array1_gp_Pnt
 from OCP.GeomAbs import GeomAbs_C2
 from OCP.GeomAPI import GeomAPI_PointsToBSpline
@@ -246,3 +248,14 @@ def test_damaged_files_and_a_missing_package_are_named(
     monkeypatch.setitem(sys.modules, "OCP.Message", None)
     with pytest.raises(InputError, match=r"pip install 'meshonet\[cad\]'"):
         model_in(path)
+
+
+def test_a_cut_file_of_which_open_cascade_never_returns_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(read, "SECONDS", 4.0)
+    path = tmp_path / "box.brep"
+    BRepTools.Write_s(BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Shape(), str(path))
+    path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 5])
+    with pytest.raises(InputError, match="no B-rep file"):
+        list(read_shapes(str(path)))

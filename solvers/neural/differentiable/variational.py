@@ -26,7 +26,7 @@ from meshonet.solvers.neural.differentiable.members import MemberError, check_fi
 START, MOST = 1e-8, 1000  # tolerance and iterations of the compiled solver
 STILL = 1e-10  # displacement of a node, relative to its shortest edge, at which a member has converged
 KEPT = 1e-3  # the same below which the next step takes the same factor
-STEPS = 400  # of Newton's method at the most; of 1000 random domains the hardest takes under 100
+STEPS = 150  # of Newton's method at the most; few domains take more than 5, nearly degenerate ones some 70
 REACH = 0.5  # displacement of a node, in its shortest edges, by a step at the most
 HALVINGS = 30  # of a step
 FALL = 1e-4  # part of the decrease that the slope promises which a step has to reach
