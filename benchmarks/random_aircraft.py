@@ -8,11 +8,10 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from random_rows import readable_airfoils
 
-from meshonet.formats.registry import read_shapes
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.aircraft.body import Body
-from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.sections.section import Section
 from meshonet.geometry.sections.stack import Stack
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -34,17 +33,12 @@ class DrawnAircraft:
 
 def sections(folder: Path) -> list[Airfoil]:
     """Return the airfoils of a folder that are 10 to 20 % thick."""
-    found = []
-    for path in sorted(folder.glob("*.dat")):
-        try:
-            (shape,) = read_shapes(str(path))
-        except MeshonetError:
-            continue
-        if isinstance(shape, Airfoil):
-            wide, thick = np.ptp(shape.curve.points, axis=0)
-            if THIN <= thick / wide <= THICK:
-                found.append(shape)
-    return found
+    return [each for each in readable_airfoils(folder) if THIN <= _thickness(each) <= THICK]
+
+
+def _thickness(airfoil: Airfoil) -> float:
+    wide, thick = np.ptp(airfoil.curve.points, axis=0)
+    return float(thick / wide)
 
 
 def drawn_aircraft(airfoils: list[Airfoil], seed: int, count: int) -> list[DrawnAircraft]:

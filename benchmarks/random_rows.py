@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,15 +33,20 @@ class Drawn:
 
 def airfoils(folder: Path) -> list[Airfoil]:
     """Return the sections of a folder, each with a round trailing edge at least 1 % of its chord thick."""
-    found = []
+    rounded = []
+    for airfoil in readable_airfoils(folder):
+        with suppress(MeshonetError):
+            rounded.append(round_edged(airfoil)[0])
+    return rounded
+
+
+def readable_airfoils(folder: Path) -> Iterator[Airfoil]:
+    """Yield the airfoils among the .dat files of a folder, by name."""
     for path in sorted(folder.glob("*.dat")):
-        try:
+        with suppress(MeshonetError):
             (shape,) = read_shapes(str(path))
             if isinstance(shape, Airfoil):
-                found.append(round_edged(shape)[0])
-        except MeshonetError:
-            continue
-    return found
+                yield shape
 
 
 def drawn_rows(sections: Sequence[Airfoil], seed: int, count: int) -> list[Drawn]:

@@ -60,6 +60,12 @@ def pairs_of(values: NDArray[Any]) -> Floats:
     return np.stack([values.real, values.imag], axis=-1)
 
 
+def arc_parts(line: Floats) -> Floats:
+    """Return the arc lengths (n,) at the nodes of a `line` (n, d), over its length."""
+    arcs = np.append(0.0, np.cumsum(norms(np.diff(line, axis=0))))
+    return np.asarray(arcs / arcs[-1])
+
+
 def running_sums(values: Floats, count: int) -> Floats:
     """Return the sums (n - count + 1,) of each `count` consecutive `values` (n,)."""
     last = len(values) - count + 1

@@ -66,15 +66,14 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
         return [job.result() for job in jobs]
 
 
-def run_in_threads(jobs: Sequence[Callable[[], None]]) -> None:
-    """Call each of `jobs`, several at once if threads are free (see `in_threads`)."""
-    in_threads(lambda job: job(), jobs)
+def run_in_threads(jobs: Sequence[Callable[[], Any]]) -> list[Any]:
+    """Return what each of `jobs` returns, several at once if threads are free (see `in_threads`)."""
+    return in_threads(lambda job: job(), jobs)
 
 
 def both(one: Callable[[], One], other: Callable[[], Other]) -> tuple[One, Other]:
     """Return what both return, called at once if threads are free."""
-    jobs: tuple[Callable[[], Any], ...] = (one, other)
-    first, second = in_threads(lambda job: job(), jobs)
+    first, second = run_in_threads([one, other])
     return first, second
 
 

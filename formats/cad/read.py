@@ -138,5 +138,5 @@ def _sewn(shape: Any) -> tuple[Any, ...]:
 
 
 if __name__ == "__main__":
-    with_kind, at = sys.argv[1:]
-    sys.exit({"STEP": _step_shape, "B-rep": _brep_shape}[with_kind](at)[0] is None)
+    _, kind_of_file, file = sys.argv
+    sys.exit({"STEP": _step_shape, "B-rep": _brep_shape}[kind_of_file](file)[0] is None)

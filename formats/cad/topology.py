@@ -64,8 +64,8 @@ def _parts(shape: Any, kind: Any) -> Iterator[Any]:
         explorer.Next()
 
 
-def _face(given: Any, edges: _Numbers) -> CadFace:
-    face = TopoDS.Face(given.Oriented(TopAbs_FORWARD))
+def _face(shape: Any, edges: _Numbers) -> CadFace:
+    face = TopoDS.Face(shape.Oriented(TopAbs_FORWARD))
     wire = BRepTools.OuterWire_s(face)
     walk = BRepTools_WireExplorer(wire, face)
     uses = []
@@ -77,15 +77,15 @@ def _face(given: Any, edges: _Numbers) -> CadFace:
     surface = BRepAdaptor_Surface(face, False)
 
     def points(places: Floats) -> Floats:
-        found = (surface.Value(u, v) for u, v in places.tolist())
-        return np.array([(p.X(), p.Y(), p.Z()) for p in found]).reshape(-1, 3)
+        values = (surface.Value(u, v) for u, v in places.tolist())
+        return np.array([(p.X(), p.Y(), p.Z()) for p in values]).reshape(-1, 3)
 
     holes = sum(1 for _ in _parts(face, TopAbs_WIRE)) - 1
-    return CadFace(tuple(uses), points, given.Orientation() == TopAbs_REVERSED, holes)
+    return CadFace(tuple(uses), points, shape.Orientation() == TopAbs_REVERSED, holes)
 
 
-def _edge(given: Any, vertices: _Numbers) -> CadEdge:
-    edge = TopoDS.Edge(given.Oriented(TopAbs_FORWARD))
+def _edge(shape: Any, vertices: _Numbers) -> CadEdge:
+    edge = TopoDS.Edge(shape.Oriented(TopAbs_FORWARD))
     ends = TopExp.FirstVertex_s(edge, False), TopExp.LastVertex_s(edge, False)
     if any(vertex.IsNull() for vertex in ends):
         raise InputError("has an edge without vertices", "export it again, with vertices on closed curves")

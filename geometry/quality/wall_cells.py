@@ -62,24 +62,24 @@ class YPlus:
 
 def y_plus_at(grid: Grid, walls: Sequence[Patch], flow: Flow) -> dict[str, YPlus]:
     """Return y+ of the first nodes off each of the `walls` in a flow, by name of the wall."""
-    found: dict[str, list[Floats]] = {}
+    values: dict[str, list[Floats]] = {}
     for wall in walls:
         rows = rows_at(grid, wall, 2)
-        found.setdefault(wall.name, []).append(norms(rows[1] - rows[0]).ravel() / flow.height)
-    every = {name: np.concatenate(parts) for name, parts in found.items()}
+        values.setdefault(wall.name, []).append(norms(rows[1] - rows[0]).ravel() / flow.height)
+    every = {name: np.concatenate(parts) for name, parts in values.items()}
     return {name: YPlus(float(y.min()), middle(y), float(y.max())) for name, y in every.items()}
 
 
 def skewness_at(grid: Grid, walls: Sequence[Patch]) -> dict[str, Extreme]:
     """Return the skewness of the cells at each of the `walls` of a volume, by name of the wall."""
     cells = per_cell_of_blocks(grid, "skewness")
-    found: dict[str, list[tuple[Floats, Patch]]] = {}
+    stretches: dict[str, list[tuple[Floats, Patch]]] = {}
     for wall in walls:
         axis, end = PLACES[wall.side]
         face = np.moveaxis(cells[wall.block], axis, 0)[end]
         (a, b), (c, d) = wall.range(tuple(n + 1 for n in face.shape))
-        found.setdefault(wall.name, []).append((face[a:b, c:d], wall))
-    return {name: _extreme(grid, parts) for name, parts in found.items()}
+        stretches.setdefault(wall.name, []).append((face[a:b, c:d], wall))
+    return {name: _extreme(grid, parts) for name, parts in stretches.items()}
 
 
 def _extreme(grid: Grid, parts: Sequence[tuple[Floats, Patch]]) -> Extreme:

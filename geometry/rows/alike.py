@@ -28,17 +28,17 @@ def alike(profiles: Sequence[BladeProfile]) -> list[BladeProfile]:
     return [profile.aligned(places) for profile in profiles] if len(places) else list(profiles)
 
 
-def _count(profiles: Sequence[BladeProfile], found: Floats, trailing: bool) -> int:
-    """Return how many corners an edge has; `found` (p,) are those of each profile."""
-    if (found == found[0]).all():
-        return int(found[0])
+def _count(profiles: Sequence[BladeProfile], counts: Floats, trailing: bool) -> int:
+    """Return how many corners an edge has; `counts` (p,) are those of each profile."""
+    if (counts == counts[0]).all():
+        return int(counts[0])
     turn, part = np.array([profile.sharpness(trailing) for profile in profiles]).T
     return 2 if middle(part) > BASE_TURN else int(middle(turn) > SHARP)
 
 
 def common_corners(profiles: Sequence[BladeProfile]) -> Floats:
     """Return places u (c,), from -0.25 on, of the corners that profiles have if all have as many."""
-    found = [profile.corner_places() for profile in profiles]
-    if len({len(each) for each in found}) != 1 or not len(found[0]):
+    places = [profile.corner_places() for profile in profiles]
+    if len({len(each) for each in places}) != 1 or not len(places[0]):
         return np.empty(0)
-    return np.array([middle(column) for column in np.array(found).T])
+    return np.array([middle(column) for column in np.array(places).T])

@@ -155,8 +155,7 @@ class BladeSurface:
     @property
     def corners(self) -> Floats:
         """Places u (c,) of the corners that all profiles have, such as those of a blunt edge, ascending."""
-        found = common_corners(self.profiles)
-        return np.sort(np.mod(found, 1.0))
+        return np.sort(np.mod(common_corners(self.profiles), 1.0))
 
 
 def _extended(lines: CubicTable, place: Floats, low: float, high: float) -> tuple[Floats, Floats]:

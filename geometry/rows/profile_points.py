@@ -48,10 +48,10 @@ def distinct_points(points: Floats) -> Floats:
     Raises InputError: fewer than `LEAST_POINTS` are left.
     """
     p = np.asarray(points, dtype=np.float64)
-    given = len(p)
-    p = apart(p, closed=True) if given else p
+    count = len(p)
+    p = apart(p, closed=True) if count else p
     if len(p) < LEAST_POINTS:
-        problem = f"{given} points" if len(p) == given else f"{len(p)} different points of {given}"
+        problem = f"{count} points" if len(p) == count else f"{len(p)} different points of {count}"
         raise InputError(problem, f"give {LEAST_POINTS} or more around the blade, all in one unit")
     return p
 

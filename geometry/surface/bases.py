@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of, norms
+from meshonet.geometry.arrays import Floats, arc_parts, extent_of, norms
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.polygon.corners import Indices
@@ -158,21 +158,15 @@ def _base(nodes: Floats, one: _OpenSide, line: Indices, sides: list[_OpenSide]) 
     cells = round(float(norms(upper - lower).mean()) / length)
     count = counts.pop() if counts else min(max(cells, _CELLS[0]), _CELLS[1]) + 1
     known = next((end for end in ends if end is not None), None)
-    part = np.linspace(0.0, 1.0, count) if known is None else _parts(known)
+    part = np.linspace(0.0, 1.0, count) if known is None else arc_parts(known)
     base = upper[:, None] + part[:, None] * (lower - upper)[:, None]
-    along = _parts(upper)
+    along = arc_parts(upper)
     for end, at, weight in zip(ends, (0, -1), (1.0 - along, along), strict=True):
         if end is not None:
             base += weight[:, None, None] * (end - base[at])
             base[at] = end
     base[:, 0], base[:, -1] = upper, lower
     return np.asarray(base)
-
-
-def _parts(line: Floats) -> Floats:
-    """Return the arc length (n,) at the nodes of a line, over its length."""
-    arcs = np.cumsum(norms(np.diff(line, axis=0)))
-    return np.asarray(np.append(0.0, arcs / arcs[-1]))
 
 
 def _across(nodes: Floats, start: int, stop: int, sides: list[_OpenSide]) -> Floats | None:

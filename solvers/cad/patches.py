@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, arc_parts, norms
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.cad.model import CadFace, CadModel
@@ -153,18 +153,13 @@ def blended(south: Floats, north: Floats, west: Floats, east: Floats) -> Floats:
     The weights at a node are where the lines that join nodes of equal index, at their parts of the lengths of
     opposite sides, cross in the unit square (Soni 1985).
     """
-    a, b, c, d = (_parts(line) for line in (south, north, west, east))
+    a, b, c, d = (arc_parts(line) for line in (south, north, west, east))
     a, b, c, d = a[:, None], b[:, None], c[None], d[None]
     across = 1.0 - (b - a) * (d - c)
     xi, eta = ((a + (b - a) * c) / across)[..., None], ((c + (d - c) * a) / across)[..., None]
     lines = (1.0 - eta) * south[:, None] + eta * north[:, None] + (1.0 - xi) * west + xi * east
     ends = (1.0 - xi) * ((1.0 - eta) * south[0] + eta * north[0])
     return np.asarray(lines - ends - xi * ((1.0 - eta) * south[-1] + eta * north[-1]))
-
-
-def _parts(line: Floats) -> Floats:
-    arcs = np.append(0.0, np.cumsum(norms(np.diff(line, axis=0))))
-    return np.asarray(arcs / arcs[-1])
 
 
 def _check(patch: Floats, number: int) -> None:

@@ -38,16 +38,16 @@ ASIDE, AHEAD = 0.45, 0.12
 """Distances of the ring's outer side from the slit, beside it and at its ends; the period is π."""
 
 _SAME = 1e-9  # distance in the plane G at which nodes are one
-FEET = 1e3
+_FEET = 1e3
 """Places in the plane G that are not used, at which the nodes on the blade are."""
 
 
 def template(passage: Passage, *, at_corners: bool = True) -> Layout:
     """Return the layout of a passage; nodes may be moved to the blade's corners."""
     flow = PassageFlow.of(passage.zeta(passage.front.curve.points))
-    pieces, angles = template_pieces(flow, passage)
-    potential, blocks = joined_pieces(pieces)
-    off_blade = modulus(potential) < 0.5 * FEET
+    pieces, angles = _pieces(flow, passage)
+    potential, blocks = _joined_pieces(pieces)
+    off_blade = modulus(potential) < 0.5 * _FEET
     nodes = passage.of_zeta(flow.to_places(np.where(off_blade, potential, 0.5j * np.pi)))
     ends = [
         np.unique(np.concatenate([block[k] for block in own]))
@@ -61,7 +61,7 @@ def template(passage: Passage, *, at_corners: bool = True) -> Layout:
     domain = passage.domain(*tops)
     places = Places.inside(len(nodes))
     feet, angle = np.concatenate([block[:, 0] for block in blocks[-4:]]), np.concatenate(angles)
-    places.loop[feet], places.arc[feet] = BLADE, blade_arcs(flow, angle, passage.front)
+    places.loop[feet], places.arc[feet] = BLADE, _blade_arcs(flow, angle, passage.front)
     for number, own, share in zip((INLET, OUTLET), ends, up, strict=True):
         places.loop[own] = number
         places.arc[own] = abs(passage.period) * np.clip(
@@ -75,7 +75,7 @@ def template(passage: Passage, *, at_corners: bool = True) -> Layout:
     nodes[images] = nodes[places.partner[images]] + passage.pitch
     layout = Layout(QuadMesh(domain, nodes, lattice_quads(blocks), places), blocks)
     if at_corners:
-        put_at_corners(layout, passage.front)
+        _put_at_corners(layout, passage.front)
     return layout
 
 
@@ -88,7 +88,7 @@ def _tie(places: Places, potential: Complexes) -> None:
     places.partner[sides[0]] = sides[1]
 
 
-def template_pieces(flow: PassageFlow, passage: Passage) -> tuple[list[Complexes], list[Floats]]:
+def _pieces(flow: PassageFlow, passage: Passage) -> tuple[list[Complexes], list[Floats]]:
     """Return the twelve blocks in the plane G, those of the ring last, and the angles of these as `_ring`.
 
     Blocks above the cut are below the blade, a period further down.
@@ -123,12 +123,12 @@ def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], lis
         outer = arccosh(side / flow.half)
         lines = np.linspace(0.0, 1.0, CELLS + 1) * outer.real[:, None] + 1j * outer.imag[:, None]
         blocks.append(flow.half * cosh(lines))
-        blocks[-1][:, 0] = FEET * exp(1j * outer.imag)  # away from all others: nodes are told apart
+        blocks[-1][:, 0] = _FEET * exp(1j * outer.imag)  # away from all others: nodes are told apart
         angles.append(outer.imag)
     return blocks, angles
 
 
-def joined_pieces(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
+def _joined_pieces(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
     """Return the positions of nodes, and blocks of their numbers; nodes that coincide are one."""
     places = np.concatenate([piece.ravel() for piece in pieces])
     inner = np.zeros(len(places), dtype=bool)
@@ -144,7 +144,7 @@ def joined_pieces(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ..
     return places[kept], tuple(part.reshape(piece.shape) for part, piece in zip(parts, pieces, strict=True))
 
 
-def put_at_corners(layout: Layout, front: Loop) -> None:
+def _put_at_corners(layout: Layout, front: Loop) -> None:
     """Move the nearest node to each corner of the blade or of its layers, in place; no node is used twice."""
     places = layout.mesh.places
     free = places.loop == BLADE
@@ -156,7 +156,7 @@ def put_at_corners(layout: Layout, front: Loop) -> None:
         layout.mesh.nodes[node] = front.at(np.array([arc]))[0]
 
 
-def blade_arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
+def _blade_arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
     """Return the arc lengths (k,) on the loop of the blade for angles (k,) around the slit."""
     turn = 2.0 * np.pi
     around, knots = flow.around, np.append(front.curve.knots, front.length)

@@ -62,15 +62,15 @@ def every_mirror_of(domain: Domain) -> tuple[Mirror, ...]:
         return some
     along, across = some[0].along, np.array([-some[0].along[1], some[0].along[0]])
     for count in range(MOST_MIRRORS, max(len(some), 2), -1):
-        found = [some[0]]
+        mirrors = [some[0]]
         for k in range(1, count):
             angle = math.pi * k / count
             mirror = mirror_about(domain, some[0].centre, math.cos(angle) * along + math.sin(angle) * across)
             if mirror is None:
                 break
-            found.append(mirror)
-        if len(found) == count:
-            return tuple(found)
+            mirrors.append(mirror)
+        if len(mirrors) == count:
+            return tuple(mirrors)
     return some
 
 
