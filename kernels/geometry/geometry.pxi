@@ -30,6 +30,10 @@ cdef extern from "geometry/curve.h":
     void c_tridiagonal_solve "tridiagonal_solve"(const double *lower, const double *diagonal, const double *upper,
                                                  double *right, ptrdiff_t n, ptrdiff_t k, double *ratio) nogil
 
+cdef extern from "geometry/lattice.h":
+    void c_lattice_values "lattice_values"(const double *table, ptrdiff_t n, ptrdiff_t m, ptrdiff_t width,
+                                           const double *u, const double *v, ptrdiff_t count, double *out) nogil
+
 cdef extern from "geometry/segments.h":
     ptrdiff_t c_crossing_segments "crossing_segments"(
         const double *points, ptrdiff_t n, const ptrdiff_t *order, ptrdiff_t m, const double *low, const double *top,
@@ -152,3 +156,15 @@ def nearest_points(places, points):
     with nogil:
         c_nearest_points(p, m, x, y, n, low, high, at, out)
     return index, square
+
+
+def lattice_values(table, u, v, out):
+    """Fill `out` (p, k) with cubics through a `table` (n, m, k) at u, v (p,); see ``geometry/lattice.h``."""
+    cdef ptrdiff_t n, m, width, count = len(u)
+    n, m, width = table.shape
+    cdef Read nodes = reads(table, (n, m, width)), along = reads(u, (count,)), across = reads(v, (count,))
+    cdef Written to = fills(out, (count, width))
+    if n < 4 or (m < 4 and m != 1):
+        raise ValueError("a table of too few nodes")
+    with nogil:
+        c_lattice_values(nodes, n, m, width, along, across, count, to)

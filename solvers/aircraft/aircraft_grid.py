@@ -19,7 +19,7 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.solvers.aircraft.body_map import BodyMap
 from meshonet.solvers.aircraft.body_plane import LevelPlan, level_patches
-from meshonet.solvers.aircraft.exact_cells import at_height, at_heights
+from meshonet.solvers.aircraft.exact_cells import at_height, between_walls
 from meshonet.solvers.aircraft.plan import GROWTH, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.aircraft.wall_normals import off_body, off_wing
@@ -66,6 +66,8 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
     low = _flat(space.points(beside), aircraft)
     low = off_body(low, space.points(normal), ring, first)
     low = off_wing(low, ring, first)
+    wall, near = ring[:, 0], ring[:, 1]
+    low[1, near] = between_walls((low[1, wall], low[0, near]), low[1, near], first)
     high = _flat(space.points(beyond), aircraft)
     return _joined(aircraft, shapes, low, high), (*notes, *flat)
 
@@ -115,7 +117,6 @@ def _along_wing(
     rest = np.setdiff1d(np.arange(places.shape[1]), wall)
     places[:, near] = at_height(space, places[:, wall], places[:, near], first)
     places[1, rest] = at_height(space, places[0, rest], places[1, rest], first)
-    places[1, near] = at_heights(space, (places[1, wall], places[0, near]), places[1, near], first)
     return places
 
 

@@ -18,18 +18,16 @@ from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.arrays import Floats, cross2
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.monotone import monotone_cubic
-from meshonet.geometry.elementary import arctan2, cos, power, sin
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.elementary import arctan2, cos, sin
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.kernels._native import lattice_values, nearest_points
 from meshonet.solvers.conformal.solve import solve
 
 _LINES, _LEVELS = 513, 97
 """Nodes of the table along s and zeta."""
 _AROUND = 385
 """Nodes around the closed meridian of which the conformal grid is made."""
-_FADE = 2.0
-"""Power of 1 - zeta with which the table is moved onto the body."""
 _NEWTON = 12
 _STEP = 1e-5
 """Step of differences in s / length and zeta."""
@@ -55,7 +53,7 @@ class BodyMap:
         arcs[0], arcs[-1] = 0.0, body.length
         even = np.linspace(0.0, body.length, _LINES)
         self.table = CubicTable(table, turns)(even)
-        self._arcs = monotone_cubic(turns, arcs, even)
+        self._arcs = monotone_cubic(turns, arcs, even)[:, None, None]
 
     def points(self, places: Floats) -> Floats:
         """Return points (..., 3) at places (..., 3) of s, theta, zeta."""
@@ -66,21 +64,11 @@ class BodyMap:
 
     def meridional(self, s: Floats, zeta: Floats) -> Floats:
         """Return x and r (n, 2) at places s and zeta (n,)."""
-        i, along = _weights(s / self.body.length * (_LINES - 1), _LINES)
-        arcs = sum((along[a] * self._arcs[i + a] for a in range(4)), np.zeros_like(s))
-        arcs = np.clip(arcs, 0.0, self.body.length)
-        at_body = self.body.meridional(arcs) - self._table_at(s, np.zeros_like(s))
-        return self._table_at(s, zeta) + at_body * (power(1.0 - zeta, _FADE))[:, None]
-
-    def _table_at(self, s: Floats, zeta: Floats) -> Floats:
-        """Return the cubics through four lines and four levels of the table, at places (n,)."""
-        i, along = _weights(s / self.body.length * (_LINES - 1), _LINES)
-        j, across = _weights(zeta * (_LEVELS - 1), _LEVELS)
-        out = np.zeros((len(s), 2))
-        for a in range(4):
-            for b in range(4):
-                out += (along[a] * across[b])[:, None] * self.table[i + a, j + b]
-        return out
+        along, across = s * ((_LINES - 1) / self.body.length), zeta * (_LEVELS - 1)
+        arcs = np.clip(_between(self._arcs, along, across)[:, 0], 0.0, self.body.length)
+        at_body = self.body.meridional(arcs) - _between(self.table[:, :4], along, np.zeros_like(s))
+        away = 1.0 - zeta
+        return _between(self.table, along, across) + at_body * (away * away)[:, None]
 
     def places(self, points: Floats, near: Floats | None = None) -> Floats:
         """Return places (..., 3) of s, theta, zeta of points (..., 3), by Newton's method.
@@ -105,8 +93,7 @@ class BodyMap:
     def _nearest(self, points: Floats) -> tuple[Floats, Floats]:
         """Return s and zeta (n,) of the nodes of the coarse table that are nearest to points (n, 2)."""
         coarse = self.table[::_COARSE, ::_COARSE]
-        flat = coarse.reshape(-1, 2)
-        nearest = np.array([int(((flat - point) ** 2).sum(axis=1).argmin()) for point in points])
+        nearest = nearest_points(points, np.ascontiguousarray(coarse.reshape(-1, 2)))[0]
         s, zeta = np.divmod(nearest, coarse.shape[1])
         return s * _COARSE / (_LINES - 1) * self.body.length, zeta * _COARSE / (_LEVELS - 1)
 
@@ -126,15 +113,9 @@ def _upper_half(nodes: Floats, body: Body) -> Floats:
     return upper
 
 
-def _weights(place: Floats, count: int) -> tuple[Indices, Floats]:
-    """Return the first of four neighbours (n,) of places in a table, and Lagrange's weights (4, n)."""
-    first = np.clip(np.floor(place).astype(np.intp) - 1, 0, count - 4)
-    f = place - first
-    return first, np.stack(
-        [
-            -(f - 1.0) * (f - 2.0) * (f - 3.0) / 6.0,
-            f * (f - 2.0) * (f - 3.0) / 2.0,
-            -f * (f - 1.0) * (f - 3.0) / 2.0,
-            f * (f - 1.0) * (f - 2.0) / 6.0,
-        ]
-    )
+def _between(table: Floats, u: Floats, v: Floats) -> Floats:
+    """Return values (p, k) of a table (n, m, k) between its nodes, at u, v (p,) in its steps."""
+    out = np.empty((len(u), table.shape[2]))
+    table, u, v = (np.ascontiguousarray(each) for each in (table, u, v))
+    lattice_values(table, u, v, out)
+    return out

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.solvers.aircraft.body_map import BodyMap
 
 _ROUNDS = 6
 """Times a place is scaled along its line; the map is nearly linear over a first cell."""
-_CORNER_ROUNDS = 200
-"""Times a place beside two walls is scaled from each of them, in turn."""
 
 
 def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float, rounds: int = _ROUNDS) -> Floats:
@@ -19,9 +19,12 @@ def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float, rounds
     return wall + away
 
 
-def at_heights(space: BodyMap, walls: tuple[Floats, Floats], beside: Floats, first: float) -> Floats:
-    """Return places (n, 3) near `beside` (n, 3) at the distance `first` from two places (n, 3) on walls."""
-    for _ in range(_CORNER_ROUNDS):
-        for wall in walls:
-            beside = at_height(space, wall, beside, first, 1)
-    return beside
+def between_walls(walls: tuple[Floats, Floats], beside: Floats, first: float) -> Floats:
+    """Return the points (n, 3) nearest to `beside` (n, 3) at the distance `first` from two points (n, 3).
+
+    These are at most twice as far apart.
+    """
+    middle, half = 0.5 * (walls[0] + walls[1]), 0.5 * (walls[1] - walls[0])
+    away, square = beside - middle, (half * half).sum(axis=-1)
+    away -= ((away * half).sum(axis=-1) / square)[..., None] * half
+    return middle + away * (np.sqrt(np.maximum(first * first - square, 0.0)) / norms(away))[..., None]

@@ -168,3 +168,9 @@ def test_layers_that_need_more_cells_are_named_in_a_note() -> None:
 def test_options_that_do_not_fit_are_refused(options: dict[str, int], words: str) -> None:
     with pytest.raises(InputError, match=words):
         aircraft_request(**options)
+
+
+def test_first_cells_at_the_junction_have_their_height_from_both_walls(grid: Grid) -> None:
+    collar = np.asarray(grid.blocks[0].nodes)
+    for wall_node in (collar[:, 0, 1], collar[:, 1, 0]):
+        assert np.linalg.norm(collar[:, 1, 1] - wall_node, axis=-1) == pytest.approx(2e-3, rel=1e-11)
