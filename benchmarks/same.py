@@ -1,4 +1,4 @@
-"""The same grids on every machine: some forty commands on several, their results beside kept digests.
+"""The same grids on every machine: forty-six commands on several, their results beside kept digests.
 
     python benchmarks/same.py                    what differs from benchmarks/same.json, and where
     python benchmarks/same.py --emulated         on emulated processors too, where qemu-x86_64 is installed
@@ -34,7 +34,6 @@ from same_commands import EMULATED, LINES, write_more_inputs
 
 ROOT = Path(__file__).resolve().parents[1]
 KEPT = Path(__file__).with_name("same.json")
-BLAS = ("Prescott", "Haswell", "Zen", "SkylakeX")
 PROCESSORS = ("Haswell-v4", "EPYC-v3")
 EMULATOR = "qemu-x86_64"
 Digests = dict[str, str]
@@ -52,11 +51,9 @@ def main() -> int:
     wanted = {name: one for name, one in machines(options.emulated).items() if options.machine in name}
     begun, wrong = time.perf_counter(), 0
     with ThreadPoolExecutor(2) as pool:
-        lines = {
-            name: [x for x in chosen if x in EMULATED] if one.before else chosen
-            for name, one in wanted.items()
+        made = {
+            name: pool.submit(_digests, _lines_of(name, one, chosen), one) for name, one in wanted.items()
         }
-        made = {name: pool.submit(_digests, lines[name], one) for name, one in wanted.items()}
         for name, job in made.items():
             digests = job.result()
             other = [line for line, digest in digests.items() if digest != kept.get(line)]
@@ -69,26 +66,28 @@ def main() -> int:
 
 
 def machines(emulated: bool = False) -> dict[str, Machine]:
-    """Return the machines by name; those of which OpenBLAS has no kernels for this processor are left out."""
+    """Return the machines by name, most other than this one in several ways at once.
+
+    Those of which OpenBLAS has no kernels for this processor are left out.
+    """
     features = numpy_features()
-    without = {
-        "AVX-512": [name for name in features if "512" in name or name == "X86_V4"],
-        "AVX2": features,
+    off = {
+        "AVX2": " ".join(features),
+        "AVX-512": " ".join(name for name in features if "512" in name or name == "X86_V4"),
     }
-    found = {"this one": Machine(), "one core": Machine(cores=1)}
-    found |= {
-        f"BLAS of {core}": Machine(settings={"OPENBLAS_CORETYPE": core})
-        for core in BLAS
-        if core != "SkylakeX" or "AVX512F" in numpy_found()
+    two = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "2")
+    found = {
+        "this one": Machine(),
+        "one core, BLAS of Prescott, NumPy without AVX2": Machine(
+            settings={"OPENBLAS_CORETYPE": "Prescott", "NPY_DISABLE_CPU_FEATURES": off["AVX2"]}, cores=1
+        ),
+        "BLAS of Haswell, NumPy without AVX-512": Machine(
+            settings={"OPENBLAS_CORETYPE": "Haswell", "NPY_DISABLE_CPU_FEATURES": off["AVX-512"]}
+        ),
+        "two threads of BLAS of Zen": Machine(settings={"OPENBLAS_CORETYPE": "Zen", **two}),
     }
-    found |= {
-        f"NumPy without {name}": Machine(settings={"NPY_DISABLE_CPU_FEATURES": " ".join(off)})
-        for name, off in without.items()
-        if off
-    }
-    found["two threads of BLAS"] = Machine(
-        settings=dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "2")
-    )
+    if "AVX512F" in numpy_found():
+        found["BLAS of SkylakeX"] = Machine(settings={"OPENBLAS_CORETYPE": "SkylakeX"})
     if emulated and shutil.which(EMULATOR) is None:
         print(f"{EMULATOR} is not installed: no processors are emulated")
     elif emulated:
@@ -118,6 +117,14 @@ def _options() -> argparse.Namespace:
     options = parser.parse_args()
     options.emulated |= "emulated" in options.machine
     return options
+
+
+def _lines_of(name: str, machine: Machine, chosen: list[str]) -> list[str]:
+    """Return the commands that a machine runs: an emulated processor its share of those of small grids."""
+    if not machine.before:
+        return chosen
+    first = [processor in name for processor in PROCESSORS].index(True)
+    return [line for line in chosen if line in EMULATED[first :: len(PROCESSORS)]]
 
 
 def _digests(chosen: list[str], machine: Machine) -> Digests:

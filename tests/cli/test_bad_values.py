@@ -1,10 +1,12 @@
 """Every option of every command, given nonsense: exit code 2, a line with the remedy, nothing written."""
 
+import shutil
 from pathlib import Path
 
 import pytest
 from command_line import Meshonet, dataset, duct
 
+import meshonet as library
 from meshonet_cli.app import application
 
 INPUTS = {
@@ -42,13 +44,24 @@ def test_no_command_is_left_out() -> None:
     assert {*INPUTS, "train"} == set(application().commands)
 
 
-@pytest.mark.parametrize(("command", "option"), CASES)
-def test_nonsense_gets_a_line(meshonet: Meshonet, tmp_path: Path, command: str, option: str) -> None:
-    meshonet("tfi", dataset(tmp_path / "duct.h5", "quad", duct()), "-o", "grid.vts", "-q")
-    Path("step.wkt").write_text("POLYGON ((0 0, 1 0, 1 1, 3 1, 3 2, 0 2, 0 0))")
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the commands do well with."""
+    folder = tmp_path_factory.mktemp("inputs")
+    duct_h5 = dataset(folder / "duct.h5", "quad", duct())
+    library.tfi(duct_h5).write(folder / "grid.vts")
+    (folder / "step.wkt").write_text("POLYGON ((0 0, 1 0, 1 1, 3 1, 3 2, 0 2, 0 0))")
     section = '[[sections]]\nairfoil = "naca:0012"\nchord = 1\nz = {}\n'
-    Path("wing.toml").write_text(section.format(0) + section.format(1))
-    Path("path.csv").write_text("0 0 0\n9 0 0\n18 3 0\n")
+    (folder / "wing.toml").write_text(section.format(0) + section.format(1))
+    (folder / "path.csv").write_text("0 0 0\n9 0 0\n18 3 0\n")
+    return folder
+
+
+@pytest.mark.parametrize(("command", "option"), CASES)
+def test_nonsense_gets_a_line(
+    meshonet: Meshonet, inputs: Path, tmp_path: Path, command: str, option: str
+) -> None:
+    shutil.copytree(inputs, tmp_path, dirs_exist_ok=True)
     refused = 0
     for value in NONSENSE:
         before = {path.name for path in tmp_path.iterdir()}

@@ -448,6 +448,12 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture(scope="module")
+def runs() -> dict[tuple[str, str], dict[str, Any]]:
+    """What runs without an option left behind, by command and words: many options are added to the same."""
+    return {}
+
+
 def observed(
     meshonet: Meshonet, command: str, words: list[str], inputs: Path, folder: Path
 ) -> dict[str, Any]:
@@ -514,6 +520,7 @@ def test_every_spelling_of_an_option_has_its_effect(
     inputs: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
+    runs: dict[tuple[str, str], dict[str, Any]],
     command: str,
     known: str,
     option: str,
@@ -522,13 +529,17 @@ def test_every_spelling_of_an_option_has_its_effect(
     base, more, differs = EFFECTS[command][known]
     if not TORCH and (".safetensors" in base or command == "train"):
         pytest.skip("needs torch")
-    seen = []
-    for name, words in (("without", []), ("with", more.replace("OPTION", option).split())):
+
+    def run(name: str, words: list[str]) -> dict[str, Any]:
         folder = tmp_path / name
         folder.mkdir()
         monkeypatch.chdir(folder)
-        seen.append(observed(meshonet, command, [*base.split(), *words], inputs, folder))
-    without, with_it = seen
+        return observed(meshonet, command, words, inputs, folder)
+
+    if (command, base) not in runs:
+        runs[command, base] = run("without", base.split())
+    without = runs[command, base]
+    with_it = run("with", [*base.split(), *more.replace("OPTION", option).split()])
     told = f"{command} {base} {more}: {without['error']} {with_it['error']}"
     assert with_it["code"] != 2 or differs in ("code", "error"), told
     assert with_it[differs] != without[differs], f"{differs} is the same: {told}"

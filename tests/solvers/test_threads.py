@@ -44,8 +44,7 @@ def made(shape: Shape, method: str, count: int, **options: Any) -> tuple[bytes, 
 def test_threads_change_no_bit_between_four_sides(
     eager_threads: None, method: str, options: Mapping[str, Any]
 ) -> None:
-    single, *several = (made(bump(301, 149), method, count, **options) for count in (1, 2, 3))
-    assert several == [single, single]
+    assert made(bump(151, 74), method, 3, **options) == made(bump(151, 74), method, 1, **options)
 
 
 @pytest.mark.parametrize(
@@ -59,12 +58,11 @@ def test_threads_change_no_bit_between_four_sides(
         ("winslow", {"first_cell": 1e-3}),
     ],
 )
-@pytest.mark.parametrize("ni", [200, 163])
+@pytest.mark.parametrize("ni", [120, 97])
 def test_threads_change_no_bit_around_a_body(
     eager_threads: None, method: str, options: Mapping[str, Any], ni: int
 ) -> None:
-    single, *several = (made(naca(ni, 71), method, count, **options) for count in (1, 2, 3))
-    assert several == [single, single]
+    assert made(naca(ni, 41), method, 3, **options) == made(naca(ni, 41), method, 1, **options)
 
 
 @pytest.mark.parametrize("ni", [1200, 1447])
