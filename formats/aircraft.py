@@ -66,7 +66,7 @@ def _listed(row: Table, points: list[object]) -> Floats:
 
 def _from_file(row: Table, folder: Path) -> Floats:
     source = open_source(str(folder / row.text("meridian")))
-    blocks = point_blocks(source, (2,))
+    blocks = point_blocks(source, ("x, r",))
     if len(blocks) > 1:
         raise InputError(f"holds {len(blocks)} blocks of points", "give one curve", source=source.name)
     return blocks[0]

@@ -19,40 +19,81 @@ from meshonet.geometry.errors import InputError, in_source
 
 MOST_POINTS = 200_000
 """More are a mistake."""
+_SPLITTER = re.compile(r"\bsplitter\b", re.IGNORECASE)
+"""In the heading of a second blade in a file of TurboGrid."""
+_BETWEEN = re.compile(r"[\s,;|]+")
+_UNIT = re.compile(r"[\[(][^\])]*[\])]")
 _MARK = re.compile(r"[\s,;]+(?:le|te)\d*[\s,;]*$", re.IGNORECASE | re.MULTILINE)
 
 
-def point_blocks(source: Source, columns: tuple[int, ...]) -> list[Floats]:
-    """Return the blocks (n, k) of a file; k is the same in all, and one of `columns`.
+_ANGLES = ("theta", "t", "phi", "\u03b8", "\u03c6")
+_NAMES = {"x", "y", "z", "r", *_ANGLES}
 
-    Raises InputError: a line of another count of numbers, with its place; no block.
+
+def point_blocks(source: Source, orders: Sequence[str]) -> list[Floats]:
+    """Return the blocks (n, k) of a file; k is the same in all.
+
+    Parameters
+    ----------
+    source : the file.
+    orders : the columns that it may have, ``x, y, z``, ``x, r, theta`` or ``x, r``, of different counts.
+
+    Raises InputError: a line of another count of numbers, with its place; no block; a line that names the
+    columns in another order; the heading of a splitter.
     """
-    return [points for points, _ in placed_blocks(source, columns)]
+    return [points for points, _ in placed_blocks(source, orders)]
 
 
-def placed_blocks(source: Source, columns: tuple[int, ...]) -> list[tuple[Floats, str]]:
+def placed_blocks(source: Source, orders: Sequence[str]) -> list[tuple[Floats, str]]:
     """Return the blocks of a file as `point_blocks`, and where each is: ``lines 2 to 161 of a.curve``."""
     with in_source(source.name):
-        blocks = table(read_lines(_MARK.sub("", decode(source.text_bytes()))))
+        text = decode(source.text_bytes())
+        lines = read_lines(_MARK.sub("", text))
+        for line in lines:
+            if line.kind == "text" and _SPLITTER.search(line.text):
+                problem = f"{line.text.strip()[:40]!r} is the heading of a splitter"
+                remedy = "give one blade: splitters are not made"
+                raise InputError(problem, remedy, place=f"line {line.number}")
+        blocks = table(lines)
+        counts = {order.count(",") + 1: order for order in orders}
+        words = " or ".join(map(str, counts))
         if not blocks:
-            raise InputError("holds no points", f"give {_words(columns)} numbers a line")
+            raise InputError("holds no points", f"give {words} numbers a line")
         if sum(map(len, blocks)) > MOST_POINTS:
             raise InputError(f"{sum(map(len, blocks))} points", f"give at most {MOST_POINTS}")
         count = len(blocks[0][0].values)
-        count = count if count in columns else columns[0]
+        count = count if count in counts else next(iter(counts))
+        made = [_points(block, count, words) for block in blocks]
+        _check_names(lines, blocks, counts[count])
         name = source.path.name if source.path else source.name
         ends = [f"lines {block[0].number} to {block[-1].number} of {name}" for block in blocks]
-        return list(zip([_points(block, count, columns) for block in blocks], ends, strict=True))
+        return list(zip(made, ends, strict=True))
 
 
-def _points(block: Sequence[Line], count: int, columns: tuple[int, ...]) -> Floats:
+def _points(block: Sequence[Line], count: int, words: str) -> Floats:
     for line in block:
         if len(line.values) != count:
             problem = f"{line.text.strip()[:40]!r} is not {count} numbers"
-            remedy = f"give {_words(columns)} numbers a line"
-            raise InputError(problem, remedy, place=f"line {line.number}")
+            raise InputError(problem, f"give {words} numbers a line", place=f"line {line.number}")
     return np.array([line.values for line in block])
 
 
-def _words(columns: tuple[int, ...]) -> str:
-    return " or ".join(map(str, columns))
+def _check_names(lines: Sequence[Line], blocks: Sequence[Sequence[Line]], order: str) -> None:
+    """Raise InputError if the line before a block names its columns, and not in this order."""
+    for block in blocks:
+        above = lines[block[0].number - 2].text if block[0].number > 1 else ""
+        names = _BETWEEN.split(_UNIT.sub("", above).lower().strip(" \t#!\"',;"))
+        if len(names) != order.count(",") + 1 or not _NAMES.issuperset(names):
+            continue
+        if order == "x, y, z":
+            fits = names == ["x", "y", "z"]
+        else:
+            fits = names[0] != "r" and (len(names) == 2 or (names[1] == "r" and names[2] in _ANGLES))
+        problem, remedy = f"the columns are {', '.join(names)}", f"give {order} in this order"
+        if {*names} & {*_ANGLES}:
+            if order == "x, y, z":
+                remedy = 'give x, r, theta, and write coordinates = "xrt"'
+            elif fits and "deg" in above.lower():
+                fits, problem, remedy = False, "theta is in degrees", "give it in radians"
+        if not fits:
+            raise InputError(problem, remedy, place=f"line {block[0].number - 1}")

@@ -71,30 +71,39 @@ def read_row(data: Table, source: Source) -> Row:
     folder = source.path.parent if source.path else Path()
     scale = UNITS[data.word("unit", tuple(UNITS), "m")]
     frame = _frame(data)
-    hub, shroud = (_wall(data, key, folder, frame) * scale for key in ("hub", "shroud"))
-    planes = [_plane(data, key, scale) for key in ("inlet", "outlet")]
+    hub, shroud = (_wall(data, key, folder, frame) for key in ("hub", "shroud"))
+    planes = [_plane(data, key) for key in ("inlet", "outlet")]
     hub, shroud = (trimmed(points, planes[0], planes[1], wall) for wall, points in enumerate((hub, shroud)))
     if ("profiles" in data.data) == ("sections" in data.data):
         problem = "stands beside sections" if "profiles" in data.data else "is missing"
         raise data.error("profiles", problem, "give profiles or [[sections]]")
     notes: tuple[str, ...] = ()
     if "profiles" in data.data:
-        profiles, places = _profiles(data, folder, scale, frame)
+        profiles, places = _profiles(data, folder, frame)
     else:
         made = [_section(row, folder) for row in data.rows("sections", least=2)]
-        profiles = [points * scale for points, _ in made]
+        profiles = [points for points, _ in made]
         places = [f"sections[{k}]" for k in range(len(made))]
         notes = tuple(dict.fromkeys(note for _, own in made for note in own))
     blades = data.number("blades")
     if blades != round(blades):
         raise data.error("blades", f"{blades:g} is no whole number", "count them")
     span = _span(hub, shroud)
-    gaps = _gap(data, "tip_gap", span, scale), _gap(data, "hub_gap", span, scale)
+    gaps = _gap(data, "tip_gap", span), _gap(data, "hub_gap", span)
+    turned = None if frame == axis_along(AXES["x"]) else frame
+    name = data.text("name", source.stem or "row")
+
+    def row(unit: float) -> Row:
+        blade = tuple(points * unit for points in profiles)
+        tip, foot = (gap * unit for gap in gaps)
+        return Row(blade, hub * unit, shroud * unit, int(blades), tip, foot, name, notes, turned)
+
     with _located(places):
-        return Row(
-            tuple(profiles), hub, shroud, int(blades), *gaps, data.text("name", source.stem or "row"), notes,
-            None if frame == axis_along(AXES["x"]) else frame,
-        )  # fmt: skip
+        try:
+            return row(scale)
+        except InputError:
+            row(1.0)  # so that the message has the numbers of the files
+            raise
 
 
 @contextmanager
@@ -119,10 +128,11 @@ def _frame(data: Table) -> Motion:
     return axis_along(AXES[data.word("axis", tuple(AXES), "x")])
 
 
-def _profiles(data: Table, folder: Path, scale: float, frame: Motion) -> tuple[list[Floats], list[str]]:
+def _profiles(data: Table, folder: Path, frame: Motion) -> tuple[list[Floats], list[str]]:
     """Return the profiles (n, 3) of the files, x, y, z with the axis along x, and where each is given."""
     polar = data.word("coordinates", ("xyz", "xrt"), "xyz") == "xrt"
-    blocks = [block for file in _files(data, folder) for block in placed_blocks(file, (3,))]
+    order = "x, r, theta" if polar else "x, y, z"
+    blocks = [block for file in _files(data, folder) for block in placed_blocks(file, (order,))]
     profiles = [points for points, _ in blocks]
     if polar:
         most = max(float(np.ptp(points[:, 2])) for points in profiles)
@@ -132,7 +142,7 @@ def _profiles(data: Table, folder: Path, scale: float, frame: Motion) -> tuple[l
         profiles = [np.stack([x, r * sin(theta), r * cos(theta)], axis=1) for x, r, theta in columns]
     else:
         profiles = [frame(points) for points in profiles]
-    return [points * scale for points in profiles], [place for _, place in blocks]
+    return profiles, [place for _, place in blocks]
 
 
 def _files(data: Table, folder: Path) -> list[Source]:
@@ -152,7 +162,7 @@ def _wall(data: Table, key: str, folder: Path, frame: Motion) -> Floats:
         problem = "is missing" if name is None else "is no file and no list of points"
         raise data.error(key, problem, "name a file, or give [[x, r], [x, r]]")
     source = open_source(str(folder / name))
-    blocks = point_blocks(source, (3, 2))
+    blocks = point_blocks(source, ("x, y, z", "x, r"))
     if len(blocks) > 1 and any(len(block) > 1 for block in blocks[1:]):
         raise InputError(f"holds {len(blocks)} blocks of points", "give one curve", source=source.name)
     points = blocks[0]
@@ -162,18 +172,17 @@ def _wall(data: Table, key: str, folder: Path, frame: Motion) -> Floats:
     return np.stack([x, np.hypot(y, z)], axis=1)
 
 
-def _plane(data: Table, key: str, scale: float) -> Plane | None:
+def _plane(data: Table, key: str) -> Plane | None:
     """Return where inlet or outlet is: along the axis, or through points on hub and shroud."""
     value = data.data.get(key)
     if value is None:
         return None
     if not isinstance(value, list):
-        return data.number(key) * scale
+        return data.number(key)
     if len(value) != 2 or not all(isinstance(point, list) and len(point) == 2 for point in value):
         raise data.error(key, f"{value!r} is no plane", "give x, or [[x, r], [x, r]] on hub and shroud")
     ends = [Table({key: point}, data.place).pair(key, (0.0, 0.0)) for point in value]
-    (a, b), (c, d) = ends
-    return (a * scale, b * scale), (c * scale, d * scale)
+    return ends[0], ends[1]
 
 
 def _span(hub: Floats, shroud: Floats) -> float:
@@ -186,7 +195,7 @@ def _span(hub: Floats, shroud: Floats) -> float:
     return float(np.sort(np.hypot(*(high - low)))[50])
 
 
-def _gap(data: Table, key: str, span: float, scale: float) -> float:
+def _gap(data: Table, key: str, span: float) -> float:
     """Return a gap, a length or a part of the span."""
     value = data.data.get(key, 0.0)
     if isinstance(value, str):
@@ -201,7 +210,7 @@ def _gap(data: Table, key: str, span: float, scale: float) -> float:
     gap = data.number(key, 0.0)
     if gap < 0.0:
         raise data.error(key, f"{gap:g} is negative", "use 0 or more")
-    return gap * scale
+    return gap
 
 
 def _section(row: Table, folder: Path) -> tuple[Floats, tuple[str, ...]]:

@@ -16,12 +16,13 @@ from meshonet.geometry.rows.channel import Channel
 from meshonet.geometry.rows.edges import LEAST_EDGE
 from meshonet.geometry.rows.profile import BladeProfile
 from meshonet.geometry.rows.thick_edge import pointed, thick_edged
+from meshonet.geometry.rows.turns import whole_pitches
 
 MOST_EXTENDED = 0.2
 """Part of the span by which a blade is made longer, at the most, to reach hub and casing."""
 _CHECKED = 400  # places around the blade at which profiles are compared
 _FARTHEST = 90.0  # degrees around the axis from one profile to the next: no blade leans as much
-_ORDER = "give profiles from hub to casing, all of one blade"
+_ORDER = "give profiles from hub to casing, all of one blade: splitters are not made"
 _SAME_HEIGHT = 1e-9
 """Difference of heights, in spans, that is rounding."""
 _NEWTON = 8
@@ -39,13 +40,16 @@ class BladeSurface:
     profiles : two or more, (n, 3) x, y, z, in order from hub to casing; the opposite order is reversed, which
         `notes` say.
     channel : that the blade stands in.
+    blades : how many there are; profiles that lie whole pitches beside the others are turned back, which
+        `notes` say.
 
     Raises InputError: profiles that are not in this order, that cross or do not reach far enough, or as
     `BladeProfile`; with the number of the profile, from 1.
     """
 
-    def __init__(self, profiles: Sequence[Floats], channel: Channel) -> None:
+    def __init__(self, profiles: Sequence[Floats], channel: Channel, blades: int) -> None:
         self.channel = channel
+        self.pitch = 2.0 * np.pi / blades
         self.profiles: list[BladeProfile] = []
         for number, points in enumerate(profiles, start=1):
             with in_place(f"profile {number}"):
@@ -73,7 +77,7 @@ class BladeSurface:
         heights = np.array([profile.height for profile in self.profiles])
         for k in np.flatnonzero(np.abs(np.diff(heights)) <= _SAME_HEIGHT)[:1]:
             problem = f"is at {100 * heights[k]:.3g} % of the span, as the one before"
-            raise InputError(problem, "give profiles at different heights", place=f"profile {k + 2}")
+            raise InputError(problem, "give one at each height, all of one blade", place=f"profile {k + 2}")
 
     def _check(self) -> None:
         heights = self.knots
@@ -99,33 +103,46 @@ class BladeSurface:
         return f"profile {len(self.profiles) - k if self._reversed else k + 1}"
 
     def _check_neighbours(self) -> None:
-        """Raise InputError for a profile that crosses the one before, or lies far from it around the axis."""
+        """Raise InputError for a profile that crosses the one before."""
         u = clustered(_CHECKED)
         values = np.stack([profile.at(u) for profile in self.profiles])
-        middle = values[..., 1].mean(axis=1) + self._turns
         for k in range(1, len(values)):
-            apart = float(np.degrees(abs(middle[k] - middle[k - 1])))
-            if apart > _FARTHEST:
-                problem = f"lies {apart:.4g} degrees around the axis from the one before"
-                raise InputError(problem, "give profiles of one blade", place=self._place(k))
             if not (values[k, :, 2] > values[k - 1, :, 2]).all():
                 problem = "crosses the one before"
                 raise InputError(problem, "give profiles beside each other", place=self._place(k))
 
-    def check_pitch(self, pitch: float) -> None:
-        """Raise InputError if blades a `pitch` in radians apart touch each other."""
+    def check_pitch(self) -> None:
+        """Raise InputError if a blade touches the next one."""
         angles = [profile.thickness for profile in self.profiles]
         k = int(np.argmax(angles))
-        if angles[k] >= pitch:
+        if angles[k] >= self.pitch:
             problem = (
-                f"is {np.degrees(angles[k]):.4g} degrees thick, and blades are {np.degrees(pitch):.4g} apart"
+                f"is {np.degrees(angles[k]):.4g} degrees thick, and blades are "
+                f"{np.degrees(self.pitch):.4g} apart"
             )
             raise InputError(problem, "use fewer blades", place=self._place(k))
 
     def _unwrapped(self) -> Floats:
-        """Return multiples of 2 pi (p,) that are added to theta, so that profiles follow each other."""
+        """Return angles (p,) that are added to theta, so that profiles follow each other.
+
+        They are whole turns, and whole pitches, of which notes are added.
+
+        Raises InputError: a profile lies far from the one before.
+        """
         mean = np.array([profile.curve.points[:, 1].mean() for profile in self.profiles])
-        return np.asarray(np.unwrap(mean) - mean)
+        turned = np.unwrap(mean)
+        for k, step in enumerate(np.degrees(np.abs(np.diff(turned))).tolist(), start=1):
+            if step > _FARTHEST:
+                problem = f"lies {step:.4g} degrees around the axis from the one before"
+                raise InputError(problem, "give profiles of one blade", place=self._place(k))
+        away = whole_pitches(turned, self.knots, self.pitch)
+        for k in np.flatnonzero(away).tolist():
+            angle = -float(np.degrees(away[k] * self.pitch))
+            what = (
+                f"{self._place(k)} is turned by {angle:.6g} degrees, whole pitches, to lie beside the others"
+            )
+            self.notes = (*self.notes, Change(f"{what}; if the blade leans so, give profiles in between"))
+        return np.asarray(turned - mean - away * self.pitch)
 
     def lines(self, u: Floats) -> CubicTable:
         """Return the lines (s, theta, h) at places u (m,) through the profiles, by their mean heights."""

@@ -77,13 +77,8 @@ class Channel:
                 raise InputError(f"the {name} reaches the axis, r = {points[:, 1].min():.6g}", "give r > 0")
         self.hub, self.across = CubicTable(low, s), CubicTable(high - low, s)
         widths = norms(high - low)
-        piece = [*range(_PIECES), _PIECES - 1]
-        left = np.stack([cross2(np.diff(line, axis=0)[piece], high - low) for line in (low, high)])
-        if not (left > 0.0).all():
-            k = int(left.min(axis=0).argmin())
-            problem = f"hub and casing cross, turn back or lie the wrong way round near x = {low[k, 0]:.6g}"
-            remedy = "check the axis, and give both from inlet to outlet, the hub inside"
-            raise InputError(problem, remedy)
+        _check_sides(low, high)
+        self.radii = float(low[:, 1].min()), float(high[:, 1].max())
         self.span = middle(widths)
         self.length = middle(np.array([norms(np.diff(line, axis=0)).sum() for line in (low, high)]))
         self._check_gaps({"tip_gap": tip_gap, "hub_gap": hub_gap}, float(widths.min()))
@@ -230,3 +225,29 @@ def _by_arc(points: Floats, s: Floats, name: str) -> Floats:
     with in_place(name):
         curve = Curve(apart(np.ascontiguousarray(points, dtype=np.float64), closed=False))
     return curve.at(s * curve.length)
+
+
+def _beside(low: Floats, high: Floats) -> Floats:
+    """Return (2, n), positive where the way from wall `low` to `high` (n, 2) leads to the left of both."""
+    piece = [*range(_PIECES), _PIECES - 1]
+    return np.stack([cross2(np.diff(line, axis=0)[piece], high - low) for line in (low, high)])
+
+
+def _check_sides(hub: Floats, shroud: Floats) -> None:
+    """Raise InputError unless the shroud (n, 2) is to the left of the hub everywhere."""
+    left = _beside(hub, shroud)
+    if (left > 0.0).all():
+        return
+    for name, low, high in (("hub", hub[::-1], shroud), ("shroud", hub, shroud[::-1])):
+        if (_beside(low, high) > 0.0).all():
+            raise InputError("runs from outlet to inlet", "give its points from inlet to outlet", place=name)
+    if (_beside(shroud, hub) > 0.0).all():
+        inner, outer = (f"{wall[:, 1].min():.6g} to {wall[:, 1].max():.6g}" for wall in (hub, shroud))
+        if hub[:, 1].mean() > shroud[:, 1].mean():
+            problem = f"the hub is outside, at r = {inner}, the shroud at {outer}"
+            raise InputError(problem, "exchange them, or give both in one unit")
+        problem = "hub and shroud run from outlet to inlet, or the axis points the other way"
+        raise InputError(problem, "give both from inlet to outlet, or the axis with the other sign")
+    k = int(left.min(axis=0).argmin())
+    problem = f"hub and casing cross or turn back near x = {hub[k, 0]:.6g}"
+    raise InputError(problem, "check the axis, and give both from inlet to outlet, the hub inside")

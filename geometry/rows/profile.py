@@ -27,6 +27,7 @@ _BASE = 0.1  # of the chord: corners that are no farther apart than this, and bl
 _ENDS = np.array([0.0, 0.5, 1.0])  # places of the edges
 _LONGER = "use longer curves of hub and casing, inlet and outlet away from the blade, and one unit for all"
 _SEAM = 4  # points that are taken along beyond the first and the last
+_OTHER_UNIT = 1.5  # factor between radii of blade and channel from which on their units must differ
 
 
 class BladeProfile:
@@ -45,6 +46,7 @@ class BladeProfile:
         p = distinct_points(points)
         r = np.hypot(p[:, 1], p[:, 2])
         theta = np.unwrap(arctan2(p[:, 1], p[:, 2]))
+        _check_unit(r, channel)
         s, h = channel.places(np.stack([p[:, 0], r], axis=1))
         outside = np.flatnonzero((s < 0.0) | (s > 1.0))
         if len(outside):
@@ -202,3 +204,12 @@ class BladeProfile:
         around = np.arange(-_SEAM, len(self.heights) + _SEAM)
         turns, number = np.divmod(around, len(self.heights))
         return CubicTable(self.heights[number], self.curve.knots[number] + turns * self.curve.length)
+
+
+def _check_unit(r: Floats, channel: Channel) -> None:
+    """Raise InputError if a profile is so far inside the hub or outside the casing that units differ."""
+    low, high = float(r.min()), float(r.max())
+    inner, outer = channel.radii
+    if low > _OTHER_UNIT * outer or _OTHER_UNIT * high < inner:
+        problem = f"lies at r = {low:.6g} to {high:.6g}, hub and casing at {inner:.6g} to {outer:.6g}"
+        raise InputError(problem, "give all lengths in one unit, about one axis")

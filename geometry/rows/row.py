@@ -63,8 +63,8 @@ class Row:
             remedy = f"use a whole number from {FEWEST} to {MOST}"
             raise InputError(f"{self.blades} blades", remedy, place="blades")
         if len(self.profiles) < 2:
-            problem = f"{len(self.profiles)} of a blade"
-            raise InputError(problem, "give two or more, from hub to casing", place="profiles")
+            remedy = "give two or more, from hub to casing, with a blank line or text between them in a file"
+            raise InputError(f"{len(self.profiles)} of a blade", remedy, place="profiles")
         for place, gap in (("tip_gap", self.tip_gap), ("hub_gap", self.hub_gap)):
             if not isinstance(gap, Real) or not 0.0 <= gap < math.inf:
                 raise InputError(f"{gap} is no width of a gap", "use 0 or more", place=place)
@@ -76,7 +76,7 @@ class Row:
             with in_place(f"profile {number}"):
                 profiles.append(as_points(points, 3))
         object.__setattr__(self, "profiles", tuple(profiles))
-        self.surface.check_pitch(self.pitch)
+        self.surface.check_pitch()
 
     @cached_property
     def channel(self) -> Channel:
@@ -86,7 +86,7 @@ class Row:
     @cached_property
     def surface(self) -> BladeSurface:
         """The surface of the blade."""
-        return BladeSurface(self.profiles, self.channel)
+        return BladeSurface(self.profiles, self.channel, self.blades)
 
     @property
     def changes(self) -> tuple[str, ...]:

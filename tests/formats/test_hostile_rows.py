@@ -55,7 +55,12 @@ def hub(*points: tuple[float, float]) -> dict[str, str]:
 
 ROW = "row.toml: "
 OPEN = r"is open between its first and its last point, .* no blank line or text between them"
-WRONG_WAY = "hub and casing cross, turn back or lie the wrong way round near x = "
+CROSSING = "hub and casing cross or turn back near x = "
+OUTSIDE = "the hub is outside, at r = .*, the shroud at .*; exchange them, or give both in one unit"
+BACKWARDS = "{}: runs from outlet to inlet; give its points from inlet to outlet"
+BOTH_BACKWARDS = "hub and shroud run from outlet to inlet, or the axis points the other way; give"
+OTHER_UNIT = "lies at r = .*, hub and casing at .*; give all lengths in one unit"
+SECOND_BLADE = "give .*all of one blade: splitters are not made"
 NOT_LONG = r"hub and casing (end before|begin behind) the blade's point .*; use longer curves"
 IN_LINES = r"profile {} \(lines {} to {} of profile.curve\): "
 REFUSED = {
@@ -73,7 +78,7 @@ REFUSED = {
     "an axis in capitals": (texts('axis = "X"'), ROW + "axis: 'X' is not known; use x, y, z, -x"),
     "an axis of no direction": (texts("axis = [0, 0, 0]"), ROW + "axis: has no direction"),
     "an axis of two numbers": (texts("axis = [0, 1]"), ROW + r"axis: \[0, 1\] is not 3 numbers"),
-    "an axis across the channel": (texts('axis = "z"'), ROW + WRONG_WAY),
+    "an axis across the channel": (texts('axis = "z"'), ROW + CROSSING),
     # blades
     "no blades": (texts("blades = 0"), ROW + "blades: 0 blades; use a whole number from 2"),
     "one blade": (texts("blades = 1"), ROW + "blades: 1 blades; use a whole number from 2"),
@@ -95,13 +100,13 @@ REFUSED = {
     "a point that is no number": (texts("hub = [[-1, 2], [2, nan]]"), ROW + r"hub\[1\]: nan is out of"),
     "a negative radius": (hub((-1, -2), (2, -2)), ROW + "the hub reaches the axis, r = -2; give r > 0"),
     "the hub on the axis": (hub((-1, 0), (2, 0)), ROW + "the hub reaches the axis, r = 0; give r > 0"),
-    "the hub outside": (hub((-1, 3.5), (2, 3.5)), ROW + WRONG_WAY),
-    "hub and shroud crossing": (hub((-1, 2), (2, 3.4)), ROW + WRONG_WAY),
-    "hub and shroud exchanged": (texts('hub = "shroud.curve"\nshroud = "hub.csv"'), ROW + WRONG_WAY),
-    "the hub the other way": (texts(hub=HUB[::-1]), ROW + WRONG_WAY),
-    "the shroud the other way": (texts(shroud=SHROUD[::-1]), ROW + WRONG_WAY),
-    "both the other way": (texts(hub=HUB[::-1], shroud=SHROUD[::-1]), ROW + WRONG_WAY),
-    "a hub that turns back": (texts(hub=np.concatenate([HUB[:15], HUB[5:]])), ROW + WRONG_WAY),
+    "the hub outside": (hub((-1, 3.5), (2, 3.5)), ROW + OUTSIDE),
+    "hub and shroud crossing": (hub((-1, 2), (2, 3.4)), ROW + CROSSING),
+    "hub and shroud exchanged": (texts('hub = "shroud.curve"\nshroud = "hub.csv"'), ROW + OUTSIDE),
+    "the hub the other way": (texts(hub=HUB[::-1]), ROW + BACKWARDS.format("hub")),
+    "the shroud the other way": (texts(shroud=SHROUD[::-1]), ROW + BACKWARDS.format("shroud")),
+    "both the other way": (texts(hub=HUB[::-1], shroud=SHROUD[::-1]), ROW + BOTH_BACKWARDS),
+    "a hub that turns back": (texts(hub=np.concatenate([HUB[:15], HUB[5:]])), ROW + CROSSING),
     "a hub that ends in the blade": (texts(hub=HUB[:14]), ROW + IN_LINES.format(1, 2, 161) + NOT_LONG),
     "a hub that begins in it": (texts(hub=HUB[14:]), ROW + IN_LINES.format(1, 2, 161) + NOT_LONG),
     "a shroud that ends in it": (texts(shroud=SHROUD[:14]), ROW + IN_LINES.format(3, 324, 483) + NOT_LONG),
@@ -110,7 +115,10 @@ REFUSED = {
     "an empty hub": (with_file("hub.csv", ""), "hub.csv: is empty"),
     "a hub of four numbers": (with_file("hub.csv", "1 2 3 4\n2 3 4 5\n"), "hub.csv: line 1: .* 3 or 2"),
     "a binary hub": (with_file("hub.csv", "1\0 2"), "hub.csv: holds binary data"),
-    "a hub in millimetres": (texts(hub=1e3 * HUB, shroud=1e3 * SHROUD), ROW + r"profile 4 .*of the span"),
+    "a hub in millimetres": (texts(hub=1e3 * HUB, shroud=1e3 * SHROUD), ROW + "profile 1 .*" + OTHER_UNIT),
+    "a hub alone in millimetres": (texts(hub=1e3 * HUB), ROW + OUTSIDE),
+    "a hub with columns r, x": (
+        with_file("hub.csv", "r,x\n2,-1\n2.05,2\n"), "hub.csv: line 1: the columns are r, x; give x, r in"),
     # inlet and outlet
     "an inlet outside": (texts("inlet = -9"), ROW + "inlet: the hub reaches from x = -1 to 2, not -9"),
     "an inlet in the blade": (texts("inlet = 0.5"), ROW + "profile 1 .*" + NOT_LONG),
@@ -170,7 +178,22 @@ REFUSED = {
     "a profile across the casing": (with_profiles(*P[:2], flared(P[2], 0.2)), ROW + "profile 3 .*ends at"),
     "no profile near the hub": (with_profiles(*P[2:]), ROW + "profile 1 .*nearer to the hub"),
     "no profile near the casing": (with_profiles(*P[:2]), ROW + "profile 2 .*nearer to the casing"),
-    "profiles in millimetres": (with_profiles(*(1e3 * p for p in P)), ROW + "profile 1 .*" + NOT_LONG),
+    "profiles in millimetres": (with_profiles(*(1e3 * p for p in P)), ROW + "profile 1 .*" + OTHER_UNIT),
+    "profiles in inches": (with_profiles(*(p / 2.54 for p in P)), ROW + "profile 1 .*" + OTHER_UNIT),
+    "columns in another order": (
+        with_line(1, "z [m], y [m], x [m]"), "profile.curve: line 1: the columns are z, y, x; give x, y, z"),
+    "columns of angles": (
+        with_line(1, "# x r theta"), r'profile.curve: line 1: .*; give x, r, theta, .* coordinates = "xrt"'),
+    "columns of degrees": (
+        texts('coordinates = "xrt"', blade=curve(*P).replace("# Profile 1", "x r theta(deg)")),
+        "profile.curve: line 1: theta is in degrees; give it in radians"),
+    "columns of x, y, z as angles": (
+        texts('coordinates = "xrt"', blade=curve(*P).replace("# Profile 1", "x y z")),
+        "profile.curve: line 1: the columns are x, y, z; give x, r, theta in this order"),
+    "a splitter": (
+        texts(blade="## Main blade\n" + curve(*P) + "## Splitter blade\n" + curve(*P)),
+        "profile.curve: line 646: '## Splitter blade' is the heading of a splitter; .* not made"),
+    "a second blade": (with_profiles(*P, *(turned(p, 0.1) for p in P)), ROW + "profile 5 .*" + SECOND_BLADE),
     "profiles behind the channel": (
         with_profiles(*(p + np.array([5, 0, 0]) for p in P)), ROW + "profile 1 .*" + NOT_LONG),
     # airfoils on cylinders
@@ -205,12 +228,15 @@ HARMLESS = {
     "one profile the other way round": with_profiles(P[0], P[1][::-1], *P[2:]),
     "profiles that start elsewhere": with_profiles(*(np.roll(p, 17 * k, axis=0) for k, p in enumerate(P))),
     "points that are repeated": with_profiles(*(np.repeat(p, 2, axis=0) for p in P)),
+    "names of the blade and of profiles": texts(blade="## Main blade\n" + curve(*P).replace("# P", "#P")),
+    "names of columns": texts(blade=curve(*P).replace("# Profile 1", "x [m], y [m], z [m]")),
     "names of blades and a comment": texts(blade="## Blade 1\n! from a drawing\n" + curve(*P)),
     "tabs, a mark of bytes and ends of lines as of Windows": texts(
         blade="\ufeff" + curve(*P).replace(" ", "\t").replace("\n", "\r\n")
     ),
     "decimal commas": texts(blade=curve(*P).replace(".", ",")),
     "marks of edges": texts(blade=curve(*P).replace("\n", " le1\n", 2).replace("le1", "", 1)),
+    "marks of edges without a number": texts(blade=curve(*P).replace("\n", " le\n", 2).replace("le", "", 2)),
 }
 
 

@@ -171,7 +171,7 @@ def test_blades_have_to_be_counted(tmp_path: Path) -> None:
         ('kind = "row"\n', "", 'kind: is missing, and a wing has no blades; write kind = "row"'),
         ('"hub.csv"', "[[-1, 2]]", r"hub: .* is not 2 pairs or more; give \[\[x, r\], \[x, r\]\]"),
         ('"hub.csv"', "[[-1, 2], [2]]", r"hub\[1\]: \[2\] is not 2 numbers"),
-        ('"hub.csv"', "[[2, 2.05], [-1, 2]]", "hub and casing cross, turn back or lie the wrong way round"),
+        ('"hub.csv"', "[[2, 2.05], [-1, 2]]", "hub: runs from outlet to inlet"),
         ('"hub.csv"', "[[-1, 2], [-1, 2]]", "hub: a curve of 1 points"),
     ],
 )

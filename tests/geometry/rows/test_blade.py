@@ -6,6 +6,7 @@ import pytest
 import radial_rows
 
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.notes import Change
 from meshonet.geometry.rows.blade import clustered
 from meshonet.geometry.rows.row import Row
 
@@ -95,6 +96,47 @@ def test_profiles_from_casing_to_hub_are_reversed_with_a_note() -> None:
     assert np.array_equal(section(given[::-1]), section(given))
     with pytest.raises(InputError, match="profile 2: begins at 7"):
         Row(given[:1:-1], blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
+
+
+def turned(points: np.ndarray, degrees: float) -> np.ndarray:
+    """Points rotated about the x axis, towards growing theta = atan2(y, z)."""
+    other = (points[:, 1] + 1j * points[:, 2]) * np.exp(-1j * np.radians(degrees))
+    return np.stack([points[:, 0], other.real, other.imag], axis=1)
+
+
+def row_of(profiles) -> Row:
+    return Row(profiles, blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
+
+
+PITCH = 360.0 / blade_row.BLADES
+
+
+@pytest.mark.parametrize(
+    "pitches", [(0, 0, 1, 0), (0, -2, 0, 0), (0, 0, 0, 1), (1, 0, 0, 0), (0, 0, 1, 1), (3, 0, 0, 0)]
+)
+def test_profiles_of_the_next_blades_are_turned_back_with_a_note(pitches) -> None:
+    given = blade_row.profiles()
+    row = row_of([turned(p, k * PITCH) for p, k in zip(given, pitches, strict=True)])
+    u = np.linspace(0.05, 0.95, 30)
+    s, theta = (row.surface.section(0.4, u) - row_of(given).surface.section(0.4, u)).T
+    assert s == pytest.approx(np.zeros(30), abs=1e-12)
+    assert np.ptp(theta) < 1e-12  # but for whole pitches of all
+    moved = {k for k in range(4) if pitches[k] != sorted(pitches)[1]}
+    assert len(row.changes) == len(moved)
+    for note, k in zip(row.changes, sorted(moved), strict=True):
+        assert isinstance(note, Change)
+        angle = -(pitches[k] - sorted(pitches)[1]) * PITCH
+        assert f"profile {k + 1} is turned by {angle:.6g} degrees, whole pitches" in note
+
+
+@pytest.mark.parametrize("lean", [(0, 12, 24, 33), (0, 5, 16, 30), (0, -16, -32, -45)])
+def test_a_blade_may_lean_by_more_than_a_pitch(lean) -> None:
+    row = row_of([turned(p, angle) for p, angle in zip(blade_row.profiles(), lean, strict=True)])
+    assert row.changes == ()
+    at = [row.surface.section(row.surface.knots[k], np.full(1, 0.25))[0, 1] for k in (0, 3)]
+    plain = row_of(blade_row.profiles()).surface
+    upright = [plain.section(plain.knots[k], np.full(1, 0.25))[0, 1] for k in (0, 3)]
+    assert np.degrees(np.diff(at) - np.diff(upright)) == pytest.approx(lean[3], abs=0.2)
 
 
 def test_blades_that_touch_are_refused() -> None:

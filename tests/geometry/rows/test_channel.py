@@ -48,8 +48,10 @@ def test_the_coordinate_of_a_cone_is_the_logarithm_of_its_radius() -> None:
     ("hub", "casing", "gap", "words"),
     [
         (cone(1.0, 1.0), cone(2.0, 2.0), 0.6, "gaps of 0.6 in a channel 1 wide; use less than half"),
-        (cone(2.0, 2.0), cone(1.0, 1.0), 0.0, "wrong way round"),
-        (cone(1.0, 1.0)[::-1], cone(2.0, 2.0)[::-1], 0.0, "wrong way round"),
+        (cone(2.0, 2.0), cone(1.0, 1.0), 0.0, "the hub is outside, at r = 2 to 2, the shroud at 1 to 1"),
+        (cone(1.0, 1.0)[::-1], cone(2.0, 2.0)[::-1], 0.0, "hub and shroud run from outlet to inlet, or"),
+        (cone(1.0, 1.0), cone(2.0, 2.0)[::-1], 0.0, "shroud: runs from outlet to inlet"),
+        (cone(1.0, 2.0), cone(2.0, 1.0), 0.0, "hub and casing cross or turn back near x = 2"),
         (cone(0.1, -0.1), cone(2.0, 2.0), 0.0, "the hub reaches the axis"),
     ],
 )
