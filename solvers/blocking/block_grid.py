@@ -171,9 +171,9 @@ def _more_along_walls(fine: Chords, finer: float, times: int) -> Indices:
     get up to `STEP` times as many. `finer` is how many times less is cut off after refinement.
     """
     lost = np.bincount(fine.chord, fine.cut_off(), fine.count) / finer
-    walls = np.bincount(fine.chord, np.where(fine.wall, fine.lengths, 0.0), fine.count)
-    allowed = CUT_OFF * fine.layout.mesh.domain.area * walls / walls.sum()
     if lost.sum() <= CUT_OFF * fine.layout.mesh.domain.area:
         return fine.counts // times
+    walls = np.bincount(fine.chord, np.where(fine.wall, fine.lengths, 0.0), fine.count)
+    allowed = CUT_OFF * fine.layout.mesh.domain.area * walls / walls.sum()
     over = np.sqrt(np.maximum(lost, 1e-300) / np.maximum(allowed, 1e-300))
     return np.ceil(fine.counts // times * np.clip(over, 1.0, STEP)).astype(np.intp)

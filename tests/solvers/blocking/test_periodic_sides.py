@@ -1,6 +1,7 @@
 """Grids of domains with periodic sides: nodes on both, lines across them, layers that touch them."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -18,6 +19,16 @@ from meshonet.solvers.blocking.make import make_blocks
 from meshonet.solvers.blocking.request import BlockRequest
 
 LAYERS = {"first_cell": 2e-3, "walls": ("tube", "tubes"), "growth": 1.2}
+TURNS = 5, 25, 50, 80
+
+
+def triangle(turn: float) -> Domain:
+    """Return a box with a triangular hole: opposite sides are alike in some decompositions."""
+    box = np.array([[0.0, 0.0], [1.6, 0.0], [1.6, 1.0], [0.0, 1.0]])
+    hole = circle(0.6, 0.45, 0.3, turn, turn + 360.0, 3)[:-1]
+    return Domain.of_polygons([box, hole], names=[["bottom", "right", "top", "left"], "tube"])
+
+
 CASES = {
     "two pairs": (bank, BOTH, {}),
     "one pair": (bank, BOTH[:1], {}),
@@ -26,6 +37,8 @@ CASES = {
     "sheared, finer": (parallelogram, BOTH, {"cells": 9000}),
     "sheared, a family": (parallelogram, BOTH, {"cells": 600, "refine": 2}),
     "sheared, layers": (parallelogram, BOTH, {"first_cell": 1e-3}),
+    **{f"a triangle at {turn} degrees": (partial(triangle, turn), BOTH, {"cells": 600}) for turn in TURNS},
+    "nothing inside": (lambda: replace(parallelogram(), loops=parallelogram().loops[:1]), BOTH, {}),
 }
 
 

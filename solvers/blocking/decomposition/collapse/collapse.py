@@ -21,6 +21,7 @@ from meshonet.solvers.blocking.decomposition.collapse.base_complex import BaseCo
 from meshonet.solvers.blocking.decomposition.collapse.contract import contract
 from meshonet.solvers.blocking.decomposition.collapse.score import PRICE, score
 from meshonet.solvers.blocking.decomposition.errors import BlockingError
+from meshonet.solvers.blocking.decomposition.periodic_counts import check_sides
 from meshonet.solvers.blocking.sizes.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 
@@ -96,13 +97,17 @@ def _without(current: BaseComplex, kept: Collection[int], count: int) -> tuple[B
 
 
 def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:
-    """Return the mesh without a chord, None if this is not permitted or removes no block."""
+    """Return the mesh without a chord, None if this is not permitted or removes no block.
+
+    It is not permitted if periodic sides could no longer have the same number of cells.
+    """
     mesh = current.mesh
     trial = contract(mesh, current.chord == chord)
     if trial is None:
         return None
     try:
         blocks = base_complex(trial)
+        check_sides(blocks.layout)
     except BlockingError:
         return None
     fewer = irregular_inside(trial) < irregular_inside(mesh)
