@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
@@ -26,12 +25,12 @@ from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.profile_points import apart
-from meshonet.geometry.threads import in_threads
+from meshonet.kernels._native import channel_points, channel_space
 
 _PIECES = 512
 """Pieces of the tables of hub and casing."""
-_AT_ONCE = 1 << 15
-"""Points that are looked up together, so that tables stay in the cache."""
+_COLUMNS = 8
+"""Of the kernel's table (``channel.h``): hub, way to the casing, parts of it at up to four heights."""
 _NEWTON = 12
 _LEAST_GAP = 1e-6
 """Narrowest gap over the span: cells of narrower ones vanish in the rounding of radii."""
@@ -93,8 +92,10 @@ class Channel:
         self._levels.append(1.0)
         parts.append(np.ones(_PIECES + 1))
         self._parts = [CubicTable(part, s) for part in parts]
-        columns = np.concatenate([low, high - low, np.stack(parts, axis=1)], axis=1)
-        self._cubics = np.ascontiguousarray(CubicTable(columns, s).unit_cubics().swapaxes(0, 1))
+        columns = np.zeros((_PIECES + 1, _COLUMNS))
+        columns[:, : 4 + len(parts)] = np.concatenate([low, high - low, np.stack(parts, axis=1)], axis=1)
+        cubics = np.ascontiguousarray(CubicTable(columns, s).unit_cubics().swapaxes(0, 1))
+        self._tables = cubics, np.array(self._levels)
 
     def _check_gaps(self, gaps: dict[str, float], width: float) -> None:
         for place, gap in gaps.items():
@@ -114,38 +115,16 @@ class Channel:
 
     def at(self, s: Floats, h: Floats) -> Floats:
         """Return x, r (..., 2) at s and h, arrays of one shape."""
-        flat, height = s.ravel(), h.ravel()
-        out = np.empty((len(flat), 2))
-
-        def work(start: int) -> None:
-            part = slice(start, start + _AT_ONCE)
-            tables = self._tables(flat[part])
-            out[part] = tables[:, :2] + self._fraction(tables[:, 4:], height[part])[:, None] * tables[:, 2:4]
-
-        in_threads(work, range(0, len(flat), _AT_ONCE))
+        out = np.empty((s.size, 2))
+        channel_points(
+            self._tables, np.ascontiguousarray(s).reshape(-1), np.ascontiguousarray(h).reshape(-1), out
+        )
         return out.reshape(*s.shape, 2)
 
-    def _tables(self, s: Floats) -> Floats:
-        """Return points of the hub, the ways to the casing and the parts of these at levels (n, 4 + l)."""
-        place = s * _PIECES
-        piece = np.clip(place.astype(np.intp), 0, _PIECES - 1)
-        t = (place - piece)[:, None]
-        cubics = self._cubics.take(piece, axis=0)
-        out = cubics[:, 3] * t
-        for k in (2, 1):
-            out += cubics[:, k]
-            out *= t
-        out += cubics[:, 0]
-        return out
-
-    def _fraction(self, parts: Floats, h: Floats) -> Floats:
-        """Return the part of the way from hub to casing (n,) at heights (n,), from those at levels (n, l)."""
-        out = h
-        for k, (below, above) in enumerate(pairwise(self._levels)):
-            share = (h - below) / (above - below)
-            low, high = (parts[:, j] if 0 < j < len(self._levels) - 1 else float(j > 0) for j in (k, k + 1))
-            value = np.where(share == 1.0, high, low + share * (high - low))
-            out = np.where(h >= below, value, out) if k else value
+    def in_space(self, values: Floats) -> Floats:
+        """Return x, y, z (..., 3) of s, theta, h (..., 3); theta is atan2(y, z)."""
+        out = np.empty(values.shape)
+        channel_space(self._tables, np.ascontiguousarray(values).reshape(-1, 3), out.reshape(-1, 3))
         return out
 
     def places(self, points: Floats) -> tuple[Floats, Floats]:

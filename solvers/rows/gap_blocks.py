@@ -14,7 +14,7 @@ from meshonet.geometry.rows.channel import MeridionalMap
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.rows.gap_fill import GapFill, filled_outline
 from meshonet.solvers.rows.harmonic import harmonic
-from meshonet.solvers.rows.row_nodes import RowNodes, in_space
+from meshonet.solvers.rows.row_nodes import RowNodes
 from meshonet.solvers.rows.span_lines import key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, line_parts
 from meshonet.solvers.rows.zones import Zone
@@ -97,7 +97,7 @@ def _between(
         s_theta = low + part[..., None] * (high - low)
         heights = zone.low + part * (zone.high - zone.low)
         heights[-1] = zone.high
-        return in_space(channel, np.concatenate([s_theta, heights[..., None]], axis=-1))
+        return channel.in_space(np.concatenate([s_theta, heights[..., None]], axis=-1))
 
     samples = at(np.repeat(key_heights(SAMPLES)[:, None], len(low), axis=1))
     space = at(line_parts(samples, zone.ends, growth, zone.cells))

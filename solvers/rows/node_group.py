@@ -18,7 +18,6 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.row import Row
-from meshonet.solvers.rows.row_nodes import in_space
 from meshonet.solvers.rows.span_lines import SpanLines, key_heights
 from meshonet.solvers.rows.span_spacing import SAMPLES, LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
@@ -65,7 +64,7 @@ class NodeGroup:
             at = zone.low + (zone.high - zone.low) * key_heights(_IN_GAP if zone.gap else SAMPLES)
             samples = np.empty((len(at), len(self.ids), 3))
             samples[..., :2], samples[..., 2] = self.lines.at(at[:, None]), at[:, None]
-            out.append(LineArcs.through(in_space(self.row.channel, samples)))
+            out.append(LineArcs.through(self.row.channel.in_space(samples)))
         return out
 
     def values(self, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]) -> Floats:
@@ -104,10 +103,10 @@ class NodeGroup:
     def _exact_off_blade(self, own: Floats) -> None:
         """Make the first cells of columns (levels, k, rows, 3) exact; others follow by less and less."""
         begin, end = own[:, :, 0], own[:, :, 1]
-        start = in_space(self.row.channel, begin)
+        start = self.row.channel.in_space(begin)
         factor = np.ones(end.shape[:2])
         for _ in range(_NEAREST):
-            more = self.first / norms(in_space(self.row.channel, end) - start)
+            more = self.first / norms(self.row.channel.in_space(end) - start)
             factor = factor * more
             end = begin + (end - begin) * more[..., None]
         m = own.shape[2]
@@ -135,9 +134,9 @@ class NodeGroup:
         """Make first cells exact at hub, tip and casing."""
         walls, beside, sizes = self._ends
         begin, end = values[walls], values[beside]
-        start = in_space(self.row.channel, begin)
+        start = self.row.channel.in_space(begin)
         for _ in range(_NEAREST):
-            more = sizes[:, None] / norms(in_space(self.row.channel, end) - start)
+            more = sizes[:, None] / norms(self.row.channel.in_space(end) - start)
             end = begin + (end - begin) * more[..., None]
         values[beside] = end
 
@@ -149,10 +148,10 @@ class NodeGroup:
         """
         walls, beside, sizes = self._ends
         begins = own[beside][:, :, 0], own[walls][:, :, 1]
-        starts = [in_space(self.row.channel, begin) for begin in begins]
+        starts = [self.row.channel.in_space(begin) for begin in begins]
         node = own[beside][:, :, 1]
         for _ in range(_EXACT):
-            at = in_space(self.row.channel, node)
+            at = self.row.channel.in_space(node)
             one, other = (at - start for start in starts)
             lengths = norms(one), norms(other)
             off = self.first - lengths[0], sizes[:, None] - lengths[1]

@@ -7,11 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.elementary import cos, sin
-from meshonet.geometry.rows.channel import Channel
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,12 +23,3 @@ class RowNodes:
 
     space: Floats
     beside: Floats
-
-
-def in_space(channel: Channel, values: Floats) -> Floats:
-    """Return x, y, z (..., 3) of s, theta, h (..., 3)."""
-    x_r = channel.at(values[..., 0], values[..., 2])
-    theta, out = values[..., 1], np.empty(values.shape)
-    out[..., 0] = x_r[..., 0]
-    out[..., 1], out[..., 2] = x_r[..., 1] * sin(theta), x_r[..., 1] * cos(theta)
-    return out

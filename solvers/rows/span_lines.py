@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 
@@ -11,10 +12,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import cos, product
 from meshonet.geometry.linear import inverse
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.threads import in_threads
-
-_AT_ONCE = 1 << 15
-"""Values that are worked out together, so that they stay in the cache."""
+from meshonet.kernels._native import chebyshev_sums
 
 
 def key_heights(count: int) -> Floats:
@@ -46,15 +44,9 @@ class SpanLines:
     def at(self, heights: Floats) -> Floats:
         """Return values (p, n, ...) at heights (p, n) or (p, 1)."""
         c = self.coefficients
-        x = (4.0 * heights - 2.0).reshape(*heights.shape, *(1,) * (c.ndim - 2))
-        out = np.empty((len(heights), *np.broadcast_shapes(x.shape[1:], c.shape[1:])))
-        own = max(1, _AT_ONCE * out.shape[1] // max(out.size, 1))
-
-        def work(start: int) -> None:
-            part = slice(start, start + own)
-            _clenshaw(c[:, part], x if x.shape[1] == 1 else x[:, part], out[:, part])
-
-        in_threads(work, range(0, out.shape[1], own))
+        out, count = np.empty((len(heights), *c.shape[1:])), math.prod(c.shape[1:])
+        flat = np.ascontiguousarray(c).reshape(len(c), count), np.ascontiguousarray(heights)
+        chebyshev_sums(*flat, out.reshape(len(out), count))
         return out
 
 
@@ -99,22 +91,6 @@ def _integrals(count: int) -> Floats:
         sums[k] = (before - (c[k + 1] if k + 1 < count else 0.0)) / (4.0 * k)
     at_keys = SpanLines(sums).at(key_heights(count)[:, None])
     return at_keys - at_keys[0]
-
-
-def _clenshaw(c: Floats, x: Floats, out: Floats) -> None:
-    """Fill `out` (p, m, ...) with the sums of c (k, m, ...) times Chebyshev polynomials of x / 2.
-
-    Clenshaw, Math. Comp. 9 (1955) 118.
-    """
-    after, here = np.zeros(out.shape), np.broadcast_to(c[-1], out.shape).copy()
-    for row in c[-2:0:-1]:
-        after *= -1.0
-        after += x * here
-        after += row
-        after, here = here, after
-    np.multiply(0.5 * x, here, out=out)
-    out -= after
-    out += c[0]
 
 
 def _polynomials(x: Floats, count: int) -> list[Floats]:

@@ -20,7 +20,7 @@ from meshonet.solvers.rows.columns import respaced_columns
 from meshonet.solvers.rows.key_sections import KeySection
 from meshonet.solvers.rows.key_tables import KeyTables
 from meshonet.solvers.rows.node_group import NodeGroup
-from meshonet.solvers.rows.row_nodes import RowNodes, in_space
+from meshonet.solvers.rows.row_nodes import RowNodes
 from meshonet.solvers.rows.span_lines import SpanLines
 from meshonet.solvers.rows.span_spacing import LineArcs, Spacing
 from meshonet.solvers.rows.zones import Zone
@@ -71,7 +71,7 @@ class StackedRow:
 
     def _space(self, values: Floats, height: float) -> Floats:
         heights = np.full((*values.shape[:-1], 1), height)
-        return in_space(self.row.channel, np.concatenate([values, heights], axis=-1))
+        return self.row.channel.in_space(np.concatenate([values, heights], axis=-1))
 
     @cached_property
     def levels(self) -> tuple[int, ...]:
@@ -136,7 +136,7 @@ class StackedRow:
     ) -> None:
         """Work out the nodes of a group."""
         values = group.values(arcs, spacings)
-        made.space[:, group.ids] = in_space(self.row.channel, values)
+        made.space[:, group.ids] = self.row.channel.in_space(values)
         if group.columns:
             start = int(np.flatnonzero(self.columns[:, 0] == group.ids[0])[0])
             own = values.reshape(len(values), group.columns, -1, 3)

@@ -25,6 +25,14 @@ def test_places_are_the_inverse_of_positions_also_beyond_hub_and_casing() -> Non
     assert channel.places(np.array([[0.0, 3.1]]))[1] > 1.0
 
 
+def test_places_in_space_are_those_of_the_meridional_plane_turned_about_the_axis() -> None:
+    channel = Channel(blade_row.HUB, blade_row.SHROUD, 0.01, 0.03)
+    s, theta, h = values = np.random.default_rng(2).uniform(-0.2, 1.2, (3, 5, 77))
+    x, r = np.moveaxis(channel.at(s, h), -1, 0)
+    space = channel.in_space(np.stack(values, axis=-1))
+    np.testing.assert_allclose(space, np.stack([x, r * np.sin(theta), r * np.cos(theta)], -1), atol=1e-14)
+
+
 def test_gaps_are_as_wide_everywhere_measured_at_right_angles_to_the_wall() -> None:
     channel = Channel(cone(1.0, 1.3), cone(2.0, 1.6), 0.02, 0.05)
     s = np.linspace(0.1, 0.9, 50)
