@@ -20,6 +20,9 @@ from pathlib import Path
 
 BATCH = 25
 TIMEOUT_S = 600
+"""Longest time for a command on this processor."""
+TIMED_OUT = "timeout"
+"""Exit code of a command that took longer."""
 WITHOUT_OUTPUT = {"quality", "models"}
 WORKER = Path(__file__).with_name("golden_worker.py")
 
@@ -93,6 +96,8 @@ class Machine:
     settings: Mapping[str, str] = field(default_factory=dict)
     cores: int = 0
     """How many cores commands may use; 0: all."""
+    slower: int = 1
+    """How many times longer than on this processor commands may take."""
 
 
 def run_all(
@@ -130,13 +135,19 @@ def _run_worker(
     command = [*machine.before, sys.executable, "-P", str(WORKER), str(tree), "jobs.json"]
     cores = sorted(os.sched_getaffinity(0))[: machine.cores or None]
     environment = {**_environment(tree), **machine.settings}
-    try:
-        return subprocess.run(
-            command, cwd=folder, env=environment, timeout=TIMEOUT_S, check=False,
-            preexec_fn=lambda: os.sched_setaffinity(0, cores),
-        ).returncode  # fmt: skip
-    except subprocess.TimeoutExpired:
-        return "timeout"
+    process = subprocess.Popen(
+        command, cwd=folder, env=environment, preexec_fn=lambda: os.sched_setaffinity(0, cores)
+    )
+    done = -1
+    while True:
+        try:
+            return process.wait(TIMEOUT_S * machine.slower)
+        except subprocess.TimeoutExpired:
+            before, done = done, sum((path / "exit").exists() for path in folders)
+            if done == before:  # all this time for one command
+                process.kill()
+                process.wait()
+                return TIMED_OUT
 
 
 def _environment(tree: Path) -> dict[str, str]:

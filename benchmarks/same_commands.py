@@ -37,7 +37,7 @@ convert c.h5 --coarsen 4 --json
 convert quad.h5 --extrude 1 --planes 7 --json -> box.h5
 solve-pde made/box.h5 --json
 stack wing.toml --wall-spacing 1e-3 --around 33 --span 9 --far-field 5 --json -> .cgns
-stack examples/blade-row/rotor.toml --cells 20000 --first-cell 3e-3 --growth 1.5 --threads 1 --json -> .cgns
+stack examples/blade-row/rotor.toml --cells 20000 --first-cell 3e-3 --growth 1.5 --threads 2 --json -> .cgns
 sweep circle bend.toml --around 32 --planes 9 --json -> .cgns
 """
 LARGE = """
