@@ -55,11 +55,8 @@ class BladeSurface:
             with in_place(f"profile {number}"):
                 self.profiles.append(BladeProfile(points, channel))
         self.notes: tuple[str, ...] = ()
-        count = sum(map(pointed, self.profiles))
-        if count:
-            self.profiles = [thick_edged(each) if pointed(each) else each for each in self.profiles]
-            what = f"trailing edges of {count} of {len(self.profiles)} profiles, which are points, are"
-            self.notes = (Change(f"{what} opened to {LEAST_EDGE:g} chords and rounded"),)
+        for name, trailing in (("leading", False), ("trailing", True)):
+            self._open(name, trailing)
         self._reversed = False
         self._check_distinct()
         if (np.diff([profile.height for profile in self.profiles]) < 0.0).all():
@@ -72,6 +69,15 @@ class BladeSurface:
         self.profiles = alike(self.profiles)
         self._turns = self._unwrapped()
         self._check_neighbours()
+
+    def _open(self, name: str, trailing: bool) -> None:
+        """Open and round the edges, leading or trailing, that are points, with a note."""
+        points = [pointed(profile, trailing) for profile in self.profiles]
+        if any(points):
+            pairs = list(zip(self.profiles, points, strict=True))
+            self.profiles = [thick_edged(each, trailing) if sharp else each for each, sharp in pairs]
+            what = f"{name} edges of {sum(points)} of {len(points)} profiles, which are points, are"
+            self.notes = (*self.notes, Change(f"{what} opened to {LEAST_EDGE:g} chords and rounded"))
 
     def _check_distinct(self) -> None:
         heights = np.array([profile.height for profile in self.profiles])

@@ -1,11 +1,11 @@
-"""Trailing edges of profiles that end in a point: opened and rounded, so that layers go around them.
+"""Edges of profiles that end in a point: opened and rounded, so that layers go around them.
 
 ::
 
     given   ----------___          made   ------------___
                          ``--> .                          `)   a base 1 % of the chord thick, rounded;
             ----------''                  ------------'''      points move in proportion to their
-                                                               distance from the leading edge
+                                                               distance from the other edge
 """
 
 from __future__ import annotations
@@ -26,31 +26,34 @@ _SAME = 1e-9
 _SIGNS = 1.0, -1.0  # of the sides' distances from the chord: profiles are clockwise
 
 
-def pointed(profile: BladeProfile) -> bool:
-    """Return whether the trailing edge of a profile is a point."""
-    return profile.corner_counts[1] == 1 and profile.sharpness(True)[0] > _POINTED
+def pointed(profile: BladeProfile, trailing: bool) -> bool:
+    """Return whether the leading or the trailing edge of a profile is a point."""
+    return profile.corner_counts[trailing] == 1 and profile.sharpness(trailing)[0] > _POINTED
 
 
-def thick_edged(profile: BladeProfile) -> BladeProfile:
-    """Return a profile, whose trailing edge is a point, with a round one, `LEAST_EDGE` chords thick."""
+def thick_edged(profile: BladeProfile, trailing: bool) -> BladeProfile:
+    """Return a profile, one edge of which is a point, with a round one, `LEAST_EDGE` chords thick."""
     curve, length = profile.curve, profile.curve.length
-    lead, trail = curve.at(np.mod([profile.leading, profile.trailing], length))
-    chord = trail - lead
+    begin, edge = profile.leading, profile.trailing
+    if not trailing:
+        begin, edge = edge, begin
+    other, tip = curve.at(np.mod([begin, edge], length))
+    chord = tip - other
     size = float(norms(chord))
     normal = np.array([-chord[1], chord[0]])
 
     def moved(points: Floats, sign: float) -> Floats:
-        along = np.clip(((points - lead) * chord).sum(axis=1) / size**2, 0.0, None)
+        along = np.clip(((points - other) * chord).sum(axis=1) / size**2, 0.0, None)
         return points + sign * 0.5 * LEAST_EDGE * along[:, None] * normal
 
-    way = np.mod(curve.knots - profile.leading, length)
-    end = float(np.mod(profile.trailing - profile.leading, length))
+    way = np.mod(curve.knots - begin, length)
+    end = float(np.mod(edge - begin, length))
     order = np.argsort(way, kind="stable")
     way, points, heights = way[order], curve.points[order], profile.heights[order]
     masks = way < end - _SAME * length, way > end + _SAME * length
     sides = [moved(points[mask], sign) for mask, sign in zip(masks, _SIGNS, strict=True)]
-    corners = [moved(trail[None], sign) for sign in _SIGNS]
-    back = np.mod(profile.trailing + _BEFORE * size * np.array([-1.0, 1.0]), length)
+    corners = [moved(tip[None], sign) for sign in _SIGNS]
+    back = np.mod(edge + _BEFORE * size * np.array([-1.0, 1.0]), length)
     before = [moved(point[None], sign) for point, sign in zip(curve.at(back), _SIGNS, strict=True)]
     cap = _round_end(*corners, *before)
     half = len(_CAP) // 2
