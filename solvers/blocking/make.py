@@ -23,7 +23,7 @@ from meshonet.geometry.spacing.first_cell import AtWalls
 from meshonet.solvers.blocking.block_grid import cut_off, fine_layout
 from meshonet.solvers.blocking.decomposition.decompose import Timings, decompose
 from meshonet.solvers.blocking.decomposition.reuse import carried_over
-from meshonet.solvers.blocking.request import CELLS, LAYERED_CELLS, BlockRequest
+from meshonet.solvers.blocking.request import BlockRequest
 from meshonet.solvers.blocking.wall_note import wall_note
 from meshonet.solvers.solution import Solution
 
@@ -58,6 +58,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     grid = to_grid(around_body(fine)).with_provenance(method=METHOD, cells=fine.cells)
     said = (
         request.height_note(f"on a length of {shape.unit:.6g}", shape.unit),
+        _fewer_cells(request),
         *_at_walls(grid, domain, request.walls, height),
         _cut_off(fine),
         *_folded_coarser(grid, request.refine),
@@ -131,7 +132,7 @@ def _with_layers(
     numbers, stretches = layered_walls(domain, request.layered)
     size = _wanted(domain, request)[1]
     settings = _settings(request, height)
-    cells = 0 if size else (request.cells or LAYERED_CELLS) * request.multiple**2
+    cells = 0 if size else (request.cells or request.default_cells) * request.multiple**2
     size = (size or 0.0) / request.multiple
     return layered(
         domain, numbers, settings, stretches=stretches, cells=cells, cell_size=size, layout=layout,
@@ -188,7 +189,7 @@ def _passage(domain: Domain, request: BlockRequest, height: float | None, timing
     cascade = Cascade(domain.loops[1], request.pitch, inlet, outlet, settings, domain.name)
     if request.res is not None:
         size = cascade.extent / request.res
-    cells = request.cells or (CELLS if height is None else LAYERED_CELLS)
+    cells = request.cells or request.usual_cells
     return cascade_layout(cascade, cells=cells, cell_size=size, timings=timings)
 
 
@@ -211,7 +212,7 @@ def _checked(domain: Domain, request: BlockRequest) -> Domain:
 
 def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | None]:
     """Return the requested number of cells, or else their edge length. Raises InputError: too many cells."""
-    cells = request.cells or (LAYERED_CELLS if request.at_walls else CELLS)
+    cells = request.cells or request.default_cells
     size = domain.extent / request.res if request.res is not None else request.cell_size
     if size is not None:
         size = min(size, domain.extent)
@@ -227,6 +228,14 @@ def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | 
         made = f"{cells} cells halved {request.refine} times are {cells * 4**request.refine:.3g}"
         raise InputError(made, f"use fewer: {MOST_CELLS} are the most", parameter="refine")
     return (cells, None) if size is None else (None, size)
+
+
+def _fewer_cells(request: BlockRequest) -> str:
+    """Return a note if refinement leaves room for fewer cells than are the default."""
+    cells, usual = request.default_cells, request.usual_cells
+    if cells == usual or request.cells or request.cell_size or request.res or request.pitch:
+        return ""
+    return f"{cells} cells before {{refine}} instead of {usual}: {MOST_CELLS} are the most after it"
 
 
 def _folded_coarser(grid: Grid, halvings: int) -> list[str]:

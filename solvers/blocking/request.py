@@ -110,6 +110,20 @@ class BlockRequest(FirstCell):
         return self.by_wall or self.walls
 
     @property
+    def default_cells(self) -> int:
+        """Number of cells before refinement if none is requested.
+
+        It is reduced, to half at most, if the refined grid would have more than `MOST_CELLS`.
+        """
+        usual, room = self.usual_cells, MOST_CELLS // self.multiple**2
+        return room if usual // 2 <= room < usual else usual
+
+    @property
+    def usual_cells(self) -> int:
+        """Default number of cells of a grid that is not refined."""
+        return LAYERED_CELLS if self.at_walls else CELLS
+
+    @property
     def multiple(self) -> int:
         """Divisor of all numbers of cells: 2 to the power of `refine`."""
         return 1 << self.refine

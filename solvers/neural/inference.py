@@ -128,7 +128,10 @@ def _refuse(**parameters: object) -> None:
 
 @dataclass(frozen=True)
 class OperatorMethod:
-    """The method ``operator``: grids by `infer_many`, whose settings are its fields."""
+    """The method ``operator``: grids by `infer_many`, whose settings are its fields.
+
+    Raises InputError: `fallback` for a model that is no network.
+    """
 
     model: str | None = None
     polish: Polish = "auto"
@@ -136,6 +139,11 @@ class OperatorMethod:
     device: Device | None = None
     fallback: bool = False
     name = "operator"
+
+    def __post_init__(self) -> None:
+        if self.fallback and self.model == BASE:
+            problem = f"{{fallback}} is of no use to {{model}} {BASE}: no network makes the grid"
+            raise InputError(problem, "drop {fallback}")
 
     @cached_property
     def together(self) -> Topology | None:

@@ -40,6 +40,13 @@ def test_an_option_that_the_shape_has_no_use_for_is_refused(
     assert not Path("none.h5").exists()
 
 
+def test_a_fallback_without_a_network_is_refused(meshonet: Meshonet) -> None:
+    done = meshonet("infer", "naca:2412", "--model", "base", "--fallback", "-o", "none.h5")
+    assert (done.code, len(done.err.splitlines())) == (2, 1)
+    assert "--fallback is of no use to --model base: no network makes the grid; drop --fallback" in done.err
+    assert not Path("none.h5").exists()
+
+
 MARCHED = ("naca:2412", "--res", "81x31", "--wall-spacing", "1e-4", "-o", "none.h5")
 
 
