@@ -39,7 +39,7 @@ from meshonet.formats.rows.points import placed_blocks, point_blocks
 from meshonet.formats.section_shape import section_shape
 from meshonet.formats.source import Source, open_source
 from meshonet.formats.toml_table import Table
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, arc_parts
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError, in_place
@@ -186,11 +186,10 @@ def _plane(data: Table, key: str) -> Plane | None:
 
 
 def _span(hub: Floats, shroud: Floats) -> float:
-    """Return the median distance, about, of shroud and hub."""
+    """Return the median distance of points at equal parts of the lengths of hub and shroud."""
     share = np.linspace(0.0, 1.0, 101)
     low, high = (
-        np.stack([np.interp(share, np.linspace(0.0, 1.0, len(each)), each[:, k]) for k in (0, 1)])
-        for each in (hub, shroud)
+        np.stack([np.interp(share, arc_parts(each), each[:, k]) for k in (0, 1)]) for each in (hub, shroud)
     )
     return float(np.sort(np.hypot(*(high - low)))[50])
 

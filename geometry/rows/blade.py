@@ -176,6 +176,13 @@ class BladeSurface:
         return self.at(u, np.full((1, len(u)), h))[0]
 
     @property
+    def edges(self) -> str:
+        """What leading and trailing edges are, for reports."""
+        words = [dict.fromkeys(each.edge(trailing) for each in self.profiles) for trailing in (False, True)]
+        leading, trailing = (" or ".join(each) for each in words)
+        return f"leading edge {leading}; trailing edge {trailing}"
+
+    @property
     def corners(self) -> Floats:
         """Places u (c,) of the corners that all profiles have, such as those of a blunt edge, ascending."""
         return np.sort(np.mod(common_corners(self.profiles), 1.0))

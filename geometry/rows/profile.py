@@ -27,6 +27,8 @@ _BASE = 0.1  # of the chord: corners that are no farther apart than this, and bl
 _ENDS = np.array([0.0, 0.5, 1.0])  # places of the edges
 _LONGER = "use longer curves of hub and casing, inlet and outlet away from the blade, and one unit for all"
 _SEAM = 4  # points that are taken along beyond the first and the last
+_ONE_POINT = np.radians(90.0)
+"""Turn at one point of a round edge from which on it may have been meant as a pointed one."""
 _OTHER_UNIT = 1.5  # factor between radii of blade and channel from which on their units must differ
 
 
@@ -126,6 +128,18 @@ class BladeProfile:
             for edge in (self.leading, self.trailing)
         )
         return one, two
+
+    def edge(self, trailing: bool) -> str:
+        """Return what the leading or trailing edge is, in a word, or more where points may be missing."""
+        count = self.corner_counts[trailing]
+        if count:
+            return {1: "pointed", 2: "blunt"}.get(count, "polygonal")
+        turn = self.sharpness(trailing)[0]
+        return (
+            f"round, by one point that turns by {np.degrees(turn):.0f} degrees"
+            if turn > _ONE_POINT
+            else "round"
+        )
 
     def sharpness(self, trailing: bool) -> tuple[float, float]:
         """Return the largest turn at an edge in radians, and what the largest two are of all turns there."""

@@ -53,7 +53,8 @@ def stack(
     )] = None,
     cells: Annotated[int | None, _sampling(
         "--cells", metavar="N",
-        help="Approximate number of cells of a blade row, or around an aircraft instead of --around. "
+        help="Approximate number of cells in a passage of a blade row, or around an aircraft instead of "
+        "--around. "
         "[default: 500000 in a blade row]",
     )] = None,
     copies: Annotated[int | None, _sampling(

@@ -11,6 +11,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.result import Result, judged
+from meshonet.solvers.rows.growth_note import growth_note
 from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.stages import stage
@@ -51,7 +52,7 @@ def make_row(row: Row, request: RowRequest | None = None) -> Result:
             grid, notes = row_grid(row, request)
             grid = copied(grid, request.copies)
             grid = grid if row.frame is None else rotated(grid, row.frame.inverse())
-        notes = (*row.changes, *notes)
+        notes = (*row.changes, row.surface.edges, *growth_note(grid, request.ratio), *notes)
         note = request.height_note(f"on a chord of {row.chord:.6g}", scale=row.chord)
         solution = Solution(grid, "row", notes=(*notes, note) if note else notes)
         return judged(solution, seconds, request, remedy=_REMEDY)

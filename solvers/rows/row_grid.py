@@ -33,7 +33,7 @@ from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.rows.stacked import StackedRow
 from meshonet.solvers.rows.zones import Zone, section_cells, zones_of
 
-_MANY_MORE = 1.3
+_MANY_MORE = 1.1
 
 
 def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
@@ -141,11 +141,11 @@ def _with_inside(layout: Layout, inside: GapBlocks) -> Layout:
 
 
 def _more_cells(grid: Grid, wanted: int) -> tuple[str, ...]:
-    """Return a note if blocks and layers need many more cells than were asked for."""
+    """Return a note if there are many more cells than the number that was given."""
     cells = sum(math.prod(n - 1 for n in block.counts) for block in grid.blocks)
     if cells <= _MANY_MORE * wanted:
         return ()
-    return (f"{cells} cells instead of {wanted}: its blocks and layers need about as many",)
+    return (f"{cells} cells in a passage instead of {wanted}: layers and even growth add to the number",)
 
 
 def _notes(zones: Sequence[Zone], first: float) -> tuple[str, ...]:

@@ -123,6 +123,16 @@ def test_gaps_may_be_parts_of_the_span(tmp_path: Path) -> None:
     assert row.hub_gap == 0.01
 
 
+def test_parts_of_the_span_do_not_depend_on_where_points_are_given(tmp_path: Path) -> None:
+    row = read(tmp_path, 'tip_gap = "2 %"')
+    path = blade_row.write_row(tmp_path, 'tip_gap = "2 %"')
+    share = np.linspace(0.0, 1.0, 200) ** 4  # nearly all at the inlet
+    (tmp_path / "hub.csv").write_text("".join(f"{3 * t - 1},{2 + 0.05 * t}\n" for t in share))
+    other = stack_of(str(path))
+    assert isinstance(other, Row)
+    assert other.tip_gap == pytest.approx(row.tip_gap, rel=1e-9)
+
+
 def test_airfoils_on_cylinders_have_chord_and_stagger_and_round_edges(tmp_path: Path) -> None:
     row = read(tmp_path, SECTIONS)
     points = np.asarray(row.profiles[1])

@@ -1,5 +1,7 @@
 """Blades through profiles: edges, directions, order."""
 
+import re
+
 import blade_row
 import numpy as np
 import pytest
@@ -137,6 +139,16 @@ def test_a_blade_may_lean_by_more_than_a_pitch(lean) -> None:
     plain = row_of(blade_row.profiles()).surface
     upright = [plain.section(plain.knots[k], np.full(1, 0.25))[0, 1] for k in (0, 3)]
     assert np.degrees(np.diff(at) - np.diff(upright)) == pytest.approx(lean[3], abs=0.2)
+
+
+def test_what_edges_are_is_said() -> None:
+    assert row_of(blade_row.profiles()).surface.edges == "leading edge round; trailing edge round"
+    few = row_of([p[::8] for p in blade_row.profiles()]).surface.edges
+    assert re.fullmatch(
+        r"leading edge round, by one point .* by 1\d\d degrees.*; trailing edge round, .*", few
+    )
+    blunt = row_of([np.concatenate([p[4:-3], p[-3:-3]]) for p in blade_row.profiles()]).surface.edges
+    assert blunt == "leading edge round; trailing edge blunt"
 
 
 def test_blades_that_touch_are_refused() -> None:
