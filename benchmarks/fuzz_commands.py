@@ -49,9 +49,13 @@ FILES = {
                                             [[1, 0.8], [1.5, 0.8], [1.5, 1.2], [1, 1.2], [1, 0.8]]]}
     ),
     **blade_row.texts("tip_gap = 0.05"),
+    "aircraft.toml": 'kind = "aircraft"\n[[bodies]]\nmeridian = "body.csv"\n[[wings]]\n'
+    + (2 * SECTION.replace("sections", "wings.sections")).format(1.0, 0.0, 0.5, 2.0)
+    .replace("twist", "x = 1.5\ntwist"),
+    "body.csv": "0,0\n0.1,0.2\n0.5,0.35\n2,0.4\n4,0.3\n5,0\n",
 }  # fmt: skip
 """Files that commands read, good ones."""
-NAMED = {"row.toml": set(blade_row.texts())}
+NAMED = {"row.toml": set(blade_row.texts()), "aircraft.toml": {"body.csv"}}
 """Files that a file names."""
 BASES = (
     *((command, *words) for command, words in INPUTS.items()),
@@ -60,6 +64,7 @@ BASES = (
     ("infer", "plate.geojson", "--cells", "500", "-o", "made.vtm"),
     ("solve-pde", "step.wkt", "--cells", "500", "-o", "made.vtm"),
     ("stack", "row.toml", "--cells", "20000", "--first-cell", "0.01", "-o", "made.h5"),
+    ("stack", "aircraft.toml", "--around", "49", "--span", "5", "--first-cell", "0.01", "-o", "made.h5"),
 )
 """What is made worse."""
 WORDS = (

@@ -38,6 +38,7 @@ convert quad.h5 --extrude 1 --planes 7 --json -> box.h5
 solve-pde made/box.h5 --json
 stack wing.toml --wall-spacing 1e-3 --around 33 --span 9 --far-field 5 --json -> .cgns
 stack examples/blade-row/rotor.toml --cells 20000 --first-cell 3e-3 --growth 1.5 --threads 2 --json -> .cgns
+stack examples/aircraft/jet.toml --around 49 --span 5 --first-cell 1e-2 --growth 1.4 --json -> .cgns
 sweep circle bend.toml --around 32 --planes 9 --json -> .cgns
 """
 LARGE = """

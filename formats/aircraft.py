@@ -27,7 +27,7 @@ from meshonet.formats.toml_table import Table, toml_table
 from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.errors import InputError, in_place, in_source
+from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.sections.stack import Stack
 
 
@@ -53,15 +53,14 @@ def read_aircraft(data: Table, source: Source) -> Aircraft:
 
 def _body(row: Table, folder: Path) -> Body:
     row.only("name", "meridian", "y")
-    points = row.data.get("meridian")
-    meridian = _listed(row, points) if isinstance(points, list) else _from_file(row, folder)
-    with in_place(row.place):
+    given = row.data.get("meridian")
+    if not isinstance(given, list | str):
+        raise row.error(
+            "meridian", "is no file and no list of points", "name a file, or give [[x, r], [x, r]]"
+        )
+    meridian = np.array(row.pairs("meridian", 4)) if isinstance(given, list) else _from_file(row, folder)
+    with row.located():
         return Body(meridian, row.number("y", 0.0), row.text("name", "fuselage"))
-
-
-def _listed(row: Table, points: list[object]) -> Floats:
-    pairs = [Table({"meridian": point}, f"{row.place}.meridian[{k}]") for k, point in enumerate(points)]
-    return np.array([pair.pair("meridian", (0.0, 0.0)) for pair in pairs]).reshape(-1, 2)
 
 
 def _from_file(row: Table, folder: Path) -> Floats:
@@ -74,7 +73,8 @@ def _from_file(row: Table, folder: Path) -> Floats:
 
 def _wing(row: Table, folder: Path) -> Stack:
     if "file" not in row.data:
-        return stack_table(row, folder, "wing", ("on",))
+        with row.located():
+            return stack_table(row, folder, "wing", ("on",))
     row.only("on", "file")
     source = open_source(str(folder / row.text("file")))
     with in_source(source.name):

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,7 +26,18 @@ class Table:
 
     def error(self, key: str, problem: str, remedy: str) -> InputError:
         """Return the error for a key of this table."""
-        return InputError(problem, remedy, place=f"{self.place}.{key}" if self.place else key)
+        return InputError(problem, remedy, place=self._at(key))
+
+    @contextmanager
+    def located(self) -> Iterator[None]:
+        """Within the ``with`` block, set this table's place before places of errors that do not name it."""
+        try:
+            yield
+        except InputError as error:
+            if not error.place.startswith(self.place):
+                error.place = self._at(error.place)
+            error.place = error.place or self.place
+            raise
 
     def only(self, *keys: str) -> None:
         """Raise InputError for a key that is not one of `keys`."""
@@ -36,8 +50,12 @@ class Table:
         rows = self.data.get(key)
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows) or len(rows) < least:
             many = "one or more" if least == 1 else f"{least} or more"
-            raise self.error(key, f"are not {many} tables", f"write [[{key}]] above each")
-        return [Table(row, f"{key}[{k}]") for k, row in enumerate(rows)]
+            whole = re.sub(r"\[\d+\]", "", self._at(key))
+            raise self.error(key, f"are not {many} tables", f"write [[{whole}]] above each")
+        return [Table(row, f"{self._at(key)}[{k}]") for k, row in enumerate(rows)]
+
+    def _at(self, key: str) -> str:
+        return f"{self.place}.{key}" if self.place else key
 
     def number(self, key: str, default: float | None = None) -> float:
         """Return a finite number, or `default` if the key is missing."""

@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     from meshonet.api.stack import stack as stack
     from meshonet.api.sweep import sweep as sweep
     from meshonet.api.train import train as train
+    from meshonet.geometry.aircraft.aircraft import Aircraft as Aircraft
+    from meshonet.geometry.aircraft.body import Body as Body
     from meshonet.geometry.blocks.boundary import Boundary as Boundary
     from meshonet.geometry.blocks.connection import Motion as Motion
     from meshonet.geometry.blocks.grid import Grid as Grid
@@ -55,6 +57,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.sections.section import Section as Section
     from meshonet.geometry.sections.stack import Stack as Stack
     from meshonet.geometry.spacing.sampling import Sampling as Sampling
+    from meshonet.solvers.aircraft.request import AircraftRequest as AircraftRequest
     from meshonet.solvers.pipeline.make_grid import make_grid as make_grid
     from meshonet.solvers.pipeline.make_grid import make_grids as make_grids
     from meshonet.solvers.pipeline.methods import METHODS as METHODS
@@ -81,6 +84,8 @@ _MODULES = {
     "meshonet.api.stack": ("stack",),
     "meshonet.api.sweep": ("sweep",),
     "meshonet.api.train": ("train",),
+    "meshonet.geometry.aircraft.aircraft": ("Aircraft",),
+    "meshonet.geometry.aircraft.body": ("Body",),
     "meshonet.geometry.blocks.boundary": ("Boundary",),
     "meshonet.geometry.blocks.connection": ("Motion",),
     "meshonet.geometry.blocks.grid": ("Grid",),
@@ -93,6 +98,7 @@ _MODULES = {
     "meshonet.geometry.sections.stack": ("Stack",),
     "meshonet.geometry.blocks.revolve": ("Revolution",),
     "meshonet.geometry.spacing.sampling": ("Sampling",),
+    "meshonet.solvers.aircraft.request": ("AircraftRequest",),
     "meshonet.solvers.pipeline.methods": ("METHODS",),
     "meshonet.solvers.pipeline.make_grid": ("make_grid", "make_grids"),
     "meshonet.solvers.pipeline.parameters": ("grid_request",),

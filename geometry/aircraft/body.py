@@ -11,9 +11,17 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.elementary import cos, sin
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_place
 
 _STEPS = 6
+_SMALLEST = 1e-9
+"""Least length of a body, in any unit."""
+_BETWEEN = 8
+"""Parts of an interval between points in which the spline is checked."""
+_TURNED = 0.01
+"""Part of the length by which x may lie before or behind the points around it."""
+_BULGED = 1.5
+"""Largest radius over that of the points."""
 _FLAT = 1e-6
 """Least dx/ds at which Newton's method is used: at a blunt nose x does not change along the meridian."""
 
@@ -42,7 +50,14 @@ class Body:
     Raises
     ------
     InputError
-        Fewer than 4 points; x that does not increase; radii that are negative, or not 0 at nose and tail.
+        Fewer than 4 points; x that does not increase; radii that are negative, or not 0 at nose and tail;
+        points so far apart that a spline through them turns back or bulges.
+
+    Examples
+    --------
+    >>> from meshonet import Body
+    >>> Body([[0, 0], [0.1, 0.3], [2, 0.6], [6, 0.6], [10, 0]]).radius
+    0.6
     """
 
     meridian: Floats
@@ -51,22 +66,23 @@ class Body:
 
     def __post_init__(self) -> None:
         points = np.asarray(self.meridian, dtype=np.float64)
-        if points.ndim != 2 or points.shape[1] != 2 or len(points) < 4:
-            raise InputError(f"a meridian of shape {points.shape}", "give 4 or more points x, r")
-        if not np.isfinite(points).all():
-            raise InputError("a point of the meridian is not finite", "check it for NaN or infinity")
-        back = np.flatnonzero(np.diff(points[:, 0]) <= 0.0)
-        if len(back):
-            problem = f"x is {points[back[0] + 1, 0]:g} behind {points[back[0], 0]:g}"
-            raise InputError(problem, "give the meridian from nose to tail", place=f"point {back[0] + 2}")
-        wrong = np.flatnonzero(points[1:-1, 1] <= 0.0)
-        if len(wrong):
-            radius = points[wrong[0] + 1, 1]
-            raise InputError(f"a radius of {radius:g}", "use more than 0", place=f"point {wrong[0] + 2}")
-        if points[0, 1] != 0.0 or points[-1, 1] != 0.0:
-            problem = f"radii of {points[0, 1]:g} and {points[-1, 1]:g} at nose and tail"
-            raise InputError(problem, "close the meridian: radius 0 at its first and last point")
+        with in_place("meridian"):
+            _refuse_open(points)
         object.__setattr__(self, "meridian", points)
+        self._refuse_wild_spline()
+
+    def _refuse_wild_spline(self) -> None:
+        """Raise InputError where the spline turns back or bulges between points that are far apart."""
+        parts = np.arange(len(self.arc) - 1)[:, None] + np.arange(1, _BETWEEN) / _BETWEEN
+        s = np.interp(parts.ravel(), np.arange(len(self.arc)), self.arc)
+        x, r = self._spline(s).reshape(len(self.arc) - 1, _BETWEEN - 1, 2).transpose(2, 0, 1)
+        low, high = self.meridian[:-1, :1], self.meridian[1:, :1]
+        back = np.maximum(low - x, x - high).max(axis=1) > _TURNED * self.extent
+        wild = np.flatnonzero(back | (r.max(axis=1) > _BULGED * self.radius) | (r.min(axis=1) <= 0.0))
+        if len(wild):
+            problem = "the spline through the meridian turns back, bulges or reaches the axis"
+            place = f"meridian: points {wild[0] + 1} and {wild[0] + 2}"
+            raise InputError(problem, "give more points between them", place=place)
 
     @cached_property
     def arc(self) -> Floats:
@@ -120,3 +136,25 @@ class Body:
         """Return how far points (n, 3) are from the surface along the radius, negative inside."""
         r = self._spline(self.arc_at(points[:, 0]))[:, 1]
         return np.asarray(np.hypot(points[:, 1] - self.y, points[:, 2]) - r)
+
+
+def _refuse_open(points: Floats) -> None:
+    """Raise InputError for points that are no meridian from nose to tail."""
+    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 4:
+        raise InputError(f"a meridian of shape {points.shape}", "give 4 or more points x, r")
+    if not np.isfinite(points).all():
+        raise InputError("a point is not finite", "check it for NaN or infinity")
+    back = np.flatnonzero(np.diff(points[:, 0]) <= 0.0)
+    if len(back):
+        problem = f"x is {points[back[0] + 1, 0]:g} behind {points[back[0], 0]:g}"
+        place = f"meridian: point {back[0] + 2}"
+        raise InputError(problem, "give the meridian from nose to tail", place=place)
+    wrong = np.flatnonzero(points[1:-1, 1] <= 0.0)
+    if len(wrong):
+        place = f"meridian: point {wrong[0] + 2}"
+        raise InputError(f"a radius of {points[wrong[0] + 1, 1]:g}", "use more than 0", place=place)
+    if points[0, 1] != 0.0 or points[-1, 1] != 0.0:
+        problem = f"radii of {points[0, 1]:g} and {points[-1, 1]:g} at nose and tail"
+        raise InputError(problem, "close the meridian: radius 0 at its first and last point")
+    if np.ptp(points[:, 0]) < _SMALLEST:
+        raise InputError(f"{np.ptp(points[:, 0]):g} long", "use a larger unit")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.aircraft.request import AircraftRequest, aircraft_request
 from meshonet.solvers.pipeline.result import Result, judged
@@ -12,15 +15,23 @@ from meshonet.solvers.stages import stage
 _REMEDY = "use more nodes {around}, or a larger {first_cell}"  # where cells fold
 
 
+_HIGHEST = 0.1
+"""Largest height of first cells, in chords of the smallest section."""
+_REACH = 0.8
+"""Largest distance of the tip of a wing from the middle of the body, over that of the far field."""
+
+
 def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) -> Result:
     """Return the grid around half an aircraft, measured.
 
-    Raises InputError: a wing that does not begin in the body or does not leave it; NoValidGridError: cells
-    are folded, and that was not allowed.
+    Raises InputError: a wing that does not begin in the body, does not leave it or reaches the far field;
+    NoValidGridError: cells are folded, and that was not allowed.
     """
     request = request or aircraft_request()
     seconds: dict[str, float] = {}
     chord = aircraft.wing.chord
+    _refuse_thick_cells(aircraft, request.height() * chord)
+    _refuse_far_tip(aircraft, request.far_field * chord + 0.5 * aircraft.body.extent)
     with limited_to(request.threads):
         with stage("load", seconds):
             from meshonet.solvers.aircraft.aircraft_grid import aircraft_grid
@@ -29,3 +40,23 @@ def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) ->
         note = request.height_note(f"on a chord of {chord:.6g}", chord)
         solution = Solution(grid, "aircraft", notes=(*notes, note) if note else notes)
         return judged(solution, seconds, request, remedy=_REMEDY)
+
+
+def _refuse_thick_cells(aircraft: Aircraft, first: float) -> None:
+    """Raise InputError for first cells that are high beside a section of the wing."""
+    shortest = min(section.chord for section in aircraft.wing.sections)
+    if first > _HIGHEST * shortest:
+        problem = f"first cells are {first:g} high at a wing with a chord of {shortest:g}"
+        raise InputError(problem, f"use at most {_HIGHEST:g} of it", parameter="first_cell")
+
+
+def _refuse_far_tip(aircraft: Aircraft, far: float) -> None:
+    """Raise InputError for a wing whose tip is not far enough from a far field at this distance."""
+    tip, body = aircraft.wing.sections[-1], aircraft.body
+    middle = 0.5 * float(body.meridian[0, 0] + body.meridian[-1, 0])
+    away = math.hypot(tip.x - middle, tip.y - body.y, tip.z)
+    if away > _REACH * far:
+        problem = (
+            f"the tip of the wing is {away:.6g} from the middle of the body, and the far field {far:.6g}"
+        )
+        raise InputError(problem, "put it further away", parameter="far_field")

@@ -151,3 +151,23 @@ def test_options_of_other_stacks_are_refused_for_a_body_with_a_wing(
     assert done.code == 2
     assert words.split()[0] in done.err
     assert not (tmp_path / "jet.cgns").exists()
+
+
+@pytest.mark.parametrize(
+    ("change", "words", "problem"),
+    [
+        (("z = 0.0", "z = 0.7"), (), "wings: a line of the wing begins outside of the fuselage at x="),
+        (("z = 3.0", "z = 0.3"), (), "wings: a line of the wing does not leave the fuselage at x="),
+        (("z = 3.0", "z = 30"), (), "--far-field: the tip of the wing is 30"),
+        (("x = 3.5", "x = -1"), (), "wings: a line of the wing begins outside of the fuselage"),
+        ((), ("--first-cell", "0.2"), "--first-cell: first cells are 0.4 high at a wing with a chord of"),
+    ],
+)
+def test_a_wing_that_does_not_fit_its_body_gets_a_line(
+    meshonet: Meshonet, tmp_path: Path, change: tuple[str, str], words: tuple[str, ...], problem: str
+) -> None:
+    (tmp_path / "jet.toml").write_text(AIRCRAFT.replace(*change) if change else AIRCRAFT)
+    done = meshonet("stack", "jet.toml", "--far-field", "4", *words, "-o", "jet.cgns")
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert f"error: jet.toml: {problem}" in done.err
+    assert not (tmp_path / "jet.cgns").exists()

@@ -12,6 +12,7 @@ import pytest
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.aircraft.request import AircraftRequest
 from meshonet.solvers.blocking.request import BlockRequest
 from meshonet.solvers.deformation.request import DeformRequest
 from meshonet.solvers.pipeline.methods import METHODS, method_named
@@ -38,7 +39,7 @@ ONLY_CHECKED = ("check_request.py", "uses.py")
 """Files that say what may be asked for: to be named there is not to have an effect."""
 OF_REQUESTS = {
     each.name
-    for kind in (Sampling, GridRequest, StackRequest, RowRequest, DeformRequest, Sweep)
+    for kind in (Sampling, GridRequest, StackRequest, RowRequest, AircraftRequest, DeformRequest, Sweep)
     for each in fields(kind)
 }
 OF_RUNS = {each.name for kind in (Files, Engine) for each in fields(kind)} | {
