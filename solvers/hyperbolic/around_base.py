@@ -18,6 +18,7 @@ from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.elementary import exp
+from meshonet.geometry.notes import Advice
 from meshonet.geometry.shapes.airfoil.base_wake import BaseWake, end_fractions
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.threads import threads_for
@@ -28,6 +29,8 @@ from meshonet.solvers.layers.limited import limit_growth
 from meshonet.solvers.solution import Solution, timed
 
 _FULL = 0.95  # largest height of the H block's first cells far behind the base, in its mean cells
+_SAME = 0.99  # least height of cells behind a base, in first cells, without advice
+_THIN = 0.04  # first cell over the width of a base with which lines from its corners are straight
 _FADE = 1.0  # widths of the base over which the correction of first cells off it fades out
 
 
@@ -56,7 +59,20 @@ def around_base(
     off = float(np.abs(heights / first - 1.0).max())
     note = f"first cell {first:.6g} at every node of wall and base, to {off:.1g}"
     base = f"the base has {len(lines.base)} nodes, the H block behind it {wake + 1} x {len(lines.base)}"
-    return Solution(grid, "hyperbolic", notes=(*lines.notes, note, base))
+    return Solution(grid, "hyperbolic", notes=(*lines.notes, note, base, *_thick(lines, first, ends)))
+
+
+def _thick(lines: BaseWake, first: float, ends: Floats) -> tuple[str, ...]:
+    """Return advice if cells behind the base are thinner than those of height `first` on the wall."""
+    if ends[1] >= _SAME * first:
+        return ()
+    width = float(norms(lines.base[-1] - lines.base[0]))
+    problem = (
+        f"first cells of {first:.3g} are too thick for a base {width:.3g} wide: lines bend at its corners"
+    )
+    return (
+        Advice(f"{problem}; use {{first_cell}} {_THIN * width / lines.chord:.1g} or less, or {{te}} wedge"),
+    )
 
 
 def _h_block(lines: BaseWake, first: float, growth: float | None) -> tuple[Floats, Floats]:

@@ -153,3 +153,18 @@ def test_cells_grow_as_asked_off_a_concave_corner(topology: Literal["o", "c"]) -
     assert figure is not None
     assert figure.value <= 1.2
     assert result.quality.folded == 0
+
+
+@pytest.mark.parametrize(("base", "first"), [(0.0025, 1e-3), (0.005, 5e-4), (0.02, 5e-3)])
+def test_first_cells_too_thick_for_a_base_are_noted_with_ones_that_fit(base: float, first: float) -> None:
+    def advice(first: float) -> tuple[list[float], float]:
+        result = made(blunt(base), first=first, growth=None, ni=257, nj=65)
+        notes = "; ".join(result.notes)
+        fits = re.findall(r"too thick for a base .* use {first_cell} (\S+) or less, or {te} wedge", notes)
+        return [float(size) for size in fits], result.quality["max_angle"].max
+
+    (fits,), angle = advice(first)
+    assert angle > 140.0
+    none, angle = advice(fits)
+    assert not none
+    assert angle < 130.0
