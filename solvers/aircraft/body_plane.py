@@ -30,7 +30,10 @@ from meshonet.solvers.aircraft.collar import Rectangle, collar, corner_nodes, le
 from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
 
 MARGIN = 0.28
-"""Distance of a collar's outer rectangle from the section, in chords."""
+"""Least distance of a collar's outer rectangle from the section, in chords, where the body is long enough.
+
+Where nose, tail, keel and crown are far away, near the tip, it is larger: fewer cells lead there from it.
+"""
 _SHARE = 0.5
 """Part of the way from the section to nose, tail, keel or crown that a collar takes at most."""
 _CORNER = 4
@@ -193,8 +196,13 @@ class _Level:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Lengths in s of the cells of nose and tail beside the rectangle."""
-        return self.last[0] / float(self.scale[0]), self.last[3] / float(self.scale[0])
+        """Lengths in s of the cells of nose and tail beside the rectangle.
+
+        They lie between those of the collar and those of the bands above and below it.
+        """
+        behind, before = outer_cells(self.box, (self.plan.edge, self.plan.nose))
+        ahead, aft = (math.sqrt(a * b) for a, b in ((self.last[0], before), (self.last[3], behind)))
+        return ahead / float(self.scale[0]), aft / float(self.scale[0])
 
     @property
     def bands(self) -> tuple[float, float]:
@@ -253,12 +261,10 @@ def rectangle(section: Floats, length: float, scale: Floats) -> Rectangle:
     if low <= 0.0 or high >= girth or front <= 0.0 or back >= end:
         problem = "the wing meets the plane of symmetry above or below the body, or its nose or tail"
         raise InputError(problem, "move the wing, or make it smaller", place="wings")
-    return Rectangle(
-        float(front - min(margin, _SHARE * front)),
-        float(back + min(margin, _SHARE * (end - back))),
-        float(low - min(margin, _SHARE * low)),
-        float(high + min(margin, _SHARE * (girth - high))),
-    )
+    ways = [way * _SHARE for way in (front, end - back, low, girth - high)]
+    margin = max(margin, math.sqrt(margin * min(ways)))
+    before, behind, below, above = (min(margin, way) for way in ways)
+    return Rectangle(float(front - before), float(back + behind), float(low - below), float(high + above))
 
 
 def _graded(sizes: Floats) -> Floats:

@@ -2,10 +2,10 @@
 
 ::
 
-    theta                             lines leave the section along its normals, with first cells of a given
-      ^   +------------------+        height. The corners of the rectangle are ends of lines from nodes near
-      |   |  .------.___     |        nose and trailing edge; those between them end at the sides before the
-      |   | (          _>    |        nose and behind the trailing edge.
+    theta                             lines of an elliptic grid, turned to the normals at the section, with
+      ^   +------------------+        first cells of a given height. The corners of the rectangle are ends of
+      |   |  .------.___     |        lines from nodes near nose and trailing edge; those between them end at
+      |   | (          _>    |        the sides before the nose and behind the trailing edge.
       |   |  '-----''`       |
       |   +------------------+
       +--------------------> s
@@ -18,19 +18,24 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
-from meshonet.geometry.curves.cubic import cubic_spline
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.curves.cubic import CubicTable, cubic_spline
+from meshonet.geometry.elementary import exp, power
 from meshonet.geometry.ties import first_least
+from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.rows.columns import arcs_of
 from meshonet.solvers.rows.span_spacing import smooth_arcs
 
 _SHORTEST = 0.35
 """Least cells on the short sides of the rectangle, over the mean cell of a long side."""
-_NORMAL = 0.12
-"""Part of a line's length over which it keeps the direction of the root's normal."""
-_SMOOTHED = 0
-"""Further sweeps by which normals are smoothed around the root."""
+_NORMAL = 0.05
+"""Part of a line's length over which it is turned to the root's normal."""
+_ON_ROWS = 0.75
+"""Share of the elliptic grid's rows in sizes in the middle of the collar; the rest is a line's own."""
 _FINE = 33
-"""Places on a line by which its length is measured."""
+"""Nodes on the lines of the elliptic grid."""
+_MIRROR = np.array([1.0, -1.0])
+"""Of the plane of a boundary, which runs clockwise."""
 
 
 @dataclass(frozen=True)
@@ -106,13 +111,38 @@ def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats
 def collar(root: Floats, outer: Floats, rows: int, first: float, last: Floats) -> Floats:
     """Return nodes (n, rows + 1, 2) between closed loops (n, 2), with first cells `first` and `last` (n,)."""
     arcs, lines = _lines(root, outer)
-    wanted = smooth_arcs(arcs[:, -1], (first, last), rows)
+    wanted = _rows(arcs, rows, first, last)
     out = np.empty((len(root), rows + 1, 2))
     for k, line in enumerate(lines):
         out[k] = cubic_spline(line, arcs[k], wanted[k])
+    begin = 4.0 * lines[:, 1] - 3.0 * lines[:, 0] - lines[:, 2]
+    turn = _normals(root) - begin / norms(begin)[:, None]
+    fade = 1.0 - wanted / wanted[:, -1:]
+    way = _NORMAL * wanted[:, -1:]
+    out += turn[:, None] * (wanted * exp(-wanted / way) * fade * fade)[..., None]
     out[:, 0], out[:, -1] = root, outer
     out[-1] = out[0]
     return out
+
+
+def _rows(arcs: Floats, rows: int, first: float, last: Floats) -> Floats:
+    """Return arcs (n, rows + 1) of nodes on lines (n, m) of the elliptic grid, with `first` and `last` cells.
+
+    In the middle of the collar they are nearly on rows of that grid, which turn corners smoothly.
+    """
+    own = smooth_arcs(arcs[:, -1], (first, last), rows)
+    mean = own.mean(axis=0)
+    even = np.linspace(0.0, 1.0, arcs.shape[1])
+    at = cubic_spline(even, arcs.mean(axis=0), mean)
+    at[-1] = 1.0
+    level = CubicTable(arcs.T, even)(at).T
+    t = np.linspace(0.0, 1.0, rows)
+    steps = np.diff(own) * power(np.diff(level) / np.diff(own), _ON_ROWS * 4.0 * t * (1.0 - t))
+    steps *= ((arcs[:, -1] - first) / steps[:, 1:].sum(axis=1))[:, None]
+    steps[:, 0] = first
+    wanted = arcs_of(steps)
+    wanted[:, -1] = arcs[:, -1]
+    return wanted
 
 
 def lengths(root: Floats, outer: Floats) -> Floats:
@@ -121,16 +151,11 @@ def lengths(root: Floats, outer: Floats) -> Floats:
 
 
 def _lines(root: Floats, outer: Floats) -> tuple[Floats, Floats]:
-    """Return arc lengths (n, m) and points (n, m, 2) of the lines of a collar."""
-    normals = _normals(root)
-    away = np.hypot(*(outer - root).T)[:, None]
-    u = np.linspace(0.0, 1.0, _FINE)
-    middle = root + _NORMAL * away * normals
-    lines = (
-        root[:, None] * ((1.0 - u) ** 2)[:, None]
-        + middle[:, None] * (2.0 * u * (1.0 - u))[:, None]
-        + outer[:, None] * (u * u)[:, None]
-    )
+    """Return arc lengths (n, m) and points (n, m, 2) of the lines of an elliptic grid of the collar."""
+    cut = outer[0] * np.linspace(0.0, 1.0, _FINE)[:, None] + root[0] * np.linspace(1.0, 0.0, _FINE)[:, None]
+    cut[0], cut[-1] = root[0], outer[0]
+    south, north, west = (side * _MIRROR for side in (root, outer, cut))
+    lines = np.ascontiguousarray(solve(Boundary(south, north, west, west, "o")).grid.nodes * _MIRROR)
     return arcs_of(norms(np.diff(lines, axis=1))), lines
 
 
@@ -140,8 +165,7 @@ def _normals(loop: Floats) -> Floats:
     after, before = np.roll(ring, -1, axis=0) - ring, ring - np.roll(ring, 1, axis=0)
     tangent = after / np.hypot(*after.T)[:, None] + before / np.hypot(*before.T)[:, None]
     normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
-    for _ in range(_SMOOTHED + 1):
-        normal /= np.hypot(*normal.T)[:, None]
-        normal = 0.5 * normal + 0.25 * (np.roll(normal, 1, axis=0) + np.roll(normal, -1, axis=0))
+    normal /= np.hypot(*normal.T)[:, None]
+    normal = 0.5 * normal + 0.25 * (np.roll(normal, 1, axis=0) + np.roll(normal, -1, axis=0))
     normal /= np.hypot(*normal.T)[:, None]
     return np.concatenate([normal, normal[:1]])
