@@ -39,7 +39,7 @@ from meshonet.formats.rows.points import placed_blocks, point_blocks
 from meshonet.formats.section_shape import section_shape
 from meshonet.formats.source import Source, open_source
 from meshonet.formats.toml_table import Table
-from meshonet.geometry.arrays import Floats, arc_parts
+from meshonet.geometry.arrays import Floats, arc_parts, extent_of
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError, in_place
@@ -186,7 +186,9 @@ def _plane(data: Table, key: str) -> Plane | None:
 
 
 def _span(hub: Floats, shroud: Floats) -> float:
-    """Return the median distance of points at equal parts of the lengths of hub and shroud."""
+    """Return the median distance of points at equal parts of hub and shroud; 0 if one has no length."""
+    if not min(extent_of(hub), extent_of(shroud)) > 0.0:
+        return 0.0
     share = np.linspace(0.0, 1.0, 101)
     low, high = (
         np.stack([np.interp(share, arc_parts(each), each[:, k]) for k in (0, 1)]) for each in (hub, shroud)

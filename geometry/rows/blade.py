@@ -20,6 +20,8 @@ from meshonet.geometry.rows.turns import whole_pitches
 
 MOST_EXTENDED = 0.2
 """Part of the span by which a blade is made longer, at the most, to reach hub and casing."""
+_NOTED = 0.01
+"""The same from which on a note says so."""
 _CHECKED = 400  # places around the blade at which profiles are compared
 _FARTHEST = 90.0  # degrees around the axis from one profile to the next: no blade leans as much
 _ORDER = "give profiles from hub to casing, all of one blade: splitters are not made"
@@ -103,6 +105,10 @@ class BladeSurface:
             problem = f"ends at {100 * high:.3g} % of the span"
             place = self._place(len(self.profiles) - 1)
             raise InputError(problem, "give a profile nearer to the casing", place=place)
+        for wall, missing in (("hub", low - foot), ("casing", tip - high)):
+            if missing > _NOTED:
+                what = f"the blade ends {100 * missing:.2g} % of the span before the {wall} or its gap"
+                self.notes = (*self.notes, Change(f"{what}, and is continued straight to it"))
 
     def _place(self, k: int) -> str:
         """Return the place of a profile, by its number as given."""

@@ -153,11 +153,11 @@ class BladeProfile:
         arcs = np.linspace(0.0, self.curve.length, _SAMPLES, endpoint=False)
         points = self.curve.at(arcs)
         ends = [points[int(norms(points - points.mean(axis=0)).argmax())]]
-        found = [0.0]
+        tips = [0.0]
         for _ in range(6):
-            found.append(self._farthest(ends[-1], arcs, points))
-            ends.append(self.curve.at(np.array([found[-1]]))[0])
-        one, two = (self._blunt(arc) for arc in found[-2:])
+            tips.append(self._farthest(ends[-1], arcs, points))
+            ends.append(self.curve.at(np.array([tips[-1]]))[0])
+        one, two = (self._blunt(arc) for arc in tips[-2:])
         x = self.curve.at(np.array([one, two]))[:, 0]
         return (one, two) if x[0] < x[1] else (two, one)
 

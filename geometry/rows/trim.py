@@ -54,7 +54,7 @@ def _arc(curve: Curve, plane: float | tuple[float, float], place: str, name: str
     if not len(across):
         low, high = at[:, 0].min(), at[:, 0].max()
         problem = f"the {name} reaches from x = {low:.6g} to {high:.6g}, not {plane:g}"
-        raise InputError(problem, "use a value between", place=place)
+        raise InputError(problem, "use a value between, or add points to the curve", place=place)
     k = int(across[0] if place == "inlet" else across[-1])
     low_arc, high_arc = float(arcs[k]), float(arcs[k + 1])
     for _ in range(_HALVINGS):

@@ -141,6 +141,15 @@ def test_a_blade_may_lean_by_more_than_a_pitch(lean) -> None:
     assert np.degrees(np.diff(at) - np.diff(upright)) == pytest.approx(lean[3], abs=0.2)
 
 
+@pytest.mark.parametrize(("kept", "words"), [(slice(0, 3), r"1\d % .*casing"), (slice(0, 4), "")])
+def test_a_blade_that_is_continued_is_noted(kept: slice, words: str) -> None:
+    shroud = blade_row.SHROUD - [0.0, 0.15]
+    row = Row(blade_row.profiles()[kept], blade_row.HUB, shroud, blade_row.BLADES)
+    assert len(row.changes) == bool(words)
+    for note in row.changes:
+        assert re.fullmatch(f"the blade ends {words} or its gap, and is continued straight to it", note)
+
+
 def test_what_edges_are_is_said() -> None:
     assert row_of(blade_row.profiles()).surface.edges == "leading edge round; trailing edge round"
     few = row_of([p[::8] for p in blade_row.profiles()]).surface.edges
