@@ -136,14 +136,18 @@ def test_the_same_grid_gives_the_same_page(tmp_path: Path) -> None:
     assert page(pipe(), tmp_path).text == page(pipe(), tmp_path).text
 
 
-def test_of_a_large_volume_a_page_has_the_outer_boundary(
+def test_of_a_large_volume_a_page_has_the_outer_boundary_and_layers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     grid = box()
     whole = page(grid, tmp_path)
     monkeypatch.setattr(scene, "MOST_NODES", 100)
     outer = page(grid, tmp_path)
-    assert [sheet["part"] for sheet in whole.facts["sheets"]] == [s["part"] for s in outer.facts["sheets"]]
+    patches = [sheet["part"] for sheet in outer.facts["sheets"] if sheet["kind"] != "slice"]
+    assert [sheet["part"] for sheet in whole.facts["sheets"]] == patches
+    layers = [(sheet["across"], sheet["at"]) for sheet in outer.facts["sheets"] if sheet["kind"] == "slice"]
+    assert layers == sorted(layers)
+    assert [sum(name == axis for name, _ in layers) for axis in "ijk"] == [3, 2, 3]  # of four along j
     assert (whole.facts["whole"], outer.facts["whole"]) == (True, False)
     values = per_cell_of_blocks(grid, "skewness")[0]
     metric, levels, cell = outer.metric("skewness"), outer.numbers("skewness"), 0
@@ -156,6 +160,28 @@ def test_of_a_large_volume_a_page_has_the_outer_boundary(
         np.testing.assert_allclose(shown, own, atol=1e-5)
         cell += own.size
     assert cell == len(levels)
+
+
+def test_of_a_large_volume_a_page_has_the_layer_asked_for_and_what_is_around_bad_cells(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(scene, "MOST_NODES", 100)
+    grid = box()
+    made = page(grid, tmp_path, view=View(slice=parse_slice("j=0")))
+    (number,) = (
+        each["lattice"] for each in made.facts["sheets"] if (each.get("across"), each["at"]) == ("j", 0)
+    )
+    before = sum(int(np.prod(each["counts"])) for each in made.facts["lattices"][:number])
+    (low, _), step = made.facts["box"], made.facts["step"]
+    layer = grid.blocks[0].nodes[:, 0].reshape(-1, 3)
+    for axis, name in enumerate("xyz"):
+        shown = low[axis] + step * made.numbers(name)[before : before + len(layer)]
+        np.testing.assert_allclose(shown, layer[:, axis], atol=step)
+    for cell in made.metric("max_angle")["worst"]:
+        around = np.array(cell["around"])
+        (i, j, k), (n, m) = cell["at"], around.shape[:2]
+        assert n * m > 9
+        assert (around == grid.blocks[0].nodes[i, j, k]).all(axis=-1).sum() == 1
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from format_shapes import ring
 from many_blocks import passage
 from volume_grids import box
 
+from meshonet.formats.figure.page import scene
 from meshonet.formats.figure.page.page import write_page
 from meshonet.formats.figure.slices import parse_slice
 from meshonet.formats.figure.view import View
@@ -170,6 +171,33 @@ def test_a_volume_is_turned_cut_and_sliced(browser: Browser, tmp_path: Path) -> 
     _, _, after = browser.run(CAMERA)
     assert after != before
     assert np.abs(browser.picture() - solid)[CANVAS].mean() > 0.005
+    assert browser.complaints() == []
+
+
+def test_a_large_volume_is_sliced_and_shows_what_is_around_bad_cells(
+    browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(scene, "MOST_NODES", 100)
+    opened(browser, box(), tmp_path, View(slice=parse_slice("k=1")))
+    assert browser.run("return meshonet.state.slice.map(({ sheet }) => [sheet.across, sheet.at])") == [
+        ["k", 1]
+    ]
+    browser.run("document.querySelectorAll('#parts .both button')[1].click()")
+    browser.settle()
+    first = browser.picture()
+    assert coloured(first) > 0.05
+    assert browser.run("return [...document.querySelector('#across').options].length") == 4
+    browser.run(
+        "const c = document.querySelector('#layer'); c.value = c.max; c.dispatchEvent(new Event('input'))"
+    )
+    browser.settle()
+    assert browser.run("return meshonet.state.slice[0].sheet.at") > 1
+    assert np.abs(browser.picture() - first)[CANVAS].mean() > 1e-3
+    choose(browser, "#across", "")
+    assert white(browser.picture()) > 0.99
+    browser.click("#worst button")
+    assert white(browser.picture()) < 0.99  # its edges, and the lines around it
+    assert browser.run("return meshonet.state.mark.length") == 2
     assert browser.complaints() == []
 
 

@@ -118,3 +118,10 @@ function edgesOf(corners) {
   }
   return pairs;
 }
+
+/** Return the edges of a net of points, rows of columns. */
+function netOf(rows) {
+  return rows.flatMap((row, a) => row.flatMap((point, b) => [
+    ...(b ? [[row[b - 1], point]] : []), ...(a ? [[rows[a - 1][b], point]] : []),
+  ]));
+}

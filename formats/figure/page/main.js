@@ -12,7 +12,9 @@ async function begin() {
   painter.setColours(facts.colours);
   painter.setLevels([0]);
   const lattices = laidOut(facts.lattices);
-  const layers = facts.sheets.map((sheet) => new Layer(lattices[sheet.lattice], sheet));
+  const sheets = facts.sheets.map((sheet) => new Layer(lattices[sheet.lattice], sheet));
+  const layers = sheets.filter(({ sheet }) => sheet.kind !== "slice");
+  const stored = sheets.filter(({ sheet }) => sheet.kind === "slice"); // all that a large volume has inside
   const camera = new Camera(flat, facts.box, facts.start.seen_from);
   const pointAt = (node) => points.map((axis) => axis[node]);
   const stroke = (pairs, width, ink, more = {}) => ({ segments: painter.segmentsOf(pairs), width, ink, ...more });
@@ -94,9 +96,10 @@ async function begin() {
   };
 
   // --- going places
-  const mark = (pairs) => {
+  const mark = (pairs, net = []) => {
     state.mark.forEach(({ segments }) => painter.release(segments));
-    state.mark = pairs.length ? [stroke(pairs, 3, ACCENT, { through: true })] : [];
+    state.mark = [[net, 1, INK], [pairs, 3, ACCENT]].filter(([lines]) => lines.length)
+      .map(([lines, width, ink]) => stroke(lines, width, ink, { through: true }));
   };
   /** Look at a cell of a volume from where its last index grows, away from the wall as a rule. */
   const faceAlong = (corners) => {
@@ -111,7 +114,7 @@ async function begin() {
     const low = [0, 1, 2].map((k) => Math.min(...corners.map((point) => point[k])));
     const high = [0, 1, 2].map((k) => Math.max(...corners.map((point) => point[k])));
     const wide = low.map((value, k) => [value - 4 * (high[k] - value), high[k] + 4 * (high[k] - value)]);
-    mark(edgesOf(corners));
+    mark(edgesOf(corners), netOf(cell.around || []));
     if (volume) {
       if (facts.whole) setSlice("k", cell.at[2], cell.block);
       faceAlong(corners);
@@ -138,11 +141,16 @@ async function begin() {
     state.slice.forEach((layer) => painter.release(layer.stroke.segments));
     if (state.cut) painter.release(state.cut);
     Object.assign(state, { slice: [], cut: null });
-    const axis = "ijk".indexOf(name), x = "xyz".indexOf(name);
+    const axis = "ijk".indexOf(name), x = "xyz".indexOf(name), places = placesOf(name);
+    if (places.length) at = places.reduce((best, place) => (Math.abs(place - at) < Math.abs(best - at) ? place : best));
     $("#across").value = name;
     $("#layer").disabled = !name;
     $("#at").textContent = name ? `${name} = ${figure(at)}` : "";
-    if (name && axis >= 0) {
+    if (places.length) {
+      state.slice = stored.filter(({ sheet, lattice }) =>
+        sheet.across === name && sheet.at === at && (block === null || lattice.block === block)).map(outlined);
+      Object.assign($("#layer"), { max: places.length - 1, value: places.indexOf(at) });
+    } else if (name && axis >= 0) {
       state.slice = lattices.filter((lattice) => (block === null || lattice.block === block) && at < lattice.counts[axis])
         .map((lattice) => sliceOf(lattice, axis, at));
       Object.assign($("#layer"), { max: Math.max(...lattices.map(({ counts }) => counts[axis])) - 1, value: at });
@@ -156,19 +164,25 @@ async function begin() {
   };
   const sliceOf = (lattice, axis, node) => {
     const ranges = lattice.counts.filter((_, k) => k !== axis).map((count) => [0, count - 1]);
-    const layer = new Layer(lattice, { part: "", kind: "slice", axis, node, ranges });
+    return outlined(new Layer(lattice, { part: "", kind: "slice", axis, node, ranges }));
+  };
+  const outlined = (layer) => {
     layer.stroke = stroke(layer.border().map((pair) => pair.map(pointAt)), 1.2, INK);
     return layer;
   };
+  /** Return the indices of the layers of constant i, j or k that are stored, ascending. */
+  const placesOf = (name) =>
+    [...new Set(stored.filter(({ sheet }) => sheet.across === name).map(({ sheet }) => sheet.at))];
   /** Return the index or coordinate that a place of the slider means. */
   const slid = (name, value) => {
-    if ("ijk".includes(name)) return value;
+    if ("ijk".includes(name)) return placesOf(name)[value] ?? value;
     const [low, high] = facts.box.map((corner) => corner["xyz".indexOf(name)]);
     return low + (high - low) * value / STEPS;
   };
   /** Return where a slice of a name is at first: the first layer, or the plane through the middle of what is seen. */
   const firstSlice = (name) => {
-    if (!name || "ijk".includes(name)) return 0;
+    const places = placesOf(name);
+    if (!name || "ijk".includes(name)) return places[Math.floor(places.length / 2)] || 0;
     const middle = shown().length ? camera.target : camera.box[0].map((low, k) => (low + camera.box[1][k]) / 2);
     const [low, high] = facts.box.map((corner) => corner["xyz".indexOf(name)]);
     return Math.min(high - 1e-3 * (high - low), Math.max(low + 1e-3 * (high - low), middle["xyz".indexOf(name)]));
@@ -213,9 +227,9 @@ async function begin() {
       if (state.cut) setSlice(...state.sliced);
       draw();
     });
-  if (volume && facts.whole) {
+  if (volume) {
     $("#slice").hidden = false;
-    $("#across").append(...["", ..."ijkxyz"].map((name) => element("option", { value: name, textContent: name || "none" })));
+    $("#across").append(...["", ...(facts.whole ? "ijkxyz" : "ijk")].map((name) => element("option", { value: name, textContent: name || "none" })));
     $("#across").addEventListener("change", ({ target }) => setSlice(target.value, firstSlice(target.value)));
     $("#layer").addEventListener("input", ({ target }) => {
       const name = $("#across").value;
@@ -260,7 +274,7 @@ async function begin() {
   const zoomBox = zoom && [0, 1].map((end) => [0, 1, 2].map((k) => zoom[2 * k + end] ?? camera.box[end][k]));
   showAll(zoomBox || wallBox || camera.box, false);
   const { slice } = facts.start;
-  if (slice && volume && facts.whole) setSlice(slice.name, slice.at);
+  if (slice && volume && (facts.whole || "ijk".includes(slice.name))) setSlice(slice.name, slice.at);
   $("#metric").value = facts.start.metric || "";
   await colour(facts.start.metric || "");
   window.meshonet = { camera, state, shown, facts };

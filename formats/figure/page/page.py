@@ -47,7 +47,8 @@ def write_page(path: Path, grid: Grid, metric: str | None = "max_angle", view: V
     dimension than the grid.
     """
     start = _start(grid, metric, view or View())
-    scene = scene_of(grid)
+    chosen = start["slice"]
+    scene = scene_of(grid, chosen and (chosen["name"], chosen["at"]))
     path.write_text(page_text(grid.name, scene, start), encoding="utf-8")
 
 

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -31,7 +32,9 @@ from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import Metric, metrics_of
 
 MOST_NODES = 1_500_000
-"""Largest number of nodes of a volume in a page; of a larger volume, the page has only the outer boundary."""
+"""Largest number of nodes of a volume in a page; of a larger one it has the boundary and some layers."""
+_AROUND = 5  # cells to each side of a bad one whose lines a page of such a volume has
+_LAYERS = 3  # fewest layers across each direction of such a volume
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +66,8 @@ class SceneSheet:
     """A layer of cells of a lattice.
 
     `axis` is the direction normal to the layer, None if the lattice itself is a layer. `node` is the index of
-    the layer along `axis`, `ranges` are the first and last node along the other directions.
+    the layer along `axis`, `ranges` are the first and last node along the other directions. `across` and `at`
+    say which layer of constant i, j or k of a large volume it is.
     """
 
     lattice: int
@@ -72,6 +76,8 @@ class SceneSheet:
     axis: int | None
     node: int
     ranges: tuple[tuple[int, int], ...]
+    across: str = ""
+    at: int = 0
 
     def facts(self) -> dict[str, Any]:
         """Return the data that the program of the page needs."""
@@ -86,9 +92,9 @@ class Scene:
     numbers: dict[str, Packed] = field(default_factory=dict)
 
 
-def scene_of(grid: Grid) -> Scene:
-    """Return the scene of a grid, with all its metrics."""
-    lattices, sheets = _whole(grid) if _fits(grid) else _shell(grid)
+def scene_of(grid: Grid, layer: tuple[str, int] | None = None) -> Scene:
+    """Return the scene of a grid, with all its metrics; that of a large volume has the given `layer`."""
+    lattices, sheets = _whole(grid) if _fits(grid) else _in_part(grid, layer)
     low = np.min([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).min(axis=0) for lattice in lattices], 0)
     high = np.max([lattice.nodes.reshape(-1, lattice.nodes.shape[-1]).max(axis=0) for lattice in lattices], 0)
     extent = float((high - low).max()) or 1.0
@@ -167,6 +173,30 @@ def _whole(grid: Grid) -> tuple[list[Lattice], list[SceneSheet]]:
     return lattices, sheets
 
 
+def _in_part(grid: Grid, layer: tuple[str, int] | None) -> tuple[list[Lattice], list[SceneSheet]]:
+    """Return the patches of a volume, and layers at equal steps of i, j and k, as many as have room."""
+    lattices, sheets = _shell(grid)
+    room = (MOST_NODES - sum(math.prod(each.counts) for each in lattices)) // 3
+    counts = np.array([block.counts for block in grid.blocks])
+    for axis, name in enumerate("ijk"):
+        last = int(counts[:, axis].max()) - 1
+        size = int(np.delete(counts, axis, axis=1).prod(axis=1).sum())
+        steps = np.linspace(0.0, last, max(room // size, _LAYERS) + 2)[1:-1]
+        places = {round(step) for step in steps.tolist()} | (
+            {layer[1]} if layer and layer[0] == name else set()
+        )
+        for at in sorted(places):
+            for number, block in enumerate(grid.blocks):
+                if at < block.counts[axis]:
+                    start = [0, 0, 0]
+                    start[axis] = min(at, block.counts[axis] - 2)
+                    nodes = np.take(block.nodes, at, axis=axis)
+                    lattices.append(Lattice(number, nodes, tuple(start), axis))
+                    ranges = tuple((0, count - 1) for count in nodes.shape[:2])
+                    sheets.append(SceneSheet(len(lattices) - 1, "", "slice", None, 0, ranges, name, at))
+    return lattices, sheets
+
+
 def _shell(grid: Grid) -> tuple[list[Lattice], list[SceneSheet]]:
     """Return the patches of a volume, each as a lattice and a sheet."""
     lattices, sheets = [], []
@@ -200,10 +230,20 @@ def _whole_numbers(planes: Sequence[Floats]) -> Any:
     return np.concatenate([np.rint(plane).astype(np.int64).ravel() for plane in planes])
 
 
+def _around(grid: Grid, block: int, cell: tuple[int, ...]) -> Any:
+    """Return the nodes (n, m, 3), as lists, of the layer of constant k around a cell of a volume."""
+    i, j, k = cell
+    near = grid.blocks[block].nodes[
+        max(i - _AROUND, 0) : i + _AROUND + 2, max(j - _AROUND, 0) : j + _AROUND + 2, k
+    ]
+    return near.tolist()
+
+
 def _metric(grid: Grid, metric: Metric, values: Sequence[Floats], scale: Scale) -> dict[str, Any]:
     every = np.concatenate([cells.ravel() for cells in values])
     worst = [
         {"block": block, "at": list(cell), "value": value, "corners": corners_of(grid, block, cell).tolist()}
+        | ({} if _fits(grid) else {"around": _around(grid, block, cell)})
         for block, cell, value in worst_places(values, metric)
     ]
     return {
