@@ -21,8 +21,6 @@ MANY_VISITS = 16
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
-One = TypeVar("One")
-Other = TypeVar("Other")
 
 _limit: ContextVar[int | None] = ContextVar("threads", default=None)
 
@@ -69,12 +67,6 @@ def in_threads(work: Callable[[Item], Made], items: Sequence[Item]) -> list[Made
 def run_in_threads(jobs: Sequence[Callable[[], Any]]) -> list[Any]:
     """Return what each of `jobs` returns, several at once if threads are free (see `in_threads`)."""
     return in_threads(lambda job: job(), jobs)
-
-
-def both(one: Callable[[], One], other: Callable[[], Other]) -> tuple[One, Other]:
-    """Return what both return, called at once if threads are free."""
-    first, second = run_in_threads([one, other])
-    return first, second
 
 
 @contextmanager

@@ -17,7 +17,7 @@ _BEYOND = 1.0 + 1e-9
 _SAME = 1e-9
 """Distance over the extent of the walls up to which a wall point is the point itself, and no gap."""
 _SAMPLES = 2000  # points on all walls together
-_ROWS = 256  # points compared with all walls at a time, which bounds the memory
+_ROWS = 16  # points compared with all walls at a time, so that distances stay in the cache
 
 
 def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:

@@ -15,7 +15,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -23,7 +22,6 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.threads import both
 from meshonet.solvers.blocking.layers.layer_rows import layer_lines
 from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.rows.columns import layer_columns
@@ -33,7 +31,7 @@ from meshonet.solvers.rows.opposite import at_corners, opposite_places
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.wall_places import even_wall_places
 
-FINE, FROM_NEIGHBOUR = 80, 25
+FINE, FROM_NEIGHBOUR = 40, 25
 FLAT, SMOOTH = 0.95, 1e-3
 """Weights w and β of the functional."""
 BEND = 0.3
@@ -108,12 +106,8 @@ def planned(
     near = 1e-9 * (m.max() - m.min())
     ends = np.flatnonzero(m <= m.min() + near), np.flatnonzero(m >= m.max() - near)
     plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, places, wake)
-
-    def evened() -> Floats:
-        return even_wall_places(planes, places, plane.corners, growth, pairs, opposite=opposite)
-
-    optimum, even = both(partial(_optimum, plan, plane, whole, FINE, ends_slide=True), evened)
-    plan, section = replace(plan, places=even), KeySection(plane, optimum, at)
+    even = even_wall_places(planes, places, plane.corners, growth, pairs, opposite=opposite)
+    plan, section = replace(plan, places=even), KeySection(plane, whole, at)
     try:
         return plan, _placed(plan, section)
     except NoValidGridError:  # layers are folded where nodes had to move far
@@ -126,7 +120,8 @@ def next_section(plan: SectionPlan, before: KeySection, plane: SectionPlane) -> 
 
     Raises NoValidGridError: its cells stay folded.
     """
-    return _moved(plan, before, plane, plan.places, FROM_NEIGHBOUR)
+    layout, places = _carried(plan, before, plane, plan.places)
+    return KeySection(plane, _optimum(plan, plane, layout, FROM_NEIGHBOUR), places)
 
 
 def _beyond(layout: Layout, columns: Indices) -> Indices:
@@ -151,27 +146,24 @@ def _pairs(layout: Layout, columns: Indices) -> Indices:
 
 
 def _placed(plan: SectionPlan, section: KeySection) -> KeySection:
-    """Return the section with the nodes around the blade at the places of the plan, in steps if need be."""
+    """Return the middle section with the nodes around the blade at the plan's places, in steps if need be.
+
+    Nodes of inlet and outlet slide along these.
+    """
+    plane = section.plane
+    move = np.mod(plan.places - section.places + 0.5, 1.0) - 0.5
     for steps in (1, 2, 4):
         try:
             made = section
-            move = np.mod(plan.places - section.places + 0.5, 1.0) - 0.5
             for k in range(1, steps + 1):
                 places = plan.places if k == steps else np.mod(section.places + k / steps * move, 1.0)
-                made = _moved(plan, made, section.plane, places, FINE)
+                layout, own = _carried(plan, made, plane, places)
+                made = KeySection(plane, _optimum(plan, plane, layout, FINE, ends_slide=True), own)
             return made
         except NoValidGridError:
             if steps == 4:
                 raise
     raise AssertionError
-
-
-def _moved(
-    plan: SectionPlan, before: KeySection, plane: SectionPlane, places: Floats, iterations: int
-) -> KeySection:  # fmt: skip
-    """Return a section with nodes around the blade at `places` (k,), from its neighbour's."""
-    layout, own = _carried(plan, before, plane, places)
-    return KeySection(plane, _optimum(plan, plane, layout, iterations), own)
 
 
 def _carried(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.elementary import power
 from meshonet.geometry.errors import InputError
@@ -43,9 +43,9 @@ def marched(
     height `first`, and reach `thickness` (n,). The levels are None if all marches overflow.
     """
     cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
-    ratios = np.array(
-        [growth_ratio(first, each, cells) if each > cells * first else 1.0 for each in thickness]
-    )
+    heights = distinct(thickness)  # most columns have the same
+    growths = [growth_ratio(first, each, cells) if each > cells * first else 1.0 for each in heights]
+    ratios = np.array(growths)[np.searchsorted(heights, thickness)]
     best, where = None, np.ones(len(start), dtype=bool)
     for settings in attempts:
         levels = _march(start, cells, first, ratios, settings)
