@@ -1,15 +1,20 @@
 """Result of a solver: the grid, the outcome of the computation, and its cost."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import wraps
-from typing import ParamSpec
+from typing import TYPE_CHECKING, ParamSpec
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import spelled
+
+if TYPE_CHECKING:
+    from meshonet.geometry.rows.dimensions import RowDimensions
 
 P = ParamSpec("P")
 
@@ -62,6 +67,7 @@ class Solution:
     boundary : boundary of the grid if it differs from the given one: marching ends at its own far field.
     confidence : expected error of a network's answer.
     first_cells : prescribed first-cell heights by side, in the unit of the boundary.
+    dimensions : those of the blade row whose passage the grid fills.
     """
 
     grid: Grid
@@ -76,6 +82,7 @@ class Solution:
     outcome: Outcome = Outcome.DONE
     confidence: Confidence | None = None
     first_cells: Mapping[str, float] = field(default_factory=dict)
+    dimensions: RowDimensions | None = None
 
 
 def timed(solve: Callable[P, Solution]) -> Callable[P, Solution]:

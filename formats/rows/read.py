@@ -44,7 +44,7 @@ from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.cylinder import on_cylinder
-from meshonet.geometry.rows.frame import AXES, axis_along
+from meshonet.geometry.rows.frame import AXES, UNITS, axis_along
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.rows.trim import Plane, trimmed
 from meshonet.geometry.sections.section import QUARTER, Section
@@ -53,8 +53,6 @@ KEYS = (
     "kind", "name", "blades", "profiles", "sections", "hub", "shroud", "tip_gap", "hub_gap", "inlet",
     "outlet", "axis", "coordinates", "unit",
 )  # fmt: skip
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
-"""Units of files, in metres."""
 _STEEPEST = 89.0
 """Largest stagger in degrees; at 90 the blades close the channel."""
 _PROFILE = re.compile(r"profile (\d+)")
@@ -69,7 +67,7 @@ def read_row(data: Table, source: Source) -> Row:
     """
     data.only(*KEYS)
     folder = source.path.parent if source.path else Path()
-    scale = UNITS[data.word("unit", tuple(UNITS), "m")]
+    unit = data.word("unit", tuple(UNITS), "m")
     frame = _frame(data)
     hub, shroud = (_wall(data, key, folder, frame) for key in ("hub", "shroud"))
     planes = [_plane(data, key) for key in ("inlet", "outlet")]
@@ -93,14 +91,14 @@ def read_row(data: Table, source: Source) -> Row:
     turned = None if frame == axis_along(AXES["x"]) else frame
     name = data.text("name", source.stem or "row")
 
-    def row(unit: float) -> Row:
-        blade = tuple(points * unit for points in profiles)
-        tip, foot = (gap * unit for gap in gaps)
-        return Row(blade, hub * unit, shroud * unit, int(blades), tip, foot, name, notes, turned)
+    def row(scale: float) -> Row:
+        blade = tuple(points * scale for points in profiles)
+        tip, foot = (gap * scale for gap in gaps)
+        return Row(blade, hub * scale, shroud * scale, int(blades), tip, foot, name, notes, turned, unit)
 
     with _located(places):
         try:
-            return row(scale)
+            return row(UNITS[unit])
         except InputError:
             row(1.0)  # so that the message has the numbers of the files
             raise

@@ -1,4 +1,7 @@
-"""The axis of a row of blades in the coordinates of its files and of its grid; a `Row` has it along x."""
+"""The axis of a row of blades in the coordinates of its files and of its grid, and the unit of its files.
+
+A `Row` has its axis along x.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,11 @@ import numpy as np
 from meshonet.geometry.arrays import norms
 from meshonet.geometry.blocks.connection import Motion
 
-_UNITS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-AXES = _UNITS | {f"-{name}": (-x, -y, -z) for name, (x, y, z) in _UNITS.items()}
+_ALONG = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+AXES = _ALONG | {f"-{name}": (-x, -y, -z) for name, (x, y, z) in _ALONG.items()}
 """Directions by name."""
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+"""Units of files, in metres."""
 
 
 def axis_along(direction: Sequence[float]) -> Motion:
@@ -25,3 +30,9 @@ def axis_along(direction: Sequence[float]) -> Motion:
     up = up / norms(up)
     rows = (way, up, np.cross(way, up))
     return Motion(turn=tuple(tuple(float(value) + 0.0 for value in row) for row in rows))
+
+
+def axis_name(frame: Motion | None) -> str:
+    """Return the name of the axis that a rotation carries to x, ``x`` or ``-z``, or else ``axis``."""
+    direction = AXES["x"] if frame is None else frame.turn[0]
+    return next((name for name, each in AXES.items() if each == direction), "axis")

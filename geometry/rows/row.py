@@ -15,6 +15,7 @@ from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.blade import BladeSurface
 from meshonet.geometry.rows.channel import Channel
+from meshonet.geometry.rows.frame import UNITS
 from meshonet.geometry.rows.profile_points import as_points
 
 FEWEST, MOST = 2, 1000
@@ -41,6 +42,9 @@ class Row:
         What was changed of the profiles.
     frame : Motion, optional
         The rotation from the coordinates of the grid to those of the row; None where these are the same.
+    unit : {'m', 'cm', 'mm', 'in', 'ft'}, optional
+        Unit in which reports state lengths; those of the row and of its grid are then in metres. Empty:
+        reports state them as they are.
 
     Raises
     ------
@@ -57,6 +61,7 @@ class Row:
     name: str = "row"
     notes: tuple[str, ...] = ()
     frame: Motion | None = None
+    unit: str = ""
 
     def __post_init__(self) -> None:
         if not isinstance(self.blades, Integral) or not FEWEST <= self.blades <= MOST:
@@ -68,6 +73,8 @@ class Row:
         for place, gap in (("tip_gap", self.tip_gap), ("hub_gap", self.hub_gap)):
             if not isinstance(gap, Real) or not 0.0 <= gap < math.inf:
                 raise InputError(f"{gap} is no width of a gap", "use 0 or more", place=place)
+        if self.unit and self.unit not in UNITS:
+            raise InputError(f"unit {self.unit!r}", f"use {', '.join(UNITS)}", place="unit")
         for place in ("hub", "shroud"):
             with in_place(place):
                 object.__setattr__(self, place, as_points(getattr(self, place), 2))

@@ -15,6 +15,7 @@ from meshonet_cli.terminal.text import span
 if TYPE_CHECKING:
     from meshonet.geometry.quality.blocks import BlockCounts
     from meshonet.geometry.quality.gates import Judgement
+    from meshonet.geometry.rows.dimensions import RowDimensions
     from meshonet.geometry.summary import Quality
     from meshonet.solvers.progress import HistoryRow
     from meshonet.solvers.solution import Confidence
@@ -47,6 +48,7 @@ class Report(Timed):
     blocks: BlockCounts | None = None
     judgement: Judgement | None = None
     confidence: Confidence | None = None
+    dimensions: RowDimensions | None = None
 
     @property
     def warning(self) -> str:
@@ -70,10 +72,11 @@ class Report(Timed):
 
         figures = self.blocks.as_dict() if isinstance(self.blocks, BlockFigures) else None
         blocks = {} if figures is None else {"cells": self.quality.cells, **figures}
+        row = {} if self.dimensions is None else {"row": asdict(self.dimensions)}
         return {
-            **self.member_json(), "method": self.method, "model": self.model, "ni": self.ni, "nj": self.nj,
-            "topology": self.topology, **self._along_wall(), **blocks, "folded": self.quality.folded,
-            "path": list(self.path), "confidence": self._confidence_json(),
+            **self.member_json(), **row, "method": self.method, "model": self.model,
+            "ni": self.ni, "nj": self.nj, "topology": self.topology, **self._along_wall(), **blocks,
+            "folded": self.quality.folded, "path": list(self.path), "confidence": self._confidence_json(),
             "residual": self.residual, "cycles": self.cycles,
             "quality": quality_dict(self.quality), "seconds": self.times_json(),
             "notes": [with_options(note) for note in self.notes], "changes": list(changes_in(self.notes)),
@@ -88,7 +91,11 @@ class Report(Timed):
         if self.wake:
             counts = self._along_wall()
             head += f" with {counts['body_nodes']} nodes on the body and {counts['wake_nodes']} on the wake"
-        lines = [head, f"method     {self._made()}" + (f", model {self.model}" if self.model else "")]
+        lines = [head]
+        if self.dimensions is not None:
+            size, edges = self.dimensions.lines
+            lines += [f"row        {size}", f"edges      {edges}"]
+        lines.append(f"method     {self._made()}" + (f", model {self.model}" if self.model else ""))
         if self.confidence is not None:
             judged = "accepted" if self.confidence.accepted else "not accepted"
             limit = f"threshold {self.confidence.threshold:g}"

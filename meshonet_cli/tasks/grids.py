@@ -54,7 +54,7 @@ def reported(
         member, method=solution.method, ni=counts[0], nj=counts[1], topology=grid.topology,
         wake=grid.wake, quality=result.quality, model=solution.model, path=solution.path,
         residual=solution.residual, cycles=solution.cycles, notes=result.notes, history=result.history,
-        confidence=solution.confidence,
+        confidence=solution.confidence, dimensions=solution.dimensions,
     )  # fmt: skip
     report.seconds |= result.seconds
     with stage("quality", report.seconds):

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from meshonet.geometry.blocks.copies import copied
 from meshonet.geometry.blocks.transform import rotated
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.rows.dimensions import doubts, row_dimensions
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import limited_to
 from meshonet.solvers.pipeline.result import Result, judged
@@ -52,7 +53,9 @@ def make_row(row: Row, request: RowRequest | None = None) -> Result:
             grid, notes = row_grid(row, request)
             grid = copied(grid, request.copies)
             grid = grid if row.frame is None else rotated(grid, row.frame.inverse())
-        notes = (*row.changes, row.surface.edges, *growth_note(grid, request.ratio), *notes)
+        dimensions = row_dimensions(row)
+        own = (*row.changes, *doubts(dimensions), row.surface.edges)
+        notes = (*own, *growth_note(grid, request.ratio), *notes)
         note = request.height_note(f"on a chord of {row.chord:.6g}", scale=row.chord)
-        solution = Solution(grid, "row", notes=(*notes, note) if note else notes)
+        solution = Solution(grid, "row", notes=(*notes, note) if note else notes, dimensions=dimensions)
         return judged(solution, seconds, request, remedy=_REMEDY)

@@ -80,3 +80,18 @@ def test_a_hub_that_ends_within_the_blade_is_named(meshonet: Meshonet, tmp_path:
     assert done.code == 2
     where = "row.toml: profile 1 (lines 2 to 161 of profile.curve): "
     assert where + "hub and casing end before the blade's point" in done.err
+
+
+def test_the_report_has_the_dimensions_of_the_row_and_doubts_a_gap_in_another_unit(
+    meshonet: Meshonet, tmp_path: Path
+) -> None:
+    row = str(blade_row.write_row(tmp_path, 'unit = "cm"\ntip_gap = 0.2'))
+    coarse = ("--cells", "20000", "--first-cell", "0.02", "--growth", "1.8", "-o", "row.vtm")
+    text = meshonet("stack", row, *coarse).err
+    assert "row        23 blades, 15.65 degrees apart; chord 0.99" in text
+    assert "edges      (x, r) in cm: leading (0.0" in text
+    assert "tip_gap is 21.6 % of the span, usual are 0.02 to 10 %: is it in cm?" in text
+    done = meshonet("stack", row, *coarse, "--json")
+    data = done.only["row"]
+    assert (data["blades"], data["unit"], data["tip_gap"]) == (23, "cm", pytest.approx(0.2))
+    assert data["leading_edge"]["hub"][0] < data["trailing_edge"]["hub"][0]

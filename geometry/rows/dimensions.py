@@ -1,0 +1,126 @@
+"""Dimensions of a row of blades by which a reader recognises it, and those that are hardly meant."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import norms
+from meshonet.geometry.rows.frame import UNITS, axis_name
+from meshonet.geometry.rows.row import Row
+
+USUAL_GAPS = 0.0002, 0.1
+"""Gaps over the span. Compressors and turbines have 0.005 to 0.03, small impellers up to 0.1."""
+USUAL_SOLIDITIES = 0.3, 4.0
+"""Chords over distances of blades: compressors have 0.4 to 2.2 (NASA SP-36), inducers up to 3.5."""
+USUAL_RADII = 0.001, 10.0
+"""Radii of casings in metres, from micro gas turbines to the largest water turbines."""
+_AXIAL = 0.2
+"""Change of the radius along a blade, over its mean, up to which its solidity is that of an axial row."""
+
+
+@dataclass(frozen=True)
+class RowDimensions:
+    """Dimensions of a row, lengths in the unit of its files.
+
+    Parameters
+    ----------
+    blades : number of blades.
+    pitch : angle in degrees from a blade to the next.
+    unit : name of the unit; empty if none was given.
+    axis : name of the axis from inlet to outlet, such as ``x`` or ``-z``; ``axis`` for another direction.
+    chord : distance of leading and trailing edge halfway from hub to tip.
+    longest_chord : of all profiles, to which first cells and Reynolds numbers refer.
+    solidity : chord over the distance of neighbouring blades, both halfway from hub to tip.
+    span : distance of hub and shroud at the blade, the mean of leading and trailing edge.
+    tip_gap, hub_gap : widths of the gaps.
+    leading_edge, trailing_edge : positions x, r along and off the axis by ``hub`` and ``shroud``, the end
+        of the blade there.
+    """
+
+    blades: int
+    pitch: float
+    unit: str
+    axis: str
+    chord: float
+    longest_chord: float
+    solidity: float
+    span: float
+    tip_gap: float
+    hub_gap: float
+    leading_edge: dict[str, tuple[float, float]]
+    trailing_edge: dict[str, tuple[float, float]]
+
+    @property
+    def lines(self) -> tuple[str, str]:
+        """Two lines of text."""
+        unit = f" {self.unit}" if self.unit else ""
+        gaps = "".join(
+            f", {name} gap {gap:.4g}{unit} ({100.0 * gap / self.span:.3g} %)"
+            for name, gap in (("tip", self.tip_gap), ("hub", self.hub_gap)) if gap
+        )  # fmt: skip
+        chord = f"chord {self.chord:.4g}{unit} at mid-span, {self.longest_chord:.4g} at most"
+        size = (
+            f"{self.blades} blades, {self.pitch:.4g} degrees apart; {chord}; solidity {self.solidity:.3g}; "
+            f"span {self.span:.4g}{unit}{gaps or ', no gap'}"
+        )
+        ends = (self.leading_edge, self.trailing_edge)
+        digits = 3 - math.floor(math.log10(self.chord))
+        first, last = (
+            [f"({', '.join(f'{round(x, digits):g}' for x in each[end])})" for end in ("hub", "shroud")]
+            for each in ends
+        )
+        edges = f"leading {first[0]} at the hub, {first[1]} at the shroud; trailing {last[0]}, {last[1]}"
+        return size, f"({self.axis}, r){' in' + unit if unit else ''}: {edges}"
+
+
+def row_dimensions(row: Row) -> RowDimensions:
+    """Return the dimensions of a row."""
+    size = UNITS[row.unit] if row.unit else 1.0
+    channel, edges = row.channel, np.array([0.0, 0.5])
+    heights = channel.foot, 0.5 * (channel.foot + channel.tip), channel.tip
+    values = np.stack([row.surface.section(h, edges) for h in heights])
+    levels = np.broadcast_to(np.array(heights)[:, None, None], (3, 2, 1))
+    points = channel.in_space(np.concatenate([values, levels], axis=-1)) / size
+    places = np.stack([points[..., 0], np.hypot(points[..., 1], points[..., 2])], axis=-1)
+    chord = float(norms(points[1, 1] - points[1, 0]))
+    walls = channel.at(np.broadcast_to(values[1, :, 0], (2, 2)), np.array([[0.0, 0.0], [1.0, 1.0]])) / size
+    leading, trailing = (
+        {
+            name: (float(places[k, edge, 0]), float(places[k, edge, 1]))
+            for name, k in (("hub", 0), ("shroud", 2))
+        }
+        for edge in (0, 1)
+    )
+    return RowDimensions(
+        row.blades, float(np.degrees(row.pitch)), row.unit, axis_name(row.frame), chord, row.chord / size,
+        chord / (row.pitch * float(places[1, :, 1].mean())), float(norms(walls[1] - walls[0]).mean()),
+        row.tip_gap / size, row.hub_gap / size, leading, trailing,
+    )  # fmt: skip
+
+
+def doubts(dimensions: RowDimensions) -> tuple[str, ...]:
+    """Return notes on dimensions that are hardly meant: gaps, the number of blades, the unit."""
+    notes, unit = [], dimensions.unit or "the unit of the profiles"
+    for name in ("tip_gap", "hub_gap"):
+        part = getattr(dimensions, name) / dimensions.span
+        low, high = USUAL_GAPS
+        if part and not low <= part <= high:
+            usual = f"{100.0 * low:g} to {100.0 * high:g} %"
+            notes.append(f"{name} is {100.0 * part:.3g} % of the span, usual are {usual}: is it in {unit}?")
+    radii = [
+        each[1] for ends in (dimensions.leading_edge, dimensions.trailing_edge) for each in ends.values()
+    ]
+    turned = sum(radii[:2]) - sum(radii[2:])
+    axial, (low, high) = abs(turned) < _AXIAL * 0.5 * sum(radii), USUAL_SOLIDITIES
+    if axial and not low <= dimensions.solidity <= high:
+        what = f"{dimensions.blades} blades have a solidity of {dimensions.solidity:.3g} at mid-span"
+        notes.append(f"{what}, usual are {low:g} to {high:g}: is this the number of blades?")
+    if dimensions.unit:
+        metres = UNITS[dimensions.unit] * max(radii)
+        if not USUAL_RADII[0] <= metres <= USUAL_RADII[1]:
+            what = f"the blade reaches a radius of {max(radii):.4g} {dimensions.unit}"
+            notes.append(f"{what}: if that is not the unit of the files, give unit")
+    return tuple(notes)
