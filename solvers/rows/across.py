@@ -59,9 +59,16 @@ class ChannelLines:
         aside = self._aside(u[pairs]) - self._aside(start[pairs])
         return PlaceLinks(pairs, factors, scale * aside - (factors * u[pairs]).sum(axis=1))
 
+    def leaning(self, u: Floats, pairs: Indices) -> float:
+        """Return the mean square of tangents by which lines between `pairs` (p, 2) of places u (k,) lean."""
+        upper = np.mod(u[pairs[:, 0]] + 0.25, 1.0) - 0.25
+        slant = np.interp(upper, self.upper, self.slant)
+        return float(((slant * self._aside(u[pairs])) ** 2).mean())
+
     def _aside(self, pairs: Floats) -> Floats:
         """Return by how much u on the lower side (p,) is aside of what is opposite that on the upper one."""
-        return np.asarray(1.0 - pairs[:, 1] - np.interp(pairs[:, 0], self.upper, self.lower))
+        upper, lower = (np.mod(each + 0.25, 1.0) - 0.25 for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
+        return np.asarray(lower - np.interp(upper, self.upper, self.lower))
 
 
 def _opposite(plane: SectionPlane, upper: Floats) -> tuple[Floats, Floats]:

@@ -27,9 +27,8 @@ from meshonet.solvers.energy.quads import optimise
 from meshonet.solvers.rows.columns import layer_columns
 from meshonet.solvers.rows.harmonic import harmonic
 from meshonet.solvers.rows.middle_section import LOWER, TOLERANCE, UPPER, folded_section, middle_section
-from meshonet.solvers.rows.opposite import at_corners, opposite_places
 from meshonet.solvers.rows.section_plane import SectionPlane
-from meshonet.solvers.rows.wall_places import even_wall_places
+from meshonet.solvers.rows.span_places import SpanPlaces
 
 FINE, FROM_NEIGHBOUR = 40, 25
 FLAT, SMOOTH = 0.95, 1e-3
@@ -50,7 +49,7 @@ class SectionPlan:
     columns : (k, rows + 1) nodes of the layers, from the blade, clockwise around it.
     outward : (k,) nodes beyond the layers of each column.
     ends : nodes of inlet and outlet.
-    places : (k,) u of the first node of each column.
+    places : of the first node of each column.
     wake : theta by which wakes would be aside at the outlet, straight from the trailing edge, at half the
         height, and its slope along the height.
     """
@@ -59,7 +58,7 @@ class SectionPlan:
     columns: Indices
     outward: Indices
     ends: tuple[Indices, Indices]
-    places: Floats
+    places: SpanPlaces
     wake: tuple[float, float]
 
     def bent(self, plane: SectionPlane, nodes: Floats) -> Floats:
@@ -89,24 +88,24 @@ class KeySection:
 
 def planned(
     planes: Sequence[SectionPlane], cells: int, longest: Mapping[int, float], wake: tuple[float, float],
-    *, opposite: bool,
+    gaps: tuple[bool, bool],
 ) -> tuple[SectionPlan, KeySection]:  # fmt: skip
     """Return the plan for sections of about so many `cells` each, and the middle one of `planes`.
 
     `longest` are the greatest lengths of the rows to inlet and outlet, by the number of their loop, `wake` is
-    that of the plan. With `opposite` nodes on both sides of the blade are opposite each other.
+    that of the plan, `gaps` are whether the blade ends in a gap at hub and casing.
     """
     plane = planes[len(planes) // 2]
     whole = middle_section(planes, cells, longest)
     columns, growth = layer_columns(whole), plane.cascade.layers.growth
     at = plane.places_of(whole.mesh.places.arc[columns[:, 0]])
-    places = at_corners(opposite_places(at) if opposite else at, plane.corners)
     pairs = _pairs(whole, columns)
+    places = SpanPlaces.of(planes, at, pairs, gaps)
     m = whole.mesh.nodes[:, 0]
     near = 1e-9 * (m.max() - m.min())
     ends = np.flatnonzero(m <= m.min() + near), np.flatnonzero(m >= m.max() - near)
     plan = SectionPlan(growth, columns, _beyond(whole, columns), ends, places, wake)
-    even = even_wall_places(planes, places, plane.corners, growth, pairs, opposite=opposite)
+    even = places.evened(planes, growth, pairs)
     plan, section = replace(plan, places=even), KeySection(plane, whole, at)
     try:
         return plan, _placed(plan, section)
@@ -120,7 +119,7 @@ def next_section(plan: SectionPlan, before: KeySection, plane: SectionPlane) -> 
 
     Raises NoValidGridError: its cells stay folded.
     """
-    layout, places = _carried(plan, before, plane, plan.places)
+    layout, places = _carried(plan, before, plane, plan.places.at(plane.height))
     return KeySection(plane, _optimum(plan, plane, layout, FROM_NEIGHBOUR), places)
 
 
@@ -150,13 +149,13 @@ def _placed(plan: SectionPlan, section: KeySection) -> KeySection:
 
     Nodes of inlet and outlet slide along these.
     """
-    plane = section.plane
-    move = np.mod(plan.places - section.places + 0.5, 1.0) - 0.5
+    plane, wanted = section.plane, plan.places.at(section.plane.height)
+    move = np.mod(wanted - section.places + 0.5, 1.0) - 0.5
     for steps in (1, 2, 4):
         try:
             made = section
             for k in range(1, steps + 1):
-                places = plan.places if k == steps else np.mod(section.places + k / steps * move, 1.0)
+                places = wanted if k == steps else np.mod(section.places + k / steps * move, 1.0)
                 layout, own = _carried(plan, made, plane, places)
                 made = KeySection(plane, _optimum(plan, plane, layout, FINE, ends_slide=True), own)
             return made

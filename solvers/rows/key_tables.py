@@ -40,8 +40,8 @@ def key_tables(row: Row, first: float, growth: float, cells: int) -> KeyTables:
     inlet or outlet; NoValidGridError: folds.
     """
     planes = _planes(row, first, growth)
-    gaps = row.tip_gap > 0.0 or row.hub_gap > 0.0
-    plan, middle = planned(planes, cells, _longest(planes), _wake(row, planes), opposite=gaps)
+    gaps = row.hub_gap > 0.0, row.tip_gap > 0.0
+    plan, middle = planned(planes, cells, _longest(planes), _wake(row, planes), gaps)
     half = KEYS // 2
 
     def chain(others: Sequence[SectionPlane]) -> list[KeySection]:

@@ -6,14 +6,29 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.ties import first_least
+from meshonet.solvers.rows.across import ChannelLines
 
 
-def opposite_places(places: Floats) -> Floats:
+def opposite_places(places: Floats, pairs: Indices, lines: ChannelLines) -> Floats:
     """Return places u (k,) of nodes clockwise around a blade with both sides' opposite each other.
 
     As many nodes lie on each side, at equal parts of the sides' lengths: blocks inside the blade's outline,
-    in a gap, are then not skew. k is even; nodes lie at both edges.
+    in a gap, are then not skew. `pairs` (p, 2) of nodes on the upper and the lower side, from the leading
+    edge on, are joined by `lines` across the channel. Of the nodes between the first two that is at the
+    leading edge for which these lean least. k is even; nodes lie at both edges.
     """
+    both = _both_sides(places)
+    k, half = len(places), len(places) // 2
+    around = np.concatenate([both, 1.0 - both[half - 1 : 0 : -1]])
+    upper, lower = pairs[0]
+    tries = [np.roll(around, lead) for lead in lower + np.arange((upper - lower) % k + 1)]
+    return first_least(tries, key=lambda each: lines.leaning(each, pairs))
+
+
+def _both_sides(places: Floats) -> Floats:
+    """Return places u (k / 2 + 1,), from 0 to 0.5: means of those of both sides."""
     k = len(places)
     half, lead = k // 2, _leading_node(places)
     along = places[0] + np.concatenate([[0.0], np.cumsum(np.mod(np.diff(places), 1.0))])
@@ -27,10 +42,7 @@ def opposite_places(places: Floats) -> Floats:
     lower = -monotone_cubic(numbers, turns, ends[1] - q * (ends[1] - ends[0]))
     both = 0.5 * (upper + lower)
     both[0], both[-1] = 0.0, 0.5
-    out = np.empty(k)
-    out[(lead + np.arange(half + 1)) % k] = both
-    out[(lead - np.arange(1, half)) % k] = 1.0 - both[1:half]
-    return out
+    return np.asarray(both)
 
 
 def _leading_node(places: Floats) -> int:
@@ -43,12 +55,3 @@ def _leading_node(places: Floats) -> int:
     lead, trail = int(off.argmin()), int(np.abs(places - 0.5).argmin())
     upper = (trail - lead) % k
     return (lead + round(0.5 * (upper - 0.5 * k))) % k
-
-
-def at_corners(places: Floats, corners: Floats) -> Floats:
-    """Return places u (k,) with the one nearest to each of the `corners` (c,), u too, put there."""
-    out = places.copy()
-    for corner in corners:
-        off = np.abs(np.mod(places - corner + 0.5, 1.0) - 0.5)
-        out[int(off.argmin())] = corner
-    return out

@@ -49,8 +49,8 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     gaps: list[GapBlocks | None] = [None] * len(zones)
 
     def fill(k: int) -> None:
-        around, levels = stacked.columns[:, 0], stacked.bounds[k]
-        gaps[k] = gap_blocks(row, made, around, stacked.leading, zones[k], levels, first, growth)
+        around, levels, lead = stacked.columns[:, 0], stacked.bounds[k], int(stacked.leading[min(k, 1)])
+        gaps[k] = gap_blocks(row, made, around, lead, zones[k], levels, first, growth)
 
     fills = [partial(fill, k) for k, zone in enumerate(zones) if zone.gap]
     run_in_threads([*fills, *rest])

@@ -59,7 +59,8 @@ class SectionPlane:
         edges = tuple(corners.tolist())
         loop = Loop(Curve(points, closed=True, corners=corners), edges, ("blade",))
         low, high = float(points[:, 0].min()), float(points[:, 0].max())
-        radius = float(row.channel.at(np.array([s.mean()]), np.array([height]))[0, 1])
+        # in the plane a height is least where the radius is largest: there layers need the most rows
+        radius = float(row.channel.at(s, np.full(len(s), height))[:, 1].max())
         settings = LayerSettings(first / radius, growth)
         chord, pitch = high - low, (0.0, 2.0 * np.pi / row.blades)
         cascade = Cascade(loop, pitch, low / chord, (to.length - high) / chord, settings, row.name)

@@ -45,7 +45,7 @@ class StackedRow:
     Attributes
     ----------
     columns : (k, rows + 1) nodes of the layers, from the blade, clockwise around it.
-    leading : which of these columns starts nearest to the leading edge.
+    leading : (2,) which of these columns start nearest to the leading edge, at hub and casing.
     """
 
     def __init__(self, row: Row, keys: KeyTables, zones: Sequence[Zone], first: float, growth: float) -> None:
@@ -54,7 +54,7 @@ class StackedRow:
         u = np.array([section.places for section in keys.sections])
         steps = np.mod(np.diff(u, axis=0) + 0.5, 1.0) - 0.5
         around = u[0] + np.cumsum(np.concatenate([np.zeros((1, u.shape[1])), steps]), axis=0)
-        self.leading = int(np.abs(np.mod(around[0] + 0.5, 1.0) - 0.5).argmin())
+        self.leading = np.abs(np.mod(around[[0, -1]] + 0.5, 1.0) - 0.5).argmin(axis=1)
         self.around = SpanLines.through(around, DEGREE)
         self.lines = SpanLines.through(np.stack(in_threads(self._key, keys.sections)), DEGREE)
 

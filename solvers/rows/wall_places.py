@@ -25,14 +25,14 @@ _SAME = 1e-9
 
 
 def even_wall_places(
-    planes: Sequence[SectionPlane], places: Floats, corners: Floats, growth: float, pairs: Indices, *,
-    opposite: bool,
+    planes: Sequence[SectionPlane], places: Floats, corners: Floats, growth: float, pairs: Indices,
+    lines: ChannelLines, *, opposite: bool,
 ) -> Floats:  # fmt: skip
     """Return places u (k,) of nodes clockwise around the blade near the given ones, with even steps.
 
     Those at `corners` (c,) stay. `pairs` (p, 2) are nodes on the upper side and the lower side of the next
-    blade that lines across the channel join, which are not to lean more than they do. With `opposite` the
-    places of both sides are opposite each other, and stay so; `pairs` do not count then.
+    blade that `lines` across the channel join, which are not to lean more than they do. With `opposite` the
+    places of both sides are opposite each other, and stay so; lines do not count then.
     """
     limit = MARGIN * math.log(growth)
     lead = int(np.abs(np.mod(places + 0.5, 1.0) - 0.5).argmin())
@@ -48,9 +48,9 @@ def even_wall_places(
     else:
         fixed = _fixed(u, corners)
         fixed[0] = True
-        across, given, pairs = ChannelLines.of(planes), u, np.mod(pairs - lead, len(u))
+        given, pairs = u, np.mod(pairs - lead, len(u))
         u = _evened(
-            u, fixed, _measures(planes), limit, lambda at: across.links(at, given, pairs, SHEAR), closed=True
+            u, fixed, _measures(planes), limit, lambda at: lines.links(at, given, pairs, SHEAR), closed=True
         )
     return np.mod(np.roll(u, lead), 1.0)
 

@@ -3,10 +3,10 @@
 import blade_row
 import numpy as np
 import pytest
-import radial_rows
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
+from meshonet.geometry.rows.row import Row
 from meshonet.solvers.pipeline.rows import make_row
 from meshonet.solvers.rows.middle_section import folded_section
 from meshonet.solvers.rows.request import RowRequest
@@ -33,6 +33,15 @@ def test_a_folded_section_is_refused_with_the_place_of_its_worst_cell(share: flo
     assert str(error).startswith(f"cells stay folded in the section at 25 % of the span, {words}; use more")
 
 
-def test_layers_that_fold_at_a_profile_are_refused_with_its_part_of_the_span() -> None:
+def notched(profile: np.ndarray) -> np.ndarray:
+    """The profile with a point of one side near the other side."""
+    points, k = profile.copy(), len(profile) // 4
+    points[k] += 0.6 * (points[-k] - points[k])
+    return points
+
+
+def test_profiles_that_leave_no_room_for_layers_are_refused_with_their_part_of_the_span() -> None:
+    profiles = [notched(each) for each in blade_row.profiles()]
+    row = Row(profiles, blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
     with pytest.raises(InputError, match=r"section at .* % of the span, in m' and theta: blade, \("):
-        make_row(radial_rows.pump(22), RowRequest(threads=1))
+        make_row(row, RowRequest(threads=1))

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 import radial_rows
 
+from meshonet.solvers.rows.across import ChannelLines
+from meshonet.solvers.rows.opposite import opposite_places
 from meshonet.solvers.rows.section_plane import SectionPlane
 from meshonet.solvers.rows.wall_places import even_wall_places
 
@@ -25,7 +27,9 @@ def test_uneven_places_become_even_in_all_sections(opposite: bool) -> None:
     side = 0.25 * (1.0 - np.cos(np.pi * np.arange(40) / 40))
     side[10:20] += 0.004  # a long step beside a short one
     places = np.roll(np.concatenate([side, 1.0 - np.append(0.5, side[:0:-1])]), 7)
-    made = even_wall_places(planes, places, np.empty(0), GROWTH, NO_PAIRS, opposite=opposite)
+    made = even_wall_places(
+        planes, places, np.empty(0), GROWTH, NO_PAIRS, ChannelLines.of(planes), opposite=opposite
+    )
     for plane in planes:
         own = steps(plane, made)
         growth = np.exp(np.abs(np.log(np.append(own[1:], own[0]) / own)))
@@ -42,7 +46,8 @@ def test_corners_stay_where_they_are() -> None:
     plane = SectionPlane.of(row, 0.5, 1e-3, GROWTH)
     places = np.linspace(0.0, 1.0, 80, endpoint=False) ** 1.2
     corner = places[33]
-    made = even_wall_places([plane], places, np.array([corner]), GROWTH, NO_PAIRS, opposite=False)
+    lines = ChannelLines.of([plane])
+    made = even_wall_places([plane], places, np.array([corner]), GROWTH, NO_PAIRS, lines, opposite=False)
     assert made[33] == corner
 
 
@@ -64,13 +69,29 @@ def test_lines_across_a_channel_keep_their_direction() -> None:
     ends = np.linspace(0.41, 0.51, nose + 2)[1:-1], np.linspace(0.91, 1.01, nose + 2)[1:-1]
     places = np.mod(np.concatenate([upper, ends[0], lower[::-1], ends[1]]), 1.0)
     pairs = np.stack([np.arange(count), 2 * count + nose - 1 - np.arange(count)], axis=1)
-    given = leaning(plane, places, pairs)
+    given, lines = leaning(plane, places, pairs), ChannelLines.of([plane])
     kept, free = (
         np.abs(leaning(plane, made, pairs) - given).mean()
         for made in (
-            even_wall_places([plane], places, np.empty(0), GROWTH, each, opposite=False)
+            even_wall_places([plane], places, np.empty(0), GROWTH, each, lines, opposite=False)
             for each in (pairs, NO_PAIRS)
         )
     )
     assert kept < 0.3 * free
     assert free > 0.02
+
+
+def test_opposite_places_let_lines_across_a_channel_lean_least() -> None:
+    """Of the nodes around the nose the one is at the leading edge from which on lines lean least."""
+    row = radial_rows.impeller(4, gap=False)
+    lines = ChannelLines.of([SectionPlane.of(row, 1.0, 1e-3 * row.chord, GROWTH)])
+    count, nose = 40, 12
+    side = np.linspace(0.0, 0.5, count + nose + 1)
+    around = np.concatenate([side, 1.0 - side[-2:0:-1]])
+    pairs = np.stack([nose + np.arange(count + 1), 2 * (count + nose) - np.arange(count + 1)], axis=1)
+    pairs[:, 1] %= len(around)
+    made = opposite_places(around, pairs, lines)
+    assert np.sort(np.mod(-made, 1.0)) == pytest.approx(np.sort(made), abs=1e-12)
+    tried = [lines.leaning(np.roll(around, k), pairs) for k in range(nose + 1)]
+    assert lines.leaning(made, pairs) == pytest.approx(min(tried))
+    assert min(tried) < 0.2 * max(tried)
