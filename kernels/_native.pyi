@@ -183,6 +183,9 @@ def trace_rays(
     tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
     limit: int, room: int,
 ) -> tuple[Indices, Floats, Indices, Floats] | None: ...  # fmt: skip
+def nearest_ahead(
+    walls: Floats, points: Floats, along: Floats, cosine: float, same: float, distances: Floats
+) -> None: ...
 def nearest_points(places: Floats, points: Floats) -> tuple[Indices, Floats]: ...
 
 # quads

@@ -9,6 +9,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, extent_of
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
+from meshonet.kernels._native import nearest_ahead
 
 IN_FRONT = 0.6
 """Cosine of the angle to the normal up to which a wall counts as being in front: 53 degrees."""
@@ -17,7 +18,6 @@ _BEYOND = 1.0 + 1e-9
 _SAME = 1e-9
 """Distance over the extent of the walls up to which a wall point is the point itself, and no gap."""
 _SAMPLES = 2000  # points on all walls together
-_ROWS = 16  # points compared with all walls at a time, so that distances stay in the cache
 
 
 def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
@@ -42,12 +42,6 @@ def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:
     cosine of its direction to the normal exceeds `IN_FRONT`.
     """
     gaps, same = np.empty(len(points)), _SAME * extent_of(walls)
-    for start in range(0, len(points), _ROWS):
-        rows = slice(start, start + _ROWS)
-        dx = walls[:, 0] - points[rows, :1]
-        dy = walls[:, 1] - points[rows, 1:]
-        distance = np.hypot(dx, dy)
-        height = dy * along[rows, :1] - dx * along[rows, 1:]
-        ahead = (height > _BEYOND * IN_FRONT * distance) & (distance > same)
-        gaps[rows] = np.where(ahead, distance, np.inf).min(axis=1)
+    given = (np.ascontiguousarray(each) for each in (walls, points, along))
+    nearest_ahead(*given, _BEYOND * IN_FRONT, same, gaps)
     return gaps

@@ -134,6 +134,20 @@ def crossing_segments(points, order, low, top, ptrdiff_t limit, long long budget
     return pairs[:count].tolist(), budget >= 0
 
 
+cdef extern from "geometry/ahead.h":
+    void c_nearest_ahead "nearest_ahead"(const double *walls, ptrdiff_t n, const double *points, const double *along,
+                                         ptrdiff_t m, double cosine, double same, double *distances) nogil
+
+
+def nearest_ahead(walls, points, along, double cosine, double same, distances):
+    """Fill `distances` (m,) with those of `points` (m, 2) to the nearest of `walls` (n, 2) ahead; see ``ahead.h``."""
+    cdef ptrdiff_t n = len(walls), m = len(points)
+    cdef Read w = reads(walls, (n, 2)), p = reads(points, (m, 2)), t = reads(along, (m, 2))
+    cdef Written to = fills(distances, (m,))
+    with nogil:
+        c_nearest_ahead(w, n, p, t, m, cosine, same, to)
+
+
 cdef extern from "geometry/nearest.h":
     enum: nearest_block
     void c_nearest_points "nearest_points"(const double *places, ptrdiff_t m, const double *x, const double *y, ptrdiff_t n,

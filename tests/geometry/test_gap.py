@@ -5,7 +5,7 @@ import pytest
 
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.domain.gap import wall_gaps
+from meshonet.geometry.domain.gap import IN_FRONT, gaps_in_front, wall_gaps
 from meshonet.geometry.domain.loop import Loop
 
 
@@ -38,3 +38,18 @@ def test_places_that_samples_of_the_walls_hit_are_no_gap():
         for count in (32, 64, 96, 128, 400, 2000):
             arcs = np.linspace(0.0, loop.length, count, endpoint=False)
             assert wall_gaps(domain, loop, arcs).min() > 0.2
+
+
+def test_distances_are_those_of_all_points_one_by_one():
+    draw = np.random.default_rng(3)
+    for n in (1, 63, 64, 500):
+        walls, points = draw.normal(size=(n, 2)).round(1), draw.normal(size=(90, 2)).round(1)
+        turn = draw.uniform(0.0, 2.0 * np.pi, 90)
+        along = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        off = walls - points[:, None]
+        distance = np.hypot(*np.moveaxis(off, -1, 0))
+        height = off[..., 1] * along[:, :1] - off[..., 0] * along[:, 1:]
+        same = 1e-9 * np.ptp(walls, axis=0).max()
+        ahead = (height > (1.0 + 1e-9) * IN_FRONT * distance) & (distance > same)
+        expected = np.where(ahead, distance, np.inf).min(axis=1)
+        np.testing.assert_array_equal(gaps_in_front(walls, points, along), expected)
