@@ -44,9 +44,9 @@ from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.elementary import cos, sin
 from meshonet.geometry.errors import InputError, in_place
 from meshonet.geometry.rows.cylinder import on_cylinder
-from meshonet.geometry.rows.frame import AXES, UNITS, axis_along
+from meshonet.geometry.rows.frame import AXES, UNITS, axis_along, axis_name
 from meshonet.geometry.rows.row import Row
-from meshonet.geometry.rows.trim import Plane, trimmed
+from meshonet.geometry.rows.trim import Plane, WallPlanes
 from meshonet.geometry.sections.section import QUARTER, Section
 
 KEYS = (
@@ -70,19 +70,19 @@ def read_row(data: Table, source: Source) -> Row:
     unit = data.word("unit", tuple(UNITS), "m")
     frame = _frame(data)
     hub, shroud = (_wall(data, key, folder, frame) for key in ("hub", "shroud"))
-    planes = [_plane(data, key) for key in ("inlet", "outlet")]
-    hub, shroud = (trimmed(points, planes[0], planes[1], wall) for wall, points in enumerate((hub, shroud)))
+    planes = WallPlanes(_plane(data, "inlet"), _plane(data, "outlet"), axis_name(frame), unit)
+    (hub, one), (shroud, other) = planes.trimmed(hub, 0), planes.trimmed(shroud, 1)
     if ("profiles" in data.data) == ("sections" in data.data):
         problem = "stands beside sections" if "profiles" in data.data else "is missing"
         raise data.error("profiles", problem, "give profiles or [[sections]]")
-    notes: tuple[str, ...] = ()
+    notes = (*one, *other)
     if "profiles" in data.data:
         profiles, places = _profiles(data, folder, frame)
     else:
         made = [_section(row, folder) for row in data.rows("sections", least=2)]
         profiles = [points for points, _ in made]
         places = [f"sections[{k}]" for k in range(len(made))]
-        notes = tuple(dict.fromkeys(note for _, own in made for note in own))
+        notes += tuple(dict.fromkeys(note for _, own in made for note in own))
     blades = data.number("blades")
     if blades != round(blades):
         raise data.error("blades", f"{blades:g} is no whole number", "count them")

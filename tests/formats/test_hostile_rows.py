@@ -120,7 +120,7 @@ REFUSED = {
     "a hub with columns r, x": (
         with_file("hub.csv", "r,x\n2,-1\n2.05,2\n"), "hub.csv: line 1: the columns are r, x; give x, r in"),
     # inlet and outlet
-    "an inlet outside": (texts("inlet = -9"), ROW + "inlet: the hub reaches from x = -1 to 2, not -9"),
+    "an inlet outside": (texts("inlet = -9"), ROW + "inlet: the hub reaches from x = -1 to 2 m, not -9"),
     "an inlet in the blade": (texts("inlet = 0.5"), ROW + "profile 1 .*" + NOT_LONG),
     "an outlet in the blade": (texts("outlet = 0.5"), ROW + "profile 1 .*" + NOT_LONG),
     "an outlet before the inlet": (texts("inlet = 1.9\noutlet = -0.9"), ROW + "outlet: .* before the inlet"),

@@ -72,9 +72,36 @@ def test_inlet_and_outlet_may_be_points_on_hub_and_shroud(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(
+    "words", ["outlet = 2.7", "outlet = [[2.7, 2.0616666666666665], [2.7, 2.8766666666666665]]"]
+)
+def test_walls_go_on_straight_to_an_outlet_beyond_their_ends(tmp_path: Path, words: str) -> None:
+    row = read(tmp_path, f'{words}\nunit = "cm"')
+    for wall, whole, name in ((row.hub, blade_row.HUB, "hub"), (row.shroud, blade_row.SHROUD, "shroud")):
+        x, r = 100.0 * wall.T
+        slope = (whole[-1, 1] - whole[0, 1]) / 3.0
+        assert x[[0, -1]] == pytest.approx([-1.0, 2.7], abs=1e-3)  # points are met to 1/4000 of the wall
+        assert r == pytest.approx(whole[0, 1] + slope * (x + 1.0), abs=1e-9)
+        assert f"{name} is continued straight by 0.70" in " ".join(row.changes)
+
+
+def test_a_curved_wall_goes_on_in_the_direction_of_its_end(tmp_path: Path) -> None:
+    t = np.linspace(-1.0, 2.0, 61)
+    bend = np.stack([t, 2.0 + 0.05 * (t + 1.0) ** 2 / 3.0], axis=1)
+    (tmp_path / "bend.csv").write_text("".join("{:.17g},{:.17g}\n".format(*p) for p in bend))
+    row = read(tmp_path, 'hub = "bend.csv"\noutlet = 3.0')
+    beyond = row.hub[row.hub[:, 0] > 2.0]
+    assert len(beyond) > 10
+    assert beyond[:, 1] == pytest.approx(2.15 + 0.1 * (beyond[:, 0] - 2.0), abs=2e-4)
+
+
+@pytest.mark.parametrize(
     ("key", "words"),
     [
-        ("inlet = -1.5", "the hub reaches from x = -1 to 2, not -1.5"),
+        (
+            "inlet = -9",
+            "inlet: the hub reaches from x = -1 to 2 m, not -9; add points to hub and shroud, or give",
+        ),
+        ('inlet = -9\nunit = "mm"', "from x = -1 to 2 mm, not -9"),
         ("inlet = [1, 2, 3]", "is no plane"),
         ("outlet = [[1.4, 2.9], [1.6, 2.92]]", "from the hub"),
         ("inlet = 1.8\noutlet = 1.6", "the outlet is before the inlet"),
