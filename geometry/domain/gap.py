@@ -42,6 +42,6 @@ def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:
     cosine of its direction to the normal exceeds `IN_FRONT`.
     """
     gaps, same = np.empty(len(points)), _SAME * extent_of(walls)
-    given = (np.ascontiguousarray(each) for each in (walls, points, along))
-    nearest_ahead(*given, _BEYOND * IN_FRONT, same, gaps)
+    walls, points, along = (np.ascontiguousarray(each) for each in (walls, points, along))
+    nearest_ahead(walls, points, along, _BEYOND * IN_FRONT, same, gaps)
     return gaps
