@@ -20,6 +20,7 @@ from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.extrude import thick
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
@@ -57,6 +58,9 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
     space, turn = made.space, turned_by(row.pitch)
     second, partner = stacked.twins
     space[:, second] = turn(space[:, partner])
+    if not np.isfinite(space).all():
+        problem = "lines off the blade have no length, because its profiles lie far beside each other"
+        raise NoValidGridError(f"{problem}; give profiles of one blade, or more of them")
     grid = _joined(row, stacked, zones, gaps, space, turn)
     return grid, (*_notes(zones, first), *_more_cells(grid, request.cells))
 

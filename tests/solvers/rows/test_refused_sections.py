@@ -4,7 +4,7 @@ import blade_row
 import numpy as np
 import pytest
 
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.pipeline.rows import make_row
@@ -45,3 +45,14 @@ def test_profiles_that_leave_no_room_for_layers_are_refused_with_their_part_of_t
     row = Row(profiles, blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
     with pytest.raises(InputError, match=r"section at .* % of the span, in m' and theta: blade, \("):
         make_row(row, RowRequest(threads=1))
+
+
+def test_nodes_without_places_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As where profiles lie so far beside each other that lines off the blade have no length."""
+    monkeypatch.setattr(
+        "meshonet.solvers.rows.row_grid.turned_by", lambda pitch: lambda nodes: nodes * np.nan
+    )
+    with pytest.raises(
+        NoValidGridError, match=r"lines off the blade have no length.*; give profiles of one blade"
+    ):
+        make_row(blade_row.blade_row(), RowRequest(threads=1, cells=20_000, first_cell=0.01, growth=1.8))
