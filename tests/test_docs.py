@@ -6,7 +6,6 @@ import importlib.util
 import os
 import re
 import runpy
-import shlex
 import shutil
 import subprocess
 import sys
@@ -16,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from command_lines import run_line
 from periodic_domains import write_bank
 from printed import differences
 from spatial_shapes import box, cubed_sphere, half_sphere
@@ -23,7 +23,6 @@ from spatial_shapes import box, cubed_sphere, half_sphere
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.solvers.neural.registry import described
-from meshonet_cli.app import run as run_here
 
 ROOT = Path(__file__).parents[1]
 REFERENCE = ROOT / "docs" / "reference"
@@ -181,20 +180,10 @@ def domains(folder: Path) -> dict[str, Any]:
 
 
 def run(line: str, folder: Path) -> None:
-    program = f"{shlex.quote(sys.executable)} -m meshonet_cli"
-    shell = re.sub(r"\bmeshonet (?=[a-z])", f"{program} ", line)
-    shell = re.sub("^python ", f"{shlex.quote(sys.executable)} ", shell)
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(  # noqa: S602
-        shell, shell=True, cwd=folder, env=environment, capture_output=True, text=True, timeout=120
-    )
-    judge(line, done.returncode, done.stderr)
-
-
-def judge(line: str, code: int, error: str) -> None:
-    """Fail if a command did, except where a gate of its own is not met."""
-    gate = code == 1 and ("--fail-on" in line or "--profile" in line)
-    assert code == 0 or gate, f"{line}\n{error}"
+    """Fail if a command does, except where a gate of its own is not met."""
+    done = run_line(line, folder)
+    gate = done.returncode == 1 and ("--fail-on" in line or "--profile" in line)
+    assert done.returncode == 0 or gate, f"{line}\n{done.stderr}"
 
 
 SIZES = {"--cells": 3000, "--around": 97, "--span": 33}
@@ -213,20 +202,11 @@ def smaller(line: str) -> str:
 
 
 @pytest.mark.parametrize("page", [page for page in GUIDES if commands(page)], ids=path_of)
-def test_the_commands_of_a_page_run_in_their_order(
-    page: Path, inputs: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """In this process, except where a line is more than one command to a shell."""
+def test_the_commands_of_a_page_run_in_their_order(page: Path, inputs: Path) -> None:
     if any(".step" in line for line in commands(page)):
         pytest.importorskip("OCP")
-    monkeypatch.chdir(inputs)
-    for line in map(smaller, commands(page)):
-        if re.search(r"[|&;$<>(*?]|^python", line.partition("--fail-on")[0]):
-            run(line, inputs)
-        else:
-            words = shlex.split(line, comments=True)
-            monkeypatch.setattr(sys, "argv", words)
-            judge(line, run_here(words[1:]), capsys.readouterr().err)
+    for line in commands(page):
+        run(smaller(line), inputs)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from blade_row import BLADES, write_row
+from command_lines import run_line
 from spatial_shapes import box
 
 from meshonet.formats.registry import read_grids
@@ -41,12 +42,8 @@ def folder(inputs: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What the examples take for granted: airfoils, a channel, grids, and `meshonet` on the path."""
+    """What the examples take for granted: airfoils, a channel, grids."""
     made = tmp_path_factory.mktemp("examples")
-    (made / "bin").mkdir()
-    script = made / "bin" / "meshonet"
-    script.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m meshonet_cli "$@"\n')
-    script.chmod(0o755)
     x = 0.5 * (1 + np.cos(np.linspace(0, np.pi, 41)))
     half = 0.6 * (0.2969 * np.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
     points = np.concatenate([np.stack([x, half], axis=-1), np.stack([x, -half], axis=-1)[-2::-1]])
@@ -74,24 +71,18 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     revolved(Grid((Block(square),), walls), Revolution(360.0 / BLADES, 3)).write(made / "rotor.cgns")
     (made / "path.csv").write_text("0,0,0\n9,0,0\n18,5,1\n")
     (made / "duct.csv").write_text("0,0\n1,0.2\n2,0\n2,1\n0,1\n")
-    assert shell("meshonet layout plate.geojson -o plate.json", made).returncode == 0
+    assert run_line("meshonet layout plate.geojson -o plate.json", made).returncode == 0
     for name in ("grid.vts", "other.vts"):
-        assert shell(f"meshonet tfi airfoil.dat --res 120x60 -o {name}", made).returncode == 0
+        assert run_line(f"meshonet tfi airfoil.dat --res 120x60 -o {name}", made).returncode == 0
     (made / "grids").mkdir()
     for name in ("a.vts", "b.vts"):
         shutil.copy(made / "grid.vts", made / "grids" / name)
     return made
 
 
-def shell(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "MPLBACKEND": "Agg"}
-    command = ["bash", "-o", "pipefail", "-c", line]
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
-
-
 @pytest.mark.parametrize(("command", "example"), EXAMPLES, ids=[example for _, example in EXAMPLES])
 def test_the_examples_of_the_help_work(folder: Path, command: str, example: str) -> None:
-    done = shell(example, folder)
+    done = run_line(example, folder)
     if command in SLOW:
         assert done.returncode == 2
         assert done.stderr.startswith("error: ")
@@ -105,8 +96,8 @@ def test_the_examples_of_the_help_work(folder: Path, command: str, example: str)
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.name)
 def test_every_help_shows_its_examples(folder: Path, command: object) -> None:
     name, examples = command.name, command.loaded()[1]  # type: ignore[attr-defined]
-    told = shell(f"meshonet {name} --help", folder).stdout
-    assert told == shell(f"meshonet {name} -h", folder).stdout
+    told = run_line(f"meshonet {name} --help", folder).stdout
+    assert told == run_line(f"meshonet {name} -h", folder).stdout
     assert examples
     for example in examples:
         assert f"  {example}\n" in told

@@ -89,21 +89,21 @@ def run(
     Quick runs leave out what needs another program, and `meshonet plot`.
     """
     shutil.copytree(ROOT / "examples", folder / "examples", ignore=shutil.ignore_patterns("run-*", "paper"))
-    environment = _environment(folder, quick)
+    variables = environment(folder, quick)
     results: list[Result] = []
     for step in steps_of(page):
         if quick and step.needs:
             continue
-        results.append(_run_step(step, folder, environment, settings or {}))
+        results.append(_run_step(step, folder, variables, settings or {}))
         if results[-1].status:
             break
     return results
 
 
-def _environment(folder: Path, quick: bool) -> dict[str, str]:
+def environment(folder: Path, quick: bool = False) -> dict[str, str]:
     """Return an environment in which `meshonet` and `python` are this project's."""
     programs = folder / ".bin"
-    programs.mkdir()
+    programs.mkdir(exist_ok=True)
     no_plots = 'test "$1" = plot && exit\n' if quick else ""
     for name, words in (("meshonet", "-m meshonet_cli "), ("python", "")):
         text = f'#!/bin/sh\n{no_plots}exec "{sys.executable}" {words}"$@"\n'

@@ -112,8 +112,13 @@ def loops_extent(loops: tuple[Loop, ...]) -> float:
 def four_sided(domain: Domain) -> bool:
     """Return whether a domain without holes has four convex corners and no re-entrant one."""
     outer = domain.loops[0]
-    convex = int((outer.corner_angles < 180.0 - CORNER_DEG).sum())
-    return len(domain.loops) == 1 and convex == 4 and not (outer.corner_cells > 2).any()
+    return len(domain.loops) == 1 and len(convex_corners(outer)) == 4 and not (outer.corner_cells > 2).any()
+
+
+def convex_corners(loop: Loop) -> list[int]:
+    """Return the numbers of the points of a loop at which it has convex corners."""
+    convex = loop.corner_angles < 180.0 - CORNER_DEG
+    return [point for point, is_convex in zip(loop.corners, convex, strict=True) if is_convex]
 
 
 def in_far_field(domain: Domain) -> bool:

@@ -17,7 +17,13 @@ from meshonet.geometry.errors import in_place
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.annulus import Annulus
 from meshonet.geometry.shapes.closed_curve import closed_curve
-from meshonet.geometry.shapes.domain_shape import DomainShape, four_sided, in_far_field, itself
+from meshonet.geometry.shapes.domain_shape import (
+    DomainShape,
+    convex_corners,
+    four_sided,
+    in_far_field,
+    itself,
+)
 from meshonet.geometry.shapes.named_edges import Labelled
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape
@@ -84,7 +90,7 @@ def default_name(number: int) -> str:
 def _outline(domain: Domain, *, named: bool, given: bool) -> Shape:
     loop, corners = domain.loops[0], None
     if given and four_sided(domain):
-        a, b, c, d = np.array(loop.corners)[loop.corner_cells == 1].tolist()
+        a, b, c, d = convex_corners(loop)
         corners = (a, b, c, d)
     outline = Outline(loop.curve.points, domain.name, corners, loop.places)
     return _labelled(outline, domain.loops) if named else outline

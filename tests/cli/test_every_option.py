@@ -158,7 +158,7 @@ MARCHED = {
 TRAINING = "arches.h5 --epochs 4 --points 60 --batch 4 -o new.safetensors"
 PICTURE = printing(f"{GRID} -o made.png", "missing.h5 -o made.png") | files(GRID, made="png", kind="png")
 LAYOUT = printing("step.wkt -o made.json", "missing.wkt -o made.json") | files("step.wkt", made="json")
-WING, PIPE = "short.toml --around 49 --span 9 --layers 18", "circle:.5 path.csv --around 16"
+WING, PIPE = "short.toml --around 33 --span 7 --layers 12", "circle:.5 path.csv --around 16"
 EFFECTS: dict[str, dict[str, Effect]] = {
     "sample-boundary": SHAPES | {
         "--family": (f"--res 9 {MADE}", "OPTION arch", "code"),
@@ -254,10 +254,10 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         },
     },
     "stack": printing(f"{WING} -o made.h5", f"missing.toml {MADE}") | files(WING) | {
-        **chosen("@wings.txt --around 49 --span 9 --layers 18 -o made-{stem}.h5 -q", "w*"),
-        **engines(f"wing.toml {WING} -o {{name}}.h5 -q"),
+        **chosen("@wings.txt --around 49 --span 9 --layers 12 -o made-{stem}.h5 -q", "w*"),
+        **engines("wing.toml short.toml --around 49 --span 9 --layers 12 -o {name}.h5 -q"),
         **flat_plate(f"{WING} {MADE}"),
-        **judged(f"{WING} {MADE}", f"moon.toml --around 49 --span 9 {MADE}"),
+        **judged(f"{WING} {MADE}", f"moon.toml --around 33 --span 7 {MADE}"),
         "--profile": (f"short.toml {WING} -o made-{{index}}.h5", "OPTION pointwise", "out"),
         "--around": (f"{WING} {MADE}", "OPTION 61", "nodes"),
         "--span": (f"{WING} {MADE}", "OPTION 11", "nodes"),
@@ -295,7 +295,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--cells": (f"circle:.5 path.csv {MADE}", "OPTION 2000", "nodes"),
         "--cell-size": (f"step.wkt path.csv {MADE}", "OPTION .5", "nodes"),
         "--layout": (f"step.wkt path.csv --cells 400 {MADE}", "OPTION tall.json", "nodes"),
-        "--walls": (f"hole.wkt path.csv --first-cell .002 {MADE}", "OPTION bolt", "error"),
+        "--walls": (f"hole.wkt path.csv --cells 900 --first-cell .02 {MADE}", "OPTION bolt", "error"),
         "--first-cell": (f"{PIPE} {MADE}", "OPTION .01", "nodes"),
         "--growth": (f"{PIPE} --first-cell .001 {MADE}", "OPTION 1.5", "nodes"),
     },
