@@ -124,3 +124,11 @@ def test_a_boundary_of_four_edges_is_a_domain_with_its_names() -> None:
     assert loop.curve.points[list(loop.corners)].tolist() == SQUARE.tolist()
     outside = domain_of(naca("0012").boundary(Sampling(ni=41, nj=9)), Sampling()).domain
     assert [each.names for each in outside.loops] == [("farfield",), ("wall",)]
+
+
+def test_a_domain_of_four_corners_is_one_block_though_one_of_them_is_blunt() -> None:
+    points = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 1.5], [0.3, 1.0]])  # the last of 142 degrees
+    shape = polygon_shape([PolygonRing(points, corners=[0, 1, 2, 3])])
+    sides = shape.boundary(Sampling(ni=11, nj=7))
+    corners = np.array([sides.south[0], sides.south[-1], sides.north[-1], sides.north[0]])
+    assert corners == pytest.approx(points)

@@ -29,11 +29,9 @@ FAILURES = 8
 """Number of consecutive attempts without improvement after which the collapse ends."""
 
 PER_CHORD = 14
-"""Number of chords for each chord that is collapsed in addition to the first. With prescribed sizes chords
-are collapsed one by one, because blocks around several elements are worse otherwise.
-"""
-ITERATIONS = (6, 12, 22)
-"""Iterations of the optimisation before a trial is judged, and before it is judged again."""
+"""Number of chords for each chord that is collapsed in addition to the first."""
+ITERATIONS = 12
+"""Iterations of the optimisation before a trial is judged."""
 
 MOST_WORK = 45_000_000
 """Number of quads times iterations after which the collapse ends; this takes some seconds."""
@@ -44,9 +42,9 @@ PER_TRIAL, PER_OPTIMUM = 3, 20
 def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None = None) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
-    If there are many chords, several are collapsed before the next optimisation; with `sizes`, the prescribed
-    lengths of edges, only one. `price` is the increase of the mean deviation from 90 degrees that is accepted
-    for one block less.
+    If there are many chords, several are collapsed before the next optimisation. `sizes` are prescribed
+    lengths of edges. `price` is the increase of the mean deviation from 90 degrees that is accepted for one
+    block less.
     """
 
     def wanted(mesh: QuadMesh) -> Floats | None:
@@ -59,16 +57,13 @@ def simplify(mesh: QuadMesh, *, price: float = PRICE, sizes: SizeMetric | None =
         left -= PER_TRIAL * tried * len(current.mesh.quads)
         if trial is None:
             break
-        for iterations in ITERATIONS:
-            left -= (PER_OPTIMUM + iterations) * len(trial.mesh.quads)
-            optimum = optimise(trial.mesh, iterations=iterations, targets=wanted(trial.mesh))
-            trial = trial.moved(optimum.mesh)
-            value = score(trial, price, wanted(trial.mesh)) if optimum.valid else np.inf
-            if not optimum.valid or less(value, best):
-                break
+        left -= (PER_OPTIMUM + ITERATIONS) * len(trial.mesh.quads)
+        optimum = optimise(trial.mesh, iterations=ITERATIONS, targets=wanted(trial.mesh))
+        trial = trial.moved(optimum.mesh)
+        value = score(trial, price, wanted(trial.mesh)) if optimum.valid else np.inf
         if less(value, best):
             current, best, failed = trial, value, set()
-            count = 1 if sizes else min(2 * count, 1 + trial.chords // PER_CHORD)
+            count = min(2 * count, 1 + trial.chords // PER_CHORD)
         else:
             failed |= {first} if count == 1 else set()
             count = 1
