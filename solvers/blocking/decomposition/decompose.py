@@ -28,7 +28,8 @@ from meshonet.solvers.blocking.decomposition.collapse.collapse import simplify
 from meshonet.solvers.blocking.decomposition.collapse.score import PRICE, score
 from meshonet.solvers.blocking.decomposition.errors import BlockingError, most_folded
 from meshonet.solvers.blocking.decomposition.field.seamless_map import seamless_map
-from meshonet.solvers.blocking.decomposition.periodic_counts import check_sides
+from meshonet.solvers.blocking.decomposition.periodic_counts import check_sides, lacking_side
+from meshonet.solvers.blocking.decomposition.quads.corner_rows import corner_row
 from meshonet.solvers.blocking.decomposition.quads.padding import (
     Span,
     loops_to_pad,
@@ -56,6 +57,7 @@ COUNT = 1500
 """Approximate number of points of the triangulation."""
 FEWER = 1
 """Number of attempts with a reduced number of singularities; later attempts use the smoothest field."""
+NEAR_CORNER = 3  # nodes of a periodic side for each quad that a row around its end is away from the corner
 PADDED = 3
 """Number of attempts in which stretches without singularities are required."""
 
@@ -175,9 +177,26 @@ def _blocks(
         if loops or spans:
             mesh = reduce(pad_span, spans, pad(mesh, loops))
             mesh = _optimised(mesh, FIRST_ITERATIONS, sizes)
+        rounded = _with_corner_rows(mesh)
+        if rounded is not mesh:
+            mesh = _optimised(rounded, FIRST_ITERATIONS, sizes)
     timings.blocks_found = len(base_complex(mesh).blocks)
     with timings.stage("collapse"):
         return simplify(mesh, price=price, sizes=sizes)
+
+
+def _with_corner_rows(mesh: QuadMesh) -> QuadMesh:
+    """Return the mesh with rows around both ends of a periodic side that could not have enough cells."""
+    side = lacking_side(base_complex(mesh).layout)
+    if side is None or (mesh.places.cells[side[[0, -1]]] != 1).any():
+        return mesh
+    made = mesh
+    for corner in side[[0, -1]].tolist():
+        row = corner_row(made, corner, max(len(side) // NEAR_CORNER, 1))
+        if row is None:
+            return mesh
+        made = row
+    return made
 
 
 def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> QuadMesh:

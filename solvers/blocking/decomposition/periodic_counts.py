@@ -64,7 +64,23 @@ def alike_along_sides(chords: Chords, counts: Indices) -> bool:
 
 
 def rows_of(chords: Chords) -> list[Row]:
-    """Return for each pair of sides the coefficients of chords, of which the sum is to be zero."""
+    """Return coefficients of chords whose sums are to be zero, for pairs of sides that may differ."""
+    return [(row, 0.0, 0.0) for row in _differences(chords) if row]
+
+
+def lacking_side(layout: Layout) -> Indices | None:
+    """Return the nodes along a periodic side with fewer cells than the other whatever the counts, or None."""
+    if not layout.mesh.domain.periodic:
+        return None
+    for row, (_, first, second) in zip(_differences(Chords.of(layout)), sides_of(layout.mesh), strict=True):
+        signs = set(np.sign(list(row.values())).tolist())
+        if len(signs) == 1:
+            return second if signs == {1.0} else first
+    return None
+
+
+def _differences(chords: Chords) -> list[dict[int, float]]:
+    """Return for each pair of sides how much oftener a chord ends on the first than on the second."""
     mesh = chords.layout.mesh
     if not mesh.domain.periodic:
         return []
@@ -79,5 +95,4 @@ def rows_of(chords: Chords) -> list[Row]:
         if start >= 0 and side[start]:
             row = rows[abs(side[start]) - 1]
             row[chord] = row.get(chord, 0.0) + float(np.sign(side[start]))
-    kept = ({chord: value for chord, value in row.items() if value} for row in rows)
-    return [(row, 0.0, 0.0) for row in kept if row]
+    return [{chord: value for chord, value in row.items() if value} for row in rows]

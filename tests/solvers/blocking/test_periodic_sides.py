@@ -19,7 +19,7 @@ from meshonet.solvers.blocking.make import make_blocks
 from meshonet.solvers.blocking.request import BlockRequest
 
 LAYERS = {"first_cell": 2e-3, "walls": ("tube", "tubes"), "growth": 1.2}
-TURNS = 5, 25, 50, 80
+TURNS = 0, 5, 25, 30, 50, 80, 90
 
 
 def triangle(turn: float) -> Domain:
