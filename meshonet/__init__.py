@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from meshonet.api.plot import plot as plot
     from meshonet.api.quality import quality as quality
     from meshonet.api.quality import quality_page as quality_page
+    from meshonet.api.stack import read_stack as read_stack
     from meshonet.api.stack import stack as stack
     from meshonet.api.sweep import sweep as sweep
     from meshonet.api.train import train as train
@@ -81,7 +82,7 @@ _MODULES = {
     "meshonet.api.models": ("models",),
     "meshonet.api.plot": ("plot",),
     "meshonet.api.quality": ("quality", "quality_page"),
-    "meshonet.api.stack": ("stack",),
+    "meshonet.api.stack": ("read_stack", "stack"),
     "meshonet.api.sweep": ("sweep",),
     "meshonet.api.train": ("train",),
     "meshonet.geometry.aircraft.aircraft": ("Aircraft",),

@@ -12,6 +12,7 @@ every corner of every cell. `meshonet.geometry.blocks.block` draws the sides.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -40,6 +41,8 @@ if TYPE_CHECKING:
 
 
 _COUNTS = attrgetter("counts")
+_MOST_SHOWN = 6
+"""Blocks whose sizes are in the text of a grid."""
 
 
 @dataclass(frozen=True)
@@ -179,9 +182,13 @@ class Grid(Connected):
         return self.nodes[..., 1]
 
     def __repr__(self) -> str:
-        sizes = ", ".join(" x ".join(map(str, block.nodes.shape[:-1])) for block in self.blocks)
+        shapes = [block.nodes.shape[:-1] for block in self.blocks]
+        sizes = ", ".join(" x ".join(map(str, shape)) for shape in shapes)
+        if len(shapes) > _MOST_SHOWN:
+            sizes = f"{len(shapes)} blocks of {sum(map(math.prod, shapes))}"
         name = f"{self.name!r}, " if self.name else ""
-        return f"Grid({name}{self.topology}, {sizes} nodes, patches {[p.name for p in self.patches]})"
+        names = list(dict.fromkeys(patch.name for patch in self.patches))
+        return f"Grid({name}{self.topology}, {sizes} nodes, patches {names})"
 
     def face(self, block: int, side: Side) -> Floats:
         """Return the nodes of a side of a block."""

@@ -50,6 +50,21 @@ class Row:
     ------
     InputError
         Curves that form no channel; profiles out of order or out of the channel; gaps wider than the span.
+
+    Examples
+    --------
+    Ellipses on two cylinders, thicker at the hub:
+
+    >>> import numpy as np
+    >>> t = np.linspace(0.0, 2.0 * np.pi, 100, endpoint=False)
+    >>> profiles = []
+    >>> for radius, thickness in ((0.5, 0.012), (0.8, 0.008)):
+    ...     x, angle = 0.1 * np.cos(t), 0.5 * thickness * np.sin(t) / radius
+    ...     profiles.append(np.stack([x, radius * np.sin(angle), radius * np.cos(angle)], axis=1))
+    >>> hub, shroud = [[-0.3, 0.5], [0.4, 0.5]], [[-0.3, 0.8], [0.4, 0.8]]
+    >>> row = Row(profiles, hub, shroud, blades=16, tip_gap=0.003)
+    >>> round(row.chord, 3)
+    0.2
     """
 
     profiles: Sequence[Floats]
@@ -72,7 +87,8 @@ class Row:
             raise InputError(f"{len(self.profiles)} of a blade", remedy, place="profiles")
         for place, gap in (("tip_gap", self.tip_gap), ("hub_gap", self.hub_gap)):
             if not isinstance(gap, Real) or not 0.0 <= gap < math.inf:
-                raise InputError(f"{gap} is no width of a gap", "use 0 or more", place=place)
+                remedy = "use a number, 0 or more, in the unit of the points"
+                raise InputError(f"{gap!r} is no width of a gap", remedy, place=place)
         if self.unit and self.unit not in UNITS:
             raise InputError(f"unit {self.unit!r}", f"use {', '.join(UNITS)}", place="unit")
         for place in ("hub", "shroud"):

@@ -1,5 +1,6 @@
 """`meshonet.plot`."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from meshonet.api.quality import single_grid
@@ -18,7 +19,7 @@ def plot(
     every: int | None = None,
     slice: str | None = None,  # noqa: A002
     seen_from: tuple[float, float] | None = None,
-    span: float | tuple[float, ...] = (),
+    span: float | Sequence[float] = (),
     meridional: bool = False,
     to_format: str | None = None,
 ) -> None:
@@ -41,7 +42,7 @@ def plot(
         the whole boundary of a volume without walls.
     seen_from : tuple of 2 float, optional
         Azimuth and elevation in degrees of the view in space.
-    span : float or tuple of float, optional
+    span : float or sequence of float, optional
         Parts of the span of a blade row, 0 to 1 from hub to shroud, at which its sections are drawn.
     meridional : bool, optional
         Draw the meridional section of a blade row, in x and r.
@@ -58,7 +59,7 @@ def plot(
     >>> import meshonet
     >>> plot(meshonet.tfi("naca:2412", res=(41, 17)), "grid.png", metric=None)
     """
-    spans = span if isinstance(span, tuple) else (span,)
+    spans = tuple(span) if isinstance(span, Sequence) else (span,)
     picture = Picture(zoom, every, slice, seen_from, spans, meridional, metric)
     kind = picture_format(str(output), to_format).name
     with whole_file(str(output)) as part:

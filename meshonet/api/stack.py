@@ -1,4 +1,4 @@
-"""`meshonet.stack`."""
+"""`meshonet.stack` and `meshonet.read_stack`."""
 
 from pathlib import Path
 from typing import Any
@@ -61,3 +61,31 @@ def stack(
     if surface and isinstance(what, Stack):
         return stack_surface(what, stack_request(**parameters))[0]
     return make_stacked(what, **parameters).grid
+
+
+def read_stack(path: str | Path) -> Stack | Row | Aircraft:
+    r"""Return what a TOML file of `stack` describes, for example to change it with `dataclasses.replace`.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    Stack, Row or Aircraft
+        A wing, blade or duct; a row of blades, its lengths in metres; or an aircraft.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read, or is not of this kind, with the place.
+
+    Examples
+    --------
+    >>> section = "[[sections]]\nairfoil = 'naca:0012'\nchord = {}\nz = {}\n"
+    >>> _ = Path("wing.toml").write_text(section.format(1.0, 0.0) + section.format(0.5, 2.0))
+    >>> read_stack("wing.toml").chord
+    1.0
+    """
+    return stack_of(str(path))

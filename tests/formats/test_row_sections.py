@@ -132,7 +132,7 @@ def test_what_is_no_row_has_no_sections(tmp_path: Path) -> None:
 
 def test_several_spans_are_beside_each_other(tmp_path: Path) -> None:
     sizes = []
-    for number, span in enumerate((0.5, (0.2, 0.5, 0.8))):
+    for number, span in enumerate((0.5, (0.2, 0.5, 0.8), [0.2, 0.8])):
         meshonet.plot(annulus(), tmp_path / f"{number}.svg", span=span)
         sizes.append((tmp_path / f"{number}.svg").read_text().count('id="axes_'))
-    assert sizes == [2, 4]  # and the scale of colours
+    assert sizes == [2, 4, 3]  # and the scale of colours

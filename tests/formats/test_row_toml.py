@@ -1,12 +1,14 @@
 """Rows of blades in TOML: what is read, and which place is named where something is not right."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import blade_row
 import numpy as np
 import pytest
 
+import meshonet
 from meshonet.formats.stack import stack_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.rows.row import Row
@@ -56,6 +58,15 @@ def test_the_axis_may_be_z_and_lengths_in_millimetres(tmp_path: Path) -> None:
     for own, given in zip(row.profiles, blade_row.profiles(), strict=True):
         assert own == pytest.approx(given, abs=1e-12)
     assert row.tip_gap == pytest.approx(0.005)
+
+
+def test_python_reads_a_row_and_changes_one_thing(tmp_path: Path) -> None:
+    row = meshonet.read_stack(blade_row.write_row(tmp_path, 'unit = "cm"\ntip_gap = 0.02'))
+    assert isinstance(row, Row)
+    wider = replace(row, tip_gap=2.0 * row.tip_gap)
+    assert wider.tip_gap == pytest.approx(4e-4)
+    assert (wider.blades, wider.unit, wider.name) == (row.blades, "cm", "row")
+    assert wider.channel.tip < row.channel.tip
 
 
 def test_inlet_and_outlet_may_be_places_along_the_axis(tmp_path: Path) -> None:

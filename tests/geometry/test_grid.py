@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.growth import across_wake, beyond_seam
 from meshonet.geometry.quality.measure import per_cell
@@ -63,6 +65,14 @@ def test_a_grid_says_what_it_is_in_one_line() -> None:
     x, y = np.meshgrid(np.linspace(0, 2, 5), np.linspace(0, 1, 3), indexing="ij")
     grid = Grid.from_nodes(np.stack([x, y], axis=-1), name="duct")
     assert repr(grid) == "Grid('duct', quad, 5 x 3 nodes, patches ['south', 'east', 'north', 'west'])"
+
+
+def test_a_grid_of_many_blocks_says_how_many_instead_of_their_sizes_and_each_name_once() -> None:
+    x, y = np.meshgrid(np.linspace(0, 1, 5), np.linspace(0, 1, 3), indexing="ij")
+    nodes = [np.stack([x + k, y], axis=-1) for k in range(9)]
+    patches = tuple(Patch("wall", "south", 0, 4, block=k) for k in range(9))
+    grid = Grid(tuple(map(Block, nodes)), patches, (), "row")
+    assert repr(grid) == "Grid('row', blocks, 9 blocks of 135 nodes, patches ['wall'])"
 
 
 def test_quality_prints_as_a_table_of_metrics() -> None:

@@ -189,7 +189,7 @@ def test_a_row_may_be_given_as_lists() -> None:
         ({"blades": 2.5}, "blades: 2.5 blades; use a whole number"),
         ({"blades": "23"}, "blades: 23 blades; use a whole number"),
         ({"tip_gap": np.nan}, "tip_gap: nan is no width of a gap"),
-        ({"hub_gap": "1 %"}, "hub_gap: 1 % is no width of a gap"),
+        ({"hub_gap": "1 %"}, "hub_gap: '1 %' is no width of a gap; use a number"),
     ],
 )
 def test_what_is_no_row_in_python_is_refused(change, words: str) -> None:
