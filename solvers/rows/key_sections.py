@@ -173,10 +173,10 @@ def _carried(
     Nodes keep their share of the way from inlet to blade, along it, and on to the outlet, and follow the
     middle line of the blade in theta. Between inlet, outlet and layers the rest of displacements is harmonic.
     """
-    given = before.layout.mesh.nodes
-    shares, ring = before.plane.shares(given), plane.cascade.ring
+    nodes = before.layout.mesh.nodes
+    shares, ring = before.plane.shares(nodes), plane.cascade.ring
     aside = plane.camber(shares) - before.plane.camber(shares)
-    start = np.stack([plane.stations(shares), given[:, 1] + aside], axis=1)
+    start = np.stack([plane.stations(shares), nodes[:, 1] + aside], axis=1)
     end, front = start.copy(), plane.front_arcs(places)
     lines, walls = ring.columns(front)
     inner = norms(start[plan.outward] - start[plan.columns[:, -1]])

@@ -95,7 +95,7 @@ def _integrals(count: int) -> Floats:
 
 def _polynomials(x: Floats, count: int) -> list[Floats]:
     """Return the first `count` Chebyshev polynomials (n,) at x (n,)."""
-    found = [np.ones_like(x), x]
-    while len(found) < count:
-        found.append(2.0 * x * found[-1] - found[-2])
-    return found[:count]
+    values = [np.ones_like(x), x]
+    while len(values) < count:
+        values.append(2.0 * x * values[-1] - values[-2])
+    return values[:count]

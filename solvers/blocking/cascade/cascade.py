@@ -56,6 +56,7 @@ class Cascade:
     near : distances upstream and downstream of the blade, in pitches, at which straight rows begin, if
         inlet and outlet are that far away.
     centre : origin of axial distances, inside the blade; the default is a point far from its surface.
+    marched : the layers around the blade, where they are known.
     """
 
     blade: Loop
@@ -66,12 +67,11 @@ class Cascade:
     name: str = ""
     near: tuple[float, float] = (NEAR, NEAR)
     centre: complex | None = None
+    marched: Ring | None = None
 
     def ending(self, near: tuple[float, float], centre: complex) -> Cascade:
         """Return the cascade with another `near` and `centre`, which layers do not depend on."""
-        other = replace(self, near=near, centre=centre)
-        vars(other)["ring"] = self.ring
-        return other
+        return replace(self, near=near, centre=centre, marched=self.ring)
 
     @property
     def opposite(self) -> bool:
@@ -132,6 +132,8 @@ class Cascade:
     @cached_property
     def ring(self) -> Ring:
         """The layers around the blade."""
+        if self.marched:
+            return self.marched
         largest = self.blade.length / COLUMNS
         return march_ring(self.blades, 0, self.layers.first, self.thickness, largest)
 
