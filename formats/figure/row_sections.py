@@ -35,6 +35,8 @@ _STEP = 8
 _NEWTON = 8
 _BALANCED = 1e-6
 """Relative difference of the moments of inertia of a ring's nodes across its axis, at most."""
+_ALONG = 1.0 - 1e-9
+"""Least component of the direction of an axis that is one of the coordinates."""
 _AT_ONCE = 1 << 13
 """Nodes that are looked up together."""
 
@@ -68,6 +70,13 @@ class RowSections:
         if screw is None:
             return 2.0 * math.pi, *self._axis_of_ring()
         return abs(screw.angle), screw.centre, screw.axis
+
+    @property
+    def axis_name(self) -> str:
+        """Name of the axis, ``x`` or ``z``, or ``axis`` if it is none of these."""
+        direction = np.abs(self._axis[2])
+        k = int(direction.argmax())
+        return "xyz"[k] if direction[k] > _ALONG else "axis"
 
     def _axis_of_ring(self) -> tuple[Floats, Floats]:
         """Return a point of the axis and its direction: around it a ring's shroud is balanced, else x."""

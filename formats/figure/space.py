@@ -153,12 +153,12 @@ def _row_figure(grid: Grid, values: list[Any] | None, colouring: Colouring | Non
     sections, zoom = RowSections(grid), flat_box(view.zoom)
     if view.meridional:
         title = f"{grid.name}   meridional".strip()
-        cuts, names, labels = [sections.meridional(values)], ["x", "r"], [""]
+        cuts, names, labels = [sections.meridional(values)], [sections.axis_name, "r"], [""]
     else:
         title = f"{grid.name}   span {', '.join(f'{span:g}' for span in view.span)}".strip()
         cuts, names = (
             [sections.at(span, values) for span in view.span],
-            ["m'", "r theta"],
+            ["length along the meridian", "r theta"],
         )
         labels = [f"span {span:g}" if len(view.span) > 1 else "" for span in view.span]
     return _sections_figure(replace(grid, name=title), cuts, names, colouring, zoom, labels)

@@ -53,7 +53,7 @@ class Gate:
         figure = self.figure(figures, more)
         if not beyond(figure.value, self.compare, self.limit):
             return None
-        return f"{self._what} is {figure.value:.6g}{figure.where}, and {{fail_on}} '{self.text}'"
+        return f"{self._what} is {figure.value:.6g}{figure.where}, which fails {{fail_on}} '{self.text}'"
 
     def in_short(self, figure: Figure) -> str:
         """Return the figure and the limit that it is beyond as text: ``max_angle.max 178.2 > 170``."""

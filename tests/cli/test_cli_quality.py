@@ -121,7 +121,7 @@ def test_json_names_the_gates_and_checks_that_are_not_met(
     words = ("quality", grid_vts, folded_vts, "--fail-on", "folded>0", "--profile", "verdict")
     good, bad = meshonet(*words, "--json").objects
     assert good["gates_not_met"] == []
-    assert bad["gates_not_met"][0].endswith("and --fail-on 'folded>0'")
+    assert bad["gates_not_met"][0].endswith("which fails --fail-on 'folded>0'")
     assert "profile verdict: folded is" in bad["gates_not_met"][1]
 
 

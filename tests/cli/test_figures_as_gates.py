@@ -96,7 +96,7 @@ def test_gates_on_growth_name_direction_and_place(meshonet: Meshonet, c_vts: Pat
         i, j = greatest[along]["at"]
         where = f" along {along} at i={i}, j={j}"
         done = meshonet("quality", c_vts, c_vts, "--summary", "--fail-on", f"{gate}>1.01")
-        assert f"{gate} is {greatest[along]['max']:.6g}{where}, and --fail-on" in done.err
+        assert f"{gate} is {greatest[along]['max']:.6g}{where}, which fails --fail-on" in done.err
         assert f"{gate} {greatest[along]['max']:.4g} > 1.01{where}" in done.out
 
 
@@ -109,7 +109,7 @@ def test_gates_on_growth_of_blocks_name_the_block(meshonet: Meshonet) -> None:
     along = max((name for name in growth if growth[name]), key=lambda name: growth[name]["max"])
     block, i, j = growth[along]["at"]
     done = meshonet("quality", "d.h5", "-q", "--fail-on", "growth>1")
-    assert f" along {along} at block={block}, i={i}, j={j}, and --fail-on" in done.err
+    assert f" along {along} at block={block}, i={i}, j={j}, which fails --fail-on" in done.err
 
 
 def test_a_surface_has_no_faces_to_gate(meshonet: Meshonet) -> None:

@@ -17,7 +17,9 @@ from meshonet.geometry.blocks.copies import copied
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.revolve import Revolution, revolved
+from meshonet.geometry.blocks.transform import rotated
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.rows.frame import axis_along
 
 PITCH = 2.0 * np.pi / 9
 INNER, OUTER, LENGTH = 1.0, 2.0, 3.0
@@ -128,6 +130,13 @@ def test_what_is_no_row_has_no_sections(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=r"write .png, .svg or .pdf"):
             meshonet.plot(annulus(), tmp_path / "made.html", **setting)  # type: ignore[arg-type]
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("way", "name"), [((1, 0, 0), "x"), ((0, 0, -1), "z"), ((0, 1, 0), "y"), ((1, 1, 0), "axis")]
+)
+def test_the_meridional_section_names_the_axis_of_its_row(way: tuple[int, int, int], name: str) -> None:
+    assert RowSections(rotated(annulus(), axis_along(way).inverse())).axis_name == name
 
 
 def test_several_spans_are_beside_each_other(tmp_path: Path) -> None:

@@ -53,7 +53,7 @@ def test_a_gate_may_name_a_figure_beside_the_metrics() -> None:
     figures = figures_of(parallelogram())
     assert gate.broken(figures, {"relative_l2": Figure(0.009)}) is None
     message = gate.broken(figures, {"relative_l2": Figure(0.02)})
-    assert message == "relative_l2 is 0.02, and {fail_on} 'relative_l2>1e-2'"
+    assert message == "relative_l2 is 0.02, which fails {fail_on} 'relative_l2>1e-2'"
     with pytest.raises(InputError, match="statistic 'mean' is not known; use no statistic with relative_l2"):
         parse_gate("relative_l2.mean>1e-2", ("relative_l2",))
     with pytest.raises(InputError, match="metric 'relative_l2' is not known; use one of folded, max_angle"):
@@ -104,7 +104,7 @@ def test_growth_is_the_greatest_along_both_families_and_wall_growth_along_those_
     assert figures("growth") == Figure(1.5, (2, 0), "xi")
     assert figures("wall_growth") == Figure(1.25, (0, 1), "eta")
     message = parse_gate("growth>1.4").broken(figures)
-    assert message == "growth is 1.5 along xi at i=2, j=0, and {fail_on} 'growth>1.4'"
+    assert message == "growth is 1.5 along xi at i=2, j=0, which fails {fail_on} 'growth>1.4'"
     assert parse_gate("wall_growth>1.4").broken(figures) is None
 
 
@@ -112,7 +112,7 @@ def test_places_of_metrics_are_told_where_they_are_of_the_figure() -> None:
     nodes = stretched().nodes.copy()
     nodes[3, 2] += [0.4, 0.0]
     figures = figures_of(Grid.from_nodes(nodes))
-    assert "at i=2, j=1, and" in str(parse_gate("max_angle>91").broken(figures))
+    assert "at i=2, j=1, which fails" in str(parse_gate("max_angle>91").broken(figures))
     assert " at " not in str(parse_gate("max_angle.mean>0").broken(figures))
 
 
