@@ -66,6 +66,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     bend = "[[pieces]]\nline = 2\n[[pieces]]\narc = 90\nradius = 2\ntowards = [0, 1, 0]\n"
     (made / "bend.toml").write_text(bend)
     write_row(made).rename(made / "rotor.toml")
+    shutil.copy(ROOT / "examples" / "aircraft" / "jet.toml", made / "aircraft.toml")
     square = np.stack(np.meshgrid([0.0, 1.0], [1.0, 1.5, 2.0], indexing="ij"), axis=-1)
     walls = (Patch("hub", "south", 0, 1, kind="wall"), Patch("shroud", "north", 0, 1, kind="wall"))
     revolved(Grid((Block(square),), walls), Revolution(360.0 / BLADES, 3)).write(made / "rotor.cgns")

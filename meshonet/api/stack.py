@@ -8,9 +8,7 @@ from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.stack import Stack, Tip
-from meshonet.solvers.pipeline.stacked import make_stacked, with_tip
-from meshonet.solvers.pipeline.stacks import stack_surface
-from meshonet.solvers.stacking.request import stack_request
+from meshonet.solvers.pipeline.stacked import make_stacked, stacked_surface, with_tip
 
 
 def stack(
@@ -58,8 +56,8 @@ def stack(
     """
     what = sections if isinstance(sections, Stack | Row | Aircraft) else stack_of(str(sections))
     what = with_tip(what, tip, surface=surface)
-    if surface and isinstance(what, Stack):
-        return stack_surface(what, stack_request(**parameters))[0]
+    if surface and not isinstance(what, Row):
+        return stacked_surface(what, **parameters)[0]
     return make_stacked(what, **parameters).grid
 
 

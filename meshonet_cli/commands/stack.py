@@ -13,6 +13,7 @@ EXAMPLES = (
     "meshonet stack wing.toml --y-plus 1 --reynolds 6e6 --around 161 --span 65 -o fine.cgns",
     "meshonet stack rotor.toml --cells 100000 --copies 2 -o passages.cgns",
     "meshonet stack wing.toml --tip open --surface -o surface.h5",
+    "meshonet stack aircraft.toml --first-cell 0.02 --growth 1.4 --surface -o surface.cgns",
 )
 _sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
 _layer = o.option_of(o.BOUNDARY_LAYER)

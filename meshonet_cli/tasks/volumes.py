@@ -10,6 +10,7 @@ from meshonet.api.grid import domain_parameters
 from meshonet.formats.path import path_of
 from meshonet.formats.section import read_sections
 from meshonet.formats.stack import stack_of
+from meshonet.geometry.aircraft.aircraft import Aircraft
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.revolve import Revolution
 from meshonet.geometry.curves.path import Path
@@ -20,10 +21,8 @@ from meshonet.geometry.sections.stack import Stack, Tip
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.solvers.pipeline.parameters import grid_request
 from meshonet.solvers.pipeline.request import GridRequest
-from meshonet.solvers.pipeline.stacked import Sections, make_stacked, with_tip
-from meshonet.solvers.pipeline.stacks import stack_surface
+from meshonet.solvers.pipeline.stacked import Sections, make_stacked, stacked_surface, with_tip
 from meshonet.solvers.pipeline.sweeps import make_sweep
-from meshonet.solvers.stacking.request import StackRequest, stack_request
 from meshonet.solvers.stages import stage
 from meshonet.solvers.sweeping.sweep import Sweep
 from meshonet_cli.batch.item import Item
@@ -44,12 +43,10 @@ def write_stacks(
 ) -> int:
     """Write the volumes or surfaces of the stacks and return the exit code."""
     chosen = _shared(parameters, batch) | {"percentiles": criteria.percentiles}
-    of_rows = () if surface else ("cells", "copies")
-    request = stack_request(**{name: value for name, value in chosen.items() if name not in of_rows})
     if surface and criteria:
         raise InputError("{fail_on} and {profile} judge cells, and a surface has none", "leave them out")
     volumes = each(_stacked, parameters=chosen, criteria=criteria)
-    make = each(_surface, request=request) if surface else volumes
+    make = each(_surface, parameters=chosen) if surface else volumes
     return batch.run(BatchTask(partial(_stack, tip=tip, surface=surface), make, nodes=VOLUME_NODES))
 
 
@@ -61,10 +58,10 @@ def _stacked(item: Item[Sections], parameters: Mapping[str, Any], criteria: Crit
     return reported(item, make_stacked(item.what, **parameters), criteria)
 
 
-def _surface(item: Item[Stack], request: StackRequest) -> tuple[Grid, Delivered]:
+def _surface(item: Item[Stack | Aircraft], parameters: Mapping[str, Any]) -> tuple[Grid, Delivered]:
     seconds: dict[str, float] = {}
     with stage("grid", seconds):
-        grid, notes = stack_surface(item.what, request)
+        grid, notes = stacked_surface(item.what, **parameters)
     report = delivered(item, grid, part_names(grid), "surface", notes=notes)
     report.seconds |= seconds
     return grid.with_provenance(**change_facts(notes), **provenance()), report

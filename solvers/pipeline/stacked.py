@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.wall_surface import wall_surface
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.sections.stack import Stack, Tip
 from meshonet.solvers.aircraft.request import aircraft_request
@@ -12,7 +14,7 @@ from meshonet.solvers.keywords import refuse_given
 from meshonet.solvers.pipeline.aircraft import make_aircraft
 from meshonet.solvers.pipeline.result import Result
 from meshonet.solvers.pipeline.rows import make_row
-from meshonet.solvers.pipeline.stacks import make_stack
+from meshonet.solvers.pipeline.stacks import make_stack, stack_surface
 from meshonet.solvers.rows.request import row_request
 from meshonet.solvers.stacking.request import stack_request
 
@@ -23,13 +25,24 @@ Sections: TypeAlias = Stack | Row | Aircraft
 def with_tip(what: Sections, tip: Tip | None, *, surface: bool = False) -> Sections:
     """Return what is given, a stack with a tip of this shape if it is not None.
 
-    Raises InputError: a tip, or a `surface` instead of a volume, of a row or an aircraft, which have neither.
+    Raises InputError: a tip of a row or an aircraft; a `surface` of a row, which has none.
     """
     if isinstance(what, Stack):
         return what.with_tip(tip)
     name = "a row" if isinstance(what, Row) else "an aircraft"
-    refuse_given(name, {"tip": tip, "surface": surface})
+    refuse_given(name, {"tip": tip, "surface": surface and isinstance(what, Row)})
     return what
+
+
+def stacked_surface(what: Stack | Aircraft, **parameters: Any) -> tuple[Grid, tuple[str, ...]]:
+    """Return the surface patches of a wing or an aircraft, and notes; the parameters are those of its kind.
+
+    Raises InputError: as `stack_surface` and `make_aircraft`; NoValidGridError: as the latter.
+    """
+    if isinstance(what, Stack):
+        return stack_surface(what, stack_request(**parameters))
+    solution = make_aircraft(what, aircraft_request(**parameters)).solution
+    return wall_surface(solution.grid), solution.notes
 
 
 def make_stacked(what: Sections, **parameters: Any) -> Result:

@@ -8,6 +8,8 @@ from command_line import Meshonet
 
 import meshonet as library
 from meshonet.formats.registry import read_grids
+from meshonet.formats.stack import stack_of
+from meshonet.geometry.aircraft.aircraft import Aircraft
 
 SECTIONS = """
 [[sections]]
@@ -139,9 +141,36 @@ def test_a_body_with_a_wing_is_made_with_its_names(meshonet: Meshonet, tmp_path:
     assert {patch.name for patch in grid.patches} == {"fuselage", "wing", "tip", "symmetry", "farfield"}
 
 
+def _flux_of_z(nodes: np.ndarray) -> float:
+    """The flux of (0, 0, z) through a patch: together that of a closed surface is its volume."""
+    one, two = nodes[1:, 1:] - nodes[:-1, :-1], nodes[:-1, 1:] - nodes[1:, :-1]
+    middle = 0.25 * (nodes[1:, 1:] + nodes[:-1, :-1] + nodes[:-1, 1:] + nodes[1:, :-1])[..., 2]
+    return float((0.5 * np.cross(one, two)[..., 2] * middle).sum())
+
+
+def test_the_surface_of_a_body_with_a_wing_is_that_of_its_volume(meshonet: Meshonet, tmp_path: Path) -> None:
+    (tmp_path / "jet.toml").write_text(AIRCRAFT)
+    words = "--around 49 --span 5 --first-cell 0.02 --growth 1.5 --far-field 6 --surface -q"
+    assert meshonet("stack", "jet.toml", *words.split(), "-o", "surface.cgns").code == 0
+    (surface,) = read_grids("surface.cgns")
+    names = surface.provenance["zones"]
+    assert set(names) == {"fuselage", "wing", "tip"}
+    volumes = [_flux_of_z(block.nodes) for block in surface.blocks]
+    assert min(volume for volume, name in zip(volumes, names, strict=True) if name != "wing") > 0.0
+    jet = stack_of("jet.toml")
+    assert isinstance(jet, Aircraft)
+    x, r = jet.body.meridional(np.linspace(0.0, jet.body.length, 999)).T
+    chord = np.linspace(2.0 - 0.6 / 3.0, 1.0, 99)  # of the wing outside of the body
+    wing = 0.0817 * np.trapezoid(chord**2, dx=2.4 / 98)  # area of NACA 2412 over its chord squared
+    assert sum(volumes) == pytest.approx(0.5 * np.pi * np.trapezoid(r * r, x) + wing, rel=0.03)
+    ends = [surface.face(patch.block, patch.side) for patch in surface.patches if patch.name == "symmetry"]
+    assert ends
+    assert not any(end[..., 2].any() for end in ends)
+
+
 @pytest.mark.parametrize(
     "words",
-    ["--layers 31", "--copies 2", "--cells 5000 --around 65", "--tip round", "--surface", "--revolve 20"],
+    ["--layers 31", "--copies 2", "--cells 5000 --around 65", "--tip round", "--revolve 20"],
 )
 def test_options_of_other_stacks_are_refused_for_a_body_with_a_wing(
     meshonet: Meshonet, tmp_path: Path, words: str

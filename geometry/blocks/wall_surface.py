@@ -1,0 +1,44 @@
+"""The walls of a volume grid as a surface grid."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import SIDES
+from meshonet.geometry.blocks.block import Block, face_of, part_of
+from meshonet.geometry.blocks.find_connections import find_connections
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+
+
+def wall_surface(grid: Grid) -> Grid:
+    """Return a grid of the patches of a volume that are walls, with normals that point into the volume.
+
+    Blocks of the volume are right-handed. Edges in the plane z = 0 are its patch ``symmetry``; the names of
+    the walls are those of its zones.
+    """
+    walls = [patch for patch in grid.patches if patch.kind == "wall"]
+    blocks = [_outwards(grid, patch) for patch in walls]
+    zones = {"zones": tuple(patch.name for patch in walls)}
+    return Grid(tuple(blocks), tuple(_symmetry(blocks)), find_connections(blocks), grid.name, zones)
+
+
+def _outwards(grid: Grid, patch: Patch) -> Block:
+    """Return the nodes (n, m, 3) of a patch, i x j into the volume."""
+    face = face_of(grid.blocks[patch.block].nodes, patch.side)
+    nodes = part_of(face, patch.range(face.shape[:2]))
+    axis, end = patch.place
+    inwards = (axis != 1) == (end == 0)
+    return Block(np.ascontiguousarray(nodes if inwards else nodes.swapaxes(0, 1)))
+
+
+def _symmetry(blocks: Sequence[Block]) -> list[Patch]:
+    patches = []
+    for number, block in enumerate(blocks):
+        for side in SIDES:
+            edge = face_of(block.nodes[..., 2], side)
+            if not edge.any():
+                patches.append(Patch("symmetry", side, 0, len(edge) - 1, block=number))
+    return patches
