@@ -22,13 +22,13 @@ from meshonet.solvers.aircraft.body_plane import LevelPlan, level_patches
 from meshonet.solvers.aircraft.exact_cells import at_height, between_walls
 from meshonet.solvers.aircraft.plan import GROWTH, plan_of
 from meshonet.solvers.aircraft.request import AircraftRequest
+from meshonet.solvers.aircraft.tip_fill import tip_patches
 from meshonet.solvers.aircraft.wall_normals import off_body, off_wing
 from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.blocking.layers.attach import sampled
 from meshonet.solvers.rows.columns import arcs_of, resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines
 from meshonet.solvers.rows.span_spacing import line_parts, spaced_cells, two_sided
-from meshonet.solvers.stacking.tip import Cap
 
 _UNBOUNDED = 1e9
 """Length of the last cells of lines, which nothing limits but their growth."""
@@ -57,7 +57,7 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
     table = np.stack([np.concatenate([patch.reshape(-1, 3) for patch in level]) for level in levels])
     ring = np.arange(shapes[0][0] * shapes[0][1]).reshape(shapes[0])
     beside = _along_wing(space, wing, table, ring, plan.span, first, growth)
-    caps = _cap(space, wing)
+    caps = _cap(space, wing, first)
     tip = np.concatenate([beside[-1], *(patch.reshape(-1, 3) for patch in caps)])
     beyond = _beyond_tip(space, tip, first, growth)
     shapes += [patch.shape[:2] for patch in caps]
@@ -120,10 +120,10 @@ def _along_wing(
     return places
 
 
-def _cap(space: BodyMap, wing: WingLines) -> list[Floats]:
+def _cap(space: BodyMap, wing: WingLines, first: float) -> list[Floats]:
     """Return the patches (ni, nj, 3) of s, theta, zeta that fill the last section: a ring and a core."""
     loop = wing.points(np.ones((1, len(wing.roots))))[0]
-    return [space.places(patch) for patch in Cap(bulge=0.0).patches(loop)]
+    return [space.places(patch) for patch in tip_patches(loop, first)]
 
 
 def _beyond_tip(space: BodyMap, tip: Floats, first: float, growth: float) -> Floats:

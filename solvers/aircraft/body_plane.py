@@ -24,18 +24,19 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.elementary import arctan2, cos, sin
-from meshonet.geometry.errors import InputError
 from meshonet.geometry.surface.pole_core import PoleCore, core_of
-from meshonet.solvers.aircraft.collar import Rectangle, collar, corner_nodes, lengths, outer_cells, outer_loop
+from meshonet.solvers.aircraft.collar import (
+    Rectangle,
+    collar,
+    corner_nodes,
+    lengths,
+    outer_cells,
+    outer_loop,
+    rectangle,
+)
 from meshonet.solvers.rows.span_spacing import smooth_arcs, smooth_cells
+from meshonet.solvers.stacking.tip import least_sine
 
-MARGIN = 0.28
-"""Least distance of a collar's outer rectangle from the section, in chords, where the body is long enough.
-
-Where nose, tail, keel and crown are far away, near the tip, it is larger: fewer cells lead there from it.
-"""
-_SHARE = 0.5
-"""Part of the way from the section to nose, tail, keel or crown that a collar takes at most."""
 _CORNER = 4
 """Least number of nodes from the middle of a nose or edge to the corners of the rectangle."""
 _FEWEST = 6
@@ -48,6 +49,12 @@ _EVEN = 1.15
 """Largest ratio of neighbouring outermost cells of a collar."""
 _WIDEST = 1.25
 """Growth of cells from a collar to nose, tail, keel and crown."""
+_STRAIGHT = 0.0, 0.3, 0.6, 1.0
+"""Shares of straight lines in collars that are tried, until no angle has a sine below the next number.
+
+Elliptic grids may fold at a thin trailing edge that lies far from the middle of the rectangle.
+"""
+_SINE = 0.15
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +69,7 @@ class LevelPlan:
     low, top : cells from keel and crown to a collar.
     first, growth : height of the cells at the wing, and their growth.
     ends : nose and tail.
+    straight : of the lines of collars (`collar`).
     """
 
     length: float
@@ -73,12 +81,13 @@ class LevelPlan:
     first: float
     growth: float
     ends: tuple[_End, ...] = ()
+    straight: float = 0.0
 
 
 def planned(sections: list[tuple[Floats, Floats]], length: float, first: float, growth: float) -> LevelPlan:
     """Return the counts for sections from the root on: (n, 2) s and theta, (2,) lengths of their units."""
-    root, scale = sections[0]
-    edge, nose = corner_nodes(root * scale, rectangle(root, length, scale), _CORNER)
+    corners = [corner_nodes(s * c, rectangle(s, length, c), _CORNER) for s, c in sections]
+    edge, nose = (round(sum(each) / len(corners)) for each in zip(*corners, strict=True))
     plan = LevelPlan(length, edge, nose, 4, _FEWEST, _FEWEST, first, growth)
     for section, scales in sections:
         plane = section * scales
@@ -86,7 +95,11 @@ def planned(sections: list[tuple[Floats, Floats]], length: float, first: float, 
         away = float(lengths(plane, outer_loop(plane, box, (edge, nose))).max())
         last = min(outer_cells(box, (edge, nose)))
         plan = replace(plan, rows=max(plan.rows, smooth_cells(away, (first, last), growth, 4)))
-    levels = [_Level.of(plan, section, scales) for section, scales in sections]
+    for straight in _STRAIGHT:
+        plan = replace(plan, straight=straight)
+        levels = [_Level.of(plan, section, scales) for section, scales in sections]
+        if all(level.sine > _SINE for level in levels):
+            break
     low, top = (
         max(smooth_cells(level.bands[k], (level.last[1 + k], None), _WIDEST, _FEWEST) for level in levels)
         for k in (0, 1)
@@ -180,13 +193,18 @@ class _Level:
             )
         grown = smooth_arcs(lengths(plane, outer), (plan.first, None), plan.rows)
         last = _graded(np.minimum(last, _AHEAD * (grown[:, -1] - grown[:, -2])))
-        ring = collar(plane, outer, plan.rows, plan.first, last)
+        ring = collar(plane, outer, plan.rows, plan.first, last, plan.straight)
         step = norms(ring[:, -1] - ring[:, -2])
         parts = (
             step[half - nose + 1 : half + nose], step[half + nose : -edge - 1],
             step[edge + 1 : half - nose + 1], np.concatenate([step[:edge], step[-edge:]]),
         )  # fmt: skip
         return cls(plan, box, scale, ring, tuple(float(np.median(part)) for part in parts))  # type: ignore[arg-type]
+
+    @property
+    def sine(self) -> float:
+        """The least sine of an angle in the collar."""
+        return least_sine(np.pad(self.ring[::-1], ((0, 0), (0, 0), (0, 1))))
 
     @property
     def ways(self) -> tuple[float, float]:
@@ -248,23 +266,6 @@ def level_patches(plan: LevelPlan, section: Floats, scale: Floats) -> list[Float
         for patch in end.patches(level.ways[k], level.ends[k], level.across[k]):
             patches.append(patch * [-1.0, 1.0] + [plan.length, 0.0] if k else patch)
     return patches
-
-
-def rectangle(section: Floats, length: float, scale: Floats) -> Rectangle:
-    """Return the rectangle around a section (n, 2) of s and theta, in lengths in space.
-
-    Raises InputError: the section meets the plane of symmetry.
-    """
-    (front, low), (back, high) = (section * scale).min(axis=0), (section * scale).max(axis=0)
-    end, girth = length * float(scale[0]), np.pi * float(scale[1])
-    margin = MARGIN * (back - front)
-    if low <= 0.0 or high >= girth or front <= 0.0 or back >= end:
-        problem = "the wing meets the plane of symmetry above or below the body, or its nose or tail"
-        raise InputError(problem, "move the wing, or make it smaller", place="wings")
-    ways = [way * _SHARE for way in (front, end - back, low, girth - high)]
-    margin = max(margin, math.sqrt(margin * min(ways)))
-    before, behind, below, above = (min(margin, way) for way in ways)
-    return Rectangle(float(front - before), float(back + behind), float(low - below), float(high + above))
 
 
 def _graded(sizes: Floats) -> Floats:

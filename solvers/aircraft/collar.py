@@ -13,6 +13,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,16 +22,26 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.cubic import CubicTable, cubic_spline
 from meshonet.geometry.elementary import exp, power
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.ties import first_least
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.rows.columns import arcs_of
 from meshonet.solvers.rows.span_spacing import smooth_arcs
 
+MARGIN = 0.28
+"""Least distance of a collar's outer rectangle from the section, in chords, where the body is long enough.
+
+Where nose, tail, keel and crown are far away, near the tip, it is larger: fewer cells lead there from it.
+"""
+_SHARE = 0.5
+"""Part of the way from the section to nose, tail, keel or crown that a collar takes at most."""
 _SHORTEST = 0.35
 """Least cells on the short sides of the rectangle, over the mean cell of a long side."""
 _NORMAL = 0.05
 """Part of a line's length over which it is turned to the root's normal."""
-_ON_ROWS = 0.75
+_BENT = 0.12
+"""Part of the length of a parabola over which it keeps the direction of the root's normal."""
+_ON_ROWS = 0.65
 """Share of the elliptic grid's rows in sizes in the middle of the collar; the rest is a line's own."""
 _FINE = 33
 """Nodes on the lines of the elliptic grid."""
@@ -46,6 +57,23 @@ class Rectangle:
     back: float
     low: float
     high: float
+
+
+def rectangle(section: Floats, length: float, scale: Floats) -> Rectangle:
+    """Return the rectangle around a section (n, 2) of s and theta, in lengths in space.
+
+    Raises InputError: the section meets the plane of symmetry.
+    """
+    (front, low), (back, high) = (section * scale).min(axis=0), (section * scale).max(axis=0)
+    end, girth = length * float(scale[0]), np.pi * float(scale[1])
+    margin = MARGIN * (back - front)
+    if low <= 0.0 or high >= girth or front <= 0.0 or back >= end:
+        problem = "the wing meets the plane of symmetry above or below the body, or its nose or tail"
+        raise InputError(problem, "move the wing, or make it smaller", place="wings")
+    ways = [way * _SHARE for way in (front, end - back, low, girth - high)]
+    margin = max(margin, math.sqrt(margin * min(ways)))
+    before, behind, below, above = (min(margin, way) for way in ways)
+    return Rectangle(float(front - before), float(back + behind), float(low - below), float(high + above))
 
 
 def corner_nodes(root: Floats, box: Rectangle, fewest: int) -> tuple[int, int]:
@@ -108,9 +136,14 @@ def outer_loop(root: Floats, box: Rectangle, corners: tuple[int, int]) -> Floats
     return out
 
 
-def collar(root: Floats, outer: Floats, rows: int, first: float, last: Floats) -> Floats:
-    """Return nodes (n, rows + 1, 2) between closed loops (n, 2), with first cells `first` and `last` (n,)."""
-    arcs, lines = _lines(root, outer)
+def collar(
+    root: Floats, outer: Floats, rows: int, first: float, last: Floats, straight: float = 0.0
+) -> Floats:
+    """Return nodes (n, rows + 1, 2) between closed loops (n, 2), with first cells `first` and `last` (n,).
+
+    Lines are those of an elliptic grid, for `straight` = 1 parabolas along the normals, or between both.
+    """
+    arcs, lines = _lines(root, outer, straight)
     wanted = _rows(arcs, rows, first, last)
     out = np.empty((len(root), rows + 1, 2))
     for k, line in enumerate(lines):
@@ -150,12 +183,17 @@ def lengths(root: Floats, outer: Floats) -> Floats:
     return _lines(root, outer)[0][:, -1]
 
 
-def _lines(root: Floats, outer: Floats) -> tuple[Floats, Floats]:
-    """Return arc lengths (n, m) and points (n, m, 2) of the lines of an elliptic grid of the collar."""
-    cut = outer[0] * np.linspace(0.0, 1.0, _FINE)[:, None] + root[0] * np.linspace(1.0, 0.0, _FINE)[:, None]
+def _lines(root: Floats, outer: Floats, straight: float = 0.0) -> tuple[Floats, Floats]:
+    """Return arc lengths (n, m) and points (n, m, 2) of the lines of a collar."""
+    u = np.linspace(0.0, 1.0, _FINE)[:, None]
+    cut = root[0] + (outer[0] - root[0]) * u
     cut[0], cut[-1] = root[0], outer[0]
     south, north, west = (side * _MIRROR for side in (root, outer, cut))
     lines = np.ascontiguousarray(solve(Boundary(south, north, west, west, "o")).grid.nodes * _MIRROR)
+    if straight:
+        middle = root + _BENT * norms(outer - root)[:, None] * _normals(root)
+        ends = root[:, None] * (1.0 - u) ** 2 + outer[:, None] * u**2
+        lines += straight * (ends + middle[:, None] * (2.0 * u * (1.0 - u)) - lines)
     return arcs_of(norms(np.diff(lines, axis=1))), lines
 
 

@@ -174,3 +174,24 @@ def test_first_cells_at_the_junction_have_their_height_from_both_walls(grid: Gri
     collar = np.asarray(grid.blocks[0].nodes)
     for wall_node in (collar[:, 0, 1], collar[:, 1, 0]):
         assert np.linalg.norm(collar[:, 1, 1] - wall_node, axis=-1) == pytest.approx(2e-3, rel=1e-11)
+
+
+def test_rows_beside_a_wing_are_even(grid: Grid) -> None:
+    """Cells along rows of the collar differ by at most 1.3, but for few: corners leave no kinks in them."""
+    steps = np.linalg.norm(np.diff(np.asarray(grid.blocks[0].nodes), axis=0), axis=-1)
+    ratios = steps[1:] / steps[:-1]
+    assert (np.maximum(ratios, 1.0 / ratios) <= 1.3).mean() > 0.98
+
+
+def test_cells_go_on_across_the_edge_of_the_tip(grid: Grid) -> None:
+    tip = grid.blocks[0].nodes.shape[2] - grid.blocks[7].nodes.shape[2]
+    collar, ring = np.asarray(grid.blocks[0].nodes)[:, :, tip], np.asarray(grid.blocks[7].nodes)[:, :, 0]
+    outside, inside = (np.linalg.norm(each[:, 1] - each[:, 0], axis=-1) for each in (collar, ring))
+    assert outside.mean() / inside.mean() == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_drooped_wing_with_a_thin_edge_is_made() -> None:
+    wing = (Section(naca("2409"), 3.0, 0.0, x=3.2, y=-0.15, twist=6.0), Section(naca("2409"), 1.0, 5.0, x=5.0))
+    request = AircraftRequest(around=97, span=9, first_cell=FIRST, far_field=8.0, base=0.002)
+    made, _ = aircraft_grid(Aircraft(body(), Stack(wing, tip="flat")), request)
+    assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0
