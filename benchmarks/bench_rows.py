@@ -12,12 +12,17 @@ import os
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
+import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 import numpy as np
 from page import arguments, processor, publish
+from radial_rows import radial_row
 from random_rows import airfoils, drawn_rows
 from row_judge import Judged, judge
 
@@ -28,7 +33,7 @@ from meshonet.geometry.threads import limited_to
 from meshonet.solvers.rows.request import RowRequest
 from meshonet.solvers.rows.row_grid import row_grid
 
-RANDOM_CELLS, RANDOM_FIRST = 100_000, 1e-3
+RANDOM_CELLS, RANDOM_FIRST, RADIAL = 100_000, 1e-3, 24
 HEAD = """# Blade rows
 
 <!-- made by python benchmarks/bench_rows.py --row TOML --airfoils FOLDER --page docs/benchmarks/rows.md -->
@@ -40,7 +45,9 @@ Rotor 37 is NASA's transonic compressor rotor with its tip gap of 0.356 mm; firs
 and cells grow by 1.2. Random rows have two real airfoils, blended along the span, a stagger of 0 to 65
 degrees that changes by up to 30 degrees to both ends, a solidity of 0.7 to 2 at mid-span, a hub to tip ratio
 of 0.4 to 0.9, a cylindrical, conical or curved channel, and in two of three a gap of 0 to 3 % of the span.
-They have {cells} cells or what their layers need, and first cells of {first:g} chords.
+They have {cells} cells or what their layers need, and first cells of {first:g} chords. Radial rows are
+centrifugal impellers, radial turbines, mixed-flow pumps and vaned diffusers of `tests/radial_rows.py` in
+turn, about half of the first three with a tip gap; they have as many cells.
 
 - *folded*: cells with a Jacobian that is not positive at a corner / anywhere, by its Bezier coefficients.
 - *SJ*: scaled Jacobian, least / 0.1 % / mean; of random rows the least, median / worst.
@@ -79,13 +86,13 @@ def line(name: str, made: Judged, seconds: float) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-def summary(count: int, made: Sequence[tuple[Judged, float]]) -> str:
+def summary(what: str, count: int, made: Sequence[tuple[Judged, float]]) -> str:
     """Return the line of the table for random rows, of which `made` are without folds."""
     judged, seconds = [each for each, _ in made], [spent for _, spent in made]
     scaled = [each.scaled.min() for each in judged]
     angles = [each.angle.max() for each in judged]
     cells = (
-        f"{len(made)} of {count} random rows", f"{np.median([each.nodes for each in judged]):.0f}", "0 / 0",
+        f"{len(made)} of {count} {what}", f"{np.median([each.nodes for each in judged]):.0f}", "0 / 0",
         f"{np.median(scaled):.3f} / {min(scaled):.3f}", f"{np.median(angles):.0f} / {max(angles):.0f}",
         f"{max(max(each.first.values()) for each in judged):.0e}",
         f"{np.median([np.percentile(each.growths, 99.9) for each in judged]):.2f} / "
@@ -96,21 +103,22 @@ def summary(count: int, made: Sequence[tuple[Judged, float]]) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-def random_line(folder: Path, seed: int, count: int) -> str:
-    """Return the line of random rows; those that are refused or folded are printed."""
-    made = []
+def random_line(what: str, rows: Iterable[tuple[str, Callable[[], Row]]]) -> str:
+    """Return the line of rows, by what they are; those that are refused or folded are printed."""
+    made, count = [], 0
     request = RowRequest(first_cell=RANDOM_FIRST, cells=RANDOM_CELLS, threads=1)
-    for each in drawn_rows(airfoils(folder), seed, count):
+    for words, row in rows:
+        count += 1
         try:
-            judged, seconds = figures(each.row, request, blade=False)
+            judged, seconds = figures(row(), request, blade=False)
         except MeshonetError as error:
-            print(each.words, "is refused:", error)
+            print(words, "is refused:", error)
             continue
         if judged.folded_corners or judged.folded_bezier:
-            print(each.words, "IS FOLDED")
+            print(words, "IS FOLDED")
             continue
         made.append((judged, seconds))
-    return summary(count, made)
+    return summary(what, count, made)
 
 
 def main() -> None:
@@ -119,6 +127,7 @@ def main() -> None:
     parser.add_argument("--airfoils", type=Path)
     parser.add_argument("--seed", type=int, default=5)
     parser.add_argument("--count", type=int, default=30)
+    parser.add_argument("--radial", type=int, default=64, help="seed of the first radial row")
     parser.add_argument("--row", type=Path, help="Rotor 37 as a TOML file")
     parser.add_argument("--cells", type=int, nargs="*", default=[1_000_000, 1_600_000])
     parser.add_argument("--first", type=float, default=1e-4)
@@ -132,7 +141,15 @@ def main() -> None:
             rows.append(line("Rotor 37", *figures(row, request)))
             print(rows[-1], flush=True)
     if options.airfoils:
-        rows.append(random_line(options.airfoils, options.seed, options.count))
+        drawn = drawn_rows(airfoils(options.airfoils), options.seed, options.count)
+        rows.append(
+            random_line("random rows", ((each.words, partial(getattr, each, "row")) for each in drawn))
+        )
+        print(rows[-1], flush=True)
+    seeds = range(options.radial, options.radial + RADIAL)
+    rows.append(
+        random_line("radial rows", ((f"radial row {seed}", partial(radial_row, seed)) for seed in seeds))
+    )
     head = HEAD.format(cells=RANDOM_CELLS, first=RANDOM_FIRST, machine=processor())
     publish(head + "\n".join(rows) + "\n", options.page)
 
