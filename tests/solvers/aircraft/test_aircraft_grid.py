@@ -191,7 +191,8 @@ def test_cells_go_on_across_the_edge_of_the_tip(grid: Grid) -> None:
 
 
 def test_a_drooped_wing_with_a_thin_edge_is_made() -> None:
-    wing = (Section(naca("2409"), 3.0, 0.0, x=3.2, y=-0.15, twist=6.0), Section(naca("2409"), 1.0, 5.0, x=5.0))
+    root = Section(naca("2409"), 3.0, 0.0, x=3.2, y=-0.15, twist=6.0)
+    wing = (root, Section(naca("2409"), 1.0, 5.0, x=5.0))
     request = AircraftRequest(around=97, span=9, first_cell=FIRST, far_field=8.0, base=0.002)
     made, _ = aircraft_grid(Aircraft(body(), Stack(wing, tip="flat")), request)
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0
