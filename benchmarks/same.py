@@ -1,8 +1,8 @@
-"""The same grids on every machine: forty-six commands on several, their results beside kept digests.
+"""The same grids on every machine: forty-seven commands on several, their results beside kept digests.
 
     python benchmarks/same.py                    what differs from benchmarks/same.json, and where
     python benchmarks/same.py --emulated         on emulated processors too, where qemu-x86_64 is installed
-    python benchmarks/same.py --record           write benchmarks/same.json, after a change that moves nodes
+    python benchmarks/same.py --record           keep the digests of this machine, with --only some of them
     python benchmarks/same.py --only 'infer' --machine emulated
     python benchmarks/same.py --small --machine 'this one'     thirty commands of small grids, here: seconds
 
@@ -46,19 +46,22 @@ def main() -> int:
     options = _options()
     lines = EMULATED if options.small else LINES
     chosen = [line for line in lines if re.search(options.only, line)]
+    kept: Digests = json.loads(KEPT.read_text())
     if options.record:
         made = _digests(chosen, Machine())
         if TIMED_OUT in made.values():
             raise SystemExit("commands took too long: nothing is recorded")
-        KEPT.write_text(json.dumps(made, indent=0) + "\n")
+        known = kept | made
+        KEPT.write_text(json.dumps({line: known[line] for line in LINES if line in known}, indent=0) + "\n")
         return 0
-    kept: Digests = json.loads(KEPT.read_text())
     wanted = {name: one for name, one in machines(options.emulated).items() if options.machine in name}
     begun, wrong = time.perf_counter(), 0
     with ThreadPoolExecutor(2) as pool:
-        made = {
-            name: pool.submit(_digests, _lines_of(name, one, chosen), one) for name, one in wanted.items()
+        lines = {
+            name: [line for line in chosen if line in EMULATED or not one.before]
+            for name, one in wanted.items()
         }
+        made = {name: pool.submit(_digests, lines[name], one) for name, one in wanted.items()}
         for name, job in made.items():
             digests = job.result()
             other = [line for line, digest in digests.items() if digest != kept.get(line)]
@@ -126,14 +129,6 @@ def _options() -> argparse.Namespace:
     options = parser.parse_args()
     options.emulated |= "emulated" in options.machine
     return options
-
-
-def _lines_of(name: str, machine: Machine, chosen: list[str]) -> list[str]:
-    """Return the commands that a machine runs: an emulated processor its share of those of small grids."""
-    if not machine.before:
-        return chosen
-    first = [processor in name for processor in PROCESSORS].index(True)
-    return [line for line in chosen if line in EMULATED[first :: len(PROCESSORS)]]
 
 
 def _digests(chosen: list[str], machine: Machine) -> Digests:

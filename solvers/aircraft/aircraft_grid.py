@@ -38,6 +38,11 @@ _FLAT = 1e-13
 """Distance from the plane of symmetry in lengths of the body, within which nodes are in it."""
 _ABOVE = 1e-3
 """Step in zeta of the point by which the normal of the body is known."""
+_UNEVEN = 0.08
+"""Error of the first cell of a line, over its height, above which the line is measured in all its nodes: at a
+pointed nose or tail distances from the body are no smooth function of zeta."""
+_MEASURED = 3
+"""Times these lines are measured: between their nodes the map is taken to be linear."""
 _FINE = 129
 """Levels of the table by which lines beyond the tip are measured."""
 
@@ -116,8 +121,22 @@ def _along_wing(
     wall, near = ring[:, 0], ring[:, 1]
     rest = np.setdiff1d(np.arange(places.shape[1]), wall)
     places[:, near] = at_height(space, places[:, wall], places[:, near], first)
+    height = norms(space.points(places[1]) - space.points(places[0]))
+    uneven = rest[np.abs(height[rest] - first) > _UNEVEN * first]
+    if len(uneven):
+        places[:, uneven] = _spaced(space, places[:, uneven], first, growth)
     places[1, rest] = at_height(space, places[0, rest], places[1, rest], first)
     return places
+
+
+def _spaced(space: BodyMap, places: Floats, first: float, growth: float) -> Floats:
+    """Return places (k, p, 3) on their lines again, at the arcs of `two_sided` in space."""
+    lines = np.moveaxis(places, 0, 1)
+    for _ in range(_MEASURED):
+        arcs = arcs_of(norms(np.diff(space.points(lines), axis=1)))
+        wanted = two_sided(arcs[:, -1], (first, first), growth, len(places) - 1)
+        lines = sampled(lines, arcs, np.minimum(wanted, arcs[:, -1:]))
+    return np.moveaxis(lines, 1, 0)
 
 
 def _cap(space: BodyMap, wing: WingLines, first: float) -> list[Floats]:

@@ -5,18 +5,34 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.elementary import exp, log
 from meshonet.solvers.aircraft.body_map import BodyMap
 
 _ROUNDS = 6
-"""Times a place is scaled along its line; the map is nearly linear over a first cell."""
+"""Times a place is scaled along its line."""
+_STILL = 1e-12
+"""Relative change of a distance below which it tells no power."""
+_INVERSES = 0.2, 5.0
+"""Range of one over the power."""
 
 
 def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float, rounds: int = _ROUNDS) -> Floats:
-    """Return the places (..., 3) on the lines from `wall` to `beside` (..., 3) at the distance `first`."""
+    """Return the places (..., 3) on the lines from `wall` to `beside` (..., 3) at the distance `first`.
+
+    Near the wall the distance is a power of the way, 1 but at a pointed nose or tail; two ways tell which.
+    """
     away, foot = beside - wall, space.points(wall)
-    for _ in range(rounds):
-        away = away * (first / norms(space.points(wall + away) - foot))[..., None]
-    return wall + away
+    scale = inverse = np.ones(away.shape[:-1])
+    step = before = np.zeros_like(scale)
+    for number in range(rounds):
+        short = log(first / norms(space.points(wall + scale[..., None] * away) - foot))
+        if number:
+            change = before - short
+            known = np.abs(change) > _STILL
+            inverse = np.where(known, step / np.where(known, change, 1.0), inverse)
+        step, before = np.clip(inverse, *_INVERSES) * short, short
+        scale = scale * exp(step)
+    return wall + scale[..., None] * away
 
 
 def between_walls(walls: tuple[Floats, Floats], beside: Floats, first: float) -> Floats:

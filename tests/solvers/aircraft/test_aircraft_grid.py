@@ -5,6 +5,7 @@ import pytest
 from aircraft_shapes import aircraft, body
 
 from meshonet.geometry.aircraft.aircraft import Aircraft
+from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
@@ -196,3 +197,19 @@ def test_a_drooped_wing_with_a_thin_edge_is_made() -> None:
     request = AircraftRequest(around=97, span=9, first_cell=FIRST, far_field=8.0, base=0.002)
     made, _ = aircraft_grid(Aircraft(body(), Stack(wing, tip="flat")), request)
     assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0
+
+
+def test_a_tail_that_ends_in_a_cone_has_growing_rows() -> None:
+    """Beside a point of the body distances from it are no smooth function of the levels of the map."""
+    half = np.array([[0, 0], [0.1, 0.3], [1, 0.6], [6, 0.6], [9, 0.4], [10.5, 0.1], [11, 0]])
+    made, _ = aircraft_grid(Aircraft(Body(half), aircraft().wing), SMALL)
+    rows = np.linalg.norm(np.diff(np.asarray(made.blocks[6].nodes)[:, :, :6], axis=2), axis=-1)
+    assert (rows[:, :, 1:] / rows[:, :, :-1]).min() > 1.0
+    assert sum(count_folded_solids(block.nodes, BEZIER) for block in made.blocks) == 0
+
+
+def test_first_cells_thicker_than_the_tip_leave_no_thin_ones_in_it() -> None:
+    request = AircraftRequest(around=49, span=9, first_cell=2e-2, growth=1.5, far_field=8.0)
+    ring = np.asarray(aircraft_grid(aircraft(), request)[0].blocks[7].nodes)[:, :, 0]
+    steps = np.linalg.norm(np.diff(ring, axis=1), axis=-1)
+    assert (steps / steps.sum(axis=1)[:, None]).min() > 0.02
