@@ -3,6 +3,7 @@
 ::
 
     kind = "aircraft"
+    half = true                     # or false: with its mirror image in z = 0
 
     [[bodies]]                      # a body of revolution about a line parallel to x
     name = "fuselage"
@@ -37,7 +38,7 @@ def read_aircraft(data: Table, source: Source) -> Aircraft:
     Raises InputError: a key that is not known, a value that does not fit, with its place; files that cannot
     be read; other than one body and one wing.
     """
-    data.only("kind", "name", "bodies", "wings")
+    data.only("kind", "name", "bodies", "wings", "half")
     folder = source.path.parent if source.path else Path()
     bodies, wings = data.rows("bodies"), data.rows("wings")
     for rows, what in ((bodies, "bodies"), (wings, "wings")):
@@ -48,7 +49,7 @@ def read_aircraft(data: Table, source: Source) -> Aircraft:
     if on != body.name:
         raise wings[0].error("on", f"{printable(on)} is no body", f"use {body.name}")
     name = data.text("name", source.stem or "aircraft")
-    return Aircraft(body, _wing(wings[0], folder), name)
+    return Aircraft(body, _wing(wings[0], folder), name, data.flag("half", default=True))
 
 
 def _body(row: Table, folder: Path) -> Body:

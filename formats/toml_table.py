@@ -80,6 +80,13 @@ class Table:
             raise self.error(key, problem, "write it in quotes")
         return value
 
+    def flag(self, key: str, *, default: bool) -> bool:
+        """Return true or false, or `default` if the key is missing."""
+        value = self.data.get(key, default)
+        if not isinstance(value, bool):
+            raise self.error(key, f"{_shown(value)} is neither true nor false", "write true or false")
+        return value
+
     def word(self, key: str, known: tuple[str, ...], default: str) -> str:
         """Return one of the `known` words."""
         value = self.text(key, default)

@@ -1,4 +1,4 @@
-"""A body with a wing, half of it: what the grid of an aircraft is made from."""
+"""A body with a wing: what the grid of an aircraft is made from."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from meshonet.geometry.aircraft.body import Body
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.sections.stack import Stack
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 PATCHES = "wing", "tip", "symmetry", "farfield"
 """Patches of a grid beside that of the body."""
@@ -17,7 +18,7 @@ _TAPER = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Aircraft:
-    """The half z >= 0 of a body of revolution and a wing that begins inside of it.
+    """A body of revolution and a wing that begins inside of it: the half z >= 0, or both halves.
 
     Parameters
     ----------
@@ -27,11 +28,15 @@ class Aircraft:
         Sections from the inside of the body to the tip.
     name : str, optional
         Of the aircraft.
+    half : bool, optional
+        Whether the grid ends in the plane of symmetry; otherwise it is joined there to its mirror image,
+        whose patches have the same names.
 
     Raises
     ------
     InputError
-        A stack that is no wing, or nearly ends in a point; a body with the name of another patch.
+        A stack that is no wing, has outlines in place of airfoils, or nearly ends in a point; a body with the
+        name of another patch.
 
     Examples
     --------
@@ -48,12 +53,18 @@ class Aircraft:
     body: Body
     wing: Stack
     name: str = "aircraft"
+    half: bool = True
 
     def __post_init__(self) -> None:
         if self.wing.kind != "wing":
             raise InputError(f"a {self.wing.kind} is no wing", "leave it out", place="wings[0].kind")
         if self.wing.tip == "open":
             raise InputError("a wing of an aircraft has a tip", "make it round or flat", place="wings[0].tip")
+        for number, section in enumerate(self.wing.sections):
+            if not isinstance(section.shape, Airfoil):
+                problem = "a closed curve has no trailing edge"
+                at = f"wings[0].sections[{number}].outline"
+                raise InputError(problem, "give an airfoil", place=at)
         chords = [section.chord for section in self.wing.sections]
         if min(chords) < _TAPER * max(chords):
             at = f"wings[0].sections[{chords.index(min(chords))}].chord"

@@ -51,7 +51,7 @@ class Body:
     ------
     InputError
         Fewer than 4 points; x that does not increase; radii that are negative, or not 0 at nose and tail;
-        points so far apart that a spline through them turns back or bulges.
+        points so far apart that a spline through them turns back or bulges; control characters in a name.
 
     Examples
     --------
@@ -65,6 +65,8 @@ class Body:
     name: str = "fuselage"
 
     def __post_init__(self) -> None:
+        if not self.name.isprintable():
+            raise InputError(f"{self.name!r} has control characters", "leave them out", place="name")
         points = np.asarray(self.meridian, dtype=np.float64)
         with in_place("meridian"):
             _refuse_open(points)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,13 +16,14 @@ from meshonet.geometry.blocks.patches import Patch
 def wall_surface(grid: Grid) -> Grid:
     """Return a grid of the patches of a volume that are walls, with normals that point into the volume.
 
-    Blocks of the volume are right-handed. Edges in the plane z = 0 are its patch ``symmetry``; the names of
-    the walls are those of its zones.
+    Blocks of the volume are right-handed. Edges in the plane z = 0 that are not joined to others are its
+    patch ``symmetry``; the names of the walls are those of its zones.
     """
     walls = [patch for patch in grid.patches if patch.kind == "wall"]
     blocks = [_outwards(grid, patch) for patch in walls]
     zones = {"zones": tuple(patch.name for patch in walls)}
-    return Grid(tuple(blocks), tuple(_symmetry(blocks)), find_connections(blocks), grid.name, zones)
+    surface = Grid(tuple(blocks), (), find_connections(blocks), grid.name, zones)
+    return replace(surface, patches=tuple(_symmetry(surface)))
 
 
 def _outwards(grid: Grid, patch: Patch) -> Block:
@@ -34,11 +35,11 @@ def _outwards(grid: Grid, patch: Patch) -> Block:
     return Block(np.ascontiguousarray(nodes if inwards else nodes.swapaxes(0, 1)))
 
 
-def _symmetry(blocks: Sequence[Block]) -> list[Patch]:
+def _symmetry(surface: Grid) -> list[Patch]:
     patches = []
-    for number, block in enumerate(blocks):
+    for number, (block, joined) in enumerate(zip(surface.blocks, surface.joined_ranges(), strict=True)):
         for side in SIDES:
             edge = face_of(block.nodes[..., 2], side)
-            if not edge.any():
+            if not edge.any() and side not in [each for each, _ in joined]:
                 patches.append(Patch("symmetry", side, 0, len(edge) - 1, block=number))
     return patches

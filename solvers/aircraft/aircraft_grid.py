@@ -1,7 +1,8 @@
-"""The volume grid around half an aircraft: levels from the body past the tip of the wing to the far field.
+"""The volume grid around an aircraft: levels from the body past the tip of the wing to the far field.
 
 On each level the section of the wing is a hole, around which lies a collar; beyond the tip it is filled. So
-the junction of wing and body is no concave edge of a march: lines leave the body along the wing.
+the junction of wing and body is no concave edge of a march: lines leave the body along the wing. The other
+half is the mirror image.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.blocks.block import Block, face_of
 from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.halves import with_image
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.blocks.shared_nodes import with_equal_nodes
 from meshonet.solvers.aircraft.body_map import BodyMap
@@ -48,7 +50,7 @@ _FINE = 129
 
 
 def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, tuple[str, ...]]:
-    """Return the grid of half an aircraft, and notes.
+    """Return the grid of an aircraft or its half, and notes.
 
     Raises InputError: a wing that does not begin inside the body or does not leave it.
     """
@@ -74,7 +76,8 @@ def aircraft_grid(aircraft: Aircraft, request: AircraftRequest) -> tuple[Grid, t
     wall, near = ring[:, 0], ring[:, 1]
     low[1, near] = between_walls((low[1, wall], low[0, near]), low[1, near], first)
     high = _flat(space.points(beyond), aircraft)
-    return _joined(aircraft, shapes, low, high), (*notes, *flat)
+    half = _joined(aircraft, shapes, low, high)
+    return half if aircraft.half else with_image(half), (*notes, *flat)
 
 
 def _flat(points: Floats, aircraft: Aircraft) -> Floats:

@@ -37,6 +37,7 @@ class AircraftPlan:
     scales : (SAMPLES, 2) lengths in space of units of s and theta there.
     levels : counts that levels share.
     span, beyond : cells from the body to the tip, and from there to the far field.
+    halves : 2 if the grid has both halves of the aircraft, else 1.
     """
 
     wing: WingLines
@@ -45,6 +46,7 @@ class AircraftPlan:
     levels: LevelPlan
     span: int
     beyond: int
+    halves: int
 
     @classmethod
     def of(cls, aircraft: Aircraft, request: AircraftRequest, space: BodyMap, around: int) -> AircraftPlan:
@@ -62,7 +64,7 @@ class AircraftPlan:
         levels = planned(known, aircraft.body.length, first, growth)
         span = spaced_cells(wing.length, (first, first), growth, wing.length / (request.span - 1), 8)
         beyond = cells_for_growth(first, request.far_field * chord, growth)
-        return cls(wing, sections, scales, levels, span, beyond)
+        return cls(wing, sections, scales, levels, span, beyond, 1 if aircraft.half else 2)
 
     @property
     def cells(self) -> int:
@@ -72,7 +74,7 @@ class AircraftPlan:
         for end in each.ends:
             a, b = end.core.nodes.shape[:2]
             columns += (len(end.theta) - 1) * (len(end.core.rows) - 1 + end.cells) + (a - 1) * (b - 1)
-        return columns * (self.span + self.beyond)
+        return self.halves * columns * (self.span + self.beyond)
 
 
 def plan_of(

@@ -1,4 +1,4 @@
-"""Aircraft: the grid around half a body with its wing, measured."""
+"""Aircraft: the grid around a body with its wing, measured."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _REACH = 0.8
 
 
 def make_aircraft(aircraft: Aircraft, request: AircraftRequest | None = None) -> Result:
-    """Return the grid around half an aircraft, measured.
+    """Return the grid around an aircraft or its half, measured.
 
     Raises InputError: a wing that does not begin in the body, does not leave it or reaches the far field;
     NoValidGridError: cells are folded, and that was not allowed.

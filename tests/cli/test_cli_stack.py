@@ -141,6 +141,23 @@ def test_a_body_with_a_wing_is_made_with_its_names(meshonet: Meshonet, tmp_path:
     assert {patch.name for patch in grid.patches} == {"fuselage", "wing", "tip", "symmetry", "farfield"}
 
 
+def test_a_whole_aircraft_has_no_plane_of_symmetry_and_a_closed_surface(
+    meshonet: Meshonet, tmp_path: Path
+) -> None:
+    (tmp_path / "jet.toml").write_text("half = false\n" + AIRCRAFT)
+    words = (*SMALL, "--growth", "1.5", "--far-field", "6")
+    done = meshonet("stack", "jet.toml", *words, "-o", "jet.cgns", "--json")
+    assert (done.code, done.only["folded"]) == (0, 0), done.err
+    (grid,) = read_grids("jet.cgns")
+    assert {patch.name for patch in grid.patches} == {"fuselage", "wing", "tip", "farfield"}
+    low, high = grid.box
+    assert low[2] == -high[2]
+    assert meshonet("stack", "jet.toml", *words, "--surface", "-o", "surface.cgns", "-q").code == 0
+    (surface,) = read_grids("surface.cgns")
+    sides = [len(ranges) for ranges in surface.joined_ranges()]
+    assert (min(sides), surface.outer_patches()) == (4, [])
+
+
 def _flux_of_z(nodes: np.ndarray) -> float:
     """The flux of (0, 0, z) through a patch: together that of a closed surface is its volume."""
     one, two = nodes[1:, 1:] - nodes[:-1, :-1], nodes[:-1, 1:] - nodes[1:, :-1]
@@ -187,7 +204,7 @@ def test_options_of_other_stacks_are_refused_for_a_body_with_a_wing(
     [
         (("z = 0.0", "z = 0.7"), (), "wings: a line of the wing begins outside of the fuselage at x="),
         (("z = 3.0", "z = 0.3"), (), "wings: a line of the wing does not leave the fuselage at x="),
-        (("z = 3.0", "z = 30"), (), "--far-field: the tip of the wing is 30"),
+        (("z = 3.0", "z = 30"), (), "--far-field: the tip of the wing is 31.4439"),
         (("x = 3.5", "x = -1"), (), "wings: a line of the wing begins outside of the fuselage"),
         ((), ("--first-cell", "0.2"), "--first-cell: first cells are 0.4 high at a wing with a chord of"),
     ],

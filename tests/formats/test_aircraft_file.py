@@ -29,6 +29,12 @@ def test_a_body_and_the_sections_of_its_wing_are_read(tmp_path: Path) -> None:
     assert [section.chord for section in jet.wing.sections] == [1.5, 1.0]
 
 
+def test_both_halves_are_made_where_the_file_says_so(tmp_path: Path) -> None:
+    assert read(tmp_path, BODY + WING).half
+    assert read(tmp_path, "half = true\n" + BODY + WING).half
+    assert not read(tmp_path, "half = false\n" + BODY + WING).half
+
+
 def test_meridian_and_wing_may_be_files_beside_it(tmp_path: Path) -> None:
     np.savetxt(tmp_path / "body.csv", [[0, 0], [1, 0.5], [4, 0.5], [6, 0]], delimiter=",")
     (tmp_path / "wing.toml").write_text(SECTIONS.replace("wings.sections", "sections"))

@@ -53,6 +53,8 @@ REFUSED = {
     "a misspelt key": (texts(more="halff = true"), JET + "halff: is not known; use kind, name, bodies"),
     "name a number": (texts(more="name = 3"), JET + "name: 3 is no text"),
     "an empty name": (texts(more='name = ""'), JET + "name: '' is no text"),
+    "half a word": (texts(more='half = "no"'), JET + "half: 'no' is neither true nor false; write true or"),
+    "half a number": (texts(more="half = 0"), JET + "half: 0 is neither true nor false"),
     # the body
     "a misspelt key of a body": (texts(body=MERIDIAN + "radius = 1"), JET + r"bodies\[0\].radius: is not"),
     "no meridian": (texts(body="y = 0"), LINE + ": is no file and no list of points; name a file"),
@@ -87,6 +89,10 @@ REFUSED = {
     "a body called a number": (texts(body=MERIDIAN + "name = 3"), JET + r"bodies\[0\].name: 3 is no text"),
     "a body called wing": (
         texts(body=MERIDIAN + 'name = "wing"'), JET + r"bodies\[0\].name: wing is the name of another patch"),
+    "an escape in a name": (
+        texts(body=MERIDIAN + 'name = "a\\u001b[31m"'),
+        JET + r"bodies\[0\].name: 'a\\x1b\[31m' has control characters; leave them out"),
+    "two lines in a name": (texts(body=MERIDIAN + 'name = "a\\nb"'), JET + r"bodies\[0\].name: 'a\\nb' has"),
     "two bodies": ({"jet.toml": texts()["jet.toml"] + f"[[bodies]]\n{MERIDIAN}"}, JET + r"bodies\[1\]"),
     # the wing
     "two wings": ({"jet.toml": texts()["jet.toml"] + f"[[wings]]\n{ROOT}{TIP}"}, JET + r"wings\[1\]"),
@@ -109,6 +115,8 @@ REFUSED = {
     "a chord of nothing": (tip(chord=0), LAST + "chord: 0 is not positive"),
     "a tip that is a point": (tip(chord=1e-6), LAST + "chord: a chord of 1e-06; use at least 0.02"),
     "no airfoil": (tip(airfoil=None), LAST + "airfoil: is missing"),
+    "an outline": (
+        tip(airfoil=None, outline='"circle:0.1"'), LAST + "outline: a closed curve has no trailing edge"),
     "an airfoil that is not there": (tip(airfoil='"none.dat"'), LAST + "airfoil: none.dat: no such file"),
     "a sweep of 90 degrees": (tip(sweep=90, x=None), LAST + "sweep: 90 degrees; use -85 to 85"),
     "a sweep beside x": (tip(sweep=9), LAST + "sweep: stands beside x"),

@@ -1,0 +1,85 @@
+"""The whole of what is symmetric about the plane z = 0: a half and its mirror image.
+
+::
+
+    +------+------+      i of the image runs the other way, so that its blocks are right-handed too. Patches
+    | half | image|      in the plane of symmetry become connections; the others have the same names on both
+    +------+------+      sides.
+         z = 0
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Side
+from meshonet.geometry.blocks.block import Block, Range, face_counts
+from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+
+_OTHER: dict[Side, Side] = {"west": "east", "east": "west"}
+"""Sides that change places where i is reversed."""
+
+
+def with_image(half: Grid) -> Grid:
+    """Return a grid in space and its mirror image in z = 0, joined at its patches of kind symmetry.
+
+    These lie in z = 0 exactly. The blocks of the image follow those of the half, in the same order; the grid
+    is not periodic.
+    """
+    step = len(half.blocks)
+    blocks = (*half.blocks, *map(_image, half.blocks))
+    counts = [block.counts for block in half.blocks]
+    own, images, joints = [], [], list(half.connections)
+    for patch in half.patches:
+        sides = face_counts(counts[patch.block], patch.side)
+        side, span = _reversed(patch.side, patch.range(sides), counts[patch.block])
+        if patch.kind == "symmetry":
+            ways = _ways(tuple(range(1, len(sides) + 1)), patch.side)
+            ends = (patch.block, patch.side, patch.range(sides)), (patch.block + step, side, span)
+            joints.append(Connection(*ends[0], *ends[1], ways))
+            continue
+        own.append(patch)
+        images.append(_on(patch, side, span, step))
+    for each in half.connections:
+        (block, first, span), (donor, second, other) = each.ends
+        ends = (
+            (block + step, *_reversed(first, span, counts[block])),
+            (donor + step, *_reversed(second, other, counts[donor])),
+        )
+        ways = _ways(_ways(each.orientation, first), second, donor=True)
+        joints.append(Connection(*ends[0], *ends[1], ways))
+    return replace(half, blocks=blocks, patches=(*own, *images), connections=tuple(joints))
+
+
+def _image(block: Block) -> Block:
+    """Return the mirror image of a block, i reversed; 0 keeps its sign."""
+    nodes = np.array(block.nodes[::-1], order="K")
+    nodes[..., 2] = 0.0 - nodes[..., 2]
+    return Block(nodes, finite=True)
+
+
+def _reversed(side: Side, span: Range, counts: tuple[int, ...]) -> tuple[Side, Range]:
+    """Return a side of a block with `counts` nodes, and a range of its nodes, where i is reversed."""
+    if side in _OTHER:
+        return _OTHER[side], span
+    first, last = span[0]
+    return side, ((counts[0] - 1 - last, counts[0] - 1 - first), *span[1:])
+
+
+def _ways(ways: tuple[int, ...], side: Side, *, donor: bool = False) -> tuple[int, ...]:
+    """Return the orientation of a connection where i of the block of a side is reversed."""
+    if side in _OTHER:
+        return ways
+    return tuple(-way if (abs(way) if donor else k) == 1 else way for k, way in enumerate(ways, start=1))
+
+
+def _on(patch: Patch, side: Side, span: Range, step: int) -> Patch:
+    """Return a patch on a range of a side of the block `step` after its own."""
+    across = patch.across and span[1]
+    return replace(
+        patch, side=side, start=span[0][0], stop=span[0][1], across=across, block=patch.block + step
+    )
