@@ -9,6 +9,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.threads import in_threads
 from meshonet.solvers.blocking.layers.even_line import PlaceLinks
 from meshonet.solvers.rows.section_plane import SectionPlane
 
@@ -37,8 +38,7 @@ class ChannelLines:
         """Return the lines of some sections."""
         upper = np.linspace(0.0, 0.5, _SAMPLES)
         squares, sums = np.zeros(_SAMPLES), np.zeros(_SAMPLES)
-        for plane in planes:
-            lower, slant = _opposite(plane, upper)
+        for lower, slant in in_threads(lambda plane: _opposite(plane, upper), planes):
             squares += slant**2
             sums += slant**2 * lower
         known = np.flatnonzero(squares > 0.0)

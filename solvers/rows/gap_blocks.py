@@ -63,16 +63,16 @@ def gap_blocks(
         for k, out in enumerate((outlines, outside)):
             s, theta, _ = made.beside[level, :, k].T
             out.append(np.stack([maps[-1].forward(s), theta], axis=1))
-    radius = float(norms(made.space[levels[0]][around][:, 1:]).mean())
+    blade = row.channel.in_space(made.beside[levels[0] : levels[1] + 1, :, 0])
+    radius = float(norms(blade[0, :, 1:]).mean())
     fill = filled_outline(outlines[0], outside[0], lead, first / radius, growth)
     planes = [fill.layout.mesh.nodes, _carried(fill, outlines[1])]
     ends = [
         np.stack([to.back(nodes[:, 0]), nodes[:, 1]], axis=1) for to, nodes in zip(maps, planes, strict=True)
     ]
     low, high = ends if tip else ends[::-1]
-    ids = around[fill.outline]
-    given = made.space[levels[0] : levels[1] + 1][:, ids]
-    return GapBlocks(fill, ids, _between(row, low, high, zone, given, fill, growth))
+    between = _between(row, low, high, zone, blade[:, fill.outline], fill, growth)
+    return GapBlocks(fill, around[fill.outline], between)
 
 
 def _carried(fill: GapFill, outline: Floats) -> Floats:

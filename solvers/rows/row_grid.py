@@ -55,6 +55,7 @@ def row_grid(row: Row, request: RowRequest) -> tuple[Grid, tuple[str, ...]]:
 
     fills = [partial(fill, k) for k, zone in enumerate(zones) if zone.gap]
     run_in_threads([*fills, *rest])
+    del rest  # and what it holds of layers
     space, turn = made.space, turned_by(row.pitch)
     second, partner = stacked.twins
     space[:, second] = turn(space[:, partner])

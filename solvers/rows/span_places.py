@@ -14,6 +14,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.threads import in_threads
 from meshonet.solvers.rows.across import ChannelLines
 from meshonet.solvers.rows.opposite import opposite_places
 from meshonet.solvers.rows.section_plane import SectionPlane
@@ -65,8 +66,8 @@ class SpanPlaces:
             own = even_wall_places(planes, self.ends[k], corners, growth, pairs, lines, opposite=self.gaps[k])
             return at_corners(own, corners)
 
-        first = even(0)
-        return SpanPlaces((first, first if self.ends[1] is self.ends[0] else even(1)), self.gaps)
+        evened = in_threads(even, (0,) if self.ends[1] is self.ends[0] else (0, 1))
+        return SpanPlaces((evened[0], evened[-1]), self.gaps)
 
 
 def at_corners(places: Floats, corners: Floats) -> Floats:

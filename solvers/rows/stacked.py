@@ -91,7 +91,7 @@ class StackedRow:
         return second, partner[second]
 
     def nodes(self) -> tuple[RowNodes, list[Callable[[], None]]]:
-        """Return the nodes with those of layers worked out, and what works out others, in any order.
+        """Return the nodes with those at the blade worked out, and what works out all in space, in any order.
 
         Those of the second periodic side are left out.
         """
@@ -100,12 +100,13 @@ class StackedRow:
         spacings = in_threads(self._spacing, list(zip(self.zones, zip(*arcs, strict=True), strict=True)))
         count, levels = len(self.layout.mesh.nodes), self.levels[-1] + 1
         made = RowNodes(np.empty((levels, count, 3)), np.empty((levels, len(self.columns), 2, 3)))
-        jobs: list[Callable[[], None]] = [
-            partial(self._fill, made, *each, spacings) for each in zip(groups, arcs, strict=True)
-        ]
+        each = list(zip(groups, arcs, strict=True))
         layers = sum(bool(group.columns) for group in groups)
-        run_in_threads(jobs[:layers])
-        return made, jobs[layers:]
+        values = run_in_threads([partial(self._layers, made, *own, spacings) for own in each[:layers]])
+        jobs: list[Callable[[], None]] = [
+            partial(self._store, made, *own) for own in zip(groups[:layers], values, strict=True)
+        ]
+        return made, [*jobs, *(partial(self._fill, made, *own, spacings) for own in each[layers:])]
 
     def _spacing(self, lines: tuple[Zone, tuple[LineArcs, ...]]) -> Spacing:
         """Return the spacing of all lines of a zone."""
@@ -131,13 +132,22 @@ class StackedRow:
     def _group(self, ids: Indices, around: SpanLines | None) -> NodeGroup:
         return NodeGroup(self.row, self.zones, ids, self.lines.of(ids), around, self.first)
 
+    def _layers(
+        self, made: RowNodes, group: NodeGroup, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]
+    ) -> Floats:
+        """Return s, theta, h of a group of layers, and store those at the blade."""
+        values = group.values(arcs, spacings)
+        start = int(np.flatnonzero(self.columns[:, 0] == group.ids[0])[0])
+        own = values.reshape(len(values), group.columns, -1, 3)
+        made.beside[:, start : start + group.columns] = own[:, :, :2]
+        return values
+
     def _fill(
         self, made: RowNodes, group: NodeGroup, arcs: Sequence[LineArcs], spacings: Sequence[Spacing]
     ) -> None:
         """Work out the nodes of a group."""
-        values = group.values(arcs, spacings)
+        self._store(made, group, group.values(arcs, spacings))
+
+    def _store(self, made: RowNodes, group: NodeGroup, values: Floats) -> None:
+        """Store the nodes of a group, given at s, theta, h."""
         made.space[:, group.ids] = self.row.channel.in_space(values)
-        if group.columns:
-            start = int(np.flatnonzero(self.columns[:, 0] == group.ids[0])[0])
-            own = values.reshape(len(values), group.columns, -1, 3)
-            made.beside[:, start : start + group.columns] = own[:, :, :2]
