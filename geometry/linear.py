@@ -1,8 +1,7 @@
 """Linear algebra of small matrices, bitwise the same on every processor.
 
 The rounding of LAPACK and BLAS depends on the processor. These functions use sums, products, quotients and
-square roots in a fixed order, in NumPy: for matrices of a few rows, stacks of them, and systems of a few
-hundred rows.
+square roots in a fixed order, for matrices of a few rows, stacks of them, and systems of a few hundred rows.
 """
 
 from __future__ import annotations
@@ -15,6 +14,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.elementary import product
+from meshonet.kernels._native import solve_systems
 
 _SWEEPS = 60
 """Most sweeps of Jacobi rotations; they converge quadratically, in 4 to 10."""
@@ -44,24 +44,13 @@ def solve(matrix: Any, right: Any) -> Floats:
     ValueError
         A matrix is singular.
     """
-    left = np.array(matrix, np.float64)
+    left = np.array(matrix, np.float64, order="C")
     given = np.asarray(right, np.float64)
     size, stack = left.shape[-1], left.shape[:-2]
     left = left.reshape(math.prod(stack), size, size)
     out = given.reshape(len(left), size, math.prod(given.shape[len(stack) + 1 :])).copy()
-    every = np.arange(len(left))
-    for k in range(size):
-        pivot = k + np.abs(left[:, k:, k]).argmax(axis=1)
-        for rows in (left, out):
-            rows[every, pivot], rows[:, k] = rows[:, k].copy(), rows[every, pivot]
-        if (left[:, k, k] == 0.0).any():
-            raise ValueError("the matrix is singular")
-        share = (left[:, k + 1 :, k] / left[:, k, k, None])[..., None]
-        left[:, k + 1 :, k + 1 :] -= share * left[:, k, None, k + 1 :]
-        out[:, k + 1 :] -= share * out[:, k, None]
-    for k in reversed(range(size)):
-        out[:, k] /= left[:, k, k, None]
-        out[:, :k] -= left[:, :k, k, None] * out[:, k, None]
+    if not solve_systems(left, out):
+        raise ValueError("the matrix is singular")
     return out.reshape(given.shape)
 
 

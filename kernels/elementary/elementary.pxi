@@ -5,6 +5,7 @@ cdef extern from "elementary/functions.h":
     void function_power(const double *x, const double *y, ptrdiff_t n, double *out) nogil
     void c_matrix_product "matrix_product"(const double *a, const double *b, ptrdiff_t rows, ptrdiff_t inner,
                                            ptrdiff_t columns, double *out) nogil
+    int c_solve_system "solve_system"(double *matrix, ptrdiff_t n, double *right, ptrdiff_t columns) nogil
 
 
 def elementary(bytes name, x, out):
@@ -45,3 +46,18 @@ def matrix_product(a, b, out):
     cdef Written to = fills(out, (rows, columns))
     with nogil:
         c_matrix_product(pa, pb, rows, inner, columns, to)
+
+
+def solve_systems(matrices, right):
+    """Solve systems with `matrices` (k, n, n), in place: `right` (k, n, columns) becomes the solutions.
+
+    Return whether that was possible: no pivot is zero.
+    """
+    cdef ptrdiff_t count, n, columns = right.shape[2], k
+    cdef int solved = 1
+    count, n = matrices.shape[:2]
+    cdef Written left = fills(matrices, (count, n, n)), to = fills(right, (count, n, columns))
+    with nogil:
+        for k in range(count):
+            solved = solved and c_solve_system(&left[k * n * n], n, &to[k * n * columns], columns)
+    return bool(solved)

@@ -1,4 +1,4 @@
-/* Elementary functions of arrays, and products of matrices, the same to the bit on every processor. */
+/* Elementary functions of arrays, products of matrices and linear systems, the same to the bit on every processor. */
 #pragma once
 #include <stddef.h>
 
@@ -15,3 +15,7 @@ void function_power(const double *x, const double *y, ptrdiff_t n, double *out);
 
 /* out (rows, columns) = a (rows, inner) b (inner, columns), all in rows. */
 void matrix_product(const double *a, const double *b, ptrdiff_t rows, ptrdiff_t inner, ptrdiff_t columns, double *out);
+
+/* Solve a system by Gaussian elimination with partial pivoting: `right` (n, columns) becomes the solution, and the
+   matrix (n, n) its factors. Return 0 where a pivot is zero. */
+int solve_system(double *matrix, ptrdiff_t n, double *right, ptrdiff_t columns);
