@@ -13,6 +13,7 @@ from meshonet.geometry.quality.metrics import ALL_NAMES
 
 if TYPE_CHECKING:
     from meshonet.geometry.quality.figures import Figures
+    from meshonet.geometry.quality.profiles import ProfileReport
 
 COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
 NO_MORE: Mapping[str, Figure] = MappingProxyType({})
@@ -103,11 +104,14 @@ class Judgement:
         The same in short, including the warnings of profiles: ``max_angle 178.2 > 170``.
     replaced : tuple of str
         Limits of gates that replace those of profiles: ``box_ratio > 4000``.
+    profile : ProfileReport, optional
+        The outcome of every check of the profiles.
     """
 
     problems: tuple[str, ...] = ()
     beyond: tuple[str, ...] = ()
     replaced: tuple[str, ...] = ()
+    profile: "ProfileReport | None" = None
 
     @property
     def verdict(self) -> Literal["pass", "warn", "fail"]:

@@ -115,7 +115,7 @@ class QualityReport:
         profile = self.profile.under(gates) if self.profile else None
         beyond += profile.beyond() if profile else []
         replaced = profile.replaced() if profile else []
-        return Judgement(tuple(self.broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced))
+        return Judgement(tuple(self.broken(gates)), tuple(dict.fromkeys(beyond)), tuple(replaced), profile)
 
     def judged(self, gates: Sequence[Gate]) -> list[tuple[Gate, Figure, bool]]:
         """Return for each gate the figure that it judges, and whether this is beyond the limit."""
@@ -155,8 +155,7 @@ class QualityReport:
             facts["periodic"] = [vars(row) for row in rows]
         facts["growth"] = {name: extreme_dict(extreme) for name, extreme in along.items()}
         if self.profile:
-            checks = [_check(result) for result in self.profile.results]
-            facts["profile"] = {"name": self.profile.name, "passed": self.profile.passed, "checks": checks}
+            facts["profile"] = profile_dict(self.profile)
         if self.comparison:
             d = self.comparison.difference
             facts["compare"] = {"max": d.max, "mean": d.mean, "at": list(d.at), **self.comparison.figures()}
@@ -195,6 +194,12 @@ def quality_dict(quality: Quality) -> dict[str, Any]:
             row |= {"p01": summary.p01, "p99": summary.p99}
         facts[name] = row | {"worst": list(summary.worst)}
     return facts
+
+
+def profile_dict(profile: ProfileReport) -> dict[str, Any]:
+    """Return the outcome of the checks of profiles as a dict that JSON can hold."""
+    checks = [_check(result) for result in profile.results]
+    return {"name": profile.name, "passed": profile.passed, "checks": checks}
 
 
 def _folded(quality: Quality) -> dict[str, int]:

@@ -67,12 +67,13 @@ class Report(Timed):
     def as_json(self) -> dict[str, Any]:
         """Return the data for ``--json``."""
         from meshonet.geometry.quality.blocks import BlockFigures
-        from meshonet.geometry.quality.report import quality_dict
+        from meshonet.geometry.quality.report import profile_dict, quality_dict
         from meshonet_cli.terminal.summary import gates_not_met
 
         figures = self.blocks.as_dict() if isinstance(self.blocks, BlockFigures) else None
         blocks = {} if figures is None else {"cells": self.quality.cells, **figures}
         row = {} if self.dimensions is None else {"row": asdict(self.dimensions)}
+        checked = self.judgement.profile if self.judgement else None
         return {
             **self.member_json(), **row, "method": self.method, "model": self.model,
             "ni": self.ni, "nj": self.nj, "topology": self.topology, **self._along_wall(), **blocks,
@@ -81,6 +82,7 @@ class Report(Timed):
             "quality": quality_dict(self.quality), "seconds": self.times_json(),
             "notes": [with_options(note) for note in self.notes], "changes": list(changes_in(self.notes)),
             "gates_not_met": gates_not_met(self.judgement),
+            **({"profile": profile_dict(checked)} if checked else {}),
         }  # fmt: skip
 
     def lines(self) -> str:
@@ -110,7 +112,12 @@ class Report(Timed):
             f"max angle  {angle.max:.1f} degrees at {named(angle.worst)}; mean {angle.mean:.1f}",
             f"time       {self.times()}",
         ]
-        return "\n  ".join([*lines, *map(with_options, self.notes)])
+        lines += map(with_options, self.notes)
+        if self.judgement and self.judgement.profile:
+            from meshonet_cli.report.quality import profile_table
+
+            lines += profile_table(self.judgement.profile).splitlines()
+        return "\n  ".join(lines)
 
     def _confidence_json(self) -> dict[str, Any] | None:
         """Return the confidence in a network's answer; JSON has no infinite numbers."""

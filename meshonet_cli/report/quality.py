@@ -70,7 +70,7 @@ class Measured(Timed):
         if report.profile or not many:
             rows.append(growth_table(report.figures))
         if report.profile:
-            rows.append(profile_table(report.figures, report.profile))
+            rows.append(profile_table(report.profile))
         rows += [f"folded at {cell_text(cell)}" for cell in report.worst]
         if report.comparison:
             rows.append(comparison_lines(report.comparison))
@@ -195,9 +195,10 @@ def growth_table(figures: Figures) -> str:
     return aligned(rows)
 
 
-def profile_table(figures: Figures, profile: ProfileReport) -> str:
+def profile_table(profile: ProfileReport) -> str:
     """Return the checks of a profile as a table."""
-    rows = [[f"profile {profile.name}", "figure", _places_of(figures), "limits", "verdict"]]
+    places = max((len(result.at) for result in profile.results if result.at), default=2)
+    rows = [[f"profile {profile.name}", "figure", f"at {_PLACES[places]}", "limits", "verdict"]]
     return aligned(rows + [_check_row(result) for result in profile.results])
 
 

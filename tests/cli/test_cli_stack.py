@@ -217,3 +217,10 @@ def test_a_wing_that_does_not_fit_its_body_gets_a_line(
     assert (done.code, done.err.count("\n")) == (2, 1)
     assert f"error: jet.toml: {problem}" in done.err
     assert not (tmp_path / "jet.cgns").exists()
+
+
+def test_the_warnings_of_a_profile_are_in_the_report(meshonet: Meshonet, wing: Path) -> None:
+    done = meshonet("stack", str(wing), *SMALL, "--profile", "viscous", "-o", "wing.h5")
+    assert done.code == 0, done.err
+    (far_field,) = (line.split() for line in done.err.splitlines() if "far_field" in line)
+    assert far_field[-4:] == ["warn", "<", "100", "warn"]

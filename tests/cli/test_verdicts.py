@@ -81,3 +81,16 @@ def test_an_error_that_all_inputs_end_in_is_told_three_times_and_counted(meshone
     assert len(meshonet(*words, "--json").objects) == 10  # a program is told each of them
     missing = meshonet("infer", *(f"{number}.dat" for number in range(5)), "-o", "{stem}.h5")
     assert missing.err.count("no such file") == 5
+
+
+def test_the_report_of_one_grid_has_the_outcome_of_every_check(meshonet: Meshonet) -> None:
+    words = ("naca:0012", "--res", "81", "--first-cell", "1e-4", "--growth", "1.2", "--profile", "viscous")
+    done = meshonet("infer", *words, "-o", "one.h5")
+    assert done.code == 0
+    judge = ("quality", "one.h5", "--profile", "viscous")
+    table = meshonet(*judge).out.splitlines()
+    start = next(k for k, line in enumerate(table) if line.startswith("profile viscous"))
+    assert done.err.splitlines()[start - len(table) :] == [f"  {line}" for line in table[start:]]
+    assert table[-2].split()[0::5] == ["far_field", "warn"]  # which is no failure
+    report = meshonet("infer", *words, "-o", "one.h5", "--json").only
+    assert report["profile"] == meshonet(*judge, "--json").only["profile"]
