@@ -17,18 +17,20 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, norms
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.elementary import exp, power
+from meshonet.geometry.elementary import exp, log, power
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.spacing.growth import cells_for_growth
+from meshonet.kernels._native import line_neighbours
 from meshonet.solvers.energy.quads import optimise
 
 _ITERATIONS = 200
@@ -37,8 +39,16 @@ _POWER = 6.0  # how fast the core's lines gather towards its ends
 _BISECTIONS = 50
 _ROUND = 0.4  # of the width of an edge behind it, at which it ends
 _FEWER = 0.8
-FLAT, SMOOTH, STEEP, MARGIN = 0.95, 1e-3, 0.7, 0.93
+FLAT, SMOOTH, MARGIN = 0.95, 1e-3, 0.93
 """Weights of the functional, as in `key_sections`."""
+STEEP, STEEPEST = 0.7, 6.0
+"""Least and largest weight of the growth of cells."""
+UNEVEN = 3.3, 3.9
+"""Logarithm of the largest growth with the least weight, over that of its limit, from which on the weight is
+larger, and the largest.
+
+Cells grow so much behind narrow edges, whose angles the largest weight hardly changes; elsewhere it does.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,18 +120,44 @@ def filled_outline(outline: Floats, outside: Floats, lead: int, first: float, gr
         Domain((loop,), "gap"), np.concatenate([start, outside[order]]),
         lattice_quads([block[::-1] for block in (*blocks, beyond)]), places,
     )  # fmt: skip
-    lengths = norms(np.diff(mesh.nodes[mesh.edges], axis=1)[:, 0])
-    optimum = optimise(
-        mesh, iterations=_ITERATIONS, held=held, aspects=mesh.aspects(lengths), weights=(FLAT, SMOOTH),
-        growth=(STEEP, MARGIN * math.log(growth)),
-    )  # fmt: skip
-    if not optimum.valid:
-        raise NoValidGridError("cells in the gap stay folded")
+    nodes = _optimum(mesh, held, growth).nodes
     inside = QuadMesh(
-        mesh.domain, optimum.mesh.nodes[:count], lattice_quads([block[::-1] for block in blocks]),
+        mesh.domain, nodes[:count], lattice_quads([block[::-1] for block in blocks]),
         places.take(np.arange(count)),
     )  # fmt: skip
     return GapFill(order, Layout(inside, tuple(blocks)))
+
+
+def _optimum(mesh: QuadMesh, held: NDArray[np.bool_], growth: float) -> QuadMesh:
+    """Return the mesh with its nodes at the optimum, but for those that are `held` (n,).
+
+    The weight of growth depends continuously on what remains of it with the least one.
+    """
+    aspects = mesh.aspects(mesh.edge_lengths)
+
+    def optimum(start: QuadMesh, weight: float) -> QuadMesh:
+        made = optimise(
+            start, iterations=_ITERATIONS, held=held, aspects=aspects, weights=(FLAT, SMOOTH),
+            growth=(weight, MARGIN * math.log(growth)),
+        )  # fmt: skip
+        if not made.valid:
+            raise NoValidGridError("cells in the gap stay folded")
+        return made.mesh
+
+    mesh = optimum(mesh, STEEP)
+    excess = _largest_growth(mesh, held) / math.log(growth)
+    part = (excess - UNEVEN[0]) / (UNEVEN[1] - UNEVEN[0])
+    return mesh if part <= 0.0 else optimum(mesh, STEEP + min(part, 1.0) * (STEEPEST - STEEP))
+
+
+def _largest_growth(mesh: QuadMesh, held: NDArray[np.bool_]) -> float:
+    """Return the largest log ratio of consecutive edges, one of which is not between `held` nodes."""
+    edges, lengths = mesh.edges, mesh.edge_lengths
+    quads = np.ascontiguousarray(mesh.quads)
+    line, _ = line_neighbours(quads, mesh.edge_of, np.arange(len(mesh.nodes)), np.arange(len(edges)))
+    given = np.asarray(held[edges].all(axis=1))
+    ratios = np.where(given[:, None] & given[line], 1.0, lengths[line] / lengths[:, None])
+    return float(log(ratios).max())
 
 
 def _first_guess(

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 import radial_rows
 
+from meshonet.geometry.arrays import Side
+from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.rows.row import Row
 from meshonet.solvers.pipeline.rows import make_row
@@ -20,6 +22,7 @@ ROWS = {
     "diffuser with a corner at its nose": radial_rows.diffuser(11),
     "turbine with an oblique base": radial_rows.turbine(13),
 }
+PUMP = radial_rows.pump(26, gap=True)  # with a narrow edge cut at a slant
 
 
 @cache
@@ -70,3 +73,26 @@ def test_first_cells_have_their_height_in_space_at_the_blade(name: str) -> None:
             rows = np.moveaxis(grid.blocks[patch.block].nodes, axis, 0)
             rows = rows if end == 0 else rows[::-1]
             assert np.linalg.norm(rows[1] - rows[0], axis=-1) == pytest.approx(wanted, rel=1e-9)
+
+
+def test_cells_behind_narrow_edges_in_a_gap_grow_little_across_the_outline_of_the_blade() -> None:
+    grid = make_row(PUMP, RowRequest(first_cell=FIRST, cells=100_000, threads=1)).grid
+    tips = {patch.block for patch in grid.patches if patch.name == "tip"}
+    outline = [
+        each for each in grid.connections
+        if (each.block in tips) != (each.donor in tips) and each.side not in ("bottom", "top")
+    ]  # fmt: skip
+
+    def second(block: int, side: Side) -> np.ndarray:
+        nodes = grid.blocks[block].nodes
+        return np.moveaxis(nodes, PLACES[side][0], 0)[1 if PLACES[side][1] == 0 else -2]
+
+    growth = []
+    for each in outline:
+        on = each.nodes(grid.face)
+        inside, outside = (
+            np.linalg.norm(a - b, axis=-1) for a, b in zip(each.nodes(second), on, strict=True)
+        )
+        growth.append(np.maximum(inside / outside, outside / inside).ravel())
+    assert grid.quality().folded == 0
+    assert np.concatenate(growth).max() < 2.5
