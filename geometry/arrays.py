@@ -24,6 +24,8 @@ SIDES: tuple[Side, ...] = ("south", "east", "north", "west")
 
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
 
+_ROUNDING = 1e-12
+"""Distance over the extent of a closed curve below which its ends differ by rounding, e.g. of sin(2 pi)."""
 _MANY, _SAMPLE = 1 << 17, 1 << 14  # values of which ranks are found by a sample, and how large that is
 
 
@@ -43,6 +45,16 @@ def norms(vectors: Floats) -> Floats:
 def extent_of(points: Floats) -> float:
     """Return the longest extent of `points` (n, d) along an axis."""
     return float(np.ptp(points, axis=0).max())
+
+
+def ends_meet(points: Floats) -> bool:
+    """Return whether the last of `points` (n, d) repeats the first, up to rounding.
+
+    >>> angles = np.linspace(0.0, 2 * np.pi, 9)
+    >>> ends_meet(np.stack([np.cos(angles), np.sin(angles)], axis=1))
+    True
+    """
+    return len(points) > 1 and bool(np.abs(points[-1] - points[0]).max() <= _ROUNDING * extent_of(points))
 
 
 def cross2(u: Floats, v: Floats) -> Floats:

@@ -22,7 +22,7 @@ import numpy as np
 from meshonet.formats.mesh.surface import shapes_of
 from meshonet.formats.outlines.joined import joined
 from meshonet.formats.source import LARGEST, Source, printable
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, ends_meet
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.edges import DrawnEdge, channel, four_edges
 from meshonet.geometry.shapes.outline import Outline
@@ -145,7 +145,7 @@ def _edges(drawn: list[_Geometry]) -> list[DrawnEdge]:
     edges = []
     for each in drawn:
         for line in getattr(each.geometry, "geoms", [each.geometry]):
-            if line.geom_type != "LineString" or line.is_empty or line.is_closed:
+            if line.geom_type != "LineString" or line.is_empty or _is_closed(line):
                 return []
             points = _points(line)
             places = [", ".join(filter(None, (each.place, f"point {k}"))) for k in range(len(points))]
@@ -162,7 +162,7 @@ def _lines(drawn: list[_Geometry]) -> list[tuple[str, Floats]]:
     ]
     if any(line.geom_type != "LineString" or line.is_empty for _, line in lines):
         return []
-    if len(lines) < 2 or all(line.is_closed for _, line in lines):
+    if len(lines) < 2 or all(_is_closed(line) for _, line in lines):
         return []
     return [(name, _points(line)) for name, line in lines]
 
@@ -233,6 +233,11 @@ def _points(ring: Any) -> Floats:
     return points
 
 
+def _is_closed(line: Any) -> bool:
+    with np.errstate(all="ignore"):  # of NaN and infinity, which are refused later
+        return bool(line.is_closed) or ends_meet(np.array(line.coords)[:, :2])
+
+
 def _rings(geometry: BaseGeometry, place: str) -> Iterator[list[Any]]:
     """Yield the rings of each polygon, the outer one first, and each closed line of a geometry."""
     from shapely.geometry import LineString
@@ -248,7 +253,7 @@ def _rings(geometry: BaseGeometry, place: str) -> Iterator[list[Any]]:
     ring = geometry.exterior if kind == "Polygon" else LineString(geometry.coords)
     if any(hole.is_empty for hole in holes):
         raise InputError("has a hole without points", "give its points, or leave it out", place=place)
-    if ring.coords[0] != ring.coords[-1]:
+    if not _is_closed(ring):
         raise InputError("line is not closed", "repeat its first point at its end", place=place)
     yield [ring, *holes]
 

@@ -24,7 +24,7 @@ from meshonet.formats.mesh.surface import noted, shapes_of
 from meshonet.formats.outlines.joined import MEET, joined
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.rows import Line, decode, left_out, mostly_rows, read_lines, table
-from meshonet.geometry.arrays import extent_of
+from meshonet.geometry.arrays import ends_meet, extent_of
 from meshonet.geometry.domain.nesting import nested
 from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -123,7 +123,7 @@ def _are_sides(blocks: list[list[Line]], named: bool) -> bool:
 
 
 def _closed(rows: list[Line]) -> bool:
-    return len(rows) > 3 and rows[0].values[:2] == rows[-1].values[:2]
+    return len(rows) > 3 and ends_meet(np.array([line.values[:2] for line in rows]))
 
 
 def _rings(rows: list[Line]) -> list[list[Line]]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, extent_of
+from meshonet.geometry.arrays import Floats, ends_meet, extent_of
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import check_extent, polygon_area
@@ -65,7 +65,7 @@ def _distinct(points: Floats, places: Sequence[str]) -> tuple[Floats, Indices, t
     keep = np.append(True, (np.diff(points, axis=0) != 0).any(axis=1))[: len(points)]
     number = np.cumsum(keep) - 1
     kept = points[keep]
-    if len(kept) > 1 and np.array_equal(kept[0], kept[-1]):
+    if ends_meet(kept):
         number[number == len(kept) - 1] = 0
         kept, keep[np.flatnonzero(keep)[-1]] = kept[:-1], False
     if len(kept) < 3:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, ends_meet
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import find_corners, turning
@@ -18,7 +18,7 @@ def closed_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outli
     `places` are the places of the points in their source, for messages.
     """
     keep = np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])
-    if len(points) > 1 and np.array_equal(points[0], points[-1]):
+    if ends_meet(points):
         keep[-1] = len(points) < 3
     points, places = points[keep], [place for place, kept in zip(places, keep, strict=False) if kept]
     if len(points) < 3:

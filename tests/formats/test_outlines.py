@@ -8,6 +8,7 @@ from format_shapes import memory
 
 from meshonet.formats.outlines.vector import read_geojson, read_wkt
 from meshonet.formats.table import TABLE
+from meshonet.formats.text.points import read_shapes as read_points
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
 
@@ -64,6 +65,27 @@ def test_a_polygon_with_a_hole_is_a_body_in_its_far_field(way: int) -> None:
     assert (result.topology, result.name) == ("o", "body")
     for corner, side in [(p, result.south) for p in hole] + [(p, result.north) for p in SQUARE]:
         assert np.hypot(*(side - corner).T).min() < 1e-12
+
+
+def circle(x: float, y: float) -> list[list[float]]:
+    """Return a circle whose last point differs from the first by the rounding of cos and sin."""
+    turn = np.linspace(0.0, 2 * np.pi, 37)
+    points = np.stack([x + 0.2 * np.cos(turn), y + 0.2 * np.sin(turn)], axis=1).tolist()
+    return [*points[:-1], [x + 0.2, float(np.nextafter(y, 0.0))]]
+
+
+@pytest.mark.parametrize("kind", ["geojson", "lines", "csv"])
+def test_rings_are_closed_by_a_point_that_differs_by_rounding(kind: str) -> None:
+    rings = [SQUARE, circle(0.5, 0.6), circle(1.4, 0.6)]
+    blocks = ["\n".join(f"{x!r}, {y!r}" for x, y in ring) for ring in rings]
+    data = {
+        "geojson": geojson({"type": "Polygon", "coordinates": rings}),
+        "lines": "\n".join(f"LINESTRING ({wkt(ring)})" for ring in rings[1:]).encode(),
+        "csv": "\n\n".join(blocks).encode(),
+    }[kind]
+    shapes = list({"geojson": read_geojson, "lines": read_wkt, "csv": read_points}[kind](memory(data)))
+    curves = shapes if kind == "lines" else shapes[0].domain.loops[1:]
+    assert [len(each.curve.points) for each in curves] == [36, 36]
 
 
 def test_geojson_features_are_called_by_their_name() -> None:
