@@ -32,4 +32,6 @@ def section_shape(row: Table, folder: Path) -> Airfoil | Outline:
         raise row.error(keys[0], where, error.remedy) from None
     if len(shapes) != 1 or not isinstance(shapes[0], Airfoil | Outline):
         raise row.error(keys[0], f"{printable(text)} is not one airfoil or closed curve", remedy)
-    return shapes[0]
+    shape = shapes[0]
+    shape.notes = tuple(type(note)(f"{printable(text)}: {note}") for note in shape.notes)
+    return shape

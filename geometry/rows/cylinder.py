@@ -28,9 +28,10 @@ def on_cylinder(
     x, theta : where that point is, theta = atan2(y, z) in radians.
     """
     origin, length = section.frame
-    shape, notes = section.shape, tuple[str, ...]()
+    shape, notes = section.shape, section.shape.notes
     if isinstance(shape, Airfoil):
-        shape, notes = round_edged(shape)
+        shape, changes = round_edged(shape)
+        notes += changes
     a, b = ((shape.curve.points - origin) / length - np.array(about)).T * section.chord
     c, s = math.cos(stagger), math.sin(stagger)
     angle = theta + (a * s + b * c) / section.z

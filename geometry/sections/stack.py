@@ -97,6 +97,11 @@ class Stack:
         """The greatest chord."""
         return max(section.chord for section in self.sections)
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was changed of the points of its sections, or left out of their files."""
+        return tuple(dict.fromkeys(note for section in self.sections for note in section.shape.notes))
+
     def lofted(self, unit: Floats, z: Floats, weight: Floats | None = None) -> Floats:
         """Return nodes (m, n, 3) at the heights `z` (m,), from those of the sections, (sections, n, 2).
 

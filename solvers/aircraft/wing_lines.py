@@ -45,7 +45,8 @@ class WingLines:
         units, notes = zip(*(unit_nodes(section, plan) for section in wing.sections), strict=True)
         unit = np.stack(units)
         roots = root_heights(wing, unit[:, :-1], aircraft.body)
-        return cls(aircraft, unit, np.append(roots, roots[0]), tuple(dict.fromkeys(filter(None, notes))))
+        changes = (*wing.notes, *dict.fromkeys(filter(None, notes)))
+        return cls(aircraft, unit, np.append(roots, roots[0]), changes)
 
     def points(self, parts: Floats) -> Floats:
         """Return points (k, n, 3) at parts (k, n) of the way along the lines, in z."""

@@ -65,7 +65,8 @@ def blade_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, 
     ]
     grid = _lofted(stack, planes, request.span, (("hub", "wall"), ("shroud", "wall")), weight.ravel())
     named = [replace(p, name="blade", kind="wall") if p.name == "wall" else p for p in grid.patches]
-    return replace(grid, patches=tuple(named)), tuple(dict.fromkeys(note for note in notes if note))
+    changes = dict.fromkeys(note for note in notes if note)
+    return replace(grid, patches=tuple(named)), (*stack.notes, *changes)
 
 
 def _alike_far_away(grids: Floats, weight: Floats) -> Floats:
@@ -100,7 +101,7 @@ def duct_volume(stack: Stack, request: StackRequest) -> tuple[Grid, tuple[str, .
     first = request.height() * stack.chord if chosen else None
     single = all(section.shape.topology == "quad" for section in stack.sections)  # type: ignore[union-attr]
     planes = _four_sided(stack, request, first) if single else _five_blocks(stack, request, first)
-    return _lofted(stack, planes, request.span, (("inlet", "inlet"), ("outlet", "outlet"))), ()
+    return _lofted(stack, planes, request.span, (("inlet", "inlet"), ("outlet", "outlet"))), stack.notes
 
 
 def _four_sided(stack: Stack, request: StackRequest, first: float | None) -> list[Grid]:

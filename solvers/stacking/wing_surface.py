@@ -84,7 +84,7 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
         connections += cap.connections(n, 1, 2)
     zones = {"zones": ("wing", "tip", "tip")[: len(blocks)]}
     grid = Grid(tuple(blocks), tuple(patches), tuple(connections), stack.name, zones)
-    return grid, tuple(dict.fromkeys(note for note in notes if note))
+    return grid, (*stack.notes, *dict.fromkeys(note for note in notes if note))
 
 
 def _tip_cells(ring: Floats) -> Floats:

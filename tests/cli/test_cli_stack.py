@@ -224,3 +224,33 @@ def test_the_warnings_of_a_profile_are_in_the_report(meshonet: Meshonet, wing: P
     assert done.code == 0, done.err
     (far_field,) = (line.split() for line in done.err.splitlines() if "far_field" in line)
     assert far_field[-4:] == ["warn", "<", "100", "warn"]
+
+
+@pytest.mark.parametrize("kind", ["wing", "surface", "blade", "duct", "aircraft"])
+def test_lines_left_out_of_a_section_file_are_noted_with_its_name(
+    meshonet: Meshonet, tmp_path: Path, kind: str
+) -> None:
+    angle = np.linspace(0.0, 2.0 * np.pi, 65)[:-1]
+    circle = np.column_stack([0.5 + 0.5 * np.cos(angle), 0.5 * np.sin(angle)])
+    points = circle if kind == "duct" else library.read("naca:2412").curve.points
+    lines = [f"{x:.6f} {y:.6f}" for x, y in points]
+    name = "root.csv" if kind == "duct" else "root.dat"
+    (tmp_path / name).write_text("\n".join(["# a root", *lines[:20], "0.8000 .......", *lines[20:]]))
+    text = (AIRCRAFT if kind == "aircraft" else SECTIONS).replace("naca:2412", name)
+    words = [*SMALL, "--far-field", "6"]
+    if kind == "surface":
+        words = [*SMALL[:4], "--surface"]
+    elif kind == "duct":
+        words = ["--around", "33", "--span", "9"]
+        text = text.replace("sweep = 20\n", "").replace("airfoil", "outline").replace("naca:0012", "circle:1")
+    if kind in ("blade", "duct"):
+        text = f'kind = "{kind}"\n{text}'
+    (tmp_path / "made.toml").write_text(text)
+    note = f"{name}: line 22, '0.8000 .......', is no pair of numbers and is left out"
+    done = meshonet("stack", "made.toml", *words, "-o", "made.cgns")
+    assert done.code == 0, done.err
+    assert note in [line.strip() for line in done.err.splitlines()]
+    report = meshonet("stack", "made.toml", *words, "-o", "made.cgns", "--json").only
+    assert note in report["notes"]
+    (grid,) = read_grids("made.cgns")
+    assert note in grid.provenance["changes"]

@@ -230,3 +230,11 @@ def test_what_a_file_says_of_walls_and_kind_is_checked(
     path.write_text(path.read_text().replace(old, new))
     with pytest.raises(InputError, match=words):
         stack_of(str(path))
+
+
+def test_lines_left_out_of_the_file_of_a_section_are_noted_with_its_name(tmp_path: Path) -> None:
+    lines = [f"{x:.6f} {y:.6f}" for x, y in meshonet.read("naca:0012").curve.points]
+    (tmp_path / "root.dat").write_text("\n".join(["a root", *lines[:20], "0.8000 .......", *lines[20:]]))
+    row = read(tmp_path, SECTIONS.replace("naca:0012", "root.dat", 1))
+    note = "root.dat: line 22, '0.8000 .......', is no pair of numbers and is left out"
+    assert row.notes.count(note) == 1
