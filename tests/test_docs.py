@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import os
 import re
 import runpy
@@ -250,6 +251,13 @@ def test_the_example_makefile_grids_a_folder_and_judges_it(tmp_path: Path) -> No
     assert done.returncode == 0, done.stderr
     assert {path.name for path in (tmp_path / "grids").iterdir()} == {"one.vts", "two.vts"}
     assert (tmp_path / "quality.json").read_text().count('"folded"') >= 2
+    (tmp_path / "airfoils" / "broken.dat").write_text("no airfoil\n")
+    (tmp_path / "grids" / "one.vts").unlink()
+    (tmp_path / "quality.json").unlink()
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, "broken.dat" in done.stderr) == (2, True)
+    names = [json.loads(line)["input"] for line in (tmp_path / "quality.json").read_text().splitlines()]
+    assert sorted(names) == ["grids/one.vts", "grids/two.vts"]
 
 
 def paths_named(page: str) -> Iterator[tuple[str, str]]:
