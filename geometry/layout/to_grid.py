@@ -6,6 +6,7 @@ and the other edges become patches with the names of the domain's loops.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from itertools import groupby
 
@@ -24,9 +25,10 @@ from meshonet.geometry.polygon.corners import Indices
 _SIDES: tuple[Side, ...] = ("south", "north", "west", "east")
 
 
-def to_grid(layout: Layout, name: str = "") -> Grid:
+def to_grid(layout: Layout, name: str = "", walls: Collection[str] = ()) -> Grid:
     """Return the grid of a layout's blocks.
 
+    Holes, and the sides named in `walls`, are of the kind "wall" unless their names suggest another one.
     Raises InputError (from `Grid`): a layout whose neighbouring blocks do not share nodes.
     """
     domain = layout.mesh.domain
@@ -44,9 +46,9 @@ def to_grid(layout: Layout, name: str = "") -> Grid:
         nodes, periodic = matched_nodes(layout.mesh), []
         across, sides, alone = _across(layout, open_lines)
         connections, patches = connections + across, patches + sides
-    partly, walls = shared_in_part(alone)
+    partly, single = shared_in_part(alone)
     connections += partly
-    patches += [patch for line, start in walls for patch in _patches(layout, line, start)]
+    patches += [patch for line, start in single for patch in _patches(layout, line, start, walls)]
     patches += [
         Patch(f"periodic{2 - first}", side, 0, len(line) - 1, block=block, kind="periodic")
         for joined in periodic
@@ -101,7 +103,7 @@ def _periodic(layout: Layout, lines: list[Line]) -> tuple[list[tuple[Line, Line]
     return pairs, [line for line in lines if id(line) not in taken]
 
 
-def _patches(layout: Layout, line: Line, start: int) -> list[Patch]:
+def _patches(layout: Layout, line: Line, start: int, walls: Collection[str]) -> list[Patch]:
     """Return the patches of a wall from node `start` of a side on, split where its name changes."""
     block, side, nodes = line
     places, domain = layout.mesh.places, layout.mesh.domain
@@ -113,7 +115,7 @@ def _patches(layout: Layout, line: Line, start: int) -> list[Patch]:
     for name, cells in groupby(names):
         stop = start + len(list(cells))
         kind = kind_of(name)
-        kind = "wall" if kind == "other" and number > 0 else kind
+        kind = "wall" if kind == "other" and (number > 0 or name in walls) else kind
         patches.append(Patch(name, side, start, stop, block=block, kind=kind))
         start = stop
     return patches

@@ -55,7 +55,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
         fine = fine_layout(layout, cells=cells, cell_size=size, halved=request.refine, timings=timings)
     else:
         fine = _with_layers(domain, request, height, layout, timings)
-    grid = to_grid(around_body(fine)).with_provenance(method=METHOD, cells=fine.cells)
+    grid = to_grid(around_body(fine), walls=request.layered).with_provenance(method=METHOD, cells=fine.cells)
     said = (
         request.height_note(f"on a length of {shape.unit:.6g}", shape.unit),
         _fewer_cells(request),

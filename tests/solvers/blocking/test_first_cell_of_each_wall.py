@@ -1,5 +1,7 @@
 """Walls with first cells of their own, measured on grids: rings, sides, corners where two of them meet."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,21 @@ def test_each_wall_has_the_first_cells_given_for_it(given: dict[str, float]) -> 
     for name, first in given.items():
         np.testing.assert_allclose(found[name], first, rtol=1e-6)
     assert min(found["outlet"]) > 2 * max(given.values())  # which has none
+
+
+@pytest.mark.parametrize(
+    "layers",
+    [
+        {"first_cell": {"floor": 1e-2, "inlet": 2e-2}},
+        {"first_cell": 1e-2, "walls": ("floor", "inlet")},
+    ],
+    ids=["heights", "walls"],
+)
+def test_a_side_with_layers_is_a_wall_unless_its_name_says_otherwise(layers: dict[str, Any]) -> None:
+    grid = meshonet.grid(CHANNEL, **layers, cells=3000)
+    kinds = {patch.name: patch.kind for patch in grid.outer_patches()}
+    tubes = {"one": "wall", "two": "wall"}
+    assert kinds == {"floor": "wall", "roof": "other", "inlet": "inlet", "outlet": "outlet", **tubes}
 
 
 def test_mirror_images_keep_unlike_first_cells_and_share_like_ones() -> None:
