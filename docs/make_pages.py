@@ -96,6 +96,7 @@ For multi-block grids, boundaries and the variants of Plot3D see
 
 - CGNS in ADF containers: convert it with `adf2hdf`.
 - `.vts` compressed with LZ4: write it with zlib or LZMA.
+- Fluent's `.msh`, another format than Gmsh's, which is not written either.
 - Gmsh meshes other than 2.2 and 4.1, and binary DXF.
 
 Worked examples with flow solvers: `examples/naca0012-openfoam`, `examples/cylinder-openfoam`,
