@@ -17,6 +17,8 @@ PRICE = 0.08
 """Price of a block in degrees of mean deviation: from 0.03 to 0.08 a tube bank has 70 blocks, at 0 it has
 91.
 """
+CLOSE = "use a larger {growth} or a larger first cell, or open the gap there"
+"""Remedy for walls, or fronts of layers, that nearly touch."""
 
 
 def found_outside(
@@ -26,10 +28,15 @@ def found_outside(
 
     If they are to be `symmetric`, those of a symmetric domain are.
 
-    Raises BlockingError: no blocks are found.
+    Raises BlockingError: no blocks are found; InputError: walls or fronts that nearly touch.
     """
     plain = replace(rest, loops=tuple(_smooth(loop) for loop in rest.loops))
-    layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE, symmetric=symmetric)
+    sizes = feature_sizes(plain)
+    try:
+        layout = decompose(plain, timings=timings, sizes=sizes, price=PRICE, symmetric=symmetric)
+    except InputError as error:
+        error.remedy = CLOSE
+        raise
     mesh = replace(layout.mesh, domain=rest)
     return replace(layout, mesh=mesh, fronts=tuple(sorted(fronts)))
 

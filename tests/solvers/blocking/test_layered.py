@@ -12,6 +12,7 @@ from meshonet.geometry.quality.blocks import block_figures
 from meshonet.solvers.blocking.layers.finished import smallest_corner
 from meshonet.solvers.blocking.layers.layer_rows import LayerSettings
 from meshonet.solvers.blocking.layers.layered import layered
+from meshonet.solvers.blocking.layers.outside import found_outside
 
 
 def cylinder(x, y, radius, points=80):
@@ -122,3 +123,12 @@ def test_no_room_for_layers_is_said_with_its_place():
     domain = Domain((FAR, cylinder(0, 0, 0.5), cylinder(1.0001, 0, 0.5)))
     with pytest.raises(InputError, match="no room for layers"):
         layered(domain, [1, 2], LayerSettings(1e-3), cells=8000)
+
+
+def test_fronts_that_nearly_touch_are_refused_with_what_helps():
+    unit = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    near = Domain.of_polygons([4 * unit, unit + np.array([0.5, 1.5]), unit + np.array([1.5 + 1e-11, 1.5])])
+    with pytest.raises(
+        InputError, match=r"too close .* use a larger \w+ or a larger first cell, or open the gap"
+    ):
+        found_outside(near, (1, 2))
