@@ -46,6 +46,12 @@ aim a quarter of the way from the first to the second."""
 MOST_GROWTH = 1.5
 """Growth ratio beyond which no march is tried: it would not get away from the wall."""
 
+SPARE_WAY = 1.6
+"""Distance that rows whose number is free can reach, over the one they have to.
+
+With fewer rows some lines would be at the limit everywhere and those beside them not, which bends the rows.
+"""
+
 EVENINGS = 6  # most marches in which steps are corrected so that growth is even
 WITHIN = 0.998  # fraction of the growth beyond 1 that these aim at
 
@@ -162,12 +168,15 @@ def _rows(
         raise InputError(
             f"{constant} layers of {first:.3g} reach the far field", "use fewer", parameter="constant_layers"
         )
-    needed = equal + cells_for_growth(first, distance - equal * first, allowed)
-    if growth and (free or needed > cells):
+    free_way = distance - equal * first
+    if growth and free:
+        return equal + cells_for_growth(first, SPARE_WAY * free_way, allowed)
+    needed = equal + cells_for_growth(first, free_way, allowed)
+    if growth and needed > cells:
         return needed
     if needed > cells:
         raise _too_few(cells, needed, allowed, multiple)
-    growth_ratio(first, distance - equal * first, cells - equal)  # raises when even equal cells reach too far
+    growth_ratio(first, free_way, cells - equal)  # raises when even equal cells reach too far
     return cells
 
 

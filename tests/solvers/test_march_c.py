@@ -50,6 +50,13 @@ def test_c_grids_are_nearly_orthogonal_where_o_grids_of_sharp_edges_are_not() ->
     assert deviation(hyperbolic(ring, wall_spacing=1e-5).grid.nodes).max() > 60.0
 
 
+@pytest.mark.parametrize("growth", [1.1, 1.2, 1.3])
+def test_rows_that_growth_chooses_are_not_bent_by_its_limit(growth: float) -> None:
+    boundary = c_boundary("0012-sharp", 200, far_field=100.0)
+    nodes = hyperbolic(boundary, wall_spacing=6e-6, growth=growth, free_rows=True).grid.nodes
+    assert deviation(nodes).max() < 20.0
+
+
 @pytest.mark.parametrize("name", ["0012", "2412", "0012-sharp", "4415", "8412"])
 def test_cells_of_a_c_grid_grow_slowly_along_every_row_and_line(name: str) -> None:
     nodes = hyperbolic(c_boundary(name, 250, 100, te="wedge"), wall_spacing=1e-5).grid.nodes
