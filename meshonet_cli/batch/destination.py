@@ -91,12 +91,12 @@ class Destination:
         self._taken[place] = item.label
         return path
 
-    def check_room(self) -> None:
-        """Raise InputError if there are several inputs for a file that stores one result."""
+    def check_room(self, remedy: str = "") -> None:
+        """Raise InputError if there are several inputs for a file that stores one; with another `remedy`."""
         if not (self.each or self.format.many):
             raise InputError(
                 f"several inputs and one {self.format.name} file, which holds one",
-                f"use -o '{_escaped(_pattern(self.text))}' or one .h5",
+                "; ".join(filter(None, (f"use -o '{_escaped(_pattern(self.text))}' or one .h5", remedy))),
                 source=self.text,
             )
 

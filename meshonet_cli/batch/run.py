@@ -44,6 +44,7 @@ class BatchTask:
     nodes : approximate number of nodes of a result; None if unknown.
     together : number of members that a process gets at a time.
     assembled : sampling of the far field if all inputs form one domain.
+    joined : how several inputs can become one, a remedy if the output stores one result.
     """
 
     read: Callable[[Any], Iterator[Any]]
@@ -53,6 +54,7 @@ class BatchTask:
     nodes: int | None = None
     together: int = 1
     assembled: Sampling | None = None
+    joined: str = ""
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,7 @@ class Batch:
         )
         several = task.assembled is None and self.inputs.more_than(1)
         if several:
-            destination.check_room()
+            destination.check_room(task.joined)
         session.check_output(files.output)
         if task.assembled is not None:
             members = assembly(self.inputs, task.read, task.assembled, session)

@@ -86,6 +86,7 @@ def write_grids(
         nodes=None if request.asks_for_blocks else nodes,
         together=1 if alone else max(1, min(SHARED, MOST_NODES // nodes)),
         assembled=sampling if assemble else None,
+        joined="the walls of one channel belong in one file",
     )  # fmt: skip
     if not (history or session.live):
         return batch.run(task)
