@@ -48,8 +48,9 @@ class DrawnEdge(NamedTuple):
 def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) -> DomainShape | Outline:
     """Return the domain between two walls, the first being south; straight lines join their ends.
 
-    Walls without a name are called ``wall``, the lines at their first and last points ``inlet`` and
-    ``outlet``. Raises InputError: walls that cross, equal neighbouring points.
+    Both are of the kind "wall" unless their names suggest another one. Without a name they are called
+    ``wall``; the lines at their first and last points are ``inlet`` and ``outlet``.
+    Raises InputError: walls that cross, equal neighbouring points.
     """
     south, north = (_checked(wall)._replace(name=wall.name or "wall") for wall in walls)
     a, b, c, d = south.points[0], south.points[-1], north.points[0], north.points[-1]
@@ -57,7 +58,7 @@ def channel(walls: Sequence[DrawnEdge], name: str, notes: tuple[str, ...] = ()) 
         north = north.reversed()
     ends = [DrawnEdge(np.stack([p.points[k], q.points[k]]), [p.places[k], q.places[k]], called)
             for p, q, k, called in ((south, north, -1, "outlet"), (north, south, 0, "inlet"))]  # fmt: skip
-    return _sampled([south, ends[0], north.reversed(), ends[1]], name, notes)
+    return _sampled([south, ends[0], north.reversed(), ends[1]], name, notes, walls=(south.name, north.name))
 
 
 def four_edges(
@@ -79,7 +80,9 @@ def four_edges(
     return Boundary(south, north, west, east, patches=patches, name=name, notes=notes)
 
 
-def _sampled(chain: Sequence[DrawnEdge], name: str, notes: tuple[str, ...]) -> DomainShape | Outline:
+def _sampled(
+    chain: Sequence[DrawnEdge], name: str, notes: tuple[str, ...], walls: Sequence[str] = ()
+) -> DomainShape | Outline:
     """Return the domain of a closed chain of four edges, on which nodes will be sampled."""
     chain = _directed(chain)
     ring = np.concatenate([edge.points[:-1] for edge in chain])
@@ -93,7 +96,7 @@ def _sampled(chain: Sequence[DrawnEdge], name: str, notes: tuple[str, ...]) -> D
     fine = outline.curve.polyline(np.linspace(0.0, 1.0, _PARTS, endpoint=False))
     names = [edge.name or "outer" for edge in chain]
     cells = [called for called, count in zip(names, counts, strict=True) for _ in range(_PARTS * count)]
-    labelled = Labelled(outline, np.stack([fine, np.roll(fine, -1, axis=0)], axis=1), cells)
+    labelled = Labelled(outline, np.stack([fine, np.roll(fine, -1, axis=0)], axis=1), cells, walls)
     shape = polygon_shape([PolygonRing(ring, (0, a, b, c), names, places)], name, notes)
     return replace(shape, many=False, one=partial(itself, labelled))
 

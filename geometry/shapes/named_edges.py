@@ -8,7 +8,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats, Side
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 
@@ -18,11 +18,11 @@ _BLOCK = 1 << 22  # distances computed at a time
 class Labelled:
     """A shape of straight `edges` (n, 2, 2) with names (n,), from which the names of patches follow.
 
-    An edge without a name has an empty one.
+    An edge without a name has an empty one. `walls` are names of walls, unless they suggest another kind.
     """
 
-    def __init__(self, shape: Shape, edges: Floats, names: Sequence[str]) -> None:
-        self.shape, self._edges, self._names = shape, edges, tuple(names)
+    def __init__(self, shape: Shape, edges: Floats, names: Sequence[str], walls: Sequence[str] = ()) -> None:
+        self.shape, self._edges, self._names, self._walls = shape, edges, tuple(names), walls
 
     @property
     def name(self) -> str:
@@ -44,7 +44,7 @@ class Labelled:
             near = self._nearest(0.5 * (nodes[1:] + nodes[:-1]))
             reach = float(np.hypot(*np.ptp(self._edges.reshape(-1, 2), axis=0)))
             names = [self._names[k] if gap < 0.01 * reach else "" for k, gap in near]
-            patches += runs(side, names)
+            patches += runs(side, names, self._walls)
         return replace(boundary, patches=tuple(patches))
 
     def _nearest(self, points: Floats) -> list[tuple[int, float]]:
@@ -62,8 +62,10 @@ class Labelled:
         return nearest
 
 
-def runs(side: Side, names: Sequence[str]) -> list[Patch]:
+def runs(side: Side, names: Sequence[str], walls: Sequence[str] = ()) -> list[Patch]:
     """Return the patches of a side whose cells have these `names`; a cell without one takes that of the side.
+
+    Those named in `walls` are walls, unless their names suggest another kind.
 
     >>> runs("south", ["wall", "wall", "slot"])
     [Patch(name='wall', side='south', start=0, stop=2), Patch(name='slot', side='south', start=2, stop=3)]
@@ -71,6 +73,7 @@ def runs(side: Side, names: Sequence[str]) -> list[Patch]:
     patches, start = [], 0
     for name, cells in groupby(names):
         stop = start + len(list(cells))
-        patches.append(Patch(name or side, side, start, stop))
+        kind: Kind = "wall" if name in walls and kind_of(name) == "other" else "other"
+        patches.append(Patch(name or side, side, start, stop, kind=kind))
         start = stop
     return patches

@@ -184,6 +184,8 @@ def test_open_lines_are_the_sides_of_a_channel(case: str) -> None:
     edges = shape.boundary(Sampling(ni=13, nj=7))
     assert shape.name == "duct"
     assert [patch.name for patch in edges.patches] == names
+    if case != "four sides":
+        assert [patch.kind for patch in edges.patches] == ["wall", "outlet", "wall", "inlet"]
 
 
 def test_features_that_are_open_lines_are_sides_by_their_names() -> None:
