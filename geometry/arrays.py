@@ -72,6 +72,15 @@ def pairs_of(values: NDArray[Any]) -> Floats:
     return np.stack([values.real, values.imag], axis=-1)
 
 
+def wrapped(parts: Floats, least: float = -0.5) -> Floats:
+    """Return parts of a turn as those from `least` to `least` + 1 that are whole turns away.
+
+    >>> wrapped(np.array([0.75, -0.25])).tolist()
+    [-0.25, -0.25]
+    """
+    return np.asarray(np.mod(parts - least, 1.0) + least)
+
+
 def arc_parts(line: Floats) -> Floats:
     """Return the arc lengths (n,) at the nodes of a `line` (n, d), over its length."""
     arcs = np.append(0.0, np.cumsum(norms(np.diff(line, axis=0))))

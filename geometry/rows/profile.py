@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, norms, wrapped
 from meshonet.geometry.curves.cubic import CubicTable
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.elementary import arctan2
@@ -204,7 +204,7 @@ class BladeProfile:
         """Return u (c,) of the corners, from -0.25 on, those of the leading edge first."""
         u, way = self._stops
         at = np.interp(np.mod(self.curve.corners - self.leading, self.curve.length), way, u)
-        return np.sort(np.mod(at + 0.25, 1.0) - 0.25)
+        return np.sort(wrapped(at, -0.25))
 
     def at(self, u: Floats) -> Floats:
         """Return s, theta, h (n, 3) at places u (n,)."""

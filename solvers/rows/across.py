@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, wrapped
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.threads import in_threads
 from meshonet.solvers.blocking.layers.even_line import PlaceLinks
@@ -15,6 +15,7 @@ from meshonet.solvers.rows.section_plane import SectionPlane
 
 _SAMPLES = 201  # places on each side
 _EDGE = 3  # of these at both edges have nothing opposite them
+_FROM = -0.25  # least place: u = 0, the leading edge, is between others
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,13 +62,13 @@ class ChannelLines:
 
     def leaning(self, u: Floats, pairs: Indices) -> float:
         """Return the mean square of tangents by which lines between `pairs` (p, 2) of places u (k,) lean."""
-        upper = np.mod(u[pairs[:, 0]] + 0.25, 1.0) - 0.25
+        upper = wrapped(u[pairs[:, 0]], _FROM)
         slant = np.interp(upper, self.upper, self.slant)
         return float(((slant * self._aside(u[pairs])) ** 2).mean())
 
     def _aside(self, pairs: Floats) -> Floats:
         """Return by how much u on the lower side (p,) is aside of what is opposite that on the upper one."""
-        upper, lower = (np.mod(each + 0.25, 1.0) - 0.25 for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
+        upper, lower = (wrapped(each, _FROM) for each in (pairs[:, 0], 1.0 - pairs[:, 1]))
         return np.asarray(lower - np.interp(upper, self.upper, self.lower))
 
 

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, norms
+from meshonet.geometry.arrays import Floats, norms, wrapped
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.polygon.corners import Indices
@@ -150,7 +150,7 @@ def _placed(plan: SectionPlan, section: KeySection) -> KeySection:
     Nodes of inlet and outlet slide along these.
     """
     plane, wanted = section.plane, plan.places.at(section.plane.height)
-    move = np.mod(wanted - section.places + 0.5, 1.0) - 0.5
+    move = wrapped(wanted - section.places)
     for steps in (1, 2, 4):
         try:
             made = section

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, wrapped
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.ties import first_least
@@ -51,7 +51,7 @@ def _leading_node(places: Floats) -> int:
     It is the one from which on half of them are nearest to the upper side.
     """
     k = len(places)
-    off = np.abs(np.mod(places + 0.5, 1.0) - 0.5)
+    off = np.abs(wrapped(places))
     lead, trail = int(off.argmin()), int(np.abs(places - 0.5).argmin())
     upper = (trail - lead) % k
     return (lead + round(0.5 * (upper - 0.5 * k))) % k

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, wrapped
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.threads import in_threads
 from meshonet.solvers.rows.across import ChannelLines
@@ -56,7 +56,7 @@ class SpanPlaces:
     def at(self, height: float) -> Floats:
         """Return the places (k,) at a height, 0 to 1."""
         start, end = self.ends
-        return np.asarray(np.mod(start + height * _turn(end - start), 1.0))
+        return np.asarray(np.mod(start + height * wrapped(end - start), 1.0))
 
     def evened(self, planes: Sequence[SectionPlane], growth: float, pairs: Indices) -> SpanPlaces:
         """Return places whose steps in all sections grow by a limited ratio."""
@@ -79,7 +79,7 @@ def at_corners(places: Floats, corners: Floats) -> Floats:
 
 def corner_nodes(places: Floats, corners: Floats) -> Indices:
     """Return which of places (k,) are nearest to `corners` (c,)."""
-    return np.abs(_turn(places - corners[:, None])).argmin(axis=1)
+    return np.abs(wrapped(places - corners[:, None])).argmin(axis=1)
 
 
 def _drawn(places: Floats, nodes: Indices, corners: Floats) -> Floats:
@@ -89,16 +89,11 @@ def _drawn(places: Floats, nodes: Indices, corners: Floats) -> Floats:
     """
     if not len(nodes):
         return places
-    move = _turn(corners - places[nodes])
+    move = wrapped(corners - places[nodes])
     for edge in (0.0, 0.5):
-        if np.abs(_turn(corners - edge)).min() > 0.25:
+        if np.abs(wrapped(corners - edge)).min() > 0.25:
             nodes, move = np.append(nodes, corner_nodes(places, np.array([edge]))), np.append(move, 0.0)
     drawn = places + np.interp(np.arange(len(places)), nodes, move, period=len(places))
     drawn = np.mod(drawn, 1.0)
     drawn[nodes[: len(corners)]] = corners
     return np.asarray(drawn)
-
-
-def _turn(parts: Floats) -> Floats:
-    """Return parts of a turn within half a turn of 0."""
-    return np.asarray(np.mod(parts + 0.5, 1.0) - 0.5)

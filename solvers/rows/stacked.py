@@ -12,7 +12,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, wrapped
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.rows.row import Row
 from meshonet.geometry.threads import in_threads, run_in_threads
@@ -52,9 +52,9 @@ class StackedRow:
         self.row, self.zones, self.first, self.growth = row, zones, first, growth
         self.layout, self.plan, self.columns = keys.sections[0].layout, keys.plan, keys.plan.columns
         u = np.array([section.places for section in keys.sections])
-        steps = np.mod(np.diff(u, axis=0) + 0.5, 1.0) - 0.5
+        steps = wrapped(np.diff(u, axis=0))
         around = u[0] + np.cumsum(np.concatenate([np.zeros((1, u.shape[1])), steps]), axis=0)
-        self.leading = np.abs(np.mod(around[[0, -1]] + 0.5, 1.0) - 0.5).argmin(axis=1)
+        self.leading = np.abs(wrapped(around[[0, -1]])).argmin(axis=1)
         self.around = SpanLines.through(around, DEGREE)
         self.lines = SpanLines.through(np.stack(in_threads(self._key, keys.sections)), DEGREE)
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, wrapped
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.layers.even_line import NO_LINKS, Bools, Measures, PlaceLinks, evened_places
 from meshonet.solvers.rows.across import ChannelLines
@@ -35,7 +35,7 @@ def even_wall_places(
     places of both sides are opposite each other, and stay so; lines do not count then.
     """
     limit = MARGIN * math.log(growth)
-    lead = int(np.abs(np.mod(places + 0.5, 1.0) - 0.5).argmin())
+    lead = int(np.abs(wrapped(places)).argmin())
     u = np.roll(places, -lead)
     start = float(np.mod(u[0] + 0.5, 1.0)) - 0.5
     u = start + np.concatenate([[0.0], np.cumsum(np.mod(np.diff(u), 1.0))])
@@ -58,7 +58,7 @@ def even_wall_places(
 def _fixed(u: Floats, corners: Floats) -> Bools:
     """Return which places (k,) are at corners, at 0 or at 0.5."""
     at = np.concatenate([[0.0, 0.5], corners])
-    off = np.mod(u[:, None] - at + 0.5, 1.0) - 0.5
+    off = wrapped(u[:, None] - at)
     return np.asarray((np.abs(off) < _SAME).any(axis=1))
 
 
