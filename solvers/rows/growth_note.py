@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import norms, percentiles_of
+from meshonet.geometry.arrays import percentiles_of
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.growth import ratios
 
 _EVERY = 4
 """Of the lines of a block across each direction one in so many is measured: all take longer than all else."""
@@ -16,14 +17,12 @@ _KEPT = 1.02
 
 def growth_note(grid: Grid, limit: float) -> tuple[str, ...]:
     """Return a note if consecutive edges inside blocks grow by more than a limit, at more than few nodes."""
-    ratios = []
+    parts = []
     for block in grid.blocks:
         for axis in range(3):
             lines = np.moveaxis(block.nodes, axis, 0)[:, ::_EVERY, ::_EVERY]
-            steps = norms(np.diff(lines, axis=0))
-            ratio = steps[1:] / steps[:-1]
-            ratios.append(np.maximum(ratio, 1.0 / ratio).ravel())
-    growth = np.concatenate(ratios)
+            parts.append(ratios(lines).ravel())
+    growth = np.concatenate(parts)
     most = percentiles_of(growth, (_PERCENT,))[0]
     if most <= _KEPT * limit:
         return ()
