@@ -25,8 +25,8 @@ _SIGNS: tuple[tuple[Kind, str], ...] = (
 """Kinds of boundary, and words in the names of their patches; the first that matches counts."""
 
 
-def kind_of(name: str) -> Kind:
-    """Return the kind of boundary that the name of a patch suggests.
+def kind_of(name: str, otherwise: Kind = "other") -> Kind:
+    """Return the kind of boundary that the name of a patch suggests, or else `otherwise`.
 
     >>> kind_of("lower wall"), kind_of("slot 3")
     ('wall', 'other')
@@ -35,7 +35,7 @@ def kind_of(name: str) -> Kind:
     for kind, sign in _SIGNS:
         if sign in low:
             return kind
-    return "other"
+    return otherwise
 
 
 @dataclass(frozen=True)

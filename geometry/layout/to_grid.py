@@ -114,8 +114,7 @@ def _patches(layout: Layout, line: Line, start: int, walls: Collection[str]) -> 
     patches = []
     for name, cells in groupby(names):
         stop = start + len(list(cells))
-        kind = kind_of(name)
-        kind = "wall" if kind == "other" and (number > 0 or name in walls) else kind
+        kind = kind_of(name, "wall" if number > 0 or name in walls else "other")
         patches.append(Patch(name, side, start, stop, block=block, kind=kind))
         start = stop
     return patches

@@ -8,7 +8,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats, Side
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
+from meshonet.geometry.blocks.patches import Patch, kind_of
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 
@@ -73,7 +73,7 @@ def runs(side: Side, names: Sequence[str], walls: Sequence[str] = ()) -> list[Pa
     patches, start = [], 0
     for name, cells in groupby(names):
         stop = start + len(list(cells))
-        kind: Kind = "wall" if name in walls and kind_of(name) == "other" else "other"
+        kind = kind_of(name or side, "wall" if name in walls else "other")
         patches.append(Patch(name or side, side, start, stop, kind=kind))
         start = stop
     return patches
