@@ -30,7 +30,7 @@ from meshonet.solvers.aircraft.wing_lines import WingLines
 from meshonet.solvers.blocking.layers.attach import sampled
 from meshonet.solvers.rows.columns import arcs_of, resampled, with_first
 from meshonet.solvers.rows.span_lines import SpanLines
-from meshonet.solvers.rows.span_spacing import line_parts, spaced_cells, two_sided
+from meshonet.solvers.rows.span_spacing import Ends, line_parts, spaced_cells, two_sided
 
 _UNBOUNDED = 1e9
 """Length of the last cells of lines, which nothing limits but their growth."""
@@ -136,10 +136,19 @@ def _spaced(space: BodyMap, places: Floats, first: float, growth: float) -> Floa
     """Return places (k, p, 3) on their lines again, at the arcs of `two_sided` in space."""
     lines = np.moveaxis(places, 0, 1)
     for _ in range(_MEASURED):
-        arcs = arcs_of(norms(np.diff(space.points(lines), axis=1)))
-        wanted = two_sided(arcs[:, -1], (first, first), growth, len(places) - 1)
-        lines = sampled(lines, arcs, np.minimum(wanted, arcs[:, -1:]))
+        lines = _resampled(lines, _arcs(space, lines), (first, first), growth, len(places) - 1)
     return np.moveaxis(lines, 1, 0)
+
+
+def _arcs(space: BodyMap, lines: Floats) -> Floats:
+    """Return the arc lengths (p, k) in space at places (p, k, 3) on lines."""
+    return arcs_of(norms(np.diff(space.points(lines), axis=1)))
+
+
+def _resampled(lines: Floats, arcs: Floats, ends: Ends, growth: float, cells: int) -> Floats:
+    """Return places (p, cells + 1, 3) on lines (p, k, 3) with `arcs` (p, k), at those of `two_sided`."""
+    wanted = two_sided(arcs[:, -1], ends, growth, cells)
+    return sampled(lines, arcs, np.minimum(wanted, arcs[:, -1:]))
 
 
 def _cap(space: BodyMap, wing: WingLines, first: float) -> list[Floats]:
@@ -152,12 +161,9 @@ def _beyond_tip(space: BodyMap, tip: Floats, first: float, growth: float) -> Flo
     """Return places (k, p, 3) on the levels from the tip to the far field, given those at the tip (p, 3)."""
     table = np.repeat(tip[:, None], _FINE, axis=1)
     table[..., 2] += np.linspace(0.0, 1.0, _FINE) * (1.0 - tip[:, 2:])
-    steps = norms(np.diff(space.points(table), axis=1))
-    arcs = arcs_of(steps)
-    lengths = arcs[:, -1]
-    cells = spaced_cells(float(lengths.max()), (first, _UNBOUNDED), growth, _UNBOUNDED, 8)
-    wanted = two_sided(lengths, (first, _UNBOUNDED), growth, cells)
-    places = np.moveaxis(sampled(table, arcs, np.minimum(wanted, lengths[:, None])), 1, 0)
+    arcs, ends = _arcs(space, table), (first, _UNBOUNDED)
+    cells = spaced_cells(float(arcs[:, -1].max()), ends, growth, _UNBOUNDED, 8)
+    places = np.moveaxis(_resampled(table, arcs, ends, growth, cells), 1, 0)
     places[1] = at_height(space, places[0], places[1], first)
     return places
 

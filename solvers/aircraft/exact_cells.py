@@ -16,7 +16,7 @@ _INVERSES = 0.2, 5.0
 """Range of one over the power."""
 
 
-def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float, rounds: int = _ROUNDS) -> Floats:
+def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float) -> Floats:
     """Return the places (..., 3) on the lines from `wall` to `beside` (..., 3) at the distance `first`.
 
     Near the wall the distance is a power of the way, 1 but at a pointed nose or tail; two ways tell which.
@@ -24,7 +24,7 @@ def at_height(space: BodyMap, wall: Floats, beside: Floats, first: float, rounds
     away, foot = beside - wall, space.points(wall)
     scale = inverse = np.ones(away.shape[:-1])
     step = before = np.zeros_like(scale)
-    for number in range(rounds):
+    for number in range(_ROUNDS):
         short = log(first / norms(space.points(wall + scale[..., None] * away) - foot))
         if number:
             change = before - short
