@@ -55,6 +55,7 @@ def test_te_rounds_a_blunt_edge(meshonet: Meshonet, command: str) -> None:
 def test_growth_takes_few_more_rows_than_it_needs(meshonet: Meshonet, command: str) -> None:
     words = (SECTION, "--wall-spacing", "1e-4", "--growth", "1.2", "-o", "g.vts")
     made = meshonet(command, *words, "--json").only
+    assert 50 < made["nj"] <= 62
     done = meshonet(command, *words, "--res", "200x40")
     assert done.code == 2
     refusal = re.search(

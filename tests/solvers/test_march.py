@@ -133,6 +133,8 @@ def test_free_rows_are_few_more_than_the_growth_needs() -> None:
         hyperbolic(airfoil(nj=boundary.nj), wall_spacing=1e-5, growth=1.1)
     least = int(str(error.value).split("use ")[1].split()[0])
     assert 1 <= free.nj - least <= 6
+    with pytest.raises(InputError, match=f"use {least} rows or more"):
+        hyperbolic(airfoil(nj=least - 1), wall_spacing=1e-5, growth=1.1)
 
 
 def test_three_nodes_are_enough_two_rows_are_not() -> None:

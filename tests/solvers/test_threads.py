@@ -44,7 +44,8 @@ def made(shape: Shape, method: str, count: int, **options: Any) -> tuple[bytes, 
 def test_threads_change_no_bit_between_four_sides(
     eager_threads: None, method: str, options: Mapping[str, Any]
 ) -> None:
-    assert made(bump(151, 74), method, 3, **options) == made(bump(151, 74), method, 1, **options)
+    single, *several = (made(bump(151, 74), method, count, **options) for count in (1, 2, 3))
+    assert several == [single, single]
 
 
 @pytest.mark.parametrize(
@@ -62,7 +63,8 @@ def test_threads_change_no_bit_between_four_sides(
 def test_threads_change_no_bit_around_a_body(
     eager_threads: None, method: str, options: Mapping[str, Any], ni: int
 ) -> None:
-    assert made(naca(ni, 41), method, 3, **options) == made(naca(ni, 41), method, 1, **options)
+    single, *several = (made(naca(ni, 41), method, count, **options) for count in (1, 2, 3))
+    assert several == [single, single]
 
 
 @pytest.mark.parametrize("ni", [1200, 1447])
