@@ -84,7 +84,7 @@ def machines(emulated: bool = False) -> dict[str, Machine]:
         "AVX-512": " ".join(name for name in features if "512" in name or name == "X86_V4"),
     }
     two = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "2")
-    found = {
+    made = {
         "this one": Machine(),
         "one core, BLAS of Prescott, NumPy without AVX2": Machine(
             settings={"OPENBLAS_CORETYPE": "Prescott", "NPY_DISABLE_CPU_FEATURES": off["AVX2"]}, cores=1
@@ -97,16 +97,16 @@ def machines(emulated: bool = False) -> dict[str, Machine]:
         ),
     }
     if "AVX512F" in numpy_found():
-        found["BLAS of SkylakeX"] = Machine(settings={"OPENBLAS_CORETYPE": "SkylakeX"})
+        made["BLAS of SkylakeX"] = Machine(settings={"OPENBLAS_CORETYPE": "SkylakeX"})
     if emulated and shutil.which(EMULATOR) is None:
         print(f"{EMULATOR} is not installed: no processors are emulated")
     elif emulated:
         # QEMU 7.2 sorts wrongly in NumPy's functions for AVX2; they are compared without it, above
         plain = {"NPY_DISABLE_CPU_FEATURES": " ".join(features)}
-        found |= {
+        made |= {
             f"emulated {name}": Machine((EMULATOR, "-cpu", name), plain, slower=SLOWER) for name in PROCESSORS
         }
-    return found
+    return made
 
 
 def numpy_features() -> list[str]:

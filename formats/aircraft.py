@@ -54,12 +54,12 @@ def read_aircraft(data: Table, source: Source) -> Aircraft:
 
 def _body(row: Table, folder: Path) -> Body:
     row.only("name", "meridian", "y")
-    given = row.data.get("meridian")
-    if not isinstance(given, list | str):
+    value = row.data.get("meridian")
+    if not isinstance(value, list | str):
         raise row.error(
             "meridian", "is no file and no list of points", "name a file, or give [[x, r], [x, r]]"
         )
-    meridian = np.array(row.pairs("meridian", 4)) if isinstance(given, list) else _from_file(row, folder)
+    meridian = np.array(row.pairs("meridian", 4)) if isinstance(value, list) else _from_file(row, folder)
     with row.located():
         return Body(meridian, row.number("y", 0.0), row.text("name", "fuselage"))
 

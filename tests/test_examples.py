@@ -97,11 +97,11 @@ def test_the_examples_of_the_help_work(folder: Path, command: str, example: str)
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.name)
 def test_every_help_shows_its_examples(folder: Path, command: object) -> None:
     name, examples = command.name, command.loaded()[1]  # type: ignore[attr-defined]
-    told = run_line(f"meshonet {name} --help", folder).stdout
-    assert told == run_line(f"meshonet {name} -h", folder).stdout
+    shown = run_line(f"meshonet {name} --help", folder).stdout
+    assert shown == run_line(f"meshonet {name} -h", folder).stdout
     assert examples
     for example in examples:
-        assert f"  {example}\n" in told
+        assert f"  {example}\n" in shown
     assert any(
         example.startswith(f"meshonet {name}") or f" meshonet {name} " in example for example in examples
     )

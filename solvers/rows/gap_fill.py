@@ -155,8 +155,8 @@ def _largest_growth(mesh: QuadMesh, held: NDArray[np.bool_]) -> float:
     edges, lengths = mesh.edges, mesh.edge_lengths
     quads = np.ascontiguousarray(mesh.quads)
     line, _ = line_neighbours(quads, mesh.edge_of, np.arange(len(mesh.nodes)), np.arange(len(edges)))
-    given = np.asarray(held[edges].all(axis=1))
-    ratios = np.where(given[:, None] & given[line], 1.0, lengths[line] / lengths[:, None])
+    still = np.asarray(held[edges].all(axis=1))
+    ratios = np.where(still[:, None] & still[line], 1.0, lengths[line] / lengths[:, None])
     return float(log(ratios).max())
 
 
