@@ -30,6 +30,12 @@ def blade_row(tip_gap: float = 0.0, hub_gap: float = 0.0) -> Row:
     return Row(profiles(), HUB, SHROUD, BLADES, tip_gap, hub_gap, "made up")
 
 
+def turned(points: np.ndarray, degrees: float) -> np.ndarray:
+    """Points rotated about the x axis, towards growing theta = atan2(y, z)."""
+    other = (points[:, 1] + 1j * points[:, 2]) * np.exp(-1j * np.radians(degrees))
+    return np.stack([points[:, 0], other.real, other.imag], axis=1)
+
+
 def curve(*blocks: np.ndarray) -> str:
     """Text of blocks of points (n, 3) as TurboGrid writes profiles."""
     text = ""

@@ -5,9 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-
-from meshonet.formats.stack import stack_of
-from meshonet.geometry.errors import InputError
+from refusal import assert_refused
 
 MERIDIAN = "meridian = [[0, 0], [0.1, 0.2], [1, 0.5], [4, 0.5], [6, 0]]\n"
 ROOT, TIP = (f'[[wings.sections]]\nairfoil = "naca:2412"\nchord = 1.5\nx = 2\nz = {z}\n' for z in (0, 4))
@@ -125,13 +123,5 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_what_is_no_aircraft_is_refused_in_one_line(name: str, tmp_path: Path, monkeypatch) -> None:
-    files, words = REFUSED[name]
-    for file, text in files.items():
-        (tmp_path / file).write_text(text)
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(InputError, match=words) as caught:
-        stack_of("jet.toml")
-    assert "\n" not in str(caught.value)
-    assert caught.value.source
-    assert caught.value.remedy
+def test_what_is_no_aircraft_is_refused_in_one_line(name: str, tmp_path: Path) -> None:
+    assert_refused("jet.toml", *REFUSED[name], tmp_path)

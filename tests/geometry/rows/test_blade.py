@@ -19,14 +19,14 @@ def section(profiles) -> np.ndarray:
 
 
 def test_direction_start_and_a_repeated_point_of_a_profile_do_not_matter() -> None:
-    given = list(blade_row.profiles())
+    profiles = list(blade_row.profiles())
     changed = [
-        np.roll(given[0], 17, axis=0),
-        given[1][::-1],
-        np.concatenate([given[2], given[2][:1]]),
-        given[3],
+        np.roll(profiles[0], 17, axis=0),
+        profiles[1][::-1],
+        np.concatenate([profiles[2], profiles[2][:1]]),
+        profiles[3],
     ]
-    assert section(changed) == pytest.approx(section(given), abs=1e-6)
+    assert section(changed) == pytest.approx(section(profiles), abs=1e-6)
 
 
 def test_a_section_starts_at_the_leading_edge_on_the_side_of_larger_theta() -> None:
@@ -92,18 +92,12 @@ def test_profiles_that_make_no_blade_are_refused_by_number(profiles, words: str)
 
 
 def test_profiles_from_casing_to_hub_are_reversed_with_a_note() -> None:
-    given = blade_row.profiles()
-    row = Row(given[::-1], blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
+    profiles = blade_row.profiles()
+    row = Row(profiles[::-1], blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
     assert row.changes == ("profiles are given from casing to hub and are taken the other way round",)
-    assert np.array_equal(section(given[::-1]), section(given))
+    assert np.array_equal(section(profiles[::-1]), section(profiles))
     with pytest.raises(InputError, match="profile 2: begins at 7"):
-        Row(given[:1:-1], blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
-
-
-def turned(points: np.ndarray, degrees: float) -> np.ndarray:
-    """Points rotated about the x axis, towards growing theta = atan2(y, z)."""
-    other = (points[:, 1] + 1j * points[:, 2]) * np.exp(-1j * np.radians(degrees))
-    return np.stack([points[:, 0], other.real, other.imag], axis=1)
+        Row(profiles[:1:-1], blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
 
 
 def row_of(profiles) -> Row:
@@ -117,10 +111,10 @@ PITCH = 360.0 / blade_row.BLADES
     "pitches", [(0, 0, 1, 0), (0, -2, 0, 0), (0, 0, 0, 1), (1, 0, 0, 0), (0, 0, 1, 1), (3, 0, 0, 0)]
 )
 def test_profiles_of_the_next_blades_are_turned_back_with_a_note(pitches) -> None:
-    given = blade_row.profiles()
-    row = row_of([turned(p, k * PITCH) for p, k in zip(given, pitches, strict=True)])
+    profiles = blade_row.profiles()
+    row = row_of([blade_row.turned(p, k * PITCH) for p, k in zip(profiles, pitches, strict=True)])
     u = np.linspace(0.05, 0.95, 30)
-    s, theta = (row.surface.section(0.4, u) - row_of(given).surface.section(0.4, u)).T
+    s, theta = (row.surface.section(0.4, u) - row_of(profiles).surface.section(0.4, u)).T
     assert s == pytest.approx(np.zeros(30), abs=1e-12)
     assert np.ptp(theta) < 1e-12  # but for whole pitches of all
     moved = {k for k in range(4) if pitches[k] != sorted(pitches)[1]}
@@ -133,7 +127,7 @@ def test_profiles_of_the_next_blades_are_turned_back_with_a_note(pitches) -> Non
 
 @pytest.mark.parametrize("lean", [(0, 12, 24, 33), (0, 5, 16, 30), (0, -16, -32, -45)])
 def test_a_blade_may_lean_by_more_than_a_pitch(lean) -> None:
-    row = row_of([turned(p, angle) for p, angle in zip(blade_row.profiles(), lean, strict=True)])
+    row = row_of([blade_row.turned(p, angle) for p, angle in zip(blade_row.profiles(), lean, strict=True)])
     assert row.changes == ()
     at = [row.surface.section(row.surface.knots[k], np.full(1, 0.25))[0, 1] for k in (0, 3)]
     plain = row_of(blade_row.profiles()).surface

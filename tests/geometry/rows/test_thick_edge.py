@@ -68,23 +68,14 @@ def test_bases_and_round_edges_stay(channel) -> None:
         assert not pointed(profile, False)
 
 
-def test_a_row_of_sharp_profiles_is_made_with_a_note() -> None:
-    profiles = [lens(radius) for radius in (1.95, 2.5, 3.02)]
+@pytest.mark.parametrize(("name", "forward"), [("trailing", False), ("leading", True)])
+def test_a_row_of_sharp_profiles_is_made_with_a_note(name: str, forward: bool) -> None:
+    profiles = [lens(radius, forward=forward) for radius in (1.95, 2.5, 3.02)]
     row = Row(profiles, blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
     (note,) = row.changes
     assert isinstance(note, Change)
-    assert "trailing edges of 3 of 3 profiles, which are points, are opened to 0.01 chords" in note
+    assert f"{name} edges of 3 of 3 profiles, which are points, are opened to 0.01 chords" in note
     grid = meshonet.stack(row, cells=20_000, first_cell=5e-4, growth=1.5)
     assert grid.quality()["scaled_jacobian"].min > 0.2
     reverse = Row(profiles[::-1], blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
     assert len(reverse.changes) == 2
-
-
-def test_a_row_of_sharp_leading_edges_is_made_with_a_note() -> None:
-    profiles = [lens(radius, forward=True) for radius in (1.95, 2.5, 3.02)]
-    row = Row(profiles, blade_row.HUB, blade_row.SHROUD, blade_row.BLADES)
-    (note,) = row.changes
-    assert isinstance(note, Change)
-    assert "leading edges of 3 of 3 profiles, which are points, are opened to 0.01 chords" in note
-    grid = meshonet.stack(row, cells=20_000, first_cell=5e-4, growth=1.5)
-    assert grid.quality()["scaled_jacobian"].min > 0.2
