@@ -10,6 +10,10 @@ cdef extern from "layers/layers.h":
     void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const double *first, const double *fade,
                             int threads, double *scratch) nogil
 
+cdef extern from "layers/law.h":
+    void c_layer_law "layer_law"(const double *wanted, const double *slopes, ptrdiff_t n, ptrdiff_t rows, double most,
+                                 double steeper, double *cells) nogil
+
 
 cdef Layers layers_of(ptrdiff_t cells, double first, double last, ptrdiff_t constant) except *:
     cdef Layers layers = Layers(first, last, constant)
@@ -62,3 +66,13 @@ def redistribute(x, y, first, fade, int threads=1):
     cdef Written room = fills(scratch, scratch.shape)
     with nogil:
         redistribute_lines(px, py, ni, nj, heights, share, threads, room)
+
+
+def layer_law(wanted, slopes, double most, double steeper, cells):
+    """Fill `cells` (n, rows) with sizes over the first that add up to `wanted` (n,); the rest is as in ``law.h``."""
+    cdef ptrdiff_t n, rows
+    n, rows = cells.shape
+    cdef Read sums = reads(wanted, (n,)), ends = reads(slopes, (n,))
+    cdef Written to = fills(cells, (n, rows))
+    with nogil:
+        c_layer_law(sums, ends, n, rows, most, steeper, to)
