@@ -107,7 +107,10 @@ def cut(grid: Grid, at: Slice, values: list[Floats] | None) -> Cut:
     """
     nodes = [block.nodes for block in grid.blocks]
     distances = [each[..., at.direction] - at.coordinate for each in nodes]
-    made = cut_where(distances, [np.delete(each, at.direction, axis=-1) for each in nodes], values)
+    flat = [np.delete(each, at.direction, axis=-1) for each in nodes]
+    made = cut_where(distances, flat, values)
+    if not len(made.polygons):  # nodes on the plane count as above it: it may be the lower boundary
+        made = cut_where([-each for each in distances], flat, values)
     if not len(made.polygons):
         low, high = (float(corner[at.direction]) for corner in grid.box)
         problem = f"the plane {at} cuts no cell"

@@ -8,6 +8,7 @@ from typing import Any
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.blocks import extreme_dict
+from meshonet.geometry.quality.centres import centre_of
 from meshonet.geometry.quality.compare import Difference, compare
 from meshonet.geometry.quality.figure import Figure
 from meshonet.geometry.quality.figures import Figures
@@ -136,6 +137,13 @@ class QualityReport:
         skewness = self.wall_skewness.get(name)
         return facts | ({"skewness": extreme_dict(skewness)} if skewness else {})
 
+    def _metrics(self) -> dict[str, Any]:
+        """Return the metrics, with the centres of their worst cells, as a dict that JSON can hold."""
+        facts = quality_dict(self.quality)
+        for name, summary in self.quality.metrics.items():
+            facts[name]["worst_centre"] = centre_of(self.grid, summary.worst).tolist()
+        return facts
+
     def as_dict(self) -> dict[str, Any]:
         """Return the report as a dict that JSON can hold."""
         grid, growth = self.grid, self.figures.growth
@@ -147,7 +155,7 @@ class QualityReport:
             "form": grid.form,
             **_folded(self.quality),
             "worst_cells": [_given(cell) for cell in self.worst],
-            "quality": quality_dict(self.quality),
+            "quality": self._metrics(),
             "walls": [_wall(row) | self._at_wall(row.name) for row in self.figures.wall_rows],
         }
         along = {"xi": growth.xi, "eta": growth.eta} | growth.families()

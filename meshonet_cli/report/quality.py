@@ -7,6 +7,7 @@ from typing import Any
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.blocks import LINES, BlockFigures
+from meshonet.geometry.quality.centres import centre_of
 from meshonet.geometry.quality.figures import Figures
 from meshonet.geometry.quality.gates import Judgement
 from meshonet.geometry.quality.growth import Extreme
@@ -59,11 +60,11 @@ class Measured(Timed):
         )
         rows = [f"{self.item.label}: {size}, {quality.cells} cells, {folded}", quality_table(grid, quality)]
         if many:
-            rows.append(lines_table(report.figures.blocks))
+            rows.append(lines_table(grid, report.figures.blocks))
         if report.figures.wall_rows and (report.profile or many or grid.form == "plane"):
             rows.append(walls_table(report.figures.wall_rows))
         if report.wall_skewness:
-            rows.append(skewness_table(report.wall_skewness))
+            rows.append(skewness_table(grid, report.wall_skewness))
         if report.flow and report.y_plus:
             rows.append(y_plus_table(report.flow, report.y_plus))
         rows += [_period_line(row) for row in periods(grid)]
@@ -89,12 +90,12 @@ def _period_line(row: Period) -> str:
 def quality_table(grid: Grid, quality: Quality) -> str:
     """Return the metrics as a table; percentiles are required."""
     places = max(len(summary.worst) for summary in quality.metrics.values())
-    rows = [["metric", "min", "p01", "mean", "p99", "max", f"worst at {_PLACES[places]}"]]
+    rows = [["metric", "min", "p01", "mean", "p99", "max", f"worst at {_PLACES[places]}", _axes(grid)]]
     for metric in metrics_of(grid):
         row = quality[metric.name]
         name = f"{metric.name} ({metric.unit})" if metric.unit else metric.name
         values = [_figure(value) for value in (row.min, row.p01, row.mean, row.p99, row.max)]
-        rows.append([name, *values, _place(row.worst)])
+        rows.append([name, *values, *_cell(grid, row.worst)])
     return aligned(rows)
 
 
@@ -109,12 +110,12 @@ def blocks_line(blocks: BlockFigures) -> str:
     return ", ".join([*counts, vertices])
 
 
-def lines_table(blocks: BlockFigures) -> str:
+def lines_table(grid: Grid, blocks: BlockFigures) -> str:
     """Return angles, growth and bends of grid lines in a multi-block grid as a table."""
     angles = blocks.deviation
-    rows = [["angles and lines", "mean", "p99", "max", f"at {_PLACES[len(angles.at)]}"]]
+    rows = [["angles and lines", "mean", "p99", "max", f"at {_PLACES[len(angles.at)]}", _axes(grid)]]
     values = (angles.mean, angles.p99, angles.max)
-    rows.append(["off 90 at corners (deg)", *map(_figure, values), _place(angles.at)])
+    rows.append(["off 90 at corners (deg)", *map(_figure, values), *_cell(grid, angles.at)])
     for name in LINES:
         extreme: Extreme | None = getattr(blocks.lines, name)
         what, where = name.split("_")
@@ -122,7 +123,7 @@ def lines_table(blocks: BlockFigures) -> str:
         if extreme:
             unit = " (deg)" if what == "bend" else ""
             values = (extreme.mean, extreme.p99, extreme.max)
-            rows.append([label + unit, *map(_figure, values), _place(extreme.at)])
+            rows.append([label + unit, *map(_figure, values), *_cell(grid, extreme.at)])
     return aligned(rows)
 
 
@@ -145,6 +146,16 @@ def _figure(value: float | None) -> str:
 
 def _place(at: tuple[int, ...]) -> str:
     return ", ".join(map(str, at))
+
+
+def _cell(grid: Grid, at: tuple[int, ...]) -> tuple[str, str]:
+    """Return the indices and the centre of a cell as text."""
+    return _place(at), ", ".join(map(figure, centre_of(grid, at)))
+
+
+def _axes(grid: Grid) -> str:
+    """Return the heading of the column with centres of cells."""
+    return "at x, y" if grid.form == "plane" else "at x, y, z"
 
 
 def comparison_lines(comparison: Comparison) -> str:
@@ -172,11 +183,11 @@ def walls_table(rows: tuple[WallRow, ...]) -> str:
     return aligned(table)
 
 
-def skewness_table(skewness: Mapping[str, Extreme]) -> str:
+def skewness_table(grid: Grid, skewness: Mapping[str, Extreme]) -> str:
     """Return the skewness of the cells at each wall as a table."""
-    rows = [["skewness at the walls", "mean", "p99", "max", f"at {_PLACES[4]}"]]
+    rows = [["skewness at the walls", "mean", "p99", "max", f"at {_PLACES[4]}", _axes(grid)]]
     for name, row in skewness.items():
-        rows.append([name, figure(row.mean), _figure(row.p99), figure(row.max), _place(row.at)])
+        rows.append([name, figure(row.mean), _figure(row.p99), figure(row.max), *_cell(grid, row.at)])
     return aligned(rows)
 
 

@@ -80,7 +80,10 @@ def test_json_has_every_figure(meshonet: Meshonet, grid_vts: Path) -> None:
         figures = report["quality"][name]
         assert figures["max"] == values.max()
         assert figures["p99"] == pytest.approx(np.percentile(values, 99), rel=1e-12)
-        assert values[tuple(figures["worst"])] in (values.min(), values.max())
+        i, j = figures["worst"]
+        assert values[i, j] in (values.min(), values.max())
+        corners = grid.nodes[i : i + 2, j : j + 2]
+        assert figures["worst_centre"] == pytest.approx(corners.mean(axis=(0, 1)), abs=1e-15)
 
 
 def test_folded_cells_are_named(meshonet: Meshonet, folded_vts: Path) -> None:

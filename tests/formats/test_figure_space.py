@@ -64,6 +64,12 @@ def test_a_cut_has_the_area_of_the_section() -> None:
     assert 0.01 * sum(areas) == pytest.approx(1.0, rel=0.01)  # its volume
 
 
+@pytest.mark.parametrize("z", [0.0, 2.0])
+def test_a_plane_that_is_the_boundary_shows_its_cells(z: float) -> None:
+    box = Grid.from_nodes(lattice((0, 4, 5), (0, 3, 4), (0, 2, 3)))
+    assert polygon_area(cut(box, Slice(2, None, z), None).polygons) == pytest.approx(12.0)
+
+
 def test_cells_keep_their_values_in_slices() -> None:
     grid = Grid.from_nodes(lattice((0, 3, 4), (0, 3, 4), (0, 3, 4)))
     values = [np.arange(27.0).reshape(3, 3, 3)]
